@@ -1,0 +1,38 @@
+//! The parallel arrays, used for the water and for every skin. No laws.
+
+use serde::{Deserialize, Serialize};
+
+use crate::space::Vector;
+
+/// Particles of one kind: index `i` of every array is the same particle. All carry the mass ρ₀ dpᴰ.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Particles<const D: usize> {
+    /// Position, m.
+    pub r: Vec<Vector<D>>,
+    /// Velocity, m/s.
+    pub v: Vec<Vector<D>>,
+    /// Density, kg/m³.
+    pub rho: Vec<f64>,
+    /// Name of the particle for life, from 0; sorting moves it with the rest.
+    pub id: Vec<u32>,
+}
+
+impl<const D: usize> Particles<D> {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.r.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.r.is_empty()
+    }
+
+    /// Adds a particle at rest at `r` (m) of density `rho` (kg/m³); its id is its number.
+    pub fn push(&mut self, r: Vector<D>, rho: f64) {
+        self.id.push(self.r.len() as u32);
+        self.r.push(r);
+        self.v.push(Vector::zeros());
+        self.rho.push(rho);
+    }
+}

@@ -1,0 +1,94 @@
+//! All that is not water: fixed, driven and free solids, their poses, skins and loads. No sums over pairs.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    shape::Shape,
+    space::{Matrix, Pose, Vector, Wedge},
+};
+
+/// A solid as it is to be made.
+#[derive(Clone, Debug)]
+pub struct SolidSpec<const D: usize> {
+    /// The name that the user gave it.
+    pub name: String,
+    /// Geometry in the solid's own frame.
+    pub shape: Shape<D>,
+    /// Where that frame is at the start.
+    pub pose: Pose<D>,
+    /// What moves it.
+    pub role: Role<D>,
+    /// Coulomb friction coefficient, –.
+    pub friction: f64,
+    /// Restitution coefficient, –.
+    pub restitution: f64,
+}
+
+/// What moves a solid.
+#[derive(Clone, Debug)]
+pub enum Role<const D: usize> {
+    /// Nothing.
+    Fixed,
+    /// A prescribed motion.
+    Driven(Motion<D>),
+    /// Water, weight, contacts: rapier.
+    Free(FreeBody<D>),
+}
+
+/// Mass and start of a free body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeBody<const D: usize> {
+    /// Mass, kg (kg/m in 2-D).
+    pub mass: f64,
+    /// Centre of mass in the solid's frame, m.
+    pub centre: Vector<D>,
+    /// Inertia about the centre of mass in the solid's frame, kg m² (kg m²/m in 2-D): the 3×3 tensor in
+    /// 3-D; in 2-D the number stands in `[(0, 0)]`.
+    pub inertia: Matrix<D>,
+    /// Velocity of the centre of mass, m/s.
+    pub velocity: Vector<D>,
+    /// Spin, rad/s.
+    pub spin: Wedge<D>,
+    /// Which world translations are locked.
+    pub locked_translations: [bool; D],
+    /// Which world rotations (axial components, one in 2-D) are locked; entries past the last are unused.
+    pub locked_rotations: [bool; 3],
+}
+
+/// Force and torque on a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Load<const D: usize> {
+    /// Force, N (N/m in 2-D).
+    pub force: Vector<D>,
+    /// Torque about the solid's `centre`, N m (N m/m in 2-D).
+    pub torque: Wedge<D>,
+}
+
+/// Pose and velocity of a solid at an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Kinematics<const D: usize> {
+    /// Pose of the solid's frame.
+    pub pose: Pose<D>,
+    /// World position about which `spin` turns and torques are taken: the centre of mass of a free
+    /// body, the hinge or the frame's origin of a driven one, the frame's origin of a fixed one; m.
+    pub centre: Vector<D>,
+    /// Velocity of `centre`, m/s.
+    pub velocity: Vector<D>,
+    /// Spin, rad/s.
+    pub spin: Wedge<D>,
+}
+
+/// A solid in a running system.
+#[derive(Clone, Debug)]
+pub struct Solid<const D: usize> {
+    /// What it was made from.
+    pub spec: SolidSpec<D>,
+    /// Where it is and how it moves now.
+    pub kinematics: Kinematics<D>,
+    /// Its boundary particles' indices in the system's skin arrays.
+    pub skin: Range<usize>,
+    /// The water's load on it at the last force pass (pressure and viscosity, no weight).
+    pub load: Load<D>,
+}

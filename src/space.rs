@@ -1,0 +1,182 @@
+//! Space: vectors, turns, poses and boxes in two or three dimensions from one source.
+//!
+//! What turns is a [`Wedge`], an antisymmetric D×D matrix, so that no formula needs a cross product:
+//! a spin Ω gives the velocity u = V + Ω r, and a force f at r about the centre gives the torque
+//! T = f rᵀ − r fᵀ. The power of the two is ½ T:Ω.
+
+use nalgebra::SMatrix;
+use serde::{Deserialize, Serialize};
+
+/// A point or a vector of `D` components (m, m/s, N, …).
+pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
+
+/// A D×D matrix.
+pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
+
+/// What turns: an antisymmetric matrix holding a spin (rad/s) or a torque (N m; N m/m in 2-D).
+///
+/// In 2-D the one number is `m[(1, 0)]`, positive counter-clockwise; in 3-D the axial vector is
+/// (m₂₁, m₀₂, m₁₀).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wedge<const D: usize>(pub Matrix<D>);
+
+impl<const D: usize> Wedge<D> {
+    /// Number of independent components: 1 in 2-D, 3 in 3-D.
+    pub const COMPONENTS: usize = D * (D - 1) / 2;
+
+    /// No turning.
+    pub fn zero() -> Self {
+        Self(Matrix::zeros())
+    }
+
+    /// The torque of a force `f` (N) acting at the arm `r` (m): f rᵀ − r fᵀ.
+    pub fn torque(r: &Vector<D>, f: &Vector<D>) -> Self {
+        Self(f * r.transpose() - r * f.transpose())
+    }
+
+    /// The velocity that this spin gives at the arm `r` (m): Ω r.
+    pub fn at(&self, r: &Vector<D>) -> Vector<D> {
+        self.0 * r
+    }
+
+    /// The axial components: `[m₁₀]` in 2-D, `[m₂₁, m₀₂, m₁₀]` in 3-D.
+    pub fn axial(&self) -> Vec<f64> {
+        match D {
+            2 => vec![self.0[(1, 0)]],
+            _ => vec![self.0[(2, 1)], self.0[(0, 2)], self.0[(1, 0)]],
+        }
+    }
+
+    /// The inverse of [`Wedge::axial`]; missing components count as zero.
+    pub fn from_axial(components: &[f64]) -> Self {
+        let mut m = Matrix::zeros();
+        let places: &[(usize, usize)] = if D == 2 { &[(1, 0)] } else { &[(2, 1), (0, 2), (1, 0)] };
+        for (&(i, j), &w) in places.iter().zip(components) {
+            m[(i, j)] = w;
+            m[(j, i)] = -w;
+        }
+        Self(m)
+    }
+
+    /// The power of this torque on a body of spin `spin` (W): ½ T:Ω.
+    pub fn power(&self, spin: &Self) -> f64 {
+        0.5 * self.0.component_mul(&spin.0).sum()
+    }
+
+    /// The rotation matrix of turning with this spin for a unit of time, exp Ω (Rodrigues).
+    pub fn exp(&self) -> Matrix<D> {
+        let angle = (0.5 * self.0.norm_squared()).sqrt();
+        let (a, b) =
+            if angle < 1e-8 { (1.0, 0.5) } else { (angle.sin() / angle, (1.0 - angle.cos()) / (angle * angle)) };
+        Matrix::identity() + self.0 * a + self.0 * self.0 * b
+    }
+}
+
+impl<const D: usize> std::ops::Add for Wedge<D> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl<const D: usize> std::ops::Mul<f64> for Wedge<D> {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0 * factor)
+    }
+}
+
+/// Where a body's frame is: a local point x lies at `position + rotation · x` in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pose<const D: usize> {
+    /// World position of the frame's origin, m.
+    pub position: Vector<D>,
+    /// Orthogonal matrix that turns local into world directions, –.
+    pub rotation: Matrix<D>,
+}
+
+impl<const D: usize> Pose<D> {
+    /// The world frame itself.
+    pub fn identity() -> Self {
+        Self::at(Vector::zeros())
+    }
+
+    /// Unturned, at `position` (m).
+    pub fn at(position: Vector<D>) -> Self {
+        Self { position, rotation: Matrix::identity() }
+    }
+
+    /// Turned by the axial angles `turn` (rad; one in 2-D, a rotation vector in 3-D), at `position`.
+    pub fn turned(position: Vector<D>, turn: &[f64]) -> Self {
+        Self { position, rotation: Wedge::from_axial(turn).exp() }
+    }
+
+    /// World position of the local point `x` (m).
+    pub fn point(&self, x: &Vector<D>) -> Vector<D> {
+        self.position + self.rotation * x
+    }
+
+    /// Local coordinates of the world point `x` (m).
+    pub fn local(&self, x: &Vector<D>) -> Vector<D> {
+        self.rotation.transpose() * (x - self.position)
+    }
+
+    /// This pose after another: the pose of a frame that sits at `inner` inside this one.
+    pub fn then(&self, inner: &Self) -> Self {
+        Self { position: self.point(&inner.position), rotation: self.rotation * inner.rotation }
+    }
+
+    /// The axial angle of the rotation (rad): one component in 2-D, a rotation vector in 3-D.
+    pub fn turn(&self) -> Vec<f64> {
+        let m = &self.rotation;
+        if D == 2 {
+            return vec![m[(1, 0)].atan2(m[(0, 0)])];
+        }
+        let twice_sine = [m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]];
+        let norm = twice_sine.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let angle = norm.atan2(m.trace() - 1.0);
+        let scale = if norm < 1e-12 { 0.5 } else { angle / norm };
+        twice_sine.iter().map(|x| x * scale).collect()
+    }
+}
+
+/// An axis-aligned box (m).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bounds<const D: usize> {
+    /// Lowest corner, m.
+    pub min: Vector<D>,
+    /// Highest corner, m.
+    pub max: Vector<D>,
+}
+
+impl<const D: usize> Bounds<D> {
+    /// The box that holds nothing: every union with it gives the other box.
+    pub fn empty() -> Self {
+        Self { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) }
+    }
+
+    /// The smallest box around `points` (m).
+    pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector<D>>) -> Self {
+        points.into_iter().fold(Self::empty(), |b, x| Self { min: b.min.inf(x), max: b.max.sup(x) })
+    }
+
+    /// The smallest box around both.
+    pub fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
+    }
+
+    /// The box grown by `margin` (m) on every side.
+    pub fn grown(&self, margin: f64) -> Self {
+        Self { min: self.min.add_scalar(-margin), max: self.max.add_scalar(margin) }
+    }
+
+    /// Whether `x` lies inside (faces included). False for a non-finite point.
+    pub fn contains(&self, x: &Vector<D>) -> bool {
+        (0..D).all(|i| x[i] >= self.min[i] && x[i] <= self.max[i])
+    }
+
+    /// Edge lengths, m.
+    pub fn size(&self) -> Vector<D> {
+        self.max - self.min
+    }
+}
