@@ -1,6 +1,9 @@
 //! Geometry: what a solid or a body of water looks like. No motion, no mass.
 
-use crate::space::{Matrix, Pose, Vector};
+pub mod fill;
+
+use crate::error::Result;
+use crate::space::{Bounds, Matrix, Pose, Vector};
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,4 +47,35 @@ pub struct SkinPoint<const D: usize> {
     pub r: Vector<D>,
     /// Layer, 0 the one nearest the water, half a dp inside the true face.
     pub layer: u8,
+}
+
+impl<const D: usize> Shape<D> {
+    /// Stub.
+    pub fn check(&self) -> Result<()> {
+        unimplemented!()
+    }
+    /// Stub.
+    pub fn signed_distance(&self, _x: &Vector<D>) -> f64 {
+        unimplemented!()
+    }
+    /// Stub.
+    pub fn bounds(&self) -> Bounds<D> {
+        unimplemented!()
+    }
+    /// Stub.
+    pub fn volume(&self) -> Volume<D> {
+        unimplemented!()
+    }
+    /// Stub.
+    pub fn surface(&self) -> f64 {
+        unimplemented!()
+    }
+    /// Stub.
+    pub fn skin(&self, _dp: f64, _layers: usize) -> Vec<SkinPoint<D>> {
+        unimplemented!()
+    }
+    /// Stub.
+    pub fn submerged(&self, _pose: &Pose<D>, _level: f64) -> (f64, Vector<D>) {
+        unimplemented!()
+    }
 }
