@@ -86,7 +86,7 @@ pub enum Walls {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scheme {
-    /// Verlet (leapfrog) with an Euler step every `euler_every` steps.
+    /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.
     Verlet {
         /// Steps from one Euler step to the next.
         #[serde(default = "fifty")]

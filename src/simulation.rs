@@ -82,7 +82,7 @@ impl<const D: usize> Simulation<D> {
                 _ => None,
             })
             .fold(f64::INFINITY, f64::min);
-        let stepper = Stepper::new(model.scheme);
+        let stepper = Stepper::new(&model);
         let system = System::new(model, &water, &levels, solids, domain)?;
         let bodies = Bodies::new(engine, 0);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
@@ -150,6 +150,11 @@ impl<const D: usize> Simulation<D> {
             density: fluid.rho.get(i).copied(),
             cause: cause.into(),
         })
+    }
+
+    /// Makes the rates anew after the state was changed by hand.
+    pub fn refresh(&mut self) {
+        self.system.rates();
     }
 
     /// Water and solids now.

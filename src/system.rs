@@ -9,7 +9,7 @@ use crate::{
     law::{Extra, Medium, state::State, wall::Dbc},
     model::{Model, Shifting, Viscosity},
     near::{CHUNK, Near},
-    particles::Particles,
+    particles::{PER_TASK, Particles},
     solid::{Kinematics, Load, Role, Solid, SolidSpec, skin},
     space::{Bounds, Matrix, Vector, Wedge},
     sweep::{Input, Node, Sums, Sweep},
@@ -193,7 +193,7 @@ impl<const D: usize> System<D> {
             });
         }
         let gravity = self.medium.gravity;
-        self.sums.par_iter_mut().for_each(|s| s.dv += gravity);
+        self.sums.par_iter_mut().with_min_len(PER_TASK).for_each(|s| s.dv += gravity);
         self.load();
         self.passes += 1;
     }
@@ -202,6 +202,7 @@ impl<const D: usize> System<D> {
         let inv_rho0 = 1.0 / self.medium.rho0;
         (0..particles.len())
             .into_par_iter()
+            .with_min_len(PER_TASK)
             .map(|i| {
                 let x = (particles.rho[i] - self.medium.rho0) * inv_rho0;
                 Node {
@@ -244,6 +245,7 @@ impl<const D: usize> System<D> {
         let (a2, closing) = self
             .sums
             .par_iter()
+            .with_min_len(PER_TASK)
             .map(|s| (s.dv.norm_squared(), s.closing))
             .reduce(|| (0.0, 0.0), |a, b| (f64::max(a.0, b.0), f64::max(a.1, b.1)));
         Peaks { acceleration: a2.sqrt(), closing }
@@ -297,7 +299,12 @@ impl<const D: usize> System<D> {
     /// Lets the density of the boundary particles follow `rho`, never below what the wall law allows.
     pub(crate) fn set_skin_density(&mut self, rho: impl Fn(usize) -> f64 + Sync) {
         let rho0 = self.medium.rho0;
-        self.skin.rho.par_iter_mut().enumerate().for_each(|(i, out)| *out = Dbc.close(rho(i), rho0));
+        self.skin
+            .rho
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(PER_TASK)
+            .for_each(|(i, out)| *out = Dbc.close(rho(i), rho0));
     }
 
     /// The first water particle that has left the valid range, with what is wrong and its usual cause.
@@ -318,7 +325,7 @@ impl<const D: usize> System<D> {
                 None
             }
         };
-        let i = (0..self.fluid.len()).into_par_iter().find_first(|&i| bad(i).is_some())?;
+        let i = (0..self.fluid.len()).into_par_iter().with_min_len(PER_TASK).find_first(|&i| bad(i).is_some())?;
         bad(i).map(|(what, cause)| (i, what, cause))
     }
 
@@ -421,6 +428,11 @@ impl<const D: usize> System<D> {
         self.sums[i].dv
     }
 
+    /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
+    pub fn fluid_drho(&self, i: usize) -> f64 {
+        self.sums[i].dx * self.medium.rho0
+    }
+
     /// Force passes so far.
     pub fn passes(&self) -> u64 {
         self.passes
@@ -452,6 +464,6 @@ impl<const D: usize> System<D> {
 /// Puts `array` into `order`: the new i-th is the old `order[i]`-th. An empty array stays empty.
 pub(crate) fn permute<T: Copy + Send + Sync>(array: &mut Vec<T>, order: &[u32]) {
     if !array.is_empty() {
-        *array = order.par_iter().map(|&i| array[i as usize]).collect();
+        *array = order.par_iter().with_min_len(PER_TASK).map(|&i| array[i as usize]).collect();
     }
 }

@@ -12,7 +12,10 @@ pub use lists::{CHUNK, Chunk, Lists, Span};
 
 use rayon::prelude::*;
 
-use crate::space::{Bounds, Vector};
+use crate::{
+    particles::PER_TASK,
+    space::{Bounds, Vector},
+};
 
 /// Neighbour lists of the water and of the skin, and the positions for which they were made.
 #[derive(Clone, Debug)]
@@ -49,7 +52,12 @@ impl<const D: usize> Near<D> {
             return true;
         }
         let far = |now: &[Vector<D>], then: &[Vector<D>]| {
-            now.par_iter().zip(then).map(|(a, b)| (a - b).norm_squared()).reduce(|| 0.0, f64::max).sqrt()
+            now.par_iter()
+                .zip(then)
+                .with_min_len(PER_TASK)
+                .map(|(a, b)| (a - b).norm_squared())
+                .reduce(|| 0.0, f64::max)
+                .sqrt()
         };
         // Negated, so that NaN counts as due.
         !(far(water, &self.built.0) + far(skin, &self.built.1) < self.margin)

@@ -11,7 +11,11 @@ pub use verlet::Verlet;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{error::Result, model::Scheme, system::System};
+use crate::{
+    error::Result,
+    model::{Model, Scheme},
+    system::System,
+};
 
 /// Where a step starts and how long it is, s.
 #[derive(Clone, Copy, Debug)]
@@ -32,10 +36,10 @@ pub enum Stepper<const D: usize> {
 }
 
 impl<const D: usize> Stepper<D> {
-    /// The stepper of a scheme, at the start of a run.
-    pub fn new(scheme: Scheme) -> Self {
-        match scheme {
-            Scheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every)),
+    /// The stepper of a model's scheme, at the start of a run.
+    pub fn new(model: &Model) -> Self {
+        match model.scheme {
+            Scheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
             Scheme::Symplectic => Self::Symplectic,
         }
     }

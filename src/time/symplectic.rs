@@ -10,7 +10,7 @@
 use rayon::prelude::*;
 
 use super::{Bodies, Interval};
-use crate::{error::Result, system::System};
+use crate::{error::Result, particles::PER_TASK, system::System};
 
 /// The scheme [@dominguez2022]; it remembers nothing between steps.
 pub struct Symplectic;
@@ -24,11 +24,13 @@ impl Symplectic {
 
         let sums = &system.sums;
         let fluid = &mut system.fluid;
-        fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums).for_each(|(((r, v), rho), s)| {
-            *r += *v * half;
-            *v += s.dv * half;
-            *rho += rho0 * s.dx * half;
-        });
+        fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums).with_min_len(PER_TASK).for_each(
+            |(((r, v), rho), s)| {
+                *r += *v * half;
+                *v += s.dv * half;
+                *rho += rho0 * s.dx * half;
+            },
+        );
         let rates = system.skin_sums.clone();
         system.set_skin_density(|i| start.1[i] + rho0 * rates[i].dx * half);
         bodies.drift(system, over);
@@ -42,15 +44,21 @@ impl Symplectic {
         };
         let (sums, was) = (&system.sums, &start.0);
         let fluid = &mut system.fluid;
-        fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums).enumerate().for_each(
-            |(i, (((r, v), rho), s))| {
+        fluid
+            .r
+            .par_iter_mut()
+            .zip(&mut fluid.v)
+            .zip(&mut fluid.rho)
+            .zip(sums)
+            .enumerate()
+            .with_min_len(PER_TASK)
+            .for_each(|(i, (((r, v), rho), s))| {
                 *v = was.v[i] + s.dv * dt;
                 *r = was.r[i] + (was.v[i] + *v) * half;
                 *rho = whole(was.rho[i], *rho, s.dx);
-            },
-        );
+            });
         if let Some(shifts) = shifts {
-            fluid.r.par_iter_mut().zip(&shifts).for_each(|(r, shift)| *r += shift);
+            fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
         }
         let (rates, at_half) = (system.skin_sums.clone(), system.skin.rho.clone());
         system.set_skin_density(|i| whole(start.1[i], at_half[i], rates[i].dx));
