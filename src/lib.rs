@@ -13,20 +13,22 @@ pub mod law;
 // matter
 pub mod particles;
 pub mod shape;
+// neighbours and bodies
+pub mod near;
 pub mod solid;
 // motion
-pub mod model;
-pub mod near;
-pub mod probe;
-pub mod simulation;
 pub mod sweep;
+pub mod model;
 pub mod system;
 pub mod time;
+pub mod simulation;
 // results
-pub mod check;
+pub mod plan;
+pub mod probe;
 pub mod record;
+pub mod check;
 // entrance
-pub mod run;
 pub mod scene;
+pub mod run;
 
 pub use error::{Error, Result};

@@ -6,7 +6,7 @@ use super::Grid;
 use crate::space::{Bounds, Vector};
 
 /// Particles in a chunk: the unit of parallel work, fixed so that no result depends on the threads.
-pub const CHUNK: usize = 256;
+pub const CHUNK: usize = 128;
 
 /// Where in its chunk's `index` a particle's neighbours are.
 #[derive(Clone, Copy, Debug, Default)]

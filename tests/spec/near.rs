@@ -1,6 +1,9 @@
 //! Neighbours: every pair within the support is listed, and stays listed while the lists hold.
 
-use pontoon::{near::Near, space::Vector};
+use pontoon::{
+    near::{CHUNK, Near},
+    space::Vector,
+};
 
 use crate::rig::Dice;
 
@@ -37,13 +40,13 @@ fn lists_hold_every_pair<const D: usize>(seed: u64, n: usize) {
     };
     let mut seen = vec![0; skin.len()];
     for i in 0..n {
-        let (w, s) = near.lists().water[i / 256].of(i % 256);
+        let (w, s) = near.lists().water[i / CHUNK].of(i % CHUNK);
         assert_eq!(sorted(w, &|j| (water[j as usize] - water[i]).norm() < REACH), among[i]);
         assert_eq!(sorted(s, &|j| (skin[j as usize] - water[i]).norm() < REACH), beside[i]);
         beside[i].iter().for_each(|&j| seen[j as usize] += 1);
     }
     for (k, x) in skin.iter().enumerate() {
-        let (w, _) = near.lists().skin[k / 256].of(k % 256);
+        let (w, _) = near.lists().skin[k / CHUNK].of(k % CHUNK);
         let count = w.iter().filter(|&&j| (water[j as usize] - x).norm() < REACH).count();
         assert_eq!(count, seen[k], "a boundary particle sees the water that sees it");
     }
