@@ -150,12 +150,12 @@ mod tests {
     #[test]
     fn a_free_solid_starts_about_its_centre_of_mass() {
         let centre = spec(1.0, [1.0; 3]).start().centre;
-        assert!((centre - Vector::from([1.0, 0.1, 0.0])).norm() < 1e-16);
+        assert!((centre - Vector::from([1.0, 0.1, 0.0])).norm() < 1e-15);
     }
 
     #[test]
     fn what_cannot_exist_is_refused() {
-        assert!(spec(1.0, [1.0, 2.0, 3.0]).check_role().is_ok(), "a flat plate");
+        assert_eq!(spec(1.0, [1.0, 2.0, 3.0]).check_role(), Ok(()), "a flat plate");
         for (mass, inertia) in
             [(0.0, [1.0; 3]), (f64::NAN, [1.0; 3]), (1.0, [1.0, 1.0, 2.1]), (1.0, [1.0, 1.0, 0.0]), (-1.0, [1.0; 3])]
         {

@@ -3,7 +3,7 @@
 //! [`Dim`] picks the engine of a dimension: `Dim<2>` has one if the feature `dim2` is on, `Dim<3>` with `dim3`.
 
 use crate::{
-    error::{Error, Fault, Kind, Result},
+    error::{Error, Kind, Result},
     solid::{Kinematics, Load, SolidSpec},
     space::{Vector, Wedge},
 };
@@ -12,7 +12,7 @@ use crate::{
 ///
 /// Solids are named by their index in the list that the engine was made from. Fixed and driven solids take
 /// part as obstacles; free ones touch those and one another at their true faces.
-pub trait Engine<const D: usize>: Send {
+pub trait Engine<const D: usize>: Send + Sync {
     /// Pose, centre of mass, its velocity, and spin of the free solid `solid`.
     fn kinematics(&self, solid: usize) -> Kinematics<D>;
 
@@ -30,7 +30,7 @@ pub trait Engine<const D: usize>: Send {
         dt: f64,
         loads: &[Load<D>],
         driven: &[Option<Kinematics<D>>],
-    ) -> std::result::Result<(), EngineFault>;
+    ) -> std::result::Result<(), EngineFault<D>>;
 
     /// Adds the user's `force` (N) at the world point `at` (m) of a free solid, in the next step only.
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>);
@@ -57,7 +57,7 @@ pub trait Engine<const D: usize>: Send {
 
 /// A step that the engine could not make, and the solid to blame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EngineFault {
+pub struct EngineFault<const D: usize> {
     /// Index of the solid.
     pub solid: usize,
     /// What was seen: "load not finite".
@@ -65,25 +65,9 @@ pub struct EngineFault {
     /// What usually causes it and what to try.
     pub cause: &'static str,
     /// Last valid position of the solid's frame, m.
-    pub position: Vec<f64>,
+    pub position: Vector<D>,
     /// Velocity before the step, m/s.
-    pub velocity: Vec<f64>,
-}
-
-impl EngineFault {
-    /// The error that ends a run, with the solid's `name`, the `step` and the `time` (s).
-    pub fn into_error(self, name: &str, step: u64, time: f64) -> Error {
-        Error::fault(Fault {
-            reason: self.reason,
-            who: format!("body \"{name}\""),
-            step,
-            time,
-            position: self.position,
-            velocity: self.velocity,
-            density: None,
-            cause: self.cause.into(),
-        })
-    }
+    pub velocity: Vector<D>,
 }
 
 /// A number of dimensions, to be asked for its engine.

@@ -10,6 +10,8 @@ mod planar;
 pub mod skin;
 #[cfg(feature = "dim3")]
 mod spatial;
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+mod tests;
 
 pub use driven::{Law, Motion};
 pub use engine::{Dim, Engine, EngineFault, HasEngine};

@@ -2,6 +2,7 @@
 
 use rapier3d as rapier;
 
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "world.rs"]
 mod world;
 

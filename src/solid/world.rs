@@ -96,7 +96,7 @@ impl World {
     }
 
     /// Replaces the forces on the free bodies by `loads` and the pushes.
-    fn load(&mut self, loads: &[Load<D>]) -> std::result::Result<(), EngineFault> {
+    fn load(&mut self, loads: &[Load<D>]) -> std::result::Result<(), EngineFault<D>> {
         assert_eq!(loads.len(), self.bodies.len(), "every solid needs a load");
         let mut total = loads.to_vec();
         for (solid, force, at) in self.pushes.drain(..) {
@@ -123,7 +123,7 @@ impl World {
     }
 
     /// Tells rapier where the driven bodies will be.
-    fn drive(&mut self, driven: &[Option<Kinematics<D>>]) -> std::result::Result<(), EngineFault> {
+    fn drive(&mut self, driven: &[Option<Kinematics<D>>]) -> std::result::Result<(), EngineFault<D>> {
         for (solid, kinematics) in driven.iter().enumerate() {
             let Some(Kinematics { pose, .. }) = kinematics else { continue };
             if !(pose.position.norm_squared() + pose.rotation.norm_squared()).is_finite() {
@@ -137,28 +137,28 @@ impl World {
 
     /// Whether all solids came out of the step whole. Rapier disables what went astray and puts it back to
     /// where it last was.
-    fn examine(&self, before: &[Point]) -> std::result::Result<(), EngineFault> {
-        for solid in 0..self.bodies.len() {
+    fn examine(&self, before: &[Point]) -> std::result::Result<(), EngineFault<D>> {
+        for (solid, velocity) in before.iter().enumerate() {
             let body = self.body(solid);
             let whole = body.is_enabled() && body.colliders().iter().all(|&c| self.world.colliders[c].is_enabled());
             if !(whole && body.position().is_finite() && body.linvel().length_squared().is_finite()) {
                 let cause = "a load or a contact was too strong for the step: try a smaller CFL number or dt_max, \
                              and look for bodies pressed into one another";
                 let fault = self.fault(solid, "position or velocity not finite", cause);
-                return Err(EngineFault { velocity: before[solid].to_array().to_vec(), ..fault });
+                return Err(EngineFault { velocity: from_point(*velocity), ..fault });
             }
         }
         Ok(())
     }
 
-    fn fault(&self, solid: usize, reason: &str, cause: &'static str) -> EngineFault {
+    fn fault(&self, solid: usize, reason: &str, cause: &'static str) -> EngineFault<D> {
         let body = self.body(solid);
         EngineFault {
             solid,
             reason: reason.into(),
             cause,
-            position: body.translation().to_array().to_vec(),
-            velocity: body.linvel().to_array().to_vec(),
+            position: from_point(body.translation()),
+            velocity: from_point(body.linvel()),
         }
     }
 
@@ -184,7 +184,7 @@ impl Engine<D> for World {
         dt: f64,
         loads: &[Load<D>],
         driven: &[Option<Kinematics<D>>],
-    ) -> std::result::Result<(), EngineFault> {
+    ) -> std::result::Result<(), EngineFault<D>> {
         self.pace(dt);
         self.load(loads)?;
         self.drive(driven)?;
