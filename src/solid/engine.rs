@@ -1,9 +1,122 @@
-//! The rigid-body engine behind a trait (stub: helper "solid" writes this file).
-/// A dimension.
+//! The rigid-body engine as the rest sees it: loads in, kinematics out, nothing of rapier.
+//!
+//! [`Dim`] picks the engine of a dimension: `Dim<2>` has one if the feature `dim2` is on, `Dim<3>` with `dim3`.
+
+use crate::{
+    error::{Error, Kind, Result},
+    solid::{Kinematics, Load, SolidSpec},
+    space::{Vector, Wedge},
+};
+
+/// Moves the free solids of one world under weight, water, contacts and the user's pushes.
+///
+/// Solids are named by their index in the list that the engine was made from. Fixed and driven solids take
+/// part as obstacles; free ones touch those and one another at their true faces.
+pub trait Engine<const D: usize>: Send + Sync {
+    /// Pose, centre of mass, its velocity, and spin of the free solid `solid`.
+    fn kinematics(&self, solid: usize) -> Kinematics<D>;
+
+    /// Advances every free solid by `dt` (s), once, with the given forces held constant.
+    ///
+    /// `loads[i]`: the water's force and torque about the centre of solid i, without weight; used for free
+    /// solids only. `driven[i]`: where driven solid i is at the end of the step; `None` for all others.
+    /// Velocities are exact for constant loads, positions first-order: symplectic Euler.
+    ///
+    /// # Errors
+    /// An [`EngineFault`] if a load or a driven pose is not finite (nothing has moved then), or if a solid's
+    /// state became so. The engine cannot go on afterwards; restore it or make a new one.
+    fn step(
+        &mut self,
+        dt: f64,
+        loads: &[Load<D>],
+        driven: &[Option<Kinematics<D>>],
+    ) -> std::result::Result<(), EngineFault<D>>;
+
+    /// Adds the user's `force` (N) at the world point `at` (m) of a free solid, in the next step only.
+    fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>);
+
+    /// Sets the velocity of the centre of mass (m/s) and the spin (rad/s) of a free solid.
+    fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>);
+
+    /// Pairs of solids that pressed on each other in the last step (lower index first), with the sum of the
+    /// normal forces (N) at their contact points.
+    fn contacts(&self) -> Vec<(usize, usize, f64)>;
+
+    /// The whole state as bytes; [`Engine::restore`] continues from them to the same bits.
+    ///
+    /// # Errors
+    /// `Restart` if the state cannot be written.
+    fn save(&self) -> Result<Vec<u8>>;
+
+    /// Puts back a state saved by an engine made from the same solids.
+    ///
+    /// # Errors
+    /// `Restart` if the bytes are damaged, or of another version or list of solids; the engine is unchanged.
+    fn restore(&mut self, bytes: &[u8]) -> Result<()>;
+}
+
+/// A step that the engine could not make, and the solid to blame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EngineFault<const D: usize> {
+    /// Index of the solid.
+    pub solid: usize,
+    /// What was seen: "load not finite".
+    pub reason: String,
+    /// What usually causes it and what to try.
+    pub cause: &'static str,
+    /// Last valid position of the solid's frame, m.
+    pub position: Vector<D>,
+    /// Velocity before the step, m/s.
+    pub velocity: Vector<D>,
+}
+
+/// A number of dimensions, to be asked for its engine.
 pub struct Dim<const D: usize>;
+
 /// Dimensions that have an engine.
-pub trait HasEngine<const D: usize> {}
+pub trait HasEngine<const D: usize> {
+    /// Makes the engine of `solids`, each starting as `start` says, under `gravity` (m/s²).
+    ///
+    /// `dp`: particle spacing (m), the measure of what overlap is too deep. Shapes are not checked here but by
+    /// [`SolidSpec::check`]; mass, inertia, friction, restitution and motion are.
+    ///
+    /// # Errors
+    /// `Scene` for a solid that cannot be meant, and if a free solid starts deeper than 0.05 dp inside another:
+    /// names both and the depth.
+    fn engine(
+        solids: &[SolidSpec<D>],
+        start: &[Kinematics<D>],
+        gravity: &Vector<D>,
+        dp: f64,
+    ) -> Result<Box<dyn Engine<D>>>;
+}
+
 #[cfg(feature = "dim2")]
-impl HasEngine<2> for Dim<2> {}
+impl HasEngine<2> for Dim<2> {
+    fn engine(
+        solids: &[SolidSpec<2>],
+        start: &[Kinematics<2>],
+        gravity: &Vector<2>,
+        dp: f64,
+    ) -> Result<Box<dyn Engine<2>>> {
+        Ok(Box::new(super::planar::World::new(solids, start, gravity, dp)?))
+    }
+}
+
 #[cfg(feature = "dim3")]
-impl HasEngine<3> for Dim<3> {}
+impl HasEngine<3> for Dim<3> {
+    fn engine(
+        solids: &[SolidSpec<3>],
+        start: &[Kinematics<3>],
+        gravity: &Vector<3>,
+        dp: f64,
+    ) -> Result<Box<dyn Engine<3>>> {
+        Ok(Box::new(super::spatial::World::new(solids, start, gravity, dp)?))
+    }
+}
+
+/// The error of a state that cannot be saved or restored.
+pub(super) fn restart(why: impl std::fmt::Display) -> Error {
+    Error::new(Kind::Restart, format!("the rigid bodies of the checkpoint: {why}"))
+        .help("a checkpoint is read only by the version and for the scene that wrote it; start the run anew")
+}

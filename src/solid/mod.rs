@@ -1,11 +1,21 @@
 //! All that is not water: fixed, driven and free solids, their poses, skins and loads. No sums over pairs.
 
+mod body;
 pub mod driven;
 pub mod engine;
+pub mod formula;
 pub mod hydrostatics;
+#[cfg(feature = "dim2")]
+mod planar;
+pub mod skin;
+#[cfg(feature = "dim3")]
+mod spatial;
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+mod tests;
 
-pub use driven::{Formula, Law, Motion};
-pub use engine::{Dim, HasEngine};
+pub use driven::{Law, Motion};
+pub use engine::{Dim, Engine, EngineFault, HasEngine};
+pub use formula::Formula;
 
 use std::ops::Range;
 
@@ -98,16 +108,4 @@ pub struct Solid<const D: usize> {
     pub skin: Range<usize>,
     /// The water's load on it at the last force pass (pressure and viscosity, no weight).
     pub load: Load<D>,
-}
-
-impl<const D: usize> FreeBody<D> {
-    /// The homogeneous body of `density` (kg/m³) that fills `shape`, at rest.
-    pub fn from_density(shape: &Shape<D>, density: f64) -> Self {
-        unimplemented!("{shape:?}{density}")
-    }
-
-    /// The homogeneous body of `mass` (kg; kg/m in 2-D) that fills `shape`, at rest.
-    pub fn from_mass(shape: &Shape<D>, mass: f64) -> Self {
-        unimplemented!("{shape:?}{mass}")
-    }
 }

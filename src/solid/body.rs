@@ -1,0 +1,180 @@
+//! A solid's start, a free body's mass from its shape, and what is refused at set-up.
+
+use crate::{
+    error::{Error, Result},
+    shape::Shape,
+    solid::{FreeBody, Kinematics, Role, SolidSpec},
+    space::{Matrix, Vector, Wedge},
+};
+
+/// Round-off allowed in the symmetry and the triangle inequality of an inertia, relative.
+const INERTIA_SLACK: f64 = 1e-9;
+
+impl<const D: usize> SolidSpec<D> {
+    /// Where the solid is at t = 0, and how it moves there.
+    ///
+    /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
+    pub fn start(&self) -> Kinematics<D> {
+        let still =
+            Kinematics { pose: self.pose, centre: self.pose.position, velocity: Vector::zeros(), spin: Wedge::zero() };
+        match &self.role {
+            Role::Fixed => still,
+            Role::Driven(motion) => motion.kinematics(&self.pose, 0.0),
+            Role::Free(body) => {
+                Kinematics { centre: self.pose.point(&body.centre), velocity: body.velocity, spin: body.spin, ..still }
+            }
+        }
+    }
+
+    /// Whether this solid can be meant: shape, pose, role, friction and restitution.
+    ///
+    /// # Errors
+    /// `Scene`: names the solid, what is wrong with it, and what would be right.
+    pub fn check(&self) -> Result<()> {
+        self.shape.check().map_err(|e| self.named(e))?;
+        self.check_role()
+    }
+
+    /// [`SolidSpec::check`] without the shape.
+    pub(super) fn check_role(&self) -> Result<()> {
+        let role = match &self.role {
+            Role::Fixed => Ok(()),
+            Role::Driven(motion) => motion.check(),
+            Role::Free(body) => body.check(),
+        };
+        role.and_then(|()| {
+            let turn = self.pose.rotation;
+            let off = (turn * turn.transpose() - Matrix::identity()).norm();
+            require(self.pose.position.norm().is_finite(), || "its position is not finite".into(), "m, finite")?;
+            require(off < 1e-6, || "its pose is not a rotation".into(), "an orthogonal matrix")?;
+            let friction = self.friction;
+            require(friction >= 0.0 && friction.is_finite(), || format!("friction is {friction}"), "0 or more")?;
+            let bounce = self.restitution;
+            require((0.0..=1.0).contains(&bounce), || format!("restitution is {bounce}"), "0 (stays) … 1 (bounces)")
+        })
+        .map_err(|e| self.named(e))
+    }
+
+    fn named(&self, mut error: Error) -> Error {
+        error.what = format!("solid \"{}\": {}", self.name, error.what);
+        error
+    }
+}
+
+impl<const D: usize> FreeBody<D> {
+    /// The homogeneous body of `density` (kg/m³) that fills `shape`, at rest.
+    ///
+    ///   m = ρ V,   I = ρ (tr J · 1 − J) in 3-D, ρ tr J in 2-D
+    pub fn from_density(shape: &Shape<D>, density: f64) -> Self {
+        let volume = shape.volume();
+        let trace = volume.second_moment.trace();
+        let inertia = if D == 2 {
+            Matrix::from_fn(|i, j| if (i, j) == (0, 0) { trace } else { 0.0 })
+        } else {
+            Matrix::identity() * trace - volume.second_moment
+        };
+        Self {
+            mass: density * volume.volume,
+            centre: volume.centroid,
+            inertia: inertia * density,
+            velocity: Vector::zeros(),
+            spin: Wedge::zero(),
+            locked_translations: [false; D],
+            locked_rotations: [false; 3],
+        }
+    }
+
+    /// The homogeneous body of `mass` (kg; kg/m in 2-D) that fills `shape`, at rest.
+    pub fn from_mass(shape: &Shape<D>, mass: f64) -> Self {
+        Self::from_density(shape, mass / shape.volume().volume)
+    }
+
+    /// Whether this body can exist.
+    ///
+    /// # Errors
+    /// `Scene` if a number is not finite, the mass is not positive, or the inertia is not that of any body.
+    pub fn check(&self) -> Result<()> {
+        let mass = self.mass;
+        require(mass > 0.0 && mass.is_finite(), || format!("its mass is {mass} kg"), "more than 0 and finite")?;
+        let rest = self.centre.norm() + self.velocity.norm() + self.spin.0.norm();
+        require(rest.is_finite(), || "its centre, velocity or spin is not finite".into(), "finite numbers")?;
+        if D == 2 {
+            let inertia = self.inertia[(0, 0)];
+            let fine = inertia > 0.0 && inertia.is_finite();
+            return require(fine, || format!("its inertia is {inertia} kg m²"), "more than 0 and finite");
+        }
+        let inertia = nalgebra::Matrix3::from_fn(|i, j| self.inertia[(i, j)]);
+        let size = inertia.norm();
+        let symmetric = size.is_finite() && (inertia - inertia.transpose()).norm() <= INERTIA_SLACK * size;
+        require(symmetric, || "its inertia is not a symmetric matrix of finite numbers".into(), "I_ij = I_ji")?;
+        let mut principal: Vec<f64> = inertia.symmetric_eigenvalues().iter().copied().collect();
+        principal.sort_by(f64::total_cmp);
+        require(
+            principal[0] > 0.0 && principal[0] + principal[1] >= principal[2] * (1.0 - INERTIA_SLACK),
+            || format!("no body has the principal moments of inertia {principal:?} kg m²"),
+            "all more than 0, and none more than the sum of the other two",
+        )
+    }
+}
+
+/// An error saying `what` is wrong and what `would be` right, unless `fine`.
+fn require(fine: bool, what: impl FnOnce() -> String, right: &str) -> Result<()> {
+    if fine { Ok(()) } else { Err(Error::scene(what()).help(format!("it must be: {right}"))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Pose;
+
+    fn spec(mass: f64, inertia: [f64; 3]) -> SolidSpec<3> {
+        let body = FreeBody {
+            mass,
+            centre: Vector::from([0.1, 0.0, 0.0]),
+            inertia: Matrix::from_diagonal(&Vector::from(inertia)),
+            velocity: Vector::zeros(),
+            spin: Wedge::zero(),
+            locked_translations: [false; 3],
+            locked_rotations: [false; 3],
+        };
+        SolidSpec {
+            name: "buoy".into(),
+            shape: Shape::Ball { radius: 0.1 },
+            pose: Pose::turned(Vector::from([1.0, 0.0, 0.0]), &[0.0, 0.0, std::f64::consts::FRAC_PI_2]),
+            role: Role::Free(body),
+            friction: 0.3,
+            restitution: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_free_solid_starts_about_its_centre_of_mass() {
+        let centre = spec(1.0, [1.0; 3]).start().centre;
+        assert!((centre - Vector::from([1.0, 0.1, 0.0])).norm() < 1e-15);
+    }
+
+    #[test]
+    fn what_cannot_exist_is_refused() {
+        assert_eq!(spec(1.0, [1.0, 2.0, 3.0]).check_role(), Ok(()), "a flat plate");
+        for (mass, inertia) in
+            [(0.0, [1.0; 3]), (f64::NAN, [1.0; 3]), (1.0, [1.0, 1.0, 2.1]), (1.0, [1.0, 1.0, 0.0]), (-1.0, [1.0; 3])]
+        {
+            let error = spec(mass, inertia).check_role().unwrap_err();
+            assert!(error.to_string().contains("solid \"buoy\"") && error.help.is_some(), "{error}");
+        }
+        let slippery = SolidSpec { friction: -0.1, ..spec(1.0, [1.0; 3]) };
+        assert!(slippery.check_role().unwrap_err().to_string().contains("friction is -0.1"));
+        let bouncy = SolidSpec { restitution: 1.5, ..spec(1.0, [1.0; 3]) };
+        assert!(bouncy.check_role().unwrap_err().to_string().contains("restitution is 1.5"));
+    }
+
+    #[test]
+    fn a_box_has_the_inertia_of_the_books() {
+        let shape = Shape::Box { size: Vector::from([0.2, 0.3, 0.4]) };
+        let body = FreeBody::from_mass(&shape, 12.0);
+        let expected = Vector::from([0.3 * 0.3 + 0.4 * 0.4, 0.2 * 0.2 + 0.4 * 0.4, 0.2 * 0.2 + 0.3 * 0.3]);
+        assert!((body.inertia - Matrix::from_diagonal(&expected)).norm() < 1e-12);
+        let plane = FreeBody::from_mass(&Shape::Box { size: Vector::from([0.3, 0.4]) }, 12.0);
+        assert!((plane.inertia[(0, 0)] - 0.25).abs() < 1e-13 && (plane.mass - 12.0).abs() < 1e-12);
+    }
+}

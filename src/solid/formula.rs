@@ -1,0 +1,354 @@
+//! A formula in the time t, as a scene says it: its value and, by the chain rule, its exact rate.
+//!
+//! Usual precedence: −t^2 is −(t²), 2^3^2 is 2^(3²), 2e-3 is a number. Every node is evaluated as the pair
+//! (x, dx/dt), so there is nothing to differentiate symbolically and nothing to approximate.
+
+use crate::error::{Error, Result, nearest};
+
+/// A formula in the time t (s): numbers, `t`, `pi`, `+ - * / ^`, brackets and the usual functions.
+///
+/// ```
+/// # use pontoon::solid::Formula;
+/// let heave = Formula::parse("0.05*sin(2*pi*t/1.2)")?;
+/// let (value, rate) = heave.at(0.0);
+/// assert_eq!(value, 0.0);
+/// assert!((rate - 0.05 * std::f64::consts::TAU / 1.2).abs() < 1e-15);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Formula {
+    root: Node,
+}
+
+/// A function of one number: its value and its derivative there.
+type Function = fn(f64) -> (f64, f64);
+
+#[derive(Clone, Debug)]
+enum Node {
+    Number(f64),
+    Time,
+    Negate(Box<Node>),
+    Binary(Binary, Box<Node>, Box<Node>),
+    Call(Function, Box<Node>),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Min,
+    Max,
+}
+
+const FUNCTIONS: [(&str, Function); 14] = [
+    ("sin", |x| (x.sin(), x.cos())),
+    ("cos", |x| (x.cos(), -x.sin())),
+    ("tan", |x| (x.tan(), 1.0 + x.tan().powi(2))),
+    ("asin", |x| (x.asin(), 1.0 / (1.0 - x * x).sqrt())),
+    ("acos", |x| (x.acos(), -1.0 / (1.0 - x * x).sqrt())),
+    ("atan", |x| (x.atan(), 1.0 / (1.0 + x * x))),
+    ("sinh", |x| (x.sinh(), x.cosh())),
+    ("cosh", |x| (x.cosh(), x.sinh())),
+    ("tanh", |x| (x.tanh(), 1.0 - x.tanh().powi(2))),
+    ("exp", |x| (x.exp(), x.exp())),
+    ("ln", |x| (x.ln(), 1.0 / x)),
+    ("log10", |x| (x.log10(), 1.0 / (x * std::f64::consts::LN_10))),
+    ("sqrt", |x| (x.sqrt(), 0.5 / x.sqrt())),
+    ("abs", |x| (x.abs(), if x < 0.0 { -1.0 } else { 1.0 })),
+];
+
+/// Functions of two numbers.
+const CHOICES: [(&str, Binary); 2] = [("min", Binary::Min), ("max", Binary::Max)];
+
+/// Deepest nesting of brackets, signs and powers.
+const DEPTH: usize = 64;
+
+/// Longest formula, bytes: with [`DEPTH`] it bounds the depth of the tree.
+const LENGTH: usize = 1000;
+
+impl Formula {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// `Scene` if it cannot be read: says what is wrong, at which character, and which words are known.
+    pub fn parse(text: &str) -> Result<Self> {
+        let mut reader = Reader { text, place: 0, depth: 0 };
+        if text.len() > LENGTH {
+            return Err(reader.wrong(format!("it is longer than {LENGTH} characters")));
+        }
+        let root = reader.sum()?;
+        match reader.peek() {
+            None => Ok(Self { root }),
+            Some(c) => Err(reader.wrong(format!("an operator is expected before '{c}'"))),
+        }
+    }
+
+    /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
+    pub fn at(&self, t: f64) -> (f64, f64) {
+        self.root.at(t)
+    }
+}
+
+impl Node {
+    fn at(&self, t: f64) -> (f64, f64) {
+        match self {
+            Self::Number(x) => (*x, 0.0),
+            Self::Time => (t, 1.0),
+            Self::Negate(x) => {
+                let (x, dx) = x.at(t);
+                (-x, -dx)
+            }
+            Self::Binary(binary, x, y) => binary.at(x.at(t), y.at(t)),
+            Self::Call(function, x) => {
+                let (x, dx) = x.at(t);
+                let (value, slope) = function(x);
+                (value, if dx == 0.0 { 0.0 } else { slope * dx })
+            }
+        }
+    }
+}
+
+impl Binary {
+    fn at(self, (x, dx): (f64, f64), (y, dy): (f64, f64)) -> (f64, f64) {
+        match self {
+            Self::Add => (x + y, dx + dy),
+            Self::Subtract => (x - y, dx - dy),
+            Self::Multiply => (x * y, dx * y + x * dy),
+            Self::Divide => (x / y, (dx - x / y * dy) / y),
+            Self::Power => {
+                let base = if dx == 0.0 || y == 0.0 { 0.0 } else { y * x.powf(y - 1.0) * dx };
+                let exponent = if dy == 0.0 { 0.0 } else { x.powf(y) * x.ln() * dy };
+                (x.powf(y), base + exponent)
+            }
+            Self::Min => {
+                if y < x {
+                    (y, dy)
+                } else {
+                    (x, dx)
+                }
+            }
+            Self::Max => {
+                if y > x {
+                    (y, dy)
+                } else {
+                    (x, dx)
+                }
+            }
+        }
+    }
+}
+
+/// Reads a formula from left to right.
+struct Reader<'a> {
+    text: &'a str,
+    place: usize,
+    depth: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn sum(&mut self) -> Result<Node> {
+        let mut left = self.product()?;
+        loop {
+            let binary = match self.peek() {
+                Some('+') => Binary::Add,
+                Some('-') => Binary::Subtract,
+                _ => return Ok(left),
+            };
+            self.place += 1;
+            left = Node::Binary(binary, Box::new(left), Box::new(self.product()?));
+        }
+    }
+
+    fn product(&mut self) -> Result<Node> {
+        let mut left = self.signed()?;
+        loop {
+            let binary = match self.peek() {
+                Some('*') => Binary::Multiply,
+                Some('/') => Binary::Divide,
+                _ => return Ok(left),
+            };
+            self.place += 1;
+            left = Node::Binary(binary, Box::new(left), Box::new(self.signed()?));
+        }
+    }
+
+    /// A power, or one with a sign before it: so −t² is −(t²), and 2⁻ᵗ is read too.
+    fn signed(&mut self) -> Result<Node> {
+        self.depth += 1;
+        if self.depth > DEPTH {
+            return Err(self.wrong(format!("it is nested more than {DEPTH} deep")));
+        }
+        let node = match self.peek() {
+            Some(sign @ ('+' | '-')) => {
+                self.place += 1;
+                let inner = self.signed()?;
+                if sign == '-' { Node::Negate(Box::new(inner)) } else { inner }
+            }
+            _ => {
+                let base = self.atom()?;
+                if self.peek() == Some('^') {
+                    self.place += 1;
+                    Node::Binary(Binary::Power, Box::new(base), Box::new(self.signed()?))
+                } else {
+                    base
+                }
+            }
+        };
+        self.depth -= 1;
+        Ok(node)
+    }
+
+    fn atom(&mut self) -> Result<Node> {
+        match self.peek() {
+            Some('(') => {
+                self.place += 1;
+                let inner = self.sum()?;
+                self.expect(')')?;
+                Ok(inner)
+            }
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() => self.word(),
+            Some(c) => Err(self.wrong(format!("a number, t or a function is expected before '{c}'"))),
+            None => Err(self.wrong("it ends where a number, t or a function is expected")),
+        }
+    }
+
+    fn number(&mut self) -> Result<Node> {
+        let rest = &self.text[self.place..];
+        let digits = |from: usize| from + rest[from..].bytes().take_while(|b| b.is_ascii_digit() || *b == b'.').count();
+        let mut end = digits(0);
+        if rest[end..].starts_with(['e', 'E']) {
+            let sign = usize::from(rest[end + 1..].starts_with(['+', '-']));
+            let power = digits(end + 1 + sign);
+            end = if power > end + 1 + sign { power } else { end };
+        }
+        let number = rest[..end].parse().map_err(|_| self.wrong(format!("\"{}\" is not a number", &rest[..end])))?;
+        self.place += end;
+        Ok(Node::Number(number))
+    }
+
+    fn word(&mut self) -> Result<Node> {
+        let rest = &self.text[self.place..];
+        let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        let word = &rest[..end];
+        if word == "t" || word == "pi" {
+            self.place += end;
+            return Ok(if word == "t" { Node::Time } else { Node::Number(std::f64::consts::PI) });
+        }
+        let function = FUNCTIONS.iter().find(|(name, _)| *name == word);
+        let choice = CHOICES.iter().find(|(name, _)| *name == word);
+        if function.is_none() && choice.is_none() {
+            let meant = nearest(word, known()).map(|k| format!("; did you mean \"{k}\"?")).unwrap_or_default();
+            return Err(self.wrong(format!("\"{word}\" is not known{meant}")));
+        }
+        self.place += end;
+        self.expect('(')?;
+        let first = Box::new(self.sum()?);
+        let node = match (function, choice) {
+            (Some((_, function)), _) => Node::Call(*function, first),
+            (None, Some((_, binary))) => {
+                self.expect(',')?;
+                Node::Binary(*binary, first, Box::new(self.sum()?))
+            }
+            (None, None) => *first,
+        };
+        self.expect(')')?;
+        Ok(node)
+    }
+
+    /// The next character that is not blank.
+    fn peek(&mut self) -> Option<char> {
+        let rest = &self.text[self.place..];
+        self.place += rest.len() - rest.trim_start().len();
+        self.text[self.place..].chars().next()
+    }
+
+    fn expect(&mut self, wanted: char) -> Result<()> {
+        match self.peek() {
+            Some(c) if c == wanted => {
+                self.place += c.len_utf8();
+                Ok(())
+            }
+            Some(c) => Err(self.wrong(format!("'{wanted}' is expected before '{c}'"))),
+            None => Err(self.wrong(format!("it ends where '{wanted}' is expected"))),
+        }
+    }
+
+    fn wrong(&self, what: impl std::fmt::Display) -> Error {
+        let column = self.text[..self.place].chars().count() + 1;
+        let known = known().collect::<Vec<_>>().join(", ");
+        Error::scene(format!(
+            "formula \"{}\", character {column}: {what}",
+            self.text.chars().take(80).collect::<String>()
+        ))
+        .help(format!("write a formula of the time t (s), such as 0.05*sin(2*pi*t/1.2)\nknown: + - * / ^ ( ), {known}"))
+    }
+}
+
+fn known() -> impl Iterator<Item = &'static str> {
+    ["t", "pi"].into_iter().chain(FUNCTIONS.iter().map(|f| f.0)).chain(CHOICES.iter().map(|c| c.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn precedence_is_that_of_mathematics() {
+        for (text, value) in [
+            ("-t^2", -9.0),
+            ("2^3^2", 512.0),
+            ("2^-t", 0.125),
+            ("8/4/2", 1.0),
+            ("8 / 2 * 4", 16.0),
+            ("1-2+3", 2.0),
+            ("2e-3*t + 1.5E3", 1500.006),
+            ("-(1+t)*-2", 8.0),
+            ("max(t, 1) - min(t, 1)", 2.0),
+            ("(-t)^2", 9.0),
+        ] {
+            assert_eq!(Formula::parse(text).unwrap().at(3.0).0, value, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_rate_is_the_derivative() {
+        for (name, _) in FUNCTIONS {
+            check_rate(&format!("{name}(0.3 + 0.4*t)"));
+        }
+        for text in ["t^3 - 2^t + t^t", "exp(-t^2)/(1+t)", "0.05*sin(2*pi*t/1.2)*tanh(t)", "max(t^2, t)", "7", "-t*-t"]
+        {
+            check_rate(text);
+        }
+        assert_eq!(Formula::parse("t^2").unwrap().at(0.0), (0.0, 0.0));
+        assert_eq!(Formula::parse("(t-1)^3").unwrap().at(0.0), (-1.0, 3.0));
+    }
+
+    /// The central difference of step 1e-5 is exact to 1e-10 f''' and to the round-off 1e-11 of its quotient.
+    fn check_rate(text: &str) {
+        let formula = Formula::parse(text).unwrap();
+        let (t, step) = (0.7, 1e-5);
+        let difference = (formula.at(t + step).0 - formula.at(t - step).0) / (2.0 * step);
+        let rate = formula.at(t).1;
+        assert!((rate - difference).abs() < 1e-8 * (1.0 + rate.abs()), "{text}: {rate} against {difference}");
+    }
+
+    #[test]
+    fn a_wrong_formula_is_told_where_and_how() {
+        let said = |text: &str| Formula::parse(text).unwrap_err().to_string();
+        assert!(said("2*sinus(t)").contains("character 3: \"sinus\" is not known; did you mean \"sin"));
+        assert!(said("2*x").contains("\"x\" is not known"));
+        assert!(said("3t").contains("an operator is expected before 't'"));
+        assert!(said("sin(t").contains("it ends where ')' is expected"));
+        assert!(said("1.2.3").contains("\"1.2.3\" is not a number"));
+        for text in ["", "t*", ")", "sin t", "min(t)", "1e", "π", "t²", "2**t"] {
+            assert!(said(text).contains("known: "), "{text}");
+        }
+        assert!(said(&"(".repeat(900)).contains("nested"));
+        assert!(said(&"-".repeat(900)).contains("nested"));
+        assert!(said(&"1+".repeat(900)).contains("longer"));
+    }
+}

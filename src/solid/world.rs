@@ -1,0 +1,371 @@
+//! The world of rigid bodies, written once and compiled for each dimension: `super` names the engine
+//! (`rapier`) and gives what differs.
+//!
+//! Settings after measurements with this version: one solver iteration, because more of them freeze the
+//! load over sub-steps and feed energy into what oscillates; contacts as critically damped springs of
+//! min(0.05/dt, 1000) Hz, which sink g/(2πf)²; no contact recycling, which leaves small bodies hanging on
+//! ledges; no sleep; no continuous detection, since a step of the water moves no body through a wall.
+//! Colliders have the true faces (no contact skin), friction and restitution of a pair are the means of
+//! both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh
+//! nothing.
+
+use std::collections::BTreeMap;
+
+use super::rapier::{
+    dynamics::{RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
+    geometry::{ColliderBuilder, ColliderHandle, SharedShape},
+    math::{Pose as Frame, Vector as Point},
+    parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
+    pipeline::PhysicsWorld,
+};
+use super::{D, ENGINE, from_angular, from_rotation, lock, mass_properties, parts, to_angular, to_rotation, tune};
+use crate::{
+    error::{Error, Result},
+    shape::Shape,
+    solid::{
+        Kinematics, Load, Role, SolidSpec,
+        engine::{Engine, EngineFault, restart},
+    },
+    space::{Pose, Vector, Wedge},
+};
+
+/// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
+const OVERLAP_MAX: f64 = 0.05;
+
+/// Damping ratio of a contact, –: critical.
+const CONTACT_DAMPING: f64 = 1.0;
+
+/// A world of rigid bodies in this dimension.
+pub(in crate::solid) struct World {
+    world: PhysicsWorld,
+    bodies: Vec<RigidBodyHandle>,
+    /// A tenth of the thinnest free body, m: contacts are foreseen from there.
+    reach: f64,
+    /// The dt for which the contacts' stiffness was last set, s; 0 before the first step.
+    tuned_for: f64,
+    pushes: Vec<Push>,
+}
+
+/// A user's force (N) on a solid at a world point (m).
+type Push = (usize, Vector<D>, Vector<D>);
+
+/// A solid's convex parts in its own frame.
+type Parts = Vec<(Frame, SharedShape)>;
+
+impl World {
+    pub(in crate::solid) fn new(
+        solids: &[SolidSpec<D>],
+        start: &[Kinematics<D>],
+        gravity: &Vector<D>,
+        dp: f64,
+    ) -> Result<Self> {
+        assert_eq!(solids.len(), start.len(), "every solid needs a start");
+        let mut all_parts = Vec::new();
+        for solid in solids {
+            solid.check_role()?;
+            let mut parts = Parts::new();
+            collect(&solid.shape, &Pose::identity(), &mut parts)?;
+            all_parts.push(parts);
+        }
+        refuse_overlap(solids, start, &all_parts, OVERLAP_MAX * dp)?;
+        let mut world = PhysicsWorld { gravity: to_point(gravity), ..PhysicsWorld::default() };
+        let free = solids.iter().zip(&all_parts).filter(|(solid, _)| matches!(solid.role, Role::Free(_)));
+        let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
+        settle(&mut world, reach);
+        let bodies = (0..solids.len()).map(|i| insert(&mut world, i, &solids[i], &start[i], &all_parts[i])).collect();
+        Ok(Self { world, bodies, reach, tuned_for: 0.0, pushes: Vec::new() })
+    }
+
+    fn body(&self, solid: usize) -> &RigidBody {
+        &self.world.bodies[self.bodies[solid]]
+    }
+
+    /// Sets the step, and what of the contacts depends on it.
+    fn pace(&mut self, dt: f64) {
+        assert!(dt > 0.0 && dt.is_finite(), "a step takes time");
+        let fastest = self.world.bodies.iter().map(|(_, body)| body.linvel().length()).fold(0.0, f64::max);
+        let parameters = &mut self.world.integration_parameters;
+        parameters.dt = dt;
+        parameters.normalized_prediction_distance = self.reach.max(2.0 * fastest * dt);
+        if !(0.5..=2.0).contains(&(dt / self.tuned_for)) {
+            let softness = SpringCoefficients::new((0.05 / dt).min(1000.0), CONTACT_DAMPING);
+            parameters.contact_softness = softness;
+            parameters.static_contact_softness = softness;
+            self.tuned_for = dt;
+        }
+    }
+
+    /// Replaces the forces on the free bodies by `loads` and the pushes.
+    fn load(&mut self, loads: &[Load<D>]) -> std::result::Result<(), EngineFault<D>> {
+        assert_eq!(loads.len(), self.bodies.len(), "every solid needs a load");
+        let mut total = loads.to_vec();
+        for (solid, force, at) in self.pushes.drain(..) {
+            let centre = from_point(self.world.bodies[self.bodies[solid]].center_of_mass());
+            total[solid].force += force;
+            total[solid].torque = total[solid].torque + Wedge::torque(&(at - centre), &force);
+        }
+        for (solid, load) in total.iter().enumerate() {
+            if !self.body(solid).is_dynamic() {
+                continue;
+            }
+            if !(load.force.norm_squared() + load.torque.0.norm_squared()).is_finite() {
+                let cause = "a pressure or velocity nearby blew up: try a smaller CFL number, a higher speed of \
+                             sound or a finer dp; or a push was not finite";
+                return Err(self.fault(solid, "load not finite", cause));
+            }
+            let body = &mut self.world.bodies[self.bodies[solid]];
+            body.reset_forces(false);
+            body.reset_torques(false);
+            body.add_force(to_point(&load.force), true);
+            body.add_torque(to_angular(&load.torque), true);
+        }
+        Ok(())
+    }
+
+    /// Tells rapier where the driven bodies will be.
+    fn drive(&mut self, driven: &[Option<Kinematics<D>>]) -> std::result::Result<(), EngineFault<D>> {
+        for (solid, kinematics) in driven.iter().enumerate() {
+            let Some(Kinematics { pose, .. }) = kinematics else { continue };
+            if !(pose.position.norm_squared() + pose.rotation.norm_squared()).is_finite() {
+                let cause = "its law of motion is not finite at this time: check the formula or table";
+                return Err(self.fault(solid, "prescribed position not finite", cause));
+            }
+            self.world.bodies[self.bodies[solid]].set_next_kinematic_position(to_frame(pose));
+        }
+        Ok(())
+    }
+
+    /// Whether all solids came out of the step whole. Rapier disables what went astray and puts it back to
+    /// where it last was.
+    fn examine(&self, before: &[Point]) -> std::result::Result<(), EngineFault<D>> {
+        for (solid, velocity) in before.iter().enumerate() {
+            let body = self.body(solid);
+            let whole = body.is_enabled() && body.colliders().iter().all(|&c| self.world.colliders[c].is_enabled());
+            if !(whole && body.position().is_finite() && body.linvel().length_squared().is_finite()) {
+                let cause = "a load or a contact was too strong for the step: try a smaller CFL number or dt_max, \
+                             and look for bodies pressed into one another";
+                let fault = self.fault(solid, "position or velocity not finite", cause);
+                return Err(EngineFault { velocity: from_point(*velocity), ..fault });
+            }
+        }
+        Ok(())
+    }
+
+    fn fault(&self, solid: usize, reason: &str, cause: &'static str) -> EngineFault<D> {
+        let body = self.body(solid);
+        EngineFault {
+            solid,
+            reason: reason.into(),
+            cause,
+            position: from_point(body.translation()),
+            velocity: from_point(body.linvel()),
+        }
+    }
+
+    /// The solid to which a collider belongs.
+    fn owner(&self, collider: ColliderHandle) -> usize {
+        self.world.colliders[collider].user_data as usize
+    }
+}
+
+impl Engine<D> for World {
+    fn kinematics(&self, solid: usize) -> Kinematics<D> {
+        let body = self.body(solid);
+        Kinematics {
+            pose: from_frame(body.position()),
+            centre: from_point(body.center_of_mass()),
+            velocity: from_point(body.linvel()),
+            spin: from_angular(body.angvel()),
+        }
+    }
+
+    fn step(
+        &mut self,
+        dt: f64,
+        loads: &[Load<D>],
+        driven: &[Option<Kinematics<D>>],
+    ) -> std::result::Result<(), EngineFault<D>> {
+        self.pace(dt);
+        self.load(loads)?;
+        self.drive(driven)?;
+        let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
+        self.world.step();
+        self.examine(&before)
+    }
+
+    fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>) {
+        self.pushes.push((solid, *force, *at));
+    }
+
+    fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
+        let body = &mut self.world.bodies[self.bodies[solid]];
+        body.set_linvel(to_point(velocity), true);
+        body.set_angvel(to_angular(spin), true);
+    }
+
+    fn contacts(&self) -> Vec<(usize, usize, f64)> {
+        let mut forces = BTreeMap::new();
+        for pair in self.world.narrow_phase.contact_pairs() {
+            let force = pair.total_impulse_magnitude() / self.world.integration_parameters.dt;
+            if force > 0.0 {
+                let (a, b) = (self.owner(pair.collider1), self.owner(pair.collider2));
+                *forces.entry((a.min(b), a.max(b))).or_insert(0.0) += force;
+            }
+        }
+        forces.into_iter().map(|((a, b), force)| (a, b, force)).collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>> {
+        postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.pushes)).map_err(restart)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let (engine, rest): (&str, &[u8]) = postcard::take_from_bytes(bytes).map_err(restart)?;
+        if engine != ENGINE {
+            return Err(restart(format!("they were written by {engine}, this is {ENGINE}")));
+        }
+        let (world, tuned_for, pushes): (PhysicsWorld, f64, Vec<Push>) = postcard::from_bytes(rest).map_err(restart)?;
+        let same = world.bodies.len() == self.bodies.len()
+            && self.bodies.iter().all(|&h| world.bodies.contains(h))
+            && pushes.iter().all(|push| push.0 < self.bodies.len());
+        if !same {
+            return Err(restart(format!("{} solids, where the scene has {}", world.bodies.len(), self.bodies.len())));
+        }
+        (self.world, self.tuned_for, self.pushes) = (world, tuned_for, pushes);
+        Ok(())
+    }
+}
+
+/// Settings that hold for the whole run.
+fn settle(world: &mut PhysicsWorld, reach: f64) {
+    let parameters = &mut world.integration_parameters;
+    parameters.num_solver_iterations = 1;
+    parameters.num_internal_pgs_iterations = 4;
+    parameters.num_internal_stabilization_iterations = 4;
+    parameters.contact_recycling = false;
+    parameters.length_unit = 1.0;
+    parameters.normalized_prediction_distance = reach;
+    parameters.normalized_max_corrective_velocity = 100.0;
+    parameters.normalized_max_linear_velocity = f64::MAX;
+    parameters.max_ccd_substeps = 0;
+    tune(parameters);
+}
+
+fn insert(
+    world: &mut PhysicsWorld,
+    index: usize,
+    solid: &SolidSpec<D>,
+    start: &Kinematics<D>,
+    parts: &Parts,
+) -> RigidBodyHandle {
+    let builder = match &solid.role {
+        Role::Fixed => RigidBodyBuilder::fixed(),
+        Role::Driven(_) => RigidBodyBuilder::kinematic_position_based(),
+        Role::Free(body) => lock(RigidBodyBuilder::dynamic(), body)
+            .additional_mass_properties(mass_properties(body, &start.pose.rotation))
+            .linvel(to_point(&start.velocity))
+            .angvel(to_angular(&start.spin)),
+    };
+    let handle = world.insert_body(builder.pose(to_frame(&start.pose)).can_sleep(false));
+    for (frame, part) in parts {
+        let collider = ColliderBuilder::new(part.clone())
+            .position(*frame)
+            .density(0.0)
+            .contact_skin(0.0)
+            .friction(solid.friction)
+            .restitution(solid.restitution)
+            .user_data(index as u128);
+        world.insert_collider(collider, Some(handle));
+    }
+    world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
+    handle
+}
+
+/// Adds the convex parts of `shape`, posed in the solid's frame.
+fn collect(shape: &Shape<D>, pose: &Pose<D>, found: &mut Parts) -> Result<()> {
+    let frame = to_frame(pose);
+    let mut cuboid = |min: Vector<D>, max: Vector<D>| {
+        let centre = Frame::from_translation(to_point(&(0.5 * (min + max))));
+        found.push((frame * centre, SharedShape::new(Cuboid::new(to_point(&(0.5 * (max - min)))))));
+    };
+    match shape {
+        Shape::Box { size } => cuboid(-0.5 * size, 0.5 * size),
+        Shape::Tank { size, thickness } => {
+            let (low, mut high) = (Vector::repeat(-thickness), size.add_scalar(*thickness));
+            high[D - 1] = size[D - 1];
+            for axis in 0..D {
+                let (mut min, mut max) = (low, high);
+                max[axis] = 0.0;
+                cuboid(min, max);
+                if axis < D - 1 {
+                    (min[axis], max[axis]) = (size[axis], high[axis]);
+                    cuboid(min, max);
+                }
+            }
+        }
+        Shape::Ball { radius } => found.push((frame, SharedShape::ball(*radius))),
+        Shape::Capsule { length, radius, axis } => {
+            let end = Point::AXES[*axis] * (0.5 * length);
+            found.push((frame, SharedShape::capsule(-end, end, *radius)));
+        }
+        Shape::Compound(inner) => {
+            for (place, shape) in inner {
+                collect(shape, &pose.then(place), found)?;
+            }
+        }
+        Shape::Cylinder { .. } | Shape::Polygon { .. } | Shape::Polyline { .. } => {
+            found.extend(parts(shape)?.into_iter().map(|(inner, part)| (frame * inner, part)));
+        }
+    }
+    Ok(())
+}
+
+/// Smallest edge of the box around the parts, m.
+fn thickness(parts: &Parts) -> f64 {
+    let boxes = parts.iter().map(|(frame, part)| part.compute_aabb(frame));
+    boxes.reduce(|a, b| a.merged(&b)).map_or(f64::INFINITY, |whole| whole.extents().min_element())
+}
+
+/// Refuses a free solid that starts deeper than `allowed` (m) inside another.
+fn refuse_overlap(solids: &[SolidSpec<D>], start: &[Kinematics<D>], parts: &[Parts], allowed: f64) -> Result<()> {
+    let free = |i: usize| matches!(solids[i].role, Role::Free(_));
+    for a in 0..solids.len() {
+        for b in a + 1..solids.len() {
+            if !(free(a) || free(b)) {
+                continue;
+            }
+            let (frame_a, frame_b) = (to_frame(&start[a].pose), to_frame(&start[b].pose));
+            let mut depth: f64 = 0.0;
+            for (inner_a, part_a) in &parts[a] {
+                for (inner_b, part_b) in &parts[b] {
+                    let touch = contact(&(frame_a * *inner_a), &**part_a, &(frame_b * *inner_b), &**part_b, 0.0);
+                    depth = touch.ok().flatten().map_or(depth, |touch| depth.max(-touch.dist));
+                }
+            }
+            if depth > allowed {
+                return Err(Error::scene(format!(
+                    "\"{}\" starts {depth:.3e} m inside \"{}\"",
+                    solids[a].name, solids[b].name
+                ))
+                .help(format!("move one of them by that much or more; {allowed:.1e} m (0.05 dp) is let pass")));
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn to_point(x: &Vector<D>) -> Point {
+    Point::from_array((*x).into())
+}
+
+fn from_point(x: Point) -> Vector<D> {
+    Vector::from(x.to_array())
+}
+
+fn to_frame(pose: &Pose<D>) -> Frame {
+    Frame::from_parts(to_point(&pose.position), to_rotation(&pose.rotation))
+}
+
+fn from_frame(frame: &Frame) -> Pose<D> {
+    Pose { position: from_point(frame.translation), rotation: from_rotation(&frame.rotation) }
+}
