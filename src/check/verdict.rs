@@ -112,7 +112,9 @@ impl Check {
         verdict.covered = common.len() as f64 / self.reference.times().len() as f64;
         let reference = series_of(common).map_err(|_| {
             let (from, to) = self.reference.span();
-            Error::scene(format!("the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"))
+            Error::scene(format!(
+                "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
+            ))
         })?;
         verdict.n = Some(deviation(&sim, &reference)?);
         verdict.m = Some(amplitude(&sim, &reference)?);
@@ -140,11 +142,8 @@ fn within(bound: Score, n: Option<f64>, m: Option<f64>) -> bool {
 /// `File` if it cannot be read; `Scene` if a column is missing (names the nearest) or a field is no number.
 fn read_columns(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>> {
     let broken = |why: csv::Error| Error::file(path, why);
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(broken)?;
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(broken)?;
     let header = reader.headers().map_err(broken)?.clone();
     let place = |name: &str| {
         header.iter().position(|h| h == name).ok_or_else(|| {
@@ -163,7 +162,11 @@ fn read_columns(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>
         let field = |i: usize| match record.get(i).unwrap_or("") {
             "" => Ok(None),
             word => word.parse::<f64>().map(Some).map_err(|_| {
-                Error::scene(format!("{word:?} is not a number")).at(path.display().to_string(), Some((line, 1)), &header[i])
+                Error::scene(format!("{word:?} is not a number")).at(
+                    path.display().to_string(),
+                    Some((line, 1)),
+                    &header[i],
+                )
             }),
         };
         if let (Some(t), Some(x)) = (field(t)?, field(x)?) {

@@ -74,7 +74,11 @@ fn water_potential<const D: usize>(system: &System<D>) -> f64 {
 /// −Σ M g·R₀ of the free bodies (J).
 fn bodies_potential<const D: usize>(system: &System<D>) -> f64 {
     let g = system.gravity();
-    system.solids().iter().map(|s| if let Role::Free(b) = &s.spec.role { -b.mass * g.dot(&s.kinematics.centre) } else { 0.0 }).sum()
+    system
+        .solids()
+        .iter()
+        .map(|s| if let Role::Free(b) = &s.spec.role { -b.mass * g.dot(&s.kinematics.centre) } else { 0.0 })
+        .sum()
 }
 
 /// ½ M V² + ½ Ω·I Ω of a free body (J), zero for any other solid.

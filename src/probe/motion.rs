@@ -47,8 +47,7 @@ impl<const D: usize> Probe<D> for Motion<D> {
         } else {
             &["surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg"]
         };
-        let spins: &[&str] =
-            if D == 2 { &["spin_radps"] } else { &["spin_x_radps", "spin_y_radps", "spin_z_radps"] };
+        let spins: &[&str] = if D == 2 { &["spin_radps"] } else { &["spin_x_radps", "spin_y_radps", "spin_z_radps"] };
         let positions = axes::<D>().iter().map(|a| format!("{a}_m"));
         let velocities = axes::<D>().iter().map(|a| format!("v{a}_mps"));
         let named = |names: &'static [&'static str]| names.iter().map(|n| n.to_string());

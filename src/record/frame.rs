@@ -73,11 +73,13 @@ impl Frames {
         particles: &Particles<D>,
         owner: Option<Vec<f32>>,
     ) -> Result<()> {
-        let mut fields: Vec<Attribute> =
-            self.fields.iter().map(|name| attribute(name, system, particles)).collect();
-        fields.extend(owner.map(|numbers| array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)));
+        let mut fields: Vec<Attribute> = self.fields.iter().map(|name| attribute(name, system, particles)).collect();
+        fields.extend(
+            owner.map(|numbers| array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)),
+        );
         let path = self.folder.join("frames").join(name);
-        let bytes = cloud(&particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
+        let bytes =
+            cloud(&particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
         write_whole(&path, &bytes)
     }
 }
@@ -157,10 +159,10 @@ mod tests {
             let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
             let text = cloud(&points, vec![array("density", scalar, numbers)])?;
             let Vtk { data: DataSet::UnstructuredGrid { pieces, .. }, .. } = Vtk::parse_xml(text.as_slice())? else {
-                return Err(vtkio::Error::InvalidFileExtension(None));
+                return Err(vtkio::Error::UnknownFileExtension(None));
             };
-            let piece = pieces.into_iter().next().ok_or(vtkio::Error::InvalidFileExtension(None))?;
-            let piece = piece.into_loaded_piece_data(None).map_err(|_| vtkio::Error::InvalidFileExtension(None))?;
+            let piece = pieces.into_iter().next().ok_or(vtkio::Error::UnknownFileExtension(None))?;
+            let piece = piece.into_loaded_piece_data(None).map_err(|_| vtkio::Error::UnknownFileExtension(None))?;
             assert_eq!(piece.points, IOBuffer::F32(padded(&points)));
             assert_eq!(piece.cells.types.len(), points.len());
         }

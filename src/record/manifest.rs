@@ -49,8 +49,21 @@ pub struct Manifest {
     pub machine: Machine,
     /// Keys of the scene changed for this run.
     pub set: BTreeMap<String, String>,
+    /// Every value in force, the defaults too.
+    pub values: Vec<InForce>,
     /// The scene with those changes, as TOML.
     pub scene: String,
+}
+
+/// A value in force.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InForce {
+    /// The scene's key.
+    pub key: String,
+    /// Its value.
+    pub value: String,
+    /// Who said so: a line of the scene, the command line, or a default with its reason.
+    pub source: String,
 }
 
 /// How a run stands.

@@ -65,13 +65,19 @@ impl Checkpoint {
         let bytes = match std::fs::read(path) {
             Ok(bytes) => bytes,
             Err(why) if why.kind() == std::io::ErrorKind::NotFound => {
-                return refuse("there is no checkpoint", "a run writes one on Ctrl-C, and at an interval if the scene asks for it");
+                return refuse(
+                    "there is no checkpoint",
+                    "a run writes one on Ctrl-C, and at an interval if the scene asks for it",
+                );
             }
             Err(why) => return Err(Error::file(path, why)),
         };
         let (magic, rest) = bytes.split_at(bytes.len().min(MAGIC.len()));
         if magic != MAGIC {
-            return refuse("this is no checkpoint of pontoon", "name the folder of a run, as in `pontoon resume runs/raft`");
+            return refuse(
+                "this is no checkpoint of pontoon",
+                "name the folder of a run, as in `pontoon resume runs/raft`",
+            );
         }
         let afresh = "start the run afresh with `pontoon run`";
         let Some((format, rest)) = rest.split_first_chunk::<4>() else {
@@ -79,7 +85,10 @@ impl Checkpoint {
         };
         let format = u32::from_le_bytes(*format);
         if format != FORMAT {
-            return refuse(&format!("the checkpoint has format {format}; this program reads {FORMAT}"), "resume with the version that wrote it");
+            return refuse(
+                &format!("the checkpoint has format {format}; this program reads {FORMAT}"),
+                "resume with the version that wrote it",
+            );
         }
         let Some((length, rest)) = rest.split_first_chunk::<8>() else {
             return refuse("the checkpoint is cut short", afresh);

@@ -1,0 +1,3 @@
+//! The specification: one binary, a file a topic, each test a sentence.
+
+mod checks;
