@@ -1,3 +1,7 @@
-//! The binary.
+//! The binary: arguments, progress, exit code. All else is the library.
 
-fn main() {}
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

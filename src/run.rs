@@ -1,1 +1,191 @@
-//! (to come)
+//! The commands `run`, `resume` and `inspect` as functions: read the scene, choose the dimension, build,
+//! step, record, check.
+//!
+//! ```no_run
+//! use pontoon::run::{Options, Progress, run};
+//!
+//! let mut watch = |now: &Progress| now.wall < 3600.0;   // false asks the run to stop
+//! let outcome = run("scenes/raft".as_ref(), &Options::default(), &mut watch)?;
+//! assert!(outcome.folder.join("manifest.json").exists());
+//! # Ok::<(), pontoon::Error>(())
+//! ```
+
+mod course;
+mod folder;
+mod inspect;
+mod outputs;
+
+pub use inspect::{Report, inspect};
+
+use std::path::{Path, PathBuf};
+
+use crate::{
+    error::{Error, Kind, Result},
+    record::{Checkpoint, Manifest, manifest::Status, restart},
+    scene::Scene,
+    solid::{Dim, HasEngine},
+};
+
+/// What a run is asked for beside its scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Folder for the results, new or empty. By default `runs/<scene>`, with a number if that is taken.
+    pub out: Option<PathBuf>,
+    /// Keys of the scene and the values that replace the scene's own, as in `("dp", "0.02")`.
+    pub sets: Vec<(String, String)>,
+    /// Threads; by default one for each processor. They change the speed, never the result.
+    pub threads: Option<usize>,
+}
+
+/// What is known when a run begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Start<'a> {
+    /// The run's folder.
+    pub folder: &'a Path,
+    /// What the manifest says at the start: caption, particles, threads, warnings.
+    pub manifest: &'a Manifest,
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Simulated time at the end, s.
+    pub until: f64,
+    /// Last time step, s.
+    pub dt: f64,
+    /// Steps done.
+    pub steps: u64,
+    /// Wall time so far, s, that before an interruption included.
+    pub wall: f64,
+    /// All particles × force passes ÷ wall time of stepping, 1/s.
+    pub rate: f64,
+}
+
+/// Someone who follows a run. Any `FnMut(&Progress) -> bool` does.
+pub trait Watch: Send {
+    /// Told once, before the first step.
+    fn start(&mut self, start: &Start) {
+        let _ = start;
+    }
+
+    /// Told before the first step and after each; `false` asks the run to stop now, with a checkpoint.
+    fn step(&mut self, now: &Progress) -> bool;
+}
+
+impl<F: FnMut(&Progress) -> bool + Send> Watch for F {
+    fn step(&mut self, now: &Progress) -> bool {
+        self(now)
+    }
+}
+
+/// Where a free body is at the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Position of its centre of mass, m.
+    pub position: Vec<f64>,
+    /// Speed of its centre of mass, m/s.
+    pub speed: f64,
+    /// Axial angles of its frame, deg: one in 2-D, a rotation vector in 3-D.
+    pub turn_deg: Vec<f64>,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The run's folder.
+    pub folder: PathBuf,
+    /// The manifest as written there.
+    pub manifest: Manifest,
+    /// The free bodies.
+    pub bodies: Vec<Body>,
+}
+
+impl Outcome {
+    /// Whether a check misses its bound.
+    pub fn failed_checks(&self) -> bool {
+        self.manifest.checks.iter().any(|verdict| verdict.passed == Some(false))
+    }
+}
+
+/// Runs the scene at `path`, a folder with a `scene.toml` or such a file.
+///
+/// # Errors
+/// `Scene`, `Usage`, `File` before anything is written or when a file cannot be written; `Fault` when the
+/// computation cannot go on: then the run's folder holds everything up to then and `failure.json`.
+pub fn run(path: &Path, options: &Options, watch: &mut dyn Watch) -> Result<Outcome> {
+    let file = folder::scene_file(path);
+    let scene = Scene::read(&file, &options.sets)?;
+    let origin = Origin::Fresh { file: &file, out: options.out.as_deref(), sets: &options.sets };
+    with_threads(options.threads, || by_dimension(&scene, origin, watch))
+}
+
+/// Goes on with the interrupted run in `folder`, to the same bits as if it had not been interrupted.
+///
+/// # Errors
+/// `Restart` if it has finished, holds no whole checkpoint, or its scene has changed since; else as [`run`].
+pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> Result<Outcome> {
+    if Manifest::read(folder)?.status == Status::Finished {
+        let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
+        return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
+    }
+    let checkpoint = Checkpoint::read(&folder.join(course::CHECKPOINT))?;
+    let scene = Scene::read(&folder.join(folder::SCENE), &checkpoint.sets)?;
+    if restart::hash(scene.to_toml()?.as_bytes()) != checkpoint.scene {
+        let what = format!("the scene in {} is not the one that this run began with", folder.display());
+        return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
+    }
+    with_threads(threads, || by_dimension(&scene, Origin::Resumed { folder, checkpoint: Box::new(checkpoint) }, watch))
+}
+
+/// Where a run comes from.
+enum Origin<'a> {
+    /// A scene file, for the folder `out` or one of our choice.
+    Fresh { file: &'a Path, out: Option<&'a Path>, sets: &'a [(String, String)] },
+    /// A checkpoint in the run's folder.
+    Resumed { folder: &'a Path, checkpoint: Box<Checkpoint> },
+}
+
+/// Chooses the dimension: the one place.
+fn by_dimension(scene: &Scene, origin: Origin, watch: &mut dyn Watch) -> Result<Outcome> {
+    match scene.dimension {
+        #[cfg(feature = "dim2")]
+        2 => go::<2>(scene, origin, watch),
+        #[cfg(feature = "dim3")]
+        3 => go::<3>(scene, origin, watch),
+        other => Err(not_built(other)),
+    }
+}
+
+fn go<const D: usize>(scene: &Scene, origin: Origin, watch: &mut dyn Watch) -> Result<Outcome>
+where
+    Dim<D>: HasEngine<D>,
+{
+    course::Course::<D>::new(scene, origin)?.run(watch)
+}
+
+/// The error of a scene in a dimension that this program was built without.
+fn not_built(dimension: usize) -> Error {
+    Error::new(Kind::Usage, format!("this program was built without the {dimension}-D engine"))
+        .help(format!("build it with the feature dim{dimension}: cargo build --release --features dim{dimension}"))
+}
+
+/// Runs `work` in a pool of `threads` threads.
+fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    if threads == Some(0) {
+        return Err(
+            Error::new(Kind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
+        );
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build()
+        .map_err(|why| {
+            Error::new(Kind::Usage, format!("the threads cannot be started: {why}"))
+                .help("ask for fewer with --threads")
+        })?
+        .install(work)
+}

@@ -1,1 +1,99 @@
-//! (to come)
+//! Probes: they look at a simulation and never touch it.
+//!
+//! A [`Probe`] names its columns, units included, and gives a number for each whenever it is asked. Sums
+//! over the water are interpolations with the kernel W and the volumes V_b = m/ρ_b.
+
+mod elevation;
+mod energy;
+mod force;
+mod motion;
+mod pressure;
+mod velocity;
+
+pub use elevation::Elevation;
+pub use energy::Energy;
+pub use force::Force;
+pub use motion::Motion;
+pub use pressure::Pressure;
+pub use velocity::Velocity;
+
+use crate::{
+    error::{Error, Kind, Result, nearest},
+    simulation::Simulation,
+    space::Vector,
+    system::System,
+};
+
+/// Something that watches a simulation.
+pub trait Probe<const D: usize>: Send {
+    /// A name for each number, ending in its unit, as in `fx_N`.
+    fn columns(&self) -> Vec<String>;
+
+    /// A number for each column, now. NaN where there is nothing to measure, as in a dry place.
+    fn look(&self, sim: &Simulation<D>) -> Vec<f64>;
+
+    /// Makes the reading `now` continue the reading `before` it, for quantities that wind round, such as
+    /// an angle past 180°. By default leaves it as it is.
+    fn follow(&self, before: &[f64], now: &mut [f64]) {
+        let _ = (before, now);
+    }
+}
+
+/// Names of the axes: the last is up.
+const fn axes<const D: usize>() -> &'static [&'static str] {
+    match D {
+        2 => &["x", "y"],
+        _ => &["x", "y", "z"],
+    }
+}
+
+/// The number of the solid called `name`.
+///
+/// # Errors
+/// `Scene` if there is none: says the nearest name, or all of them.
+pub fn find_solid<const D: usize>(system: &System<D>, name: &str) -> Result<usize> {
+    system.solid(name).ok_or_else(|| {
+        let names: Vec<&str> = system.solids().iter().map(|s| s.spec.name.as_str()).collect();
+        let help = match nearest(name, names.iter().copied()) {
+            Some(near) => format!("did you mean {near:?}?"),
+            None => format!("the solids are: {}", names.join(", ")),
+        };
+        Error::scene(format!("there is no solid called {name:?}")).help(help)
+    })
+}
+
+/// A point of `D` components from as many numbers.
+///
+/// # Errors
+/// `Usage` if their count is another or one of them is not finite.
+fn point<const D: usize>(at: &[f64], count: usize) -> Result<Vector<D>> {
+    if at.len() != count || at.iter().any(|x| !x.is_finite()) {
+        let what = format!("a probe's place needs {count} finite coordinates (m); got {at:?}");
+        return Err(Error::new(Kind::Usage, what));
+    }
+    let mut x = Vector::<D>::zeros();
+    for (xi, &a) in x.iter_mut().zip(at) {
+        *xi = a;
+    }
+    Ok(x)
+}
+
+/// Mean of a quantity of the water at the point `x` (m), weighed by V_b W and normalised (Shepard):
+/// exact for a constant, second order inside the water. `None` where the water fills less than a quarter of
+/// the kernel's weight, as in air.
+fn interpolate<const D: usize, const C: usize>(
+    system: &System<D>,
+    x: &Vector<D>,
+    quantity: impl Fn(usize) -> [f64; C],
+) -> Option<[f64; C]> {
+    let (mass, rho) = (system.particle_mass(), &system.fluid().rho);
+    let (mut sum, mut weight) = ([0.0; C], 0.0);
+    system.water_near(x, &mut |b, w| {
+        let share = mass / rho[b] * w;
+        weight += share;
+        for (s, q) in sum.iter_mut().zip(quantity(b)) {
+            *s += share * q;
+        }
+    });
+    (weight >= 0.25).then(|| sum.map(|s| s / weight))
+}

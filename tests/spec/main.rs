@@ -1,10 +1,13 @@
 //! Executable specifications: each test is a sentence about the physics or a contract.
 
+mod checks;
 mod coupling;
 mod determinism;
+mod errors;
 mod kernels;
 mod laws;
 mod near;
+mod probes;
 mod quiet;
 mod rig;
 mod steppers;

@@ -1,0 +1,225 @@
+//! What the user types, and what the program answers.
+//!
+//! Exit codes: 0 all well; 1 the computation could not go on; 2 something in the command, the scene or a file
+//! is wrong; 3 a check misses its bound; 130 interrupted.
+
+mod progress;
+mod report;
+mod shelf;
+
+use std::{
+    io::Write,
+    path::PathBuf,
+    process::ExitCode,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use clap::{Args, Parser, Subcommand};
+use pontoon::{
+    error::{Error, Kind, Result},
+    record::manifest::Status,
+    run::{self, Options, Outcome},
+};
+
+use progress::Follow;
+
+/// Rigid bodies that float, collide and are driven in water.
+#[derive(Parser)]
+#[command(
+    version,
+    max_term_width = 100,
+    arg_required_else_help = true,
+    after_help = "\
+Try:
+  pontoon scenes                      what is there to run
+  pontoon run raft                    several floats, a paddle, a tank
+  pontoon run raft --dp 0.01          the same, finer
+  pontoon inspect raft                every value in force and why; runs nothing
+Results go to runs/<scene>: open frames.pvd with ParaView, series/*.csv with anything."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a scene to its end
+    #[command(after_help = "\
+Examples:
+  pontoon run scenes/raft                           a folder with a scene.toml
+  pontoon run my-bay.toml --until 2 --dp 0.02       a scene file, shorter and coarser
+  pontoon run raft --set model.viscosity=none       one key of the scene changed
+  pontoon run raft --set solid.box.free.density=500
+Ctrl-C stops after the present step with a checkpoint; `pontoon resume` goes on from there to the same
+bits. The number of threads changes the speed, never the result.")]
+    Run(RunArgs),
+    /// Go on with an interrupted run, to the same bits as an unbroken one
+    #[command(after_help = "Example:\n  pontoon resume runs/raft")]
+    Resume {
+        /// Folder of the run
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Threads [default: one for each processor]
+        #[arg(long, value_name = "N")]
+        threads: Option<usize>,
+        /// Say nothing but errors
+        #[arg(long, short)]
+        quiet: bool,
+    },
+    /// Read a scene, count its particles, print every value in force and its source; run nothing
+    #[command(after_help = "Example:\n  pontoon inspect raft --dp 0.01")]
+    Inspect {
+        #[command(flatten)]
+        scene: SceneArgs,
+    },
+    /// List the scenes that come with the program
+    Scenes,
+}
+
+#[derive(Args)]
+struct SceneArgs {
+    /// A folder with a scene.toml, a scene file, or the name of a scene of `pontoon scenes`
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Particle spacing, m: half of it costs about 8 times as much in 2-D, 16 times in 3-D
+    #[arg(long, value_name = "METRES")]
+    dp: Option<f64>,
+    /// Simulated time at the end, s
+    #[arg(long, value_name = "SECONDS")]
+    until: Option<f64>,
+    /// Change a key of the scene; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
+    set: Vec<(String, String)>,
+}
+
+#[derive(Args)]
+struct RunArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for the results, new or empty [default: runs/<scene>, numbered if taken]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Threads [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Say nothing but errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+impl SceneArgs {
+    /// The scene keys that the arguments change.
+    fn sets(&self) -> Vec<(String, String)> {
+        let mut sets = self.set.clone();
+        sets.extend(self.dp.map(|dp| ("dp".into(), format!("{dp:?}"))));
+        sets.extend(self.until.map(|until| ("until".into(), format!("{until:?}"))));
+        sets
+    }
+}
+
+/// `key=value` as a pair.
+fn pair(text: &str) -> std::result::Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
+        _ => Err("write key=value, as in --set model.h_over_dp=1.7".into()),
+    }
+}
+
+/// Parses, obeys, and says how it went.
+pub fn main() -> ExitCode {
+    match obey(Cli::parse().command) {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            complain(&format!("error: {error}\n"));
+            ExitCode::from(if error.kind == Kind::Fault { 1 } else { 2 })
+        }
+    }
+}
+
+fn obey(command: Command) -> Result<u8> {
+    match command {
+        Command::Run(args) => {
+            let found = shelf::find(&args.scene.scene)?;
+            let options = Options { out: args.out, sets: args.scene.sets(), threads: args.threads };
+            let mut follow = Follow::new(args.quiet, stopper()?);
+            let outcome = run::run(found.path(), &options, &mut follow);
+            end(outcome, follow, args.quiet)
+        }
+        Command::Resume { folder, threads, quiet } => {
+            let mut follow = Follow::new(quiet, stopper()?);
+            let outcome = run::resume(&folder, threads, &mut follow);
+            end(outcome, follow, quiet)
+        }
+        Command::Inspect { scene } => {
+            let found = shelf::find(&scene.scene)?;
+            say(&report::inspected(&run::inspect(found.path(), &scene.sets())?));
+            Ok(0)
+        }
+        Command::Scenes => {
+            say(&report::shelf(&shelf::all()));
+            Ok(0)
+        }
+    }
+}
+
+/// Closes the progress, prints the table, chooses the exit code.
+fn end(outcome: Result<Outcome>, follow: Follow, quiet: bool) -> Result<u8> {
+    follow.close();
+    let outcome = outcome?;
+    if !quiet {
+        say(&report::ended(&outcome));
+    }
+    Ok(match outcome.manifest.status {
+        Status::Interrupted => 130,
+        _ if outcome.failed_checks() => 3,
+        _ => 0,
+    })
+}
+
+/// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
+fn stopper() -> Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = flag.clone();
+    let handler = move || {
+        if raised.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        complain("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n");
+    };
+    ctrlc::set_handler(handler).map_err(|why| Error::new(Kind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
+    Ok(flag)
+}
+
+/// Prints results. A reader who has gone, as `head` does, is no reason to fail.
+fn say(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// Prints what is not a result: progress, warnings, errors.
+fn complain(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn what_is_said_in_arguments_becomes_keys_of_the_scene() {
+        let words = ["pontoon", "run", "raft", "--set", "a.b = [1, 2]", "--dp", "0.02", "--until", "3"];
+        let Ok(Cli { command: Command::Run(args) }) = Cli::try_parse_from(words) else { panic!("is a run") };
+        let pairs = [("a.b", "[1, 2]"), ("dp", "0.02"), ("until", "3.0")];
+        assert_eq!(args.scene.sets(), pairs.map(|(k, v)| (k.to_string(), v.to_string())));
+        assert!(Cli::try_parse_from(["pontoon", "run", "raft", "--set", "dp"]).is_err());
+    }
+}

@@ -1,0 +1,203 @@
+//! The texts that are printed: at the start, at the end, for `inspect` and `scenes`.
+
+use std::fmt::Write;
+
+use pontoon::{
+    check::Verdict,
+    record::manifest::Status,
+    run::{Body, Outcome, Report, Start},
+};
+
+use super::shelf::Listed;
+
+/// A table with its columns aligned, two spaces in; the first row is its header.
+fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |i: usize| rows.iter().filter_map(|r| r.get(i)).map(|x| x.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths).map(|(x, &w)| format!("{x:w$}"));
+        text += &format!("  {}", cells.collect::<Vec<_>>().join("  "));
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    }
+    text
+}
+
+/// `n` with a metric prefix: 1.23 M.
+pub fn short(n: f64) -> String {
+    match n {
+        n if n >= 1e9 => format!("{:.2} G", n / 1e9),
+        n if n >= 1e6 => format!("{:.2} M", n / 1e6),
+        n if n >= 1e4 => format!("{:.1} k", n / 1e3),
+        n if n >= 100.0 => format!("{n:.0}"),
+        n => format!("{n:.2}"),
+    }
+}
+
+/// A wall time (s) as a user says it.
+pub fn duration(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match whole {
+        0..=59 => format!("{seconds:.1} s"),
+        60..=3599 => format!("{} min {:02} s", whole / 60, whole % 60),
+        _ => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
+    }
+}
+
+/// Said when a run begins.
+pub fn started(start: &Start) -> String {
+    let (manifest, count) = (start.manifest, start.manifest.particles);
+    let mut text = format!("{}\n", manifest.title);
+    for warning in &manifest.warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    let _ = writeln!(
+        text,
+        "{} water and {} boundary particles, {} thread{}, results in {}",
+        count.fluid,
+        count.boundary,
+        manifest.threads,
+        if manifest.threads == 1 { "" } else { "s" },
+        start.folder.display()
+    );
+    text
+}
+
+/// Said when a run ends.
+pub fn ended(outcome: &Outcome) -> String {
+    let manifest = &outcome.manifest;
+    let how = match manifest.status {
+        Status::Finished => "finished",
+        Status::Interrupted => "interrupted",
+        Status::Running | Status::Failed => "failed",
+    };
+    let mut text = format!("\n{}: {how}\n", manifest.title);
+    text += &table(&[
+        vec![
+            "simulated".into(),
+            format!("{:.6} of {} s in {} steps", manifest.simulated_s, manifest.until_s, manifest.steps),
+        ],
+        vec!["wall time".into(), format!("{} with {} threads", duration(manifest.wall_s), manifest.threads)],
+        vec!["speed".into(), format!("{} particle-steps/s", short(manifest.particle_steps_per_second))],
+    ]);
+    if !outcome.bodies.is_empty() {
+        let _ = write!(text, "\n{}", bodies(&outcome.bodies));
+    }
+    if !manifest.checks.is_empty() {
+        let _ = write!(text, "\n{}", checks(&manifest.checks));
+    }
+    let _ = writeln!(text, "\nfiles in {}", outcome.folder.display());
+    for file in &manifest.files {
+        let _ = writeln!(text, "  {file}");
+    }
+    if manifest.status == Status::Interrupted {
+        let _ = writeln!(text, "\ngo on with: pontoon resume {}", outcome.folder.display());
+    }
+    text
+}
+
+fn bodies(bodies: &[Body]) -> String {
+    let axes = ["x", "y", "z"].iter().take(bodies[0].position.len()).map(|a| format!("{a} (m)"));
+    let mut rows = vec![vec!["body".to_string()]];
+    rows[0].extend(axes.chain(["speed (m/s)".into(), "turn (deg)".into()]));
+    for body in bodies {
+        let mut row = vec![body.name.clone()];
+        row.extend(body.position.iter().map(|x| format!("{x:.4}")));
+        row.push(format!("{:.4}", body.speed));
+        row.push(body.turn_deg.iter().map(|x| format!("{x:.2}")).collect::<Vec<_>>().join(" "));
+        rows.push(row);
+    }
+    table(&rows)
+}
+
+fn checks(checks: &[Verdict]) -> String {
+    let figure = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.3}"));
+    let mut rows = vec![["check", "N", "M", "paper N", "paper M", "bound", ""].map(String::from).to_vec()];
+    for verdict in checks {
+        let bounds = verdict.bound.map_or(vec![], |b| {
+            let n = b.n.map(|n| format!("N ≤ {n}"));
+            n.into_iter().chain(b.m.map(|m| format!("|M − 1| ≤ {m}"))).collect()
+        });
+        let remark = match (verdict.passed, &verdict.note) {
+            (Some(true), _) => "kept".into(),
+            (Some(false), _) => "MISSED".into(),
+            (None, Some(note)) => note.lines().next().unwrap_or("").to_string(),
+            (None, None) => String::new(),
+        };
+        rows.push(vec![
+            verdict.series.clone(),
+            figure(verdict.n),
+            figure(verdict.m),
+            figure(verdict.paper.and_then(|p| p.n)),
+            figure(verdict.paper.and_then(|p| p.m)),
+            bounds.join(", "),
+            remark,
+        ]);
+    }
+    table(&rows)
+}
+
+/// What `inspect` prints.
+pub fn inspected(report: &Report) -> String {
+    let count = report.particles;
+    let mut text = format!("{}\n", report.title);
+    for warning in &report.warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    let steps = report.until / report.dt;
+    text += &table(&[
+        vec!["dimension".into(), format!("{}-D", report.dimension)],
+        vec!["water".into(), format!("{} particles", count.fluid)],
+        vec!["boundary".into(), format!("{} particles", count.boundary)],
+        vec![
+            "time step".into(),
+            format!("at most {:.3e} s: {} steps or more to {} s", report.dt, short(steps.ceil()), report.until),
+        ],
+    ]);
+    if !report.solids.is_empty() {
+        let mut rows = vec![["solid", "role", "particles"].map(String::from).to_vec()];
+        rows.extend(report.solids.iter().map(|(name, role, n)| vec![name.clone(), role.to_string(), n.to_string()]));
+        let _ = write!(text, "\n{}", table(&rows));
+    }
+    if !report.series.is_empty() {
+        let mut rows = vec![["series", "columns"].map(String::from).to_vec()];
+        rows.extend(report.series.iter().map(|(name, columns)| vec![name.clone(), columns.join(" ")]));
+        let _ = write!(text, "\n{}", table(&rows));
+    }
+    let mut rows = vec![["key", "value", "source"].map(String::from).to_vec()];
+    rows.extend(report.values.iter().map(|v| vec![v.key.clone(), v.value.clone(), v.source.to_string()]));
+    let _ = write!(text, "\n{}", table(&rows));
+    text
+}
+
+/// What `scenes` prints.
+pub fn shelf(scenes: &[Listed]) -> String {
+    let mut text = String::new();
+    for scene in scenes {
+        let place = scene.folder.as_ref().map_or("built in".into(), |folder| folder.display().to_string());
+        let _ = writeln!(text, "{}  ({place})\n  {}", scene.name, scene.title);
+        if !scene.about.is_empty() {
+            let _ = writeln!(text, "  {}", scene.about);
+        }
+    }
+    text + "\nrun one with: pontoon run NAME\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_said_briefly() {
+        assert_eq!([short(1.234e6), short(5.0), short(123.4)], ["1.23 M", "5.00", "123"]);
+        assert_eq!([duration(3.21), duration(125.0), duration(7260.0)], ["3.2 s", "2 min 05 s", "2 h 01 min"]);
+    }
+
+    #[test]
+    fn a_table_is_aligned() {
+        let rows = [["a", "b"], ["long", "x"]].map(|r| r.map(String::from).to_vec());
+        assert_eq!(table(&rows), "  a     b\n  long  x\n");
+    }
+}

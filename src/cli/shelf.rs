@@ -1,0 +1,103 @@
+//! Finding a scene: a path, a folder of ./scenes, or one built into the program.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use pontoon::{
+    error::{Error, Kind, Result, nearest},
+    scene::shipped,
+};
+
+/// A scene that was found; one that is built in lies in a temporary folder for as long as this lives.
+pub struct Found {
+    path: PathBuf,
+    temporary: Option<PathBuf>,
+}
+
+impl Found {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Found {
+    fn drop(&mut self) {
+        if let Some(folder) = &self.temporary {
+            // Left over, it does no harm.
+            let _ = fs::remove_dir_all(folder);
+        }
+    }
+}
+
+/// A scene that comes with the program.
+pub struct Listed {
+    /// Its name.
+    pub name: String,
+    /// Its caption.
+    pub title: String,
+    /// The first sentence of its README.
+    pub about: String,
+    /// Its folder in ./scenes, if it is there.
+    pub folder: Option<PathBuf>,
+}
+
+/// The scene that `word` means.
+///
+/// # Errors
+/// `Usage` if there is none: names the nearest.
+pub fn find(word: &Path) -> Result<Found> {
+    let beside = Path::new("scenes").join(word);
+    for path in [word, &beside] {
+        if path.is_file() || path.join("scene.toml").is_file() {
+            return Ok(Found { path: path.to_owned(), temporary: None });
+        }
+    }
+    let shelf = shipped();
+    let name = word.to_string_lossy();
+    if let Some((name, toml, others)) = shelf.iter().find(|(n, ..)| *n == name) {
+        return unpack(name, toml, others);
+    }
+    let help = match nearest(&name, shelf.iter().map(|(n, ..)| *n)) {
+        Some(near) => format!("did you mean {near:?}? `pontoon scenes` lists all that come with the program"),
+        None => "name a folder with a scene.toml, a scene file, or a scene of `pontoon scenes`".into(),
+    };
+    Err(Error::new(Kind::Usage, format!("there is no scene {name:?}")).help(help))
+}
+
+/// Lays a built-in scene out in a temporary folder.
+fn unpack(name: &str, toml: &str, others: &[(&str, &str)]) -> Result<Found> {
+    let temporary = std::env::temp_dir().join(format!("pontoon-{}", std::process::id()));
+    let found = Found { path: temporary.join(name), temporary: Some(temporary) };
+    let refused = |why| Error::file(&found.path, format!("cannot be written: {why}"));
+    fs::create_dir_all(&found.path).map_err(refused)?;
+    for (file, text) in others.iter().chain([&("scene.toml", toml)]) {
+        let target = found.path.join(file);
+        fs::write(&target, text).map_err(|why| Error::file(&target, format!("cannot be written: {why}")))?;
+    }
+    Ok(found)
+}
+
+/// All scenes that come with the program.
+pub fn all() -> Vec<Listed> {
+    let listed = |(name, toml, others): (&str, &str, Vec<(&str, &str)>)| {
+        let title = toml.parse::<toml::Table>().ok();
+        let title = title.and_then(|t| Some(t.get("title")?.as_str()?.to_owned())).unwrap_or_default();
+        let readme = others.iter().find(|(file, _)| *file == "README.md").map_or("", |(_, text)| text);
+        let folder = Path::new("scenes").join(name);
+        Listed {
+            name: name.into(),
+            title,
+            about: first_line(readme),
+            folder: folder.join("scene.toml").is_file().then_some(folder),
+        }
+    };
+    shipped().into_iter().map(listed).collect()
+}
+
+/// The first line of `readme` that is no heading.
+fn first_line(readme: &str) -> String {
+    readme.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or("").into()
+}

@@ -1,0 +1,111 @@
+//! Where a solid is, how it is turned, and how fast it moves.
+//!
+//! Surge, sway and heave are the displacements of its centre from the start along x, y (3-D) and up. In 2-D
+//! pitch is the angle of the solid's frame, counter-clockwise; in 3-D the frame is turned by roll about x,
+//! then pitch about y, then yaw about z (right-handed, world axes): R = R_z R_y R_x.
+
+use super::{Probe, axes, find_solid};
+use crate::{
+    error::Result,
+    simulation::Simulation,
+    space::{Matrix, Vector},
+    system::System,
+};
+
+/// Watches the motion of a solid: position, displacement (m), angles (deg, never jumping by a turn),
+/// velocity (m/s) of its centre, spin (rad/s).
+pub struct Motion<const D: usize> {
+    solid: usize,
+    start: Vector<D>,
+}
+
+impl<const D: usize> Motion<D> {
+    /// The probe of the solid called `solid`; where it is now counts as its start.
+    ///
+    /// # Errors
+    /// `Scene` if there is no such solid.
+    pub fn new(system: &System<D>, solid: &str) -> Result<Self> {
+        let solid = find_solid(system, solid)?;
+        Ok(Self { solid, start: system.solids()[solid].kinematics.centre })
+    }
+}
+
+/// Index of the first angle among the columns.
+const fn first_angle<const D: usize>() -> usize {
+    2 * D
+}
+
+/// Number of angles.
+const fn angles<const D: usize>() -> usize {
+    D * (D - 1) / 2
+}
+
+impl<const D: usize> Probe<D> for Motion<D> {
+    fn columns(&self) -> Vec<String> {
+        let words: &[&str] = if D == 2 {
+            &["surge_m", "heave_m", "pitch_deg"]
+        } else {
+            &["surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg"]
+        };
+        let spins: &[&str] = if D == 2 { &["spin_radps"] } else { &["spin_x_radps", "spin_y_radps", "spin_z_radps"] };
+        let positions = axes::<D>().iter().map(|a| format!("{a}_m"));
+        let velocities = axes::<D>().iter().map(|a| format!("v{a}_mps"));
+        let named = |names: &'static [&'static str]| names.iter().map(|n| n.to_string());
+        positions.chain(named(words)).chain(velocities).chain(named(spins)).collect()
+    }
+
+    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+        let now = &sim.system().solids()[self.solid].kinematics;
+        let moved = now.centre - self.start;
+        let mut row: Vec<f64> = now.centre.iter().chain(moved.iter()).copied().collect();
+        row.extend(turned(&now.pose.rotation).into_iter().map(f64::to_degrees));
+        row.extend(now.velocity.iter());
+        row.extend(now.spin.axial());
+        row
+    }
+
+    fn follow(&self, before: &[f64], now: &mut [f64]) {
+        for i in first_angle::<D>()..first_angle::<D>() + angles::<D>() {
+            now[i] = unwrapped(before[i], now[i]);
+        }
+    }
+}
+
+/// The angle (deg) that differs from `now` by whole turns and lies nearest to `before`.
+fn unwrapped(before: f64, now: f64) -> f64 {
+    now - 360.0 * ((now - before) / 360.0).round()
+}
+
+/// Angles (rad) of a rotation: one in 2-D; roll, pitch and yaw in 3-D.
+fn turned<const D: usize>(m: &Matrix<D>) -> Vec<f64> {
+    if D == 2 {
+        return vec![m[(1, 0)].atan2(m[(0, 0)])];
+    }
+    let pitch = (-m[(2, 0)]).clamp(-1.0, 1.0).asin();
+    vec![m[(2, 1)].atan2(m[(2, 2)]), pitch, m[(1, 0)].atan2(m[(0, 0)])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Pose;
+
+    #[test]
+    fn angles_are_those_turned_about_each_axis() {
+        for (axis, angle) in [(0, 0.3), (1, -0.4), (2, 2.0)] {
+            let mut turn = [0.0; 3];
+            turn[axis] = angle;
+            let found = turned(&Pose::<3>::turned(Vector::zeros(), &turn).rotation);
+            for i in 0..3 {
+                assert!((found[i] - turn[i]).abs() < 1e-14, "round-off of sin and asin; got {found:?}");
+            }
+        }
+        assert!((turned(&Pose::<2>::turned(Vector::zeros(), &[-1.2]).rotation)[0] + 1.2).abs() < 1e-14);
+    }
+
+    #[test]
+    fn an_angle_goes_on_past_half_a_turn() {
+        assert_eq!(unwrapped(179.0, -179.0), 181.0);
+        assert_eq!(unwrapped(-725.0, -10.0), -730.0);
+    }
+}

@@ -1,0 +1,184 @@
+//! Frames for ParaView: `frames.pvd` is the film, `frames/water_00000.vtu` and `frames/solids_00000.vtu`
+//! are its pictures. Points have three coordinates; in 2-D the third is zero. Single precision.
+
+use std::path::{Path, PathBuf};
+
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArrayBase, DataSet, ElementType, IOBuffer,
+    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+};
+
+use super::{cannot_write, write_whole};
+use crate::{
+    error::{Error, Kind, Result, nearest},
+    particles::Particles,
+    space::Vector,
+    system::System,
+};
+
+/// Fields that a frame may hold.
+pub const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
+
+/// The frames of a run. Solids carry the number of their solid besides the chosen fields.
+pub struct Frames {
+    folder: PathBuf,
+    fields: Vec<String>,
+    times: Vec<f64>,
+}
+
+impl Frames {
+    /// The frames in the run's `folder`, holding `fields` (of [`FIELDS`]); `times` (s) are those that are
+    /// there already.
+    ///
+    /// # Errors
+    /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
+    pub fn new(folder: &Path, fields: &[String], times: Vec<f64>) -> Result<Self> {
+        if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
+            let help = match nearest(word, FIELDS) {
+                Some(near) => format!("did you mean {near:?}?"),
+                None => format!("the fields are: {}", FIELDS.join(", ")),
+            };
+            return Err(Error::scene(format!("unknown field {word:?} of a frame")).help(help));
+        }
+        let pictures = folder.join("frames");
+        std::fs::create_dir_all(&pictures).map_err(|e| cannot_write(&pictures, &e))?;
+        Ok(Self { folder: folder.to_owned(), fields: fields.to_vec(), times })
+    }
+
+    /// Times of the frames so far, s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Adds a frame of `system` at time `t` (s).
+    ///
+    /// # Errors
+    /// `File` if it cannot be written; the frames before stay as they are.
+    pub fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> {
+        let number = self.times.len();
+        self.picture(&format!("water_{number:05}.vtu"), system, system.fluid(), None)?;
+        let mut owner = vec![0.0; system.skin().len()];
+        for (i, solid) in system.solids().iter().enumerate() {
+            owner[solid.skin.clone()].fill(i as f32);
+        }
+        self.picture(&format!("solids_{number:05}.vtu"), system, system.skin(), Some(owner))?;
+        self.times.push(t);
+        write_whole(&self.folder.join("frames.pvd"), film(&self.times).as_bytes())
+    }
+
+    fn picture<const D: usize>(
+        &self,
+        name: &str,
+        system: &System<D>,
+        particles: &Particles<D>,
+        owner: Option<Vec<f32>>,
+    ) -> Result<()> {
+        let mut fields: Vec<Attribute> = self.fields.iter().map(|name| attribute(name, system, particles)).collect();
+        fields.extend(
+            owner.map(|numbers| array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)),
+        );
+        let path = self.folder.join("frames").join(name);
+        let bytes =
+            cloud(&particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
+        write_whole(&path, &bytes)
+    }
+}
+
+/// The chosen field of all particles.
+fn attribute<const D: usize>(field: &str, system: &System<D>, particles: &Particles<D>) -> Attribute {
+    let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
+    let all = |f: &dyn Fn(usize) -> f64| (0..particles.len()).map(|i| f(i) as f32).collect();
+    match field {
+        "velocity" => array(field, ElementType::Vectors, padded(&particles.v)),
+        "density" => array(field, scalar, all(&|i| particles.rho[i])),
+        "pressure" => array(field, scalar, all(&|i| system.pressure(particles.rho[i]))),
+        _ => Attribute::DataArray(DataArrayBase {
+            name: field.into(),
+            elem: scalar,
+            data: IOBuffer::U32(particles.id.clone()),
+        }),
+    }
+}
+
+fn array(name: &str, elem: ElementType, numbers: Vec<f32>) -> Attribute {
+    Attribute::DataArray(DataArrayBase { name: name.into(), elem, data: IOBuffer::F32(numbers) })
+}
+
+/// Three components for each vector, in a row.
+fn padded<const D: usize>(vectors: &[Vector<D>]) -> Vec<f32> {
+    vectors.iter().flat_map(|v| (0..3).map(|i| if i < D { v[i] as f32 } else { 0.0 })).collect()
+}
+
+/// The text of a .vtu file with a vertex at each point.
+fn cloud<const D: usize>(points: &[Vector<D>], fields: Vec<Attribute>) -> std::result::Result<Vec<u8>, vtkio::Error> {
+    let count = points.len() as u64;
+    let cells = Cells {
+        cell_verts: VertexNumbers::XML { connectivity: (0..count).collect(), offsets: (1..=count).collect() },
+        types: vec![CellType::Vertex; points.len()],
+    };
+    let piece = UnstructuredGridPiece {
+        points: IOBuffer::F32(padded(points)),
+        cells,
+        data: Attributes { point: fields, cell: vec![] },
+    };
+    let vtk = Vtk {
+        version: Version::new((1, 0)),
+        title: String::new(),
+        byte_order: ByteOrder::LittleEndian,
+        file_path: None,
+        data: DataSet::inline(piece),
+    };
+    let mut text = Vec::new();
+    vtk.write_xml(&mut text)?;
+    Ok(text)
+}
+
+/// The text of a .pvd file: which pictures belong to which time.
+fn film(times: &[f64]) -> String {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    for (i, t) in times.iter().enumerate() {
+        for (part, name) in ["water", "solids"].iter().enumerate() {
+            text += &format!(
+                "<DataSet timestep=\"{t:?}\" part=\"{part}\" name=\"{name}\" file=\"frames/{name}_{i:05}.vtu\"/>\n"
+            );
+        }
+    }
+    text + "</Collection>\n</VTKFile>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cloud_reads_back_as_it_was() -> std::result::Result<(), vtkio::Error> {
+        for points in [vec![Vector::<2>::new(1.0, 2.0), Vector::<2>::new(3.0, 4.0)], vec![]] {
+            let numbers: Vec<f32> = points.iter().map(|x| x[0] as f32).collect();
+            let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
+            let text = cloud(&points, vec![array("density", scalar, numbers)])?;
+            let Vtk { data: DataSet::UnstructuredGrid { pieces, .. }, .. } = Vtk::parse_xml(text.as_slice())? else {
+                return Err(vtkio::Error::UnknownFileExtension(None));
+            };
+            let piece = pieces.into_iter().next().ok_or(vtkio::Error::UnknownFileExtension(None))?;
+            let piece = piece.into_loaded_piece_data(None).map_err(|_| vtkio::Error::UnknownFileExtension(None))?;
+            assert_eq!(piece.points, IOBuffer::F32(padded(&points)));
+            assert_eq!(piece.cells.types.len(), points.len());
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn the_film_names_both_pictures_of_each_time() {
+        let text = film(&[0.0, 0.25]);
+        assert!(text.contains("timestep=\"0.25\" part=\"1\" name=\"solids\" file=\"frames/solids_00001.vtu\""));
+        assert_eq!(text.matches("<DataSet ").count(), 4);
+    }
+
+    #[test]
+    fn an_unknown_field_names_the_nearest() {
+        let error = Frames::new(&std::env::temp_dir(), &["presure".into()], vec![]).err();
+        assert_eq!(error.and_then(|e| e.help), Some("did you mean \"pressure\"?".into()));
+    }
+}

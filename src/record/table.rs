@@ -1,0 +1,153 @@
+//! Series as CSV, written while the run goes on: a header with units, then a row for each look.
+
+use std::{
+    fs::{File, OpenOptions},
+    io::{Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+};
+
+use super::cannot_write;
+use crate::error::{Error, Kind, Result};
+
+/// A CSV file that grows by whole rows.
+///
+/// Every row reaches the system at once, so a run that dies loses none; a row that fails half-way, as on a
+/// full disk, is taken back. Numbers are written so that reading them gives the same bits; a number that
+/// does not exist (NaN) is an empty field.
+pub struct Table {
+    path: PathBuf,
+    file: File,
+    bytes: u64,
+    columns: usize,
+    last: Option<(f64, Vec<f64>)>,
+}
+
+impl Table {
+    /// A new table at `path` with the columns `t_s` and `columns`.
+    ///
+    /// # Errors
+    /// `File` if it exists or cannot be written.
+    pub fn create(path: &Path, columns: &[String]) -> Result<Self> {
+        let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(|e| cannot_write(path, &e))?;
+        let mut table = Self { path: path.to_owned(), file, bytes: 0, columns: columns.len(), last: None };
+        table.append(&format!("t_s,{}\n", columns.join(",")))?;
+        Ok(table)
+    }
+
+    /// The table at `path` as it was when it had `bytes` bytes; what came after is cut off.
+    ///
+    /// # Errors
+    /// `Restart` if it is shorter than that or its header names other columns; `File` if it cannot be
+    /// opened.
+    pub fn resume(path: &Path, columns: &[String], bytes: u64) -> Result<Self> {
+        let text = std::fs::read(path).map_err(|e| Error::file(path, e))?;
+        let header = format!("t_s,{}\n", columns.join(","));
+        let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
+        let Some(kept) = kept.filter(|k| k.starts_with(header.as_bytes())) else {
+            let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
+            return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
+        };
+        let last = last_row(&String::from_utf8_lossy(&kept[header.len()..]));
+        let open = || -> std::io::Result<File> {
+            let mut file = OpenOptions::new().write(true).open(path)?;
+            file.set_len(bytes)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        };
+        let file = open().map_err(|e| cannot_write(path, &e))?;
+        Ok(Self { path: path.to_owned(), file, bytes, columns: columns.len(), last })
+    }
+
+    /// Adds the row of time `t` (s).
+    ///
+    /// # Errors
+    /// `File` if it cannot be written; the rows before stay whole.
+    pub fn row(&mut self, t: f64, values: &[f64]) -> Result<()> {
+        assert_eq!(values.len(), self.columns, "a value for each column");
+        let mut line = number(t);
+        for &x in values {
+            line.push(',');
+            line.push_str(&number(x));
+        }
+        line.push('\n');
+        self.append(&line)?;
+        self.last = Some((t, values.to_vec()));
+        Ok(())
+    }
+
+    /// Time (s) and values of the last row.
+    pub fn last(&self) -> Option<(f64, &[f64])> {
+        self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
+    }
+
+    /// Length of the file, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Waits until all rows are on the disk itself.
+    ///
+    /// # Errors
+    /// `File` if the disk refuses.
+    pub fn sync(&self) -> Result<()> {
+        self.file.sync_data().map_err(|e| cannot_write(&self.path, &e))
+    }
+
+    fn append(&mut self, line: &str) -> Result<()> {
+        if let Err(why) = self.file.write_all(line.as_bytes()) {
+            // Cutting can fail only where writing did: the error to tell is the first.
+            let _ = self.file.set_len(self.bytes);
+            return Err(cannot_write(&self.path, &why));
+        }
+        self.bytes += line.len() as u64;
+        Ok(())
+    }
+}
+
+/// The shortest text that reads back as `x`; nothing for NaN.
+fn number(x: f64) -> String {
+    if x.is_nan() { String::new() } else { format!("{x:?}") }
+}
+
+/// The last row of `rows`, empty fields as NaN.
+fn last_row(rows: &str) -> Option<(f64, Vec<f64>)> {
+    let mut fields = rows.lines().next_back()?.split(',').map(|x| x.parse().unwrap_or(f64::NAN));
+    Some((fields.next()?, fields.collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns() -> Vec<String> {
+        vec!["a_m".into(), "b_N".into()]
+    }
+
+    #[test]
+    fn a_resumed_table_is_the_unbroken_one_byte_for_byte() -> Result<()> {
+        let folder = std::env::temp_dir().join(format!("pontoon-table-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
+        let path = folder.join("x.csv");
+        let mut table = Table::create(&path, &columns())?;
+        table.row(0.0, &[1.0 / 3.0, f64::NAN])?;
+        let bytes = table.bytes();
+        table.row(0.1, &[-1e-9, 2.0])?;
+        let whole = std::fs::read(&path).map_err(|e| Error::file(&path, e))?;
+        assert!(Table::create(&path, &columns()).is_err(), "an existing table is never overwritten");
+
+        let mut again = Table::resume(&path, &columns(), bytes)?;
+        let (t, row) = again.last().map(|(t, row)| (t, row.to_vec())).unwrap_or_default();
+        assert!(t == 0.0 && row[0] == 1.0 / 3.0 && row[1].is_nan(), "the same bits; got {t} {row:?}");
+        again.row(0.1, &[-1e-9, 2.0])?;
+        assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
+        assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
+        assert!(Table::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");
+        assert!(Table::resume(&path, &columns()[..1], bytes).is_err(), "other columns");
+        std::fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
+    }
+}

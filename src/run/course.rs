@@ -1,0 +1,235 @@
+//! The course of one run: from the built scene to its end, its interruption or its failure.
+
+use std::{path::PathBuf, time::Instant};
+
+use super::{
+    Body, Origin, Outcome, Progress, Start, Watch, folder,
+    outputs::{self, Outputs, series_folder},
+};
+use crate::{
+    check::Check,
+    error::{Error, Kind, Result},
+    record::{
+        Checkpoint, Manifest,
+        manifest::{Count, InForce, Machine, Status},
+        restart, write_whole,
+    },
+    scene::{Built, Plan, Resolved, Scene},
+    simulation::Simulation,
+    solid::{Dim, HasEngine, Role},
+};
+
+/// The checkpoint, in the run's folder.
+pub const CHECKPOINT: &str = "checkpoint.bin";
+
+/// A run in progress.
+pub struct Course<const D: usize> {
+    sim: Simulation<D>,
+    outputs: Outputs<D>,
+    checks: Vec<Check>,
+    manifest: Manifest,
+    folder: PathBuf,
+    /// What the next checkpoint says, but for what changes.
+    checkpoint: Checkpoint,
+    resumed: bool,
+    begun: Instant,
+}
+
+impl<const D: usize> Course<D>
+where
+    Dim<D>: HasEngine<D>,
+{
+    /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
+    pub fn new(scene: &Scene, origin: Origin) -> Result<Self> {
+        let begun = Instant::now();
+        let Built { setup, plan, warnings, .. } = scene.build::<D>()?;
+        let mut sim = Simulation::new(setup)?;
+        let probes = outputs::probes(&plan, sim.system())?;
+        let checks = outputs::checks(&plan, &probes)?;
+        let text = scene.to_toml()?;
+        let values = scene.resolve()?.into_iter().map(InForce::from).collect();
+        let (folder, mut checkpoint, resumed) = match origin {
+            Origin::Fresh { file, out, sets } => {
+                let folder = folder::create(file, out)?;
+                folder::keep_scene(file, sets, &folder)?;
+                (folder, first_checkpoint(&text, sets), false)
+            }
+            Origin::Resumed { folder, checkpoint } => (folder.to_owned(), *checkpoint, true),
+        };
+        let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint))?;
+        if resumed {
+            sim.restore(&std::mem::take(&mut checkpoint.state))?;
+        }
+        let manifest = Manifest { warnings, values, scene: text, ..first_manifest(&sim, &plan, &checkpoint) };
+        Ok(Self { sim, outputs, checks, manifest, folder, checkpoint, resumed, begun })
+    }
+}
+
+impl<const D: usize> Course<D> {
+    /// Runs to the end, or until `watch` says stop.
+    pub fn run(mut self, watch: &mut dyn Watch) -> Result<Outcome> {
+        self.update();
+        self.manifest.write(&self.folder)?;
+        watch.start(&Start { folder: &self.folder, manifest: &self.manifest });
+        match self.advance(watch) {
+            Ok(status) => {
+                self.manifest.status = status;
+                if status == Status::Finished {
+                    let series = series_folder(&self.folder);
+                    self.manifest.checks = self.checks.iter().map(|check| check.judge(&series)).collect();
+                }
+                self.update();
+                self.manifest.write(&self.folder)?;
+                Ok(Outcome { bodies: bodies(&self.sim), folder: self.folder, manifest: self.manifest })
+            }
+            Err(error) => Err(self.fail(error)),
+        }
+    }
+
+    /// Steps and writes; says whether the end was reached.
+    fn advance(&mut self, watch: &mut dyn Watch) -> Result<Status> {
+        if !self.resumed {
+            self.outputs.look(&self.sim)?;
+        }
+        let until = self.manifest.until_s;
+        let mut going = watch.step(&self.progress());
+        while going && self.sim.time() < until {
+            let clock = Instant::now();
+            let stepped = self.sim.step_to(until);
+            self.checkpoint.stepping += clock.elapsed().as_secs_f64();
+            stepped?;
+            if self.outputs.look(&self.sim)? {
+                self.save()?;
+            }
+            going = watch.step(&self.progress());
+        }
+        if self.sim.time() < until {
+            self.save()?;
+            return Ok(Status::Interrupted);
+        }
+        self.outputs.finish(&self.sim)?;
+        Ok(Status::Finished)
+    }
+
+    /// Writes the checkpoint.
+    fn save(&mut self) -> Result<()> {
+        let state = self.sim.save()?;
+        let mut now = Checkpoint { state, wall: self.wall(), ..self.checkpoint.clone() };
+        self.outputs.note(&mut now)?;
+        now.write(&self.folder.join(CHECKPOINT))
+    }
+
+    /// Keeps what can be kept of a run that cannot go on; the error with where that is.
+    fn fail(mut self, mut error: Error) -> Error {
+        let mut reports = Vec::new();
+        if let Some(fault) = &error.fault {
+            // Whatever of this fails, the fault itself is what the user must hear.
+            reports.push(self.outputs.last_frame(&self.sim));
+            let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
+            reports.push(write_whole(&self.folder.join("failure.json"), &text));
+        }
+        self.update();
+        self.manifest.fail(&error);
+        reports.push(self.manifest.write(&self.folder));
+        let kept =
+            if reports.iter().all(Result::is_ok) { "everything recorded so far is" } else { "what could be kept is" };
+        let mut help = error.help.take().map_or_else(String::new, |help| help + "\n");
+        help += &format!("{kept} in {}", self.folder.display());
+        if error.kind == Kind::File && self.folder.join(CHECKPOINT).exists() {
+            help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
+        }
+        error.help(help)
+    }
+
+    /// Brings the manifest's figures up to date.
+    fn update(&mut self) {
+        let now = self.progress();
+        self.manifest.steps = now.steps;
+        self.manifest.simulated_s = now.time;
+        self.manifest.wall_s = now.wall;
+        self.manifest.particle_steps_per_second = now.rate;
+        let there = |name: &&str| self.folder.join(name).exists();
+        let fixed = ["frames.pvd", CHECKPOINT, "failure.json", folder::SCENE];
+        let mut files: Vec<String> = self.outputs.tables().collect();
+        files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
+        files.push("manifest.json".into());
+        self.manifest.files = files;
+    }
+
+    /// Wall time so far, s.
+    fn wall(&self) -> f64 {
+        self.checkpoint.wall + self.begun.elapsed().as_secs_f64()
+    }
+
+    fn progress(&self) -> Progress {
+        let count = self.manifest.particles;
+        let work = (count.fluid + count.boundary) as f64 * self.sim.passes() as f64;
+        let stepping = self.checkpoint.stepping;
+        Progress {
+            time: self.sim.time(),
+            until: self.manifest.until_s,
+            dt: self.sim.dt(),
+            steps: self.sim.steps(),
+            wall: self.wall(),
+            rate: if stepping > 0.0 { work / stepping } else { 0.0 },
+        }
+    }
+}
+
+/// What a checkpoint says before the first step.
+fn first_checkpoint(scene: &str, sets: &[(String, String)]) -> Checkpoint {
+    Checkpoint {
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene: restart::hash(scene.as_bytes()),
+        sets: sets.to_vec(),
+        tables: vec![],
+        frames: vec![],
+        due: vec![],
+        wall: 0.0,
+        stepping: 0.0,
+        state: vec![],
+    }
+}
+
+/// The manifest before the first step.
+fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: &Checkpoint) -> Manifest {
+    Manifest {
+        status: Status::Running,
+        title: plan.title.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        threads: rayon::current_num_threads(),
+        particles: Count { fluid: sim.system().fluid().len(), boundary: sim.system().skin().len() },
+        steps: 0,
+        simulated_s: 0.0,
+        until_s: plan.until,
+        wall_s: 0.0,
+        particle_steps_per_second: 0.0,
+        checks: vec![],
+        files: vec![],
+        error: None,
+        fault: None,
+        warnings: vec![],
+        machine: Machine::this(),
+        set: checkpoint.sets.iter().cloned().collect(),
+        values: vec![],
+        scene: String::new(),
+    }
+}
+
+impl From<Resolved> for InForce {
+    fn from(of: Resolved) -> Self {
+        Self { key: of.key, value: of.value, source: of.source.to_string() }
+    }
+}
+
+/// The free bodies as they are now.
+fn bodies<const D: usize>(sim: &Simulation<D>) -> Vec<Body> {
+    let free = sim.system().solids().iter().filter(|s| matches!(s.spec.role, Role::Free(_)));
+    free.map(|s| Body {
+        name: s.spec.name.clone(),
+        position: s.kinematics.centre.iter().copied().collect(),
+        speed: s.kinematics.velocity.norm(),
+        turn_deg: s.kinematics.pose.turn().into_iter().map(f64::to_degrees).collect(),
+    })
+    .collect()
+}

@@ -1,0 +1,122 @@
+//! The folder of a run: where it is made, and the copy of the scene that it keeps.
+
+use std::{
+    fs,
+    path::{Component, Path, PathBuf},
+};
+
+use crate::error::{Error, Kind, Result};
+
+/// The kept scene, in the run's folder.
+pub const SCENE: &str = "scene/scene.toml";
+
+/// The scene file that `path` means: itself, or the `scene.toml` in it.
+pub fn scene_file(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join("scene.toml") } else { path.to_owned() }
+}
+
+/// A short name for the scene in `file`: its folder's, or its own if it is not called `scene.toml`.
+fn name(file: &Path) -> String {
+    let whole = fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
+    let own = if whole.file_name().is_some_and(|n| n == "scene.toml") { whole.parent() } else { Some(whole.as_path()) };
+    own.and_then(Path::file_stem).map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned())
+}
+
+/// Makes the folder of a new run: `out`, which must be new or empty, or else `runs/<scene>`,
+/// `runs/<scene>-2`, … whichever is free.
+///
+/// # Errors
+/// `Usage` if `out` holds something; `File` if the folder cannot be made.
+pub fn create(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
+    let refused = |path: &Path, why: std::io::Error| {
+        Error::file(path, format!("cannot be made: {why}")).help("choose another folder with --out")
+    };
+    if let Some(out) = out {
+        fs::create_dir_all(out).map_err(|why| refused(out, why))?;
+        if fs::read_dir(out).map_err(|why| Error::file(out, why))?.next().is_some() {
+            let help = if out.join("manifest.json").exists() {
+                format!("it holds a run: go on with it by `pontoon resume {}`, or choose another folder", out.display())
+            } else {
+                "choose another folder; results are never written over other files".into()
+            };
+            return Err(Error::new(Kind::Usage, format!("the folder {} is not empty", out.display())).help(help));
+        }
+        return Ok(out.to_owned());
+    }
+    let runs = Path::new("runs");
+    fs::create_dir_all(runs).map_err(|why| refused(runs, why))?;
+    let name = name(file);
+    let mut number = 1;
+    loop {
+        let folder = runs.join(if number == 1 { name.clone() } else { format!("{name}-{number}") });
+        match fs::create_dir(&folder) {
+            Ok(()) => return Ok(folder),
+            Err(why) if why.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
+            Err(why) => return Err(refused(&folder, why)),
+        }
+    }
+}
+
+/// Copies the scene in `file` into the run's `folder`, and the tables beside it that the scene or one of
+/// `sets` names, so that the folder can be resumed wherever it is moved.
+///
+/// # Errors
+/// `File` if something cannot be read or written.
+pub fn keep_scene(file: &Path, sets: &[(String, String)], folder: &Path) -> Result<()> {
+    let text = fs::read_to_string(file).map_err(|why| Error::file(file, why))?;
+    let mut words: Vec<String> = sets.iter().map(|(_, value)| value.trim_matches('"').to_owned()).collect();
+    if let Ok(table) = text.parse::<toml::Table>() {
+        table.values().for_each(|value| strings(value, &mut words));
+    }
+    let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
+    let copy = |source: &Path, target: &Path| -> Result<()> {
+        let parent = target.parent().unwrap_or(&to);
+        fs::create_dir_all(parent).map_err(|why| Error::file(parent, why))?;
+        fs::copy(source, target).map(|_| ()).map_err(|why| Error::file(target, format!("cannot be written: {why}")))
+    };
+    copy(file, &folder.join(SCENE))?;
+    for word in words {
+        let inside = Path::new(&word).components().all(|part| matches!(part, Component::Normal(_)));
+        let source = from.join(&word);
+        if inside && !word.is_empty() && source.is_file() {
+            copy(&source, &to.join(&word))?;
+        }
+    }
+    Ok(())
+}
+
+/// All strings in a TOML value.
+fn strings(value: &toml::Value, found: &mut Vec<String>) {
+    match value {
+        toml::Value::String(word) => found.push(word.clone()),
+        toml::Value::Array(items) => items.iter().for_each(|item| strings(item, found)),
+        toml::Value::Table(items) => items.values().for_each(|item| strings(item, found)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_folder_keeps_the_scene_and_the_tables_it_names_but_no_others() -> std::io::Result<()> {
+        let home = std::env::temp_dir().join(format!("pontoon-folder-{}", std::process::id()));
+        let scene = home.join("bay");
+        fs::create_dir_all(scene.join("data"))?;
+        fs::write(scene.join("scene.toml"), "a = { file = \"data/flap.csv\" }\nb = [\"../secret.csv\", \"no.csv\"]\n")?;
+        fs::write(scene.join("data/flap.csv"), "t_s,x_m\n")?;
+        fs::write(scene.join("other.csv"), "")?;
+        fs::write(home.join("secret.csv"), "")?;
+        let file = scene_file(&scene);
+        assert_eq!(name(&file), "bay");
+        let out = home.join("out");
+        let folder = create(&file, Some(&out)).map_err(std::io::Error::other)?;
+        keep_scene(&file, &[], &folder).map_err(std::io::Error::other)?;
+        assert!(out.join("scene/data/flap.csv").is_file() && out.join(SCENE).is_file());
+        assert!(!out.join("scene/other.csv").exists() && !out.join("secret.csv").exists());
+        let again = create(&file, Some(&out)).err().map(|e| e.kind);
+        assert_eq!(again, Some(Kind::Usage), "a folder that holds something is never written to");
+        fs::remove_dir_all(home)
+    }
+}

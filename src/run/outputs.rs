@@ -1,0 +1,232 @@
+//! What a run writes while it goes on, and when: tables of the probes, frames, checkpoints.
+//!
+//! An output is due at the multiples of its interval, and is written at the first step at or past them, so
+//! that it never bends a time step; a table records the true time.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use crate::{
+    check::{Check, Score},
+    error::{Error, Kind, Result, nearest},
+    probe::{self, Probe},
+    record::{Checkpoint, Frames, Table},
+    scene::{self, Plan, ProbeKind, ProbeWords},
+    simulation::Simulation,
+    system::System,
+};
+
+/// The multiples of an interval; an interval of zero means every step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Due {
+    every: f64,
+    next: u64,
+}
+
+impl Due {
+    /// Whether the next one is reached at time `t` (s); if so, moves past it and all that are missed.
+    fn take(&mut self, t: f64) -> bool {
+        // A time that should be a multiple may lie a few last bits below it.
+        let reached = t * (1.0 + 1e-12);
+        if reached < self.next as f64 * self.every {
+            return false;
+        }
+        self.next = if self.every > 0.0 { (reached / self.every) as u64 + 1 } else { 0 };
+        true
+    }
+}
+
+/// A probe, its table, and when it is read.
+struct Watched<const D: usize> {
+    probe: Box<dyn Probe<D>>,
+    table: Table,
+    due: Due,
+}
+
+impl<const D: usize> Watched<D> {
+    fn look(&mut self, sim: &Simulation<D>) -> Result<()> {
+        let mut row = self.probe.look(sim);
+        if let Some((_, before)) = self.table.last() {
+            self.probe.follow(before, &mut row);
+        }
+        self.table.row(sim.time(), &row)
+    }
+}
+
+/// All outputs of a run.
+pub struct Outputs<const D: usize> {
+    watched: Vec<Watched<D>>,
+    frames: Option<(Frames, Due)>,
+    checkpoint: Option<Due>,
+}
+
+impl<const D: usize> Outputs<D> {
+    /// The outputs that `plan` asks for, in the run's `folder`; `from` the checkpoint, if there is one.
+    /// `probes` are those of [`probes`], in the plan's order.
+    ///
+    /// # Errors
+    /// `File` if a file cannot be written; `Restart` if what is there does not fit the checkpoint.
+    pub fn new(plan: &Plan, probes: Vec<Box<dyn Probe<D>>>, folder: &Path, from: Option<&Checkpoint>) -> Result<Self> {
+        if from.is_some_and(|c| c.tables.len() != probes.len() || c.due.len() != probes.len() + 2) {
+            return Err(Error::new(Kind::Restart, "the checkpoint was made with other probes"));
+        }
+        let series = series_folder(folder);
+        fs::create_dir_all(&series).map_err(|why| Error::file(&series, format!("cannot be made: {why}")))?;
+        let next = |i: usize, start: u64| from.map_or(start, |c| c.due[i]);
+        let mut watched = Vec::new();
+        for (i, (probe, words)) in probes.into_iter().zip(&plan.probes).enumerate() {
+            let path = series.join(format!("{}.csv", words.name));
+            let table = match from {
+                Some(checkpoint) => Table::resume(&path, &probe.columns(), checkpoint.tables[i])?,
+                None => Table::create(&path, &probe.columns())?,
+            };
+            watched.push(Watched { probe, table, due: Due { every: words.every, next: next(i, 0) } });
+        }
+        let count = watched.len();
+        let frames = match &plan.frames {
+            Some(words) => {
+                let times = from.map_or_else(Vec::new, |c| c.frames.clone());
+                let due = Due { every: words.every, next: next(count, 0) };
+                Some((Frames::new(folder, &words.fields, times)?, due))
+            }
+            None => None,
+        };
+        let checkpoint = plan.checkpoint_every.map(|every| Due { every, next: next(count + 1, 1) });
+        Ok(Self { watched, frames, checkpoint })
+    }
+
+    /// Writes what is due now. Returns whether a checkpoint is.
+    ///
+    /// # Errors
+    /// `File` if something cannot be written.
+    pub fn look(&mut self, sim: &Simulation<D>) -> Result<bool> {
+        let t = sim.time();
+        for watched in &mut self.watched {
+            if watched.due.take(t) {
+                watched.look(sim)?;
+            }
+        }
+        if let Some((frames, due)) = &mut self.frames
+            && due.take(t)
+        {
+            frames.write(sim.system(), t)?;
+        }
+        Ok(self.checkpoint.as_mut().is_some_and(|due| due.take(t)))
+    }
+
+    /// Writes the last row of every table and the last frame, unless they are there already.
+    ///
+    /// # Errors
+    /// `File` if something cannot be written.
+    pub fn finish(&mut self, sim: &Simulation<D>) -> Result<()> {
+        for watched in &mut self.watched {
+            if watched.table.last().is_none_or(|(t, _)| t < sim.time()) {
+                watched.look(sim)?;
+            }
+            watched.table.sync()?;
+        }
+        self.last_frame(sim)
+    }
+
+    /// Writes a frame of this instant, unless there is one.
+    ///
+    /// # Errors
+    /// `File` if it cannot be written.
+    pub fn last_frame(&mut self, sim: &Simulation<D>) -> Result<()> {
+        match &mut self.frames {
+            Some((frames, _)) if frames.times().last().is_none_or(|&t| t < sim.time()) => {
+                frames.write(sim.system(), sim.time())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Paths of the tables, from the run's folder.
+    pub fn tables(&self) -> impl Iterator<Item = String> + '_ {
+        self.watched.iter().filter_map(|w| Some(format!("series/{}", w.table.path().file_name()?.to_string_lossy())))
+    }
+
+    /// Notes in `checkpoint` how far the outputs are, once they are on the disk.
+    ///
+    /// # Errors
+    /// `File` if the disk refuses.
+    pub fn note(&self, checkpoint: &mut Checkpoint) -> Result<()> {
+        self.watched.iter().try_for_each(|w| w.table.sync())?;
+        checkpoint.tables = self.watched.iter().map(|w| w.table.bytes()).collect();
+        checkpoint.frames = self.frames.as_ref().map_or_else(Vec::new, |(frames, _)| frames.times().to_vec());
+        checkpoint.due = self.watched.iter().map(|w| w.due.next).collect();
+        checkpoint.due.push(self.frames.as_ref().map_or(0, |(_, due)| due.next));
+        checkpoint.due.push(self.checkpoint.map_or(0, |due| due.next));
+        Ok(())
+    }
+}
+
+/// The folder of the tables in the run's `folder`.
+pub fn series_folder(folder: &Path) -> PathBuf {
+    folder.join("series")
+}
+
+/// The probes that `plan` asks for, made from the system at its start.
+///
+/// # Errors
+/// `Scene` or `Usage` if one names no solid or a place with the wrong number of coordinates.
+pub fn probes<const D: usize>(plan: &Plan, system: &System<D>) -> Result<Vec<Box<dyn Probe<D>>>> {
+    plan.probes.iter().map(|words| made(words, system)).collect()
+}
+
+fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+    if words.name.is_empty() || words.name.starts_with('.') || words.name.contains(['/', '\\', ':', '\0']) {
+        return Err(Error::scene(format!("{:?} cannot name a file, so no probe either", words.name)));
+    }
+    Ok(match &words.what {
+        ProbeKind::Motion { solid } => Box::new(probe::Motion::new(system, solid)?),
+        ProbeKind::Force { solid } => Box::new(probe::Force::new(system, solid)?),
+        ProbeKind::Elevation { at } => Box::new(probe::Elevation::new(system, at)?),
+        ProbeKind::Velocity { at } => Box::new(probe::Velocity::new(at)?),
+        ProbeKind::Pressure { at } => Box::new(probe::Pressure::new(at)?),
+        ProbeKind::Energy => Box::new(probe::Energy::new(system)),
+    })
+}
+
+/// The checks that `plan` asks for, their references read.
+///
+/// # Errors
+/// `Scene` if one names no series of `probes`; else as [`Check::new`].
+pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Result<Vec<Check>> {
+    let columns = plan.probes.iter().zip(probes);
+    let known: Vec<String> =
+        columns.flat_map(|(words, p)| p.columns().into_iter().map(move |c| format!("{}.{c}", words.name))).collect();
+    let score = |s: scene::Score| Score { n: s.n, m: s.m };
+    let check = |words: &scene::CheckWords| {
+        if !known.contains(&words.series) {
+            let help = match nearest(&words.series, known.iter().map(String::as_str)) {
+                Some(near) => format!("did you mean {near:?}?"),
+                None => format!("the series are: {}", known.join(", ")),
+            };
+            return Err(
+                Error::scene(format!("a check names the series {:?}, which no probe writes", words.series)).help(help)
+            );
+        }
+        let reference = plan.folder.join(&words.reference);
+        let scores = [words.paper.map(score), words.bound.map(score)];
+        Check::new(&words.series, &reference, [&words.time, &words.column], words.delay, scores)
+    };
+    plan.checks.iter().map(check).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Due;
+
+    #[test]
+    fn an_output_is_due_once_at_each_multiple_and_skips_those_missed() {
+        let mut due = Due { every: 0.1, next: 0 };
+        let times = [0.0, 0.05, 0.1 - 1e-15, 0.15, 0.2999999999999999, 0.3, 0.31, 0.75, 0.79, 0.8];
+        let taken: Vec<f64> = times.into_iter().filter(|&t| due.take(t)).collect();
+        assert_eq!(taken, [0.0, 0.1 - 1e-15, 0.2999999999999999, 0.75, 0.8]);
+        let mut every_step = Due { every: 0.0, next: 0 };
+        assert!(every_step.take(0.0) && every_step.take(1e-6) && every_step.take(2e-6));
+    }
+}
