@@ -97,6 +97,7 @@ pub struct CheckWords {
 
 /// Figures of a comparison; one that is not given is not judged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Score {
     /// Relative deviation N, –: 0 is perfect.
     #[serde(rename = "N")]
