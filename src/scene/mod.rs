@@ -13,6 +13,7 @@ mod geometry;
 pub mod plan;
 pub mod resolve;
 mod sets;
+pub mod shipped;
 mod solids;
 pub mod table;
 mod verify;
@@ -27,6 +28,7 @@ pub use format::{
 };
 pub use plan::{CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Score};
 pub use resolve::Resolved;
+pub use shipped::{Shipped, shipped};
 
 use std::path::{Path, PathBuf};
 
