@@ -1,15 +1,8 @@
 //! The scenes that come with the program, for a binary that stands alone.
 
-/// A scene of the program's own.
-#[derive(Clone, Copy, Debug)]
-pub struct Shipped {
-    /// Name of its folder.
-    pub name: &'static str,
-    /// Its `scene.toml`.
-    pub text: &'static str,
-    /// The other files of its folder: name and text.
-    pub files: &'static [(&'static str, &'static str)],
-}
+/// A scene of the program's own: the name of its folder, its `scene.toml`, and the other files of the folder
+/// by name.
+pub type Shipped = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 /// Text of a file of the folder of a scene.
 macro_rules! text {
@@ -20,11 +13,11 @@ macro_rules! text {
 
 macro_rules! scene {
     ($scene:literal $(, $file:literal)*) => {
-        Shipped {
-            name: $scene,
-            text: text!($scene, "scene.toml"),
-            files: &[("README.md", text!($scene, "README.md")) $(, ($file, text!($scene, $file)))*],
-        }
+        (
+            $scene,
+            text!($scene, "scene.toml"),
+            &[("README.md", text!($scene, "README.md")) $(, ($file, text!($scene, $file)))*],
+        )
     };
 }
 

@@ -1,0 +1,3 @@
+//! What pontoon promises, one file a topic.
+
+mod errors;
