@@ -90,6 +90,7 @@ impl Origin {
         let mut parts: Vec<&str> = key.split('.').collect();
         if let ["solid", number, ..] = parts[..]
             && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.names.get(i))
+            && !name.contains(['.', '/'])
         {
             parts[1] = name;
         }

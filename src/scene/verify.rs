@@ -81,7 +81,8 @@ impl Scene {
             Some(i) => {
                 let (min, max) = (corners.min[i], corners.max[i]);
                 let axis = ["x", "y", "z"][i];
-                Err(self.wrong(&format!("{key}.max"), format!("{axis} goes from {min} to {max}: nothing lies between")))
+                let what = format!("{axis} goes from {min} to {max}: nothing lies between");
+                Err(self.wrong_with(&format!("{key}.max"), what, "max is the corner with the greater coordinates"))
             }
             None => Ok(()),
         }

@@ -126,7 +126,7 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         .or_else(|| message.strip_prefix("invalid value: "))
         .and_then(|rest| rest.split_once(", expected "))
     {
-        let found = found.replace("sequence", "a list").replace("map", "a table").replace('`', "");
+        let found = named(found);
         let error = Error::scene(format!("{} must be {}, not {found}", noun(key), plain(wanted)));
         return (with(error, example(key).into_iter().collect()), key.to_string());
     }
@@ -136,6 +136,19 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     }
     let error = Error::scene(format!("{}: {message}", noun(key)).trim_start_matches(": ").to_string());
     (with(error, example(key).into_iter().collect()), key.to_string())
+}
+
+/// What the parser found, in our words.
+fn named(found: &str) -> String {
+    let (kind, rest) = found.split_once(' ').unwrap_or((found, ""));
+    let rest = rest.trim_start_matches("point ").replace('`', "");
+    match kind {
+        "string" => format!("the text {rest}"),
+        "sequence" => "a list".into(),
+        "map" => "a table".into(),
+        "integer" | "floating" | "boolean" => rest,
+        _ => found.replace('`', ""),
+    }
 }
 
 /// The parser's word for a type, in ours.
