@@ -2,10 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::{
-    diffusion::{Fourtakas, Molteni},
-    shifting::Shift,
-    viscosity::{Artificial, Laminar, Sps},
+use crate::{
+    law::{
+        Medium, Term,
+        continuity::Continuity,
+        diffusion::{Fourtakas, Molteni},
+        kernel::{self, Kernel as _, REACH},
+        pressure::{Pressure, Tensile},
+        shifting::{Shift, ShiftTerm},
+        viscosity::{Artificial, Laminar, Sps},
+    },
+    space::Vector,
+    sweep::{Gather, Sweep},
 };
 
 /// Which kernel weighs the neighbours. Scene word `model.kernel`.
@@ -78,7 +86,7 @@ pub enum Walls {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scheme {
-    /// Verlet (leapfrog) with an Euler step every `euler_every` steps.
+    /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.
     Verlet {
         /// Steps from one Euler step to the next.
         #[serde(default = "fifty")]
@@ -123,4 +131,97 @@ pub struct Model {
     pub cfl: f64,
     /// Longest time step allowed, s (infinite if none).
     pub dt_max: f64,
+}
+
+impl Model {
+    /// The kernel's support radius 2h, m.
+    pub fn reach(&self) -> f64 {
+        REACH * self.h
+    }
+
+    /// Layers of boundary particles, dp apart, that fill the kernel's support.
+    pub fn layers(&self) -> usize {
+        // A support of 3.0 dp needs three layers, also where rounding makes it 3 + 1e-16.
+        (self.reach() / self.dp - 1e-9).ceil().max(1.0) as usize
+    }
+
+    /// The constants that the laws share.
+    pub fn medium<const D: usize>(&self) -> Medium<D> {
+        Medium {
+            h: self.h,
+            dp: self.dp,
+            rho0: self.rho0,
+            c0: self.c0,
+            gamma: self.gamma,
+            gravity: Vector::from_fn(|i, _| self.gravity.get(i).copied().unwrap_or(0.0)),
+        }
+    }
+
+    /// Kernel value W (1/mᴰ) at squared distance `r2` (m²) in `dimension` 2 or 3.
+    pub fn kernel_value(&self, r2: f64, dimension: usize) -> f64 {
+        match self.kernel {
+            Kernel::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
+            Kernel::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
+        }
+    }
+
+    /// The shifting parameters, if any.
+    pub fn shift(&self) -> Option<Shift> {
+        match self.shifting {
+            Shifting::None => None,
+            Shifting::AwayFromSolids(s) | Shifting::AwayFromFixed(s) | Shifting::Everywhere(s) => Some(s),
+        }
+    }
+
+    /// The one sweep that does what this model names, and nothing else.
+    pub fn sweep<const D: usize>(&self) -> Box<dyn Sweep<D>> {
+        let medium = self.medium::<D>();
+        match self.kernel {
+            Kernel::Wendland => self.with_kernel(kernel::Wendland::new(self.h, D), (Pressure, Continuity), &medium),
+            Kernel::Cubic { tensile: false } => {
+                self.with_kernel(kernel::Cubic::new(self.h, D), (Pressure, Continuity), &medium)
+            }
+            Kernel::Cubic { tensile: true } => {
+                let kernel = kernel::Cubic::new(self.h, D);
+                let tensile = Tensile { inv_w_dp: 1.0 / kernel.w(self.dp * self.dp) };
+                self.with_kernel(kernel, ((Pressure, tensile), Continuity), &medium)
+            }
+        }
+    }
+
+    fn with_kernel<const D: usize, K, P>(&self, kernel: K, base: P, medium: &Medium<D>) -> Box<dyn Sweep<D>>
+    where
+        K: kernel::Kernel + 'static,
+        P: Term<f64, D> + 'static,
+    {
+        match self.viscosity {
+            Viscosity::None => self.with_viscosity(kernel, base, medium),
+            Viscosity::Artificial(v) => self.with_viscosity(kernel, (base, v.term(medium)), medium),
+            Viscosity::Laminar(v) => self.with_viscosity(kernel, (base, v.term()), medium),
+            Viscosity::Sps(v) => self.with_viscosity(kernel, (base, v.terms()), medium),
+        }
+    }
+
+    fn with_viscosity<const D: usize, K, P>(&self, kernel: K, both: P, medium: &Medium<D>) -> Box<dyn Sweep<D>>
+    where
+        K: kernel::Kernel + 'static,
+        P: Term<f64, D> + 'static,
+    {
+        match self.shifting {
+            Shifting::None => self.with_shifting(kernel, both, medium),
+            _ => self.with_shifting(kernel, (both, ShiftTerm), medium),
+        }
+    }
+
+    fn with_shifting<const D: usize, K, P>(&self, kernel: K, both: P, medium: &Medium<D>) -> Box<dyn Sweep<D>>
+    where
+        K: kernel::Kernel + 'static,
+        P: Term<f64, D> + 'static,
+    {
+        match self.diffusion {
+            Diffusion::None => Box::new(Gather::new(kernel, both, both, medium)),
+            Diffusion::Molteni(d) => Box::new(Gather::new(kernel, (both, d.term(medium)), both, medium)),
+            Diffusion::Fourtakas(d) => Box::new(Gather::new(kernel, (both, d.term(medium)), both, medium)),
+        }
+    }
 }

@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::space::Vector;
 
+/// Particles that a thread takes at a time where each costs little.
+pub(crate) const PER_TASK: usize = 4096;
+
 /// Particles of one kind: index `i` of every array is the same particle. All carry the mass ρ₀ dpᴰ.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Particles<const D: usize> {

@@ -1,58 +1,278 @@
-//! Simulation (stub: written meanwhile).
+//! A running simulation: limit, step, check; no files.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
 use crate::{
-    error::Result,
+    error::{Error, Fault, Kind, Result},
     model::Model,
-    solid::{Dim, HasEngine, SolidSpec},
-    space::{Bounds, Vector},
-    system::System,
+    solid::{Dim, HasEngine, Role, SolidSpec},
+    space::{Bounds, Vector, Wedge},
+    system::{System, SystemState},
+    time::{Bodies, Interval, Stepper, limit},
 };
+
 /// What a simulation starts from.
+#[derive(Clone, Debug)]
 pub struct Setup<const D: usize> {
+    /// The model.
     pub model: Model,
+    /// Places of the water particles, m.
     pub water: Vec<Vector<D>>,
-    pub still_level: f64,
+    /// Height of the still surface above each of them, m.
+    pub levels: Vec<f64>,
+    /// The solids.
     pub solids: Vec<SolidSpec<D>>,
+    /// Where particles may be; by default everything at the start, with its own largest extent around it.
     pub domain: Option<Bounds<D>>,
 }
-/// A running simulation.
+
+/// Water and solids moving through time.
 pub struct Simulation<const D: usize> {
     system: System<D>,
+    stepper: Stepper<D>,
+    bodies: Bodies<D>,
+    /// Longest step that the free bodies allow, s.
+    dt_bodies: f64,
+    clock: Clock,
 }
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Clock {
+    time: f64,
+    dt: f64,
+    steps: u64,
+}
+
+/// What of a simulation must be kept to go on to the same bits.
+#[derive(Serialize, Deserialize)]
+struct Kept<const D: usize> {
+    system: SystemState<D>,
+    stepper: Stepper<D>,
+    clock: Clock,
+    engine: Option<Vec<u8>>,
+}
+
 impl<const D: usize> Simulation<D> {
-    pub fn new(_setup: Setup<D>) -> Result<Self>
+    /// Sets up a simulation at time 0 and makes its first force pass.
+    ///
+    /// # Errors
+    /// `Scene` if a constant has no valid value, a solid cannot be made, or bodies overlap: says which.
+    pub fn new(setup: Setup<D>) -> Result<Self>
     where
         Dim<D>: HasEngine<D>,
     {
-        unimplemented!()
+        check(&setup)?;
+        let Setup { model, water, levels, solids, domain } = setup;
+        let medium = model.medium::<D>();
+        for solid in &solids {
+            solid.check()?;
+        }
+        let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
+        let engine = if solids.iter().any(|s| free(&s)) {
+            let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+            Some(Dim::<D>::engine(&solids, &start, &medium.gravity, model.dp)?)
+        } else {
+            None
+        };
+        let dt_bodies = solids
+            .iter()
+            .filter_map(|s| match &s.role {
+                Role::Free(body) => Some(limit::body(&s.shape, body, &medium)),
+                _ => None,
+            })
+            .fold(f64::INFINITY, f64::min);
+        let stepper = Stepper::new(&model);
+        let system = System::new(model, &water, &levels, solids, domain)?;
+        let bodies = Bodies::new(engine, 0);
+        let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
+        let simulation = Self { system, stepper, bodies, dt_bodies, clock };
+        simulation.guard()?;
+        Ok(simulation)
     }
+
+    /// Goes one step on, as long as water and bodies allow.
+    ///
+    /// # Errors
+    /// `Fault` if a particle or body leaves the valid range: names it, its place and the usual cause.
     pub fn step(&mut self) -> Result<()> {
-        unimplemented!()
+        self.step_to(f64::INFINITY)
     }
-    pub fn step_to(&mut self, _t: f64) -> Result<()> {
-        unimplemented!()
+
+    /// Goes one step on, and not past time `end` (s).
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    pub fn step_to(&mut self, end: f64) -> Result<()> {
+        if let Some(order) = self.system.renew() {
+            self.stepper.permute(&order);
+        }
+        self.system.rates();
+        let allowed = self.limit();
+        let left = end - self.clock.time;
+        // The last two steps share what is left, so that none is far shorter than the others.
+        let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
+        if !(dt > 0.0) {
+            return Err(self.fault("time step of no length", NO_STEP, 0));
+        }
+        self.stepper.step(&mut self.system, &mut self.bodies, Interval { t: self.clock.time, dt })?;
+        self.clock.dt = dt;
+        self.clock.steps += 1;
+        self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
+        self.guard()
     }
-    pub fn time(&self) -> f64 {
-        unimplemented!()
+
+    /// The longest step (s) that the present rates, the bodies and the model allow.
+    pub fn limit(&self) -> f64 {
+        let model = self.system.model();
+        let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
+        water.min(self.dt_bodies).min(model.dt_max)
     }
-    pub fn dt(&self) -> f64 {
-        unimplemented!()
+
+    /// Stops at the first particle that has left the valid range.
+    fn guard(&self) -> Result<()> {
+        match self.system.first_fault() {
+            None => Ok(()),
+            Some((i, reason, cause)) => Err(self.fault(reason, cause, i)),
+        }
     }
-    pub fn steps(&self) -> u64 {
-        unimplemented!()
+
+    fn fault(&self, reason: &str, cause: &str, i: usize) -> Error {
+        let fluid = self.system.fluid();
+        let of = |x: Option<&Vector<D>>| x.map(|x| x.iter().copied().collect()).unwrap_or_default();
+        Error::fault(Fault {
+            reason: reason.into(),
+            who: fluid.id.get(i).map_or("the run".into(), |id| format!("water particle {id}")),
+            step: self.clock.steps,
+            time: self.clock.time,
+            position: of(fluid.r.get(i)),
+            velocity: of(fluid.v.get(i)),
+            density: fluid.rho.get(i).copied(),
+            cause: cause.into(),
+        })
     }
-    pub fn passes(&self) -> u64 {
-        unimplemented!()
+
+    /// Makes the rates anew after the state was changed by hand.
+    pub fn refresh(&mut self) {
+        self.system.rates();
     }
+
+    /// Water and solids now.
     pub fn system(&self) -> &System<D> {
         &self.system
     }
-    pub fn push(&mut self, _solid: usize, _force: &Vector<D>, _at: &Vector<D>) {
-        unimplemented!()
+
+    /// Simulated time, s.
+    pub fn time(&self) -> f64 {
+        self.clock.time
     }
+
+    /// Length of the last step, s.
+    pub fn dt(&self) -> f64 {
+        self.clock.dt
+    }
+
+    /// Steps so far.
+    pub fn steps(&self) -> u64 {
+        self.clock.steps
+    }
+
+    /// Force passes so far.
+    pub fn passes(&self) -> u64 {
+        self.system.passes()
+    }
+
+    /// Pushes free solid number `solid` with `force` (N; N/m in 2-D) at the world point `at` (m) during the
+    /// next step. Without effect on a solid that is not free.
+    pub fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>) {
+        if let Some(engine) = self.bodies.engine_mut() {
+            engine.push(solid, force, at);
+        }
+    }
+
+    /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
+    pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
+        if let Some(engine) = self.bodies.engine_mut() {
+            engine.set_velocity(solid, velocity, spin);
+            let kinematics = &mut self.system.solids[solid].kinematics;
+            (kinematics.velocity, kinematics.spin) = (*velocity, *spin);
+            self.system.place(solid);
+        }
+    }
+
+    /// Gives each water particle the velocity (m/s) that `field` says for its place (m).
+    pub fn set_water_velocity(&mut self, field: impl Fn(&Vector<D>) -> Vector<D> + Sync) {
+        let fluid = &mut self.system.fluid;
+        fluid.v.par_iter_mut().zip(&fluid.r).for_each(|(v, r)| *v = field(r));
+    }
+
+    /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
+    pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) {
+        let fluid = &mut self.system.fluid;
+        fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
+    }
+
+    /// Touching pairs of solids and the normal force (N; N/m in 2-D) between them in the last step.
+    pub fn contacts(&self) -> Vec<(usize, usize, f64)> {
+        self.bodies.engine().map(|e| e.contacts()).unwrap_or_default()
+    }
+
+    /// Everything that [`Simulation::restore`] needs to go on to the same bits.
+    ///
+    /// # Errors
+    /// `Restart` if the engine's state cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
-        unimplemented!()
+        let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
+        let kept = Kept { system: self.system.save(), stepper: self.stepper.clone(), clock: self.clock, engine };
+        postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
-    pub fn restore(&mut self, _bytes: &[u8]) -> Result<()> {
-        unimplemented!()
+
+    /// Goes back to a state that [`Simulation::save`] gave, in a simulation made from the same setup.
+    ///
+    /// # Errors
+    /// `Restart` if the bytes are damaged or belong to another setup.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let kept: Kept<D> = postcard::from_bytes(bytes)
+            .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint's state is damaged: {e}")))?;
+        match (self.bodies.engine_mut(), kept.engine) {
+            (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
+            (None, None) => {}
+            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
+        }
+        self.system.restore(kept.system)?;
+        (self.stepper, self.clock) = (kept.stepper, kept.clock);
+        Ok(())
     }
+}
+
+const NO_STEP: &str = "The accelerations are not finite, or the end lies in the past.";
+
+/// Refuses a setup whose constants have no meaning.
+fn check<const D: usize>(setup: &Setup<D>) -> Result<()> {
+    let m = &setup.model;
+    let positive = [
+        ("dp", m.dp),
+        ("h", m.h),
+        ("rho0", m.rho0),
+        ("c0", m.c0),
+        ("gamma", m.gamma),
+        ("cfl", m.cfl),
+        ("dt_max", m.dt_max),
+    ];
+    for (name, value) in positive {
+        let finite = value.is_finite() || name == "dt_max";
+        if !(value > 0.0 && finite) {
+            return Err(Error::scene(format!("{name} must be a positive number, not {value}")));
+        }
+    }
+    if m.gravity.len() != D || m.gravity.iter().any(|g| !g.is_finite()) {
+        return Err(Error::scene(format!("gravity needs {D} finite components")));
+    }
+    if setup.levels.len() != setup.water.len() {
+        return Err(Error::scene("every water particle needs the level of its surface"));
+    }
+    if let Some(i) = setup.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
+        return Err(Error::scene(format!("water particle {i} has no finite place")));
+    }
+    Ok(())
 }

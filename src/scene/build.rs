@@ -44,6 +44,13 @@ pub(super) struct Body<const D: usize> {
     level: f64,
 }
 
+impl<const D: usize> Body<D> {
+    /// Whether `x` (m) is in this water, or so near to it that only round-off says otherwise.
+    fn holds(&self, x: &Vector<D>) -> bool {
+        self.region.shape.signed_distance(&self.region.pose.local(x)) < 1e-9
+    }
+}
+
 impl Scene {
     /// Opens the files that the scene names and makes what a [`Simulation`](crate::simulation::Simulation)
     /// starts from, and the plan of the run.
@@ -69,18 +76,17 @@ impl Scene {
             water.iter().map(|b| Region { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> = solids.iter().map(|s| (&s.shape, &s.pose)).collect();
         let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| scene.origin.place(e, "water"))?;
-        let wet = |body: &Body<D>, x: &Vector<D>| {
-            x[D - 1] < body.level && body.region.shape.signed_distance(&body.region.pose.local(x)) <= 0.0
-        };
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
-            filled.r.retain(|x| water.iter().any(|body| wet(body, x)));
+            filled.r.retain(|x| water.iter().any(|body| body.holds(x) && x[D - 1] < body.level));
         }
         if filled.r.is_empty() {
             return Err(scene.wrong("water", "no water is left: it is thinner than dp, or solids fill it"));
         }
         let plan = scene.plan()?;
         let warnings = warnings(&plan, &solids);
-        let setup = Setup { model, water: filled.r, still_level, solids, domain };
+        let level = |x: &Vector<D>| water.iter().find(|body| body.holds(x)).map_or(still_level, |body| body.level);
+        let levels = filled.r.iter().map(level).collect();
+        let setup = Setup { model, water: filled.r, levels, solids, domain };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, warnings })
     }
 

@@ -1,31 +1,8 @@
-//! Density diffusions, one a file.
+//! Density diffusions, one a file. They act between water particles only: a wall's density is not
+//! the water's to smooth.
 
-use serde::{Deserialize, Serialize};
+mod fourtakas;
+mod molteni;
 
-/// Molteni & Colagrossi's density diffusion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Molteni {
-    /// δ, –.
-    pub delta: f64,
-}
-
-impl Default for Molteni {
-    fn default() -> Self {
-        Self { delta: 0.1 }
-    }
-}
-
-/// Fourtakas' density diffusion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Fourtakas {
-    /// δ, –.
-    pub delta: f64,
-}
-
-impl Default for Fourtakas {
-    fn default() -> Self {
-        Self { delta: 0.1 }
-    }
-}
+pub use fourtakas::{Fourtakas, FourtakasTerm};
+pub use molteni::{Molteni, MolteniTerm};

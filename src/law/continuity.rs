@@ -1,0 +1,18 @@
+//! Continuity, in the volume form:  dρ_a/dt = ρ_a Σ V_b v_ab·∇_a W,  V_b = m_b/ρ_b.
+//!
+//! This form is the one that conserves energy with the pressure force (P_a + P_b)/(ρ_a ρ_b): the work of
+//! the pair force is exactly what both particles' compression takes up (Colagrossi & Landrini 2003).
+
+use super::{Num, Pair, Term};
+
+/// Continuity [@colagrossi2003].
+#[derive(Clone, Copy, Debug)]
+pub struct Continuity;
+
+impl<N: Num, const D: usize> Term<N, D> for Continuity {
+    #[inline(always)]
+    fn rate(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
+        let one = N::of(1.0);
+        (sum.0 + (one + ab.a.x) * ab.b.s * ab.vr, sum.1 + (one + ab.b.x) * ab.a.s * ab.vr)
+    }
+}

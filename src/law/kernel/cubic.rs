@@ -1,0 +1,42 @@
+//! Cubic spline:  W = α_D {1 − 3/2 q² + 3/4 q³ (q ≤ 1); 1/4 (2 − q)³ (q ≤ 2); 0},  q = r/h,
+//! α_D = 10/(7πh²) in 2-D, 1/(πh³) in 3-D.
+
+use std::f64::consts::PI;
+
+use super::{Kernel, Num};
+
+/// The cubic spline [@monaghan1985]; eq. (3) of [@pirkhalili2023].
+#[derive(Clone, Copy, Debug)]
+pub struct Cubic {
+    inv_h: f64,
+    amplitude: f64,
+    slope: f64,
+}
+
+impl Cubic {
+    /// The kernel of smoothing length `h` (m) in `dimension` 2 or 3.
+    pub fn new(h: f64, dimension: usize) -> Self {
+        let amplitude = if dimension == 2 { 10.0 / (7.0 * PI * h * h) } else { 1.0 / (PI * h * h * h) };
+        Self { inv_h: 1.0 / h, amplitude, slope: amplitude / (h * h) }
+    }
+}
+
+impl Kernel for Cubic {
+    #[inline(always)]
+    fn w<N: Num>(&self, r2: N) -> N {
+        let q = r2.sqrt() * N::of(self.inv_h);
+        let rest = (N::of(2.0) - q).max(N::of(0.0));
+        let inner = N::of(1.0) - q * q * (N::of(1.5) - N::of(0.75) * q);
+        let outer = N::of(0.25) * rest * rest * rest;
+        N::of(self.amplitude) * q.if_below(N::of(1.0), inner, outer)
+    }
+
+    #[inline(always)]
+    fn slope<N: Num>(&self, r2: N) -> N {
+        let q = r2.sqrt() * N::of(self.inv_h);
+        let rest = (N::of(2.0) - q).max(N::of(0.0));
+        let inner = N::of(2.25) * q - N::of(3.0);
+        let outer = N::of(-0.75) * rest * rest / q;
+        N::of(self.slope) * q.if_below(N::of(1.0), inner, outer)
+    }
+}

@@ -1,0 +1,44 @@
+//! Wendland C2:  W = α_D (1 − q/2)⁴ (2q + 1),  q = r/h,  α_D = 7/(4πh²) in 2-D, 21/(16πh³) in 3-D.
+
+use std::f64::consts::PI;
+
+use super::{Kernel, Num};
+
+/// Wendland's C2 kernel [@wendland1995]: particles do not pair under it at any h.
+#[derive(Clone, Copy, Debug)]
+pub struct Wendland {
+    half_inv_h: f64,
+    amplitude: f64,
+    slope: f64,
+}
+
+impl Wendland {
+    /// The kernel of smoothing length `h` (m) in `dimension` 2 or 3.
+    pub fn new(h: f64, dimension: usize) -> Self {
+        let amplitude = if dimension == 2 { 7.0 / (4.0 * PI * h * h) } else { 21.0 / (16.0 * PI * h * h * h) };
+        // dW/dq = −5 α q (1 − q/2)³, so (dW/dr)/r = −5 α (1 − q/2)³/h².
+        Self { half_inv_h: 0.5 / h, amplitude, slope: -5.0 * amplitude / (h * h) }
+    }
+
+    /// max(1 − q/2, 0).
+    #[inline(always)]
+    fn rest<N: Num>(&self, r2: N) -> N {
+        (N::of(1.0) - r2.sqrt() * N::of(self.half_inv_h)).max(N::of(0.0))
+    }
+}
+
+impl Kernel for Wendland {
+    #[inline(always)]
+    fn w<N: Num>(&self, r2: N) -> N {
+        let t = self.rest(r2);
+        let t2 = t * t;
+        // 2q + 1 = 5 − 4t inside the support.
+        N::of(self.amplitude) * (t2 * t2) * (N::of(5.0) - N::of(4.0) * t)
+    }
+
+    #[inline(always)]
+    fn slope<N: Num>(&self, r2: N) -> N {
+        let t = self.rest(r2);
+        N::of(self.slope) * (t * t) * t
+    }
+}

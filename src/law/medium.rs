@@ -1,0 +1,32 @@
+//! The constants of the water that the laws share.
+
+use crate::space::Vector;
+
+/// Constants of one run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium<const D: usize> {
+    /// Smoothing length h, m.
+    pub h: f64,
+    /// Particle spacing dp, m.
+    pub dp: f64,
+    /// Reference density ρ₀, kg/m³.
+    pub rho0: f64,
+    /// Speed of sound c₀, m/s.
+    pub c0: f64,
+    /// Exponent γ of the equation of state, –.
+    pub gamma: f64,
+    /// Acceleration of gravity, m/s².
+    pub gravity: Vector<D>,
+}
+
+impl<const D: usize> Medium<D> {
+    /// Volume of a particle at ρ₀, dpᴰ (m³; m² in 2-D): every particle's mass divided by ρ₀.
+    pub fn volume0(&self) -> f64 {
+        self.dp.powi(D as i32)
+    }
+
+    /// η² = 0.01 h² (m²), which keeps 1/(r² + η²) finite [@monaghan1992].
+    pub fn eta2(&self) -> f64 {
+        0.01 * self.h * self.h
+    }
+}

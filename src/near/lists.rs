@@ -1,0 +1,99 @@
+//! Neighbour lists in chunks of particles, each made and read by one thread at a time.
+
+use rayon::prelude::*;
+
+use super::Grid;
+use crate::space::{Bounds, Vector};
+
+/// Particles in a chunk: the unit of parallel work, fixed so that no result depends on the threads.
+pub const CHUNK: usize = 256;
+
+/// Where in its chunk's `index` a particle's neighbours are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Span {
+    /// First neighbour of the first kind.
+    pub start: u32,
+    /// End of the first kind, start of the second.
+    pub middle: u32,
+    /// End of the second kind.
+    pub end: u32,
+}
+
+/// The neighbours of [`CHUNK`] particles.
+#[derive(Clone, Debug, Default)]
+pub struct Chunk {
+    /// One span a particle.
+    pub spans: Vec<Span>,
+    /// Neighbours, one particle after the other.
+    pub index: Vec<u32>,
+}
+
+impl Chunk {
+    /// Neighbours of both kinds of the chunk's `i`-th particle.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> (&[u32], &[u32]) {
+        let s = self.spans[i];
+        (&self.index[s.start as usize..s.middle as usize], &self.index[s.middle as usize..s.end as usize])
+    }
+}
+
+/// The lists of all particles.
+#[derive(Clone, Debug, Default)]
+pub struct Lists {
+    /// For water: first kind water, second kind skin.
+    pub water: Vec<Chunk>,
+    /// For the skin: first kind water; no second.
+    pub skin: Vec<Chunk>,
+}
+
+impl Lists {
+    /// Lists all pairs nearer than `reach` (m).
+    pub(super) fn build<const D: usize>(
+        &mut self,
+        water: &Grid<D>,
+        skin: &Grid<D>,
+        water_r: &[Vector<D>],
+        skin_r: &[Vector<D>],
+        reach: f64,
+    ) {
+        self.water.resize_with(water_r.len().div_ceil(CHUNK), Chunk::default);
+        self.skin.resize_with(skin_r.len().div_ceil(CHUNK), Chunk::default);
+        self.water.par_iter_mut().enumerate().for_each(|(c, chunk)| {
+            chunk.clear();
+            for i in c * CHUNK..water_r.len().min((c + 1) * CHUNK) {
+                let start = chunk.index.len();
+                chunk.append(water, water_r, &water_r[i], i as u32, reach);
+                let middle = chunk.index.len();
+                chunk.append(skin, skin_r, &water_r[i], u32::MAX, reach);
+                chunk.close(start, middle);
+            }
+        });
+        self.skin.par_iter_mut().enumerate().for_each(|(c, chunk)| {
+            chunk.clear();
+            for x in &skin_r[c * CHUNK..skin_r.len().min((c + 1) * CHUNK)] {
+                let start = chunk.index.len();
+                chunk.append(water, water_r, x, u32::MAX, reach);
+                chunk.close(start, chunk.index.len());
+            }
+        });
+    }
+}
+
+impl Chunk {
+    fn clear(&mut self) {
+        self.spans.clear();
+        self.index.clear();
+    }
+
+    /// Appends the particles of `grid` nearer than `reach` to `x`, without `this` one.
+    fn append<const D: usize>(&mut self, grid: &Grid<D>, r: &[Vector<D>], x: &Vector<D>, this: u32, reach: f64) {
+        let reach2 = reach * reach;
+        grid.rows(&Bounds { min: *x, max: *x }.grown(reach), |row| {
+            self.index.extend(row.iter().filter(|&&j| j != this && (r[j as usize] - x).norm_squared() < reach2));
+        });
+    }
+
+    fn close(&mut self, start: usize, middle: usize) {
+        self.spans.push(Span { start: start as u32, middle: middle as u32, end: self.index.len() as u32 });
+    }
+}

@@ -1,0 +1,98 @@
+//! Moving the solids: driven ones by their law, free ones by rapier, and then their skins.
+
+use super::Interval;
+use crate::{
+    error::{Error, Fault, Result},
+    solid::{Engine, EngineFault, Kinematics, Load, Role, Solid},
+    space::{Pose, Vector},
+    system::System,
+};
+
+/// The rigid-body side of a run. A scene without free bodies has no engine and steps none.
+pub struct Bodies<const D: usize> {
+    engine: Option<Box<dyn Engine<D>>>,
+    steps: u64,
+}
+
+impl<const D: usize> Bodies<D> {
+    /// The bodies that `engine` moves, after `steps` steps.
+    pub fn new(engine: Option<Box<dyn Engine<D>>>, steps: u64) -> Self {
+        Self { engine, steps }
+    }
+
+    /// The engine, if there are free bodies.
+    pub fn engine(&self) -> Option<&dyn Engine<D>> {
+        self.engine.as_deref()
+    }
+
+    /// The engine to act on, if there are free bodies.
+    pub fn engine_mut(&mut self) -> Option<&mut Box<dyn Engine<D>>> {
+        self.engine.as_mut()
+    }
+
+    /// Puts the solids where they will be half a step on: driven ones exactly, free ones as they drift.
+    pub(super) fn drift(&self, system: &mut System<D>, over: Interval) {
+        let half = 0.5 * over.dt;
+        place(system, |_, solid| match &solid.spec.role {
+            Role::Fixed => None,
+            Role::Driven(motion) => Some(motion.kinematics(&solid.spec.pose, over.t + half)),
+            Role::Free(_) => Some(drifted(&solid.kinematics, half)),
+        });
+    }
+
+    /// Moves the solids over the whole step under the loads of the last force pass times `weight`.
+    pub(super) fn advance(&mut self, system: &mut System<D>, over: Interval, weight: f64) -> Result<()> {
+        let end = over.t + over.dt;
+        let driven = |solid: &Solid<D>| match &solid.spec.role {
+            Role::Driven(motion) => Some(motion.kinematics(&solid.spec.pose, end)),
+            Role::Fixed | Role::Free(_) => None,
+        };
+        if let Some(engine) = &mut self.engine {
+            let targets: Vec<_> = system.solids.iter().map(driven).collect();
+            let weigh = |load: &Load<D>| Load { force: load.force * weight, torque: load.torque * weight };
+            let loads: Vec<_> = system.solids.iter().map(|s| weigh(&s.load)).collect();
+            let step = self.steps;
+            engine.step(over.dt, &loads, &targets).map_err(|fault| stopped(system, fault, step, over.t))?;
+        }
+        self.steps += 1;
+        let engine = self.engine.as_deref();
+        place(system, |i, solid| match &solid.spec.role {
+            Role::Free(_) => engine.map(|e| e.kinematics(i)),
+            _ => driven(solid),
+        });
+        Ok(())
+    }
+}
+
+/// Gives each solid the kinematics that `to` says, if any, and places its skin.
+fn place<const D: usize>(system: &mut System<D>, to: impl Fn(usize, &Solid<D>) -> Option<Kinematics<D>>) {
+    for i in 0..system.solids.len() {
+        if let Some(kinematics) = to(i, &system.solids[i]) {
+            system.solids[i].kinematics = kinematics;
+            system.place(i);
+        }
+    }
+}
+
+/// Where free motion at constant velocity and spin leads in `dt` (s).
+fn drifted<const D: usize>(k: &Kinematics<D>, dt: f64) -> Kinematics<D> {
+    let turn = (k.spin * dt).exp();
+    let centre: Vector<D> = k.centre + k.velocity * dt;
+    let pose = Pose { position: centre + turn * (k.pose.position - k.centre), rotation: turn * k.pose.rotation };
+    Kinematics { pose, centre, ..*k }
+}
+
+fn stopped<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {
+    Error::fault(Fault {
+        reason: fault.reason,
+        who: format!("body {:?}", system.solids[fault.solid].spec.name),
+        step,
+        time,
+        position: fault.position.iter().copied().collect(),
+        velocity: fault.velocity.iter().copied().collect(),
+        density: None,
+        cause: "Usual cause: bodies pressed into one another or into a wall, or a body too light for the time step. \
+            Look at the last frame, move the bodies apart or lower time.cfl."
+            .into(),
+    })
+}

@@ -1,0 +1,57 @@
+//! How long a step may be:  Δt = CFL·min( √(h/|f|), h/(c₀ + h max|v_ab·r_ab|/(r² + η²)) ),  and with free
+//! bodies  Δt ≤ ½·2/ω_b.
+//!
+//! f is the whole acceleration, gravity too; √(h/|f|) is what eq. (14) of the paper means by h/√|f|.
+//! ω_b is the frequency of a body on the water's compressibility: every boundary particle of the outer
+//! layer is a spring of stiffness ρ₀ c₀² dpᴰ⁻²  (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
+
+use crate::{
+    law::Medium,
+    shape::Shape,
+    solid::FreeBody,
+    space::{Vector, Wedge},
+    system::Peaks,
+};
+
+/// Share of the stability limit 2/ω_b that a step may take.
+const BODY_SHARE: f64 = 0.5;
+
+/// The longest step (s) that the water allows; eq. (14) of [@pirkhalili2023], [@monaghan1992].
+pub fn water<const D: usize>(peaks: &Peaks, medium: &Medium<D>, cfl: f64) -> f64 {
+    let by_force = (medium.h / peaks.acceleration).sqrt();
+    let by_sound = medium.h / (medium.c0 + medium.h * peaks.closing);
+    cfl * by_force.min(by_sound)
+}
+
+/// The longest step (s) that a free body allows: half of 2/ω_b.
+pub fn body<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &Medium<D>) -> f64 {
+    BODY_SHARE * 2.0 / stiffest(shape, body, medium)
+}
+
+/// ω_b (1/s), the highest frequency of a body held by water all around: the larger of the largest
+/// translational and the largest rotational one.
+pub fn stiffest<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &Medium<D>) -> f64 {
+    let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
+    let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
+    for point in shape.skin(medium.dp, 1) {
+        let normal = outward(shape, &point.r, medium.dp);
+        along += normal.component_mul(&normal) * spring;
+        for (sum, arm) in about.iter_mut().zip(Wedge::torque(&(point.r - body.centre), &normal).axial()) {
+            *sum += arm * arm * spring;
+        }
+    }
+    let inertia = |i: usize| if D == 2 { body.inertia[(0, 0)] } else { body.inertia[(i, i)] };
+    let turning = (0..Wedge::<D>::COMPONENTS).map(|i| about[i] / inertia(i));
+    turning.fold(along.max() / body.mass, f64::max).sqrt()
+}
+
+/// Outward normal of the shape near `x`, by differences of the signed distance.
+fn outward<const D: usize>(shape: &Shape<D>, x: &Vector<D>, dp: f64) -> Vector<D> {
+    let step = 0.05 * dp;
+    let gradient = Vector::<D>::from_fn(|i, _| {
+        let mut e = Vector::zeros();
+        e[i] = step;
+        shape.signed_distance(&(x + e)) - shape.signed_distance(&(x - e))
+    });
+    gradient.try_normalize(1e-9 * dp).unwrap_or_else(Vector::zeros)
+}

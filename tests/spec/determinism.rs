@@ -1,0 +1,82 @@
+//! The same bits at any number of threads, and after a restart.
+
+use pontoon::{
+    law::{shifting::Shift, viscosity::Sps},
+    model::{Scheme, Shifting, Viscosity},
+    shape::Shape,
+    simulation::Simulation,
+    solid::{Formula, Law, Motion, Role},
+    space::{Pose, Vector},
+};
+
+use crate::rig;
+
+/// A dam break onto two floats that collide, beside a paddle, with every term that remembers something.
+fn scene(scheme: Scheme) -> Simulation<2> {
+    let dp = 0.02;
+    let mut model = rig::model(2, dp, 0.3);
+    (model.scheme, model.cfl) = (scheme, 0.2);
+    model.viscosity = Viscosity::Sps(Sps::default());
+    model.shifting = Shifting::AwayFromFixed(Shift::default());
+    let mut water = rig::lattice([0.1, 0.0], [0.5, 0.3], dp);
+    water.extend(rig::lattice([0.6, 0.0], [0.8, 0.1], dp));
+    let mut second = rig::float(Shape::Ball { radius: 0.06 }, [1.16, 0.17], 400.0);
+    second.name = "second".into();
+    let paddle = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.02*sin(9*t)").unwrap()));
+    let paddle_shape = Shape::Box { size: Vector::from([0.08, 0.6]) };
+    let solids = vec![
+        rig::tank([1.4, 0.6], dp),
+        rig::float(Shape::Box { size: Vector::from([0.2, 0.1]) }, [1.0, 0.16], 500.0),
+        second,
+        rig::solid("paddle", paddle_shape, Pose::at(Vector::from([0.05, 0.31])), Role::Driven(paddle)),
+    ];
+    rig::simulation(model, water, 0.3, solids)
+}
+
+fn steps(sim: &mut Simulation<2>, n: u32) {
+    for _ in 0..n {
+        sim.step().expect("a sound run");
+    }
+}
+
+#[test]
+fn one_two_three_and_eight_threads_give_the_same_bits() {
+    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
+        let runs: Vec<Vec<u8>> = [1, 2, 3, 8]
+            .into_iter()
+            .map(|n| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+                pool.install(|| {
+                    let mut sim = scene(scheme);
+                    steps(&mut sim, 150);
+                    sim.save().unwrap()
+                })
+            })
+            .collect();
+        assert!(runs.iter().all(|run| *run == runs[0]), "{scheme:?}");
+    }
+}
+
+#[test]
+fn a_resumed_run_goes_on_to_the_same_bits() {
+    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
+        let mut whole = scene(scheme);
+        steps(&mut whole, 73);
+        let kept = whole.save().unwrap();
+        steps(&mut whole, 120);
+        let mut resumed = scene(scheme);
+        resumed.restore(&kept).unwrap();
+        assert_eq!(resumed.save().unwrap(), kept, "what was kept comes back whole");
+        steps(&mut resumed, 120);
+        assert!(resumed.save().unwrap() == whole.save().unwrap(), "{scheme:?}");
+    }
+}
+
+#[test]
+fn damaged_bytes_are_refused() {
+    let sim = scene(Scheme::Symplectic);
+    let kept = sim.save().unwrap();
+    let mut other = scene(Scheme::Symplectic);
+    assert!(other.restore(&kept[..kept.len() / 2]).is_err());
+    assert!(other.restore(&[]).is_err());
+}

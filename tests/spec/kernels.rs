@@ -1,0 +1,66 @@
+//! Kernels: weight one, slope of the value, nothing beyond the support.
+
+use std::f64::consts::PI;
+
+use pontoon::law::kernel::{Cubic, Kernel, Wendland};
+
+const H: f64 = 0.037;
+
+/// ∫ W dV by the midpoint rule in the radius, whose error on 2e5 points is below 1e-9 for these kernels.
+fn weight(kernel: impl Kernel, dimension: usize) -> f64 {
+    let n = 200_000;
+    let step = 2.0 * H / n as f64;
+    (0..n)
+        .map(|i| {
+            let r = (i as f64 + 0.5) * step;
+            let shell = if dimension == 2 { 2.0 * PI * r } else { 4.0 * PI * r * r };
+            kernel.w(r * r) * shell * step
+        })
+        .sum()
+}
+
+fn for_each_kernel(check: impl Fn(&str, usize, &dyn Fn(f64) -> f64, &dyn Fn(f64) -> f64)) {
+    for dimension in [2, 3] {
+        let (c, w) = (Cubic::new(H, dimension), Wendland::new(H, dimension));
+        check("cubic", dimension, &|r2| c.w(r2), &|r2| c.slope(r2));
+        check("wendland", dimension, &|r2| w.w(r2), &|r2| w.slope(r2));
+    }
+}
+
+#[test]
+fn a_kernel_has_weight_one() {
+    for dimension in [2, 3] {
+        assert!((weight(Cubic::new(H, dimension), dimension) - 1.0).abs() < 1e-6);
+        assert!((weight(Wendland::new(H, dimension), dimension) - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_slope_is_the_derivative_of_the_value() {
+    for_each_kernel(|name, dimension, w, slope| {
+        let largest = (1..200).map(|i| slope((i as f64 * 0.01 * H).powi(2)).abs()).fold(0.0, f64::max);
+        for i in 1..200 {
+            let (r, e) = (i as f64 * 0.01 * H, 1e-5 * H);
+            let difference = (w((r + e).powi(2)) - w((r - e).powi(2))) / (2.0 * e) / r;
+            // Central differences: e² W‴/6r and rounding ε W/(e r) are both below 1e-6 of the largest slope
+            // for r above 0.01 h.
+            assert!((slope(r * r) - difference).abs() < 2e-6 * largest, "{name} in {dimension}-D at q = {}", r / H);
+        }
+    });
+}
+
+#[test]
+fn a_kernel_ends_at_its_support_and_falls_all_the_way() {
+    for_each_kernel(|name, dimension, w, slope| {
+        for q in [2.0, 2.0001, 3.0, 100.0] {
+            let r2 = (q * H).powi(2);
+            // At q = 2 exactly rounding of the root may leave (1e-16)³.
+            assert!(w(r2).abs() < 1e-30 * w(0.0) && slope(r2).abs() < 1e-30 * w(0.0) / (H * H), "{name} {dimension}");
+        }
+        for i in 0..200 {
+            let q = i as f64 * 0.01;
+            assert!(w((q * H).powi(2)) > w(((q + 0.01) * H).powi(2)), "{name} in {dimension}-D at q = {q}");
+        }
+        assert!(slope(1e-300).is_finite(), "{name}: two particles in one place");
+    });
+}

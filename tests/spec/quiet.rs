@@ -1,0 +1,73 @@
+//! Still water stays still.
+
+use pontoon::{
+    law::shifting::Shift,
+    model::{Scheme, Shifting},
+    simulation::Simulation,
+};
+
+use crate::rig;
+
+const DEPTH: f64 = 0.4;
+
+fn still_tank(scheme: Scheme, shifting: Shifting, dp: f64, seconds: f64) -> Simulation<2> {
+    let mut model = rig::model(2, dp, DEPTH);
+    (model.scheme, model.shifting) = (scheme, shifting);
+    if scheme != Scheme::Symplectic {
+        model.cfl = 0.2;
+    }
+    let water = rig::lattice([0.0, 0.0], [0.4, DEPTH], dp);
+    let mut sim = rig::simulation(model, water, DEPTH, vec![rig::tank([0.4, 0.6], dp)]);
+    while sim.time() < seconds {
+        sim.step_to(seconds).expect("still water");
+    }
+    sim
+}
+
+/// Mean pressure (Pa) and hydrostatic pressure of each row of water one dp high, surface and bed rows left out.
+fn profile(sim: &Simulation<2>, dp: f64) -> Vec<(f64, f64)> {
+    let (fluid, system) = (sim.system().fluid(), sim.system());
+    let rows = (DEPTH / dp).round() as usize;
+    (2..rows - 2)
+        .map(|row| {
+            let inside: Vec<usize> = (0..fluid.len()).filter(|&i| (fluid.r[i][1] / dp) as usize == row).collect();
+            let n = inside.len() as f64;
+            let p: f64 = inside.iter().map(|&i| system.pressure(fluid.rho[i])).sum();
+            let still: f64 = inside.iter().map(|&i| 9810.0 * (DEPTH - fluid.r[i][1])).sum();
+            (p / n, still / n)
+        })
+        .collect()
+}
+
+#[test]
+fn after_five_seconds_the_pressure_is_hydrostatic_and_the_level_stands() {
+    let dp = 0.02;
+    let sim = still_tank(Scheme::Symplectic, Shifting::None, dp, 5.0);
+    for (p, still) in profile(&sim, dp) {
+        // 2 % of the pressure at the bed, the project's bound for Fourtakas' term.
+        assert!((p - still).abs() < 0.02 * 9810.0 * DEPTH, "{p} Pa for {still} Pa");
+    }
+    let fluid = sim.system().fluid();
+    let mean = fluid.r.iter().map(|r| r[1]).sum::<f64>() / fluid.len() as f64;
+    // The surface is at twice the mean height.
+    assert!((2.0 * mean - DEPTH).abs() < 0.5 * dp, "level {}", 2.0 * mean);
+    let fastest = fluid.v.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    assert!(fastest < 0.01 * (9.81 * DEPTH).sqrt(), "{fastest} m/s in still water");
+    // Weight of the water on the tank, N/m, within the noise of a sound wave.
+    let weight = sim.system().solids()[0].load.force[1];
+    assert!((weight / (-9810.0 * 0.4 * DEPTH) - 1.0).abs() < 0.02, "{weight} N/m");
+}
+
+#[test]
+fn verlet_and_shifting_keep_still_water_too() {
+    for (scheme, shifting) in [
+        (Scheme::Verlet { euler_every: 50 }, Shifting::None),
+        (Scheme::Symplectic, Shifting::Everywhere(Shift::default())),
+    ] {
+        let dp = 0.04;
+        let sim = still_tank(scheme, shifting, dp, 1.0);
+        let fluid = sim.system().fluid();
+        let mean = fluid.r.iter().map(|r| r[1]).sum::<f64>() / fluid.len() as f64;
+        assert!((2.0 * mean - DEPTH).abs() < 0.5 * dp, "{scheme:?} {shifting:?}: level {}", 2.0 * mean);
+    }
+}

@@ -1,0 +1,98 @@
+//! What the tests share: models, lattices and tanks.
+
+use pontoon::{
+    law::{diffusion::Fourtakas, viscosity::Artificial},
+    model::{Diffusion, Kernel, Model, Scheme, Shifting, Viscosity, Walls},
+    shape::Shape,
+    simulation::{Setup, Simulation},
+    solid::{Dim, FreeBody, HasEngine, Role, SolidSpec},
+    space::{Pose, Vector},
+};
+
+/// A model of water `depth` deep with the project's usual choices: Wendland, h = 1.7 dp, α = 0.02, Fourtakas.
+pub fn model(dimension: usize, dp: f64, depth: f64) -> Model {
+    let mut gravity = vec![0.0; dimension];
+    gravity[dimension - 1] = -9.81;
+    Model {
+        kernel: Kernel::Wendland,
+        h: 1.7 * dp,
+        dp,
+        rho0: 1000.0,
+        c0: 20.0 * (9.81 * depth).sqrt(),
+        gamma: 7.0,
+        gravity,
+        viscosity: Viscosity::Artificial(Artificial::default()),
+        diffusion: Diffusion::Fourtakas(Fourtakas::default()),
+        shifting: Shifting::None,
+        walls: Walls::Dbc,
+        scheme: Scheme::Symplectic,
+        cfl: 0.4,
+        dt_max: f64::INFINITY,
+    }
+}
+
+/// Lattice points of spacing `dp` filling the box from `min` to `min + size`, cell centres.
+pub fn lattice<const D: usize>(min: [f64; D], size: [f64; D], dp: f64) -> Vec<Vector<D>> {
+    let n: [usize; D] = std::array::from_fn(|i| (size[i] / dp).round() as usize);
+    (0..n.iter().product())
+        .map(|mut index| {
+            Vector::from_fn(|i, _| {
+                let at = index % n[i];
+                index /= n[i];
+                min[i] + (at as f64 + 0.5) * dp
+            })
+        })
+        .collect()
+}
+
+/// A fixed open tank with its inner lower corner at the origin.
+pub fn tank<const D: usize>(size: [f64; D], dp: f64) -> SolidSpec<D> {
+    let shape = Shape::Tank { size: Vector::from(size), thickness: 4.0 * dp };
+    solid("tank", shape, Pose::identity(), Role::Fixed)
+}
+
+/// A free homogeneous body of `density` (kg/m³).
+pub fn float<const D: usize>(shape: Shape<D>, at: [f64; D], density: f64) -> SolidSpec<D> {
+    let body = FreeBody::from_density(&shape, density);
+    solid("float", shape, Pose::at(Vector::from(at)), Role::Free(body))
+}
+
+/// A frictionless solid.
+pub fn solid<const D: usize>(name: &str, shape: Shape<D>, pose: Pose<D>, role: Role<D>) -> SolidSpec<D> {
+    SolidSpec { name: name.into(), shape, pose, role, friction: 0.0, restitution: 0.0 }
+}
+
+/// A simulation of `water`, still below `level`, and `solids`.
+pub fn simulation<const D: usize>(
+    model: Model,
+    water: Vec<Vector<D>>,
+    level: f64,
+    solids: Vec<SolidSpec<D>>,
+) -> Simulation<D>
+where
+    Dim<D>: HasEngine<D>,
+{
+    let levels = vec![level; water.len()];
+    Simulation::new(Setup { model, water, levels, solids, domain: None }).expect("a sound setup")
+}
+
+/// Momentum of the water, kg m/s.
+pub fn water_momentum<const D: usize>(sim: &Simulation<D>) -> Vector<D> {
+    sim.system().fluid().v.iter().fold(Vector::<D>::zeros(), |sum, v| sum + v) * sim.system().particle_mass()
+}
+
+/// A repeatable sequence of numbers in 0…1 (a linear congruence).
+pub struct Dice(pub u64);
+
+impl Dice {
+    /// The next number.
+    pub fn roll(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A point in the unit box.
+    pub fn point<const D: usize>(&mut self) -> Vector<D> {
+        Vector::from_fn(|_, _| self.roll())
+    }
+}

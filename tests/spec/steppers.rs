@@ -1,0 +1,93 @@
+//! Steppers: their order on motions whose solution is known or refines itself, and the length of a step.
+
+use pontoon::{
+    model::{Diffusion, Scheme, Viscosity},
+    simulation::Simulation,
+    space::Vector,
+    time::limit,
+};
+
+use crate::rig;
+
+const SCHEMES: [Scheme; 2] = [Scheme::Verlet { euler_every: 1_000_000 }, Scheme::Symplectic];
+
+/// A small drop that swings between round and flat, stepped by `dt` up to `until`.
+fn drop(scheme: Scheme, dt: f64, until: f64) -> Simulation<2> {
+    let dp = 0.02;
+    let mut model = rig::model(2, dp, 0.2);
+    (model.scheme, model.cfl, model.dt_max) = (scheme, 1e3, dt);
+    (model.gravity, model.viscosity, model.diffusion) = (vec![0.0, 0.0], Viscosity::None, Diffusion::None);
+    let mut sim = rig::simulation(model, rig::lattice([-0.1, -0.1], [0.2, 0.2], dp), 0.0, vec![]);
+    sim.set_water_velocity(|r| Vector::from([-2.0 * r[0] + r[1], 2.0 * r[1] - r[0]]));
+    while sim.time() < until {
+        sim.step_to(until).expect("a calm drop");
+    }
+    sim
+}
+
+/// Largest difference of place and of density between equal particles of two runs.
+fn apart(a: &Simulation<2>, b: &Simulation<2>) -> (f64, f64) {
+    let (a, b) = (a.system().fluid(), b.system().fluid());
+    let mut of_id = vec![0; b.len()];
+    b.id.iter().enumerate().for_each(|(j, &id)| of_id[id as usize] = j);
+    (0..a.len())
+        .map(|i| (i, of_id[a.id[i] as usize]))
+        .fold((0.0, 0.0), |(r, rho), (i, j)| ((a.r[i] - b.r[j]).norm().max(r), (a.rho[i] - b.rho[j]).abs().max(rho)))
+}
+
+#[test]
+fn both_schemes_are_of_second_order() {
+    for scheme in SCHEMES {
+        let until = 0.02;
+        let runs: Vec<_> = [2e-4, 1e-4, 5e-5].iter().map(|&dt| drop(scheme, dt, until)).collect();
+        let (coarse, fine) = (apart(&runs[0], &runs[1]), apart(&runs[1], &runs[2]));
+        // Halving the step quarters the difference: 4, and between 3 and 5 with the next order in it.
+        for (name, ratio) in [("place", coarse.0 / fine.0), ("density", coarse.1 / fine.1)] {
+            assert!((3.0..5.0).contains(&ratio), "{scheme:?}: {name} {ratio}");
+        }
+    }
+}
+
+#[test]
+fn free_fall_is_exact() {
+    for scheme in SCHEMES {
+        let mut model = rig::model(2, 0.01, 0.1);
+        model.scheme = scheme;
+        let mut sim = rig::simulation(model, vec![Vector::from([0.0, 0.0])], 0.0, vec![]);
+        let until = 0.05;
+        while sim.time() < until {
+            sim.step_to(until).unwrap();
+        }
+        let fluid = sim.system().fluid();
+        // Constant acceleration is integrated exactly by both: rounding only.
+        assert!((fluid.r[0][1] + 0.5 * 9.81 * until * until).abs() < 1e-14, "{scheme:?}");
+        assert!((fluid.v[0][1] + 9.81 * until).abs() < 1e-13, "{scheme:?}");
+    }
+}
+
+#[test]
+fn a_step_is_as_long_as_force_and_sound_allow() {
+    let model = rig::model(2, 0.01, 1.0);
+    let mut sim = rig::simulation(model.clone(), vec![Vector::from([0.0, 0.0])], 0.0, vec![]);
+    sim.step().unwrap();
+    // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀.
+    assert_eq!(sim.dt(), model.cfl * model.h / model.c0);
+    let peaks = pontoon::system::Peaks { acceleration: 1e7, closing: 0.0 };
+    assert_eq!(limit::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / 1e7).sqrt());
+    let peaks = pontoon::system::Peaks { acceleration: 0.0, closing: 100.0 };
+    assert_eq!(limit::water(&peaks, sim.system().medium(), 0.2), 0.2 * model.h / (model.c0 + model.h * 100.0));
+}
+
+#[test]
+fn a_light_body_shortens_the_step_by_the_root_of_its_mass() {
+    use pontoon::{shape::Shape, solid::FreeBody};
+    let dp = 0.01;
+    let medium = rig::model(2, dp, 1.0).medium::<2>();
+    let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };
+    let of = |density| limit::body(&shape, &FreeBody::from_density(&shape, density), &medium);
+    assert!((of(1000.0) / of(10.0) - 10.0).abs() < 1e-9);
+    // A box of n × n dp: each axis has 2n springs ρ₀ c₀² on the mass ρ (n dp)², rotation (Σ x² = n³ dp²/6 a
+    // side, 4 sides, against ρ (n dp)⁴/6) has 4/n. dt = ½·2/ω.
+    let omega = medium.c0 / dp * (4.0f64 / 10.0).sqrt();
+    assert!((of(1000.0) * omega - 1.0).abs() < 0.1, "{}", of(1000.0) * omega);
+}
