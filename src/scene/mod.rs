@@ -1,1 +1,68 @@
-//! (to come)
+//! What the user says: the words of a scene, read, checked and made into a simulation.
+//!
+//! [`format`] and [`bodies`] are the words, [`document`] reads them from TOML, `verify` holds them
+//! against one another, [`resolve`] fills in the defaults, [`build`] opens the files that they name.
+
+pub mod bodies;
+pub mod build;
+mod build_solids;
+mod document;
+pub mod flexible;
+pub mod format;
+mod geometry;
+pub mod plan;
+pub mod resolve;
+mod sets;
+pub mod shipped;
+mod solids;
+pub mod table;
+mod verify;
+mod wording;
+
+pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, PartWords, ShapeWords, SolidWords};
+pub use build::Built;
+pub use document::Source;
+pub use flexible::{Draft, Frames, FramesWords, LineWords, Numbers};
+pub use format::{
+    BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,
+};
+pub use plan::{CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Score};
+pub use resolve::Resolved;
+pub use shipped::{Shipped, shipped};
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+
+impl Scene {
+    /// Reads the scene at `path`, a file or a folder that holds `scene.toml`; `sets` are keys and values
+    /// that win over the file, as in `("model.viscosity", "none")` or `("solid.box.free.density", "500")`.
+    ///
+    /// # Errors
+    /// `File` if nothing can be read there; `Scene` with line, column and advice if the words are wrong.
+    pub fn read(path: &Path, sets: &[(String, String)]) -> Result<Self> {
+        let file = if path.is_dir() { path.join("scene.toml") } else { path.to_path_buf() };
+        let text = std::fs::read_to_string(&file).map_err(|e| {
+            Error::file(&file, e)
+                .help("name a scene file, or a folder that holds scene.toml; `pontoon scenes` lists some")
+        })?;
+        let folder = file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        document::read(&text, &file.display().to_string(), &folder, sets)
+    }
+
+    /// Reads a scene from `text`; the files that it names are looked for in `folder`.
+    ///
+    /// # Errors
+    /// `Scene`, as [`Scene::read`].
+    pub fn parse(text: &str, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
+        document::read(text, "scene.toml", folder, sets)
+    }
+
+    /// The scene as TOML, for a file or a manifest.
+    ///
+    /// # Errors
+    /// `Scene` if a number cannot be written.
+    pub fn to_toml(&self) -> Result<String> {
+        toml::to_string(self).map_err(|e| Error::scene(format!("this scene cannot be written: {e}")))
+    }
+}

@@ -1,0 +1,268 @@
+//! From words to a simulation's start: opens the files that the scene names, makes shapes and poses, fills
+//! the water.
+
+use std::path::Path;
+
+use super::{
+    CheckWords, FillWords, FrameWords, Frames, Plan, ProbeEntry, ProbeKind, ProbeWords, Scene,
+    geometry::{pose, shape, vector, world_bounds},
+    table,
+};
+use crate::{
+    error::{Error, Kind, Result},
+    model::Model,
+    shape::{
+        Shape,
+        fill::{Region, fill},
+    },
+    simulation::Setup,
+    solid::SolidSpec,
+    space::{Bounds, Pose, Vector},
+};
+
+/// Most particles that a scene may ask for: about 100 GB of memory.
+const MOST_PARTICLES: f64 = 2e8;
+
+/// What a scene was built into.
+pub struct Built<const D: usize> {
+    /// What a simulation starts from.
+    pub setup: Setup<D>,
+    /// What the run watches, keeps and judges.
+    pub plan: Plan,
+    /// Places of the water's lattice left empty because a solid is there.
+    pub overlapped: usize,
+    /// Places left empty because an earlier body of water is there.
+    pub doubled: usize,
+    /// What looks wrong but may be meant.
+    pub warnings: Vec<String>,
+}
+
+/// A body of water: where it is and how high it stands.
+pub(super) struct Body<const D: usize> {
+    region: Region<D>,
+    bottom: f64,
+    level: f64,
+}
+
+impl<const D: usize> Body<D> {
+    /// Whether `x` (m) is in this water, or so near to it that only round-off says otherwise.
+    fn holds(&self, x: &Vector<D>) -> bool {
+        self.region.shape.signed_distance(&self.region.pose.local(x)) < 1e-9
+    }
+}
+
+impl Scene {
+    /// Opens the files that the scene names and makes what a [`Simulation`](crate::simulation::Simulation)
+    /// starts from, and the plan of the run.
+    ///
+    /// # Errors
+    /// `Usage` if `D` is not the scene's dimension; `Scene` if the words contradict one another, a shape is
+    /// none, a body sinks that should float, the particles are too many; `File` if a table cannot be read.
+    pub fn build<const D: usize>(&self) -> Result<Built<D>> {
+        if self.dimension != D {
+            return Err(Error::new(Kind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
+        }
+        let (scene, _) = self.filled()?;
+        let water = scene.bodies_of_water::<D>()?;
+        let still_level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let model = scene.laws(&water)?;
+        let solids = scene.solids::<D>(still_level)?;
+        let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
+        if let Some(domain) = &domain {
+            scene.inside(domain, &water, &solids)?;
+        }
+        scene.affordable(&water, &solids)?;
+        let regions: Vec<Region<D>> =
+            water.iter().map(|b| Region { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
+        let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> = solids.iter().map(|s| (&s.shape, &s.pose)).collect();
+        let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| scene.origin.place(e, "water"))?;
+        if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
+            filled.r.retain(|x| water.iter().any(|body| body.holds(x) && x[D - 1] < body.level));
+        }
+        if filled.r.is_empty() {
+            return Err(scene.wrong("water", "no water is left: it is thinner than dp, or solids fill it"));
+        }
+        let plan = scene.plan()?;
+        let warnings = warnings(&plan, &solids);
+        let level = |x: &Vector<D>| water.iter().find(|body| body.holds(x)).map_or(still_level, |body| body.level);
+        let levels = filled.r.iter().map(level).collect();
+        let setup = Setup { model, water: filled.r, levels, solids, domain };
+        Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, warnings })
+    }
+
+    /// Speed of sound, m/s: given, or from the depth.
+    pub(super) fn sound_speed<const D: usize>(&self) -> Result<f64> {
+        Ok(self.laws(&self.bodies_of_water::<D>()?)?.c0)
+    }
+
+    fn bodies_of_water<const D: usize>(&self) -> Result<Vec<Body<D>>> {
+        let mut bodies = Vec::new();
+        for (i, words) in self.water.iter().enumerate() {
+            let key = format!("water.{i}");
+            let place = |e: Error| self.origin.place(e, &format!("{key}.fill"));
+            let (shape, pose) = match &words.fill {
+                FillWords { corners: Some(corners), .. } => {
+                    let (min, mut max): (Vector<D>, Vector<D>) = (vector(&corners.min), vector(&corners.max));
+                    max[D - 1] = words.level.unwrap_or(f64::INFINITY).min(max[D - 1]).max(min[D - 1]);
+                    (Shape::Box { size: max - min }, Pose::at(0.5 * (min + max)))
+                }
+                FillWords { shape: words, at, .. } => {
+                    let Some(words) = words else { return Err(self.wrong(&key, "what does the water fill?")) };
+                    let shape = shape(self, words).map_err(place)?;
+                    let pose = at.as_ref().map_or_else(Pose::identity, |at| pose(at, &shape, 0.0));
+                    (shape, pose)
+                }
+            };
+            let bounds = world_bounds(&shape, &pose);
+            let (bottom, top) = (bounds.min[D - 1], bounds.max[D - 1]);
+            let level = words.level.unwrap_or(f64::INFINITY).min(top);
+            if level <= bottom {
+                let what = format!("the level is not above {bottom} m, the bottom of this water");
+                return Err(self.wrong(&format!("{key}.level"), what));
+            }
+            bodies.push(Body { region: Region { shape, pose }, bottom, level });
+        }
+        Ok(bodies)
+    }
+
+    fn laws<const D: usize>(&self, water: &[Body<D>]) -> Result<Model> {
+        let (words, time) = (&self.model, &self.time);
+        let gravity = self.gravity.clone().unwrap_or_else(|| vec![0.0; D]);
+        let top = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
+        let g = gravity.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let c0 = words.c0.unwrap_or(words.c0_factor.unwrap_or_default() * (g * (top - bottom)).sqrt());
+        if !(c0.is_finite() && c0 > 0.0) {
+            let help = "write  c0 = ...  in [model]: 10 to 20 times the largest speed expected, m/s";
+            return Err(self.wrong_with("model.c0", "without gravity the depth gives no speed of sound", help));
+        }
+        let missing = |key: &str| self.wrong(key, "this law has no value");
+        Ok(Model {
+            kernel: words.kernel.ok_or_else(|| missing("model.kernel"))?,
+            h: self.h(),
+            dp: self.dp,
+            rho0: words.rho0.ok_or_else(|| missing("model.rho0"))?,
+            c0,
+            gamma: words.gamma.ok_or_else(|| missing("model.gamma"))?,
+            gravity,
+            viscosity: words.viscosity.ok_or_else(|| missing("model.viscosity"))?,
+            diffusion: words.diffusion.ok_or_else(|| missing("model.diffusion"))?,
+            shifting: words.shifting.ok_or_else(|| missing("model.shifting"))?,
+            walls: words.walls.ok_or_else(|| missing("model.walls"))?,
+            scheme: time.scheme.ok_or_else(|| missing("time.scheme"))?,
+            cfl: time.cfl.ok_or_else(|| missing("time.cfl"))?,
+            dt_max: time.dt_max.unwrap_or(f64::INFINITY),
+        })
+    }
+
+    /// Refuses water and bodies outside the domain.
+    fn inside<const D: usize>(&self, domain: &Bounds<D>, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+        let out = |shape: &Shape<D>, pose: &Pose<D>| {
+            let bounds = world_bounds(shape, pose);
+            !(domain.contains(&bounds.min) && domain.contains(&bounds.max))
+        };
+        if let Some(i) = water.iter().position(|body| out(&body.region.shape, &body.region.pose)) {
+            return Err(self.wrong(&format!("water.{i}"), "this water is not wholly inside the domain"));
+        }
+        let still = |solid: &SolidSpec<D>| matches!(solid.role, crate::solid::Role::Fixed);
+        match solids.iter().position(|solid| !still(solid) && out(&solid.shape, &solid.pose)) {
+            Some(i) => {
+                let what = format!("solid \"{}\" starts outside the domain", solids[i].name);
+                Err(self.wrong(&format!("solid.{i}.at"), what))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a scene that asks for more particles than a machine holds, before any is made.
+    fn affordable<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+        let dimension = D as i32;
+        let volume: f64 = water.iter().map(|body| body.region.shape.volume().volume).sum();
+        let surface: f64 = solids.iter().map(|solid| solid.shape.surface()).sum();
+        let fluid = volume / self.dp.powi(dimension);
+        let boundary = surface * self.layers() as f64 / self.dp.powi(dimension - 1);
+        let all = fluid + boundary;
+        if all.is_finite() && all <= MOST_PARTICLES {
+            return Ok(());
+        }
+        let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
+        let what = format!(
+            "the scene asks for {all:.1e} particles: {volume} {space} of water / dp{} + {surface:.3} {face} of solids × \
+             {} layers / dp{}",
+            ["²", "³"][D - 2],
+            self.layers(),
+            ["", "²"][D - 2],
+        );
+        let dp = self.dp * (all / MOST_PARTICLES).powf(1.0 / D as f64);
+        let help = format!("the most is {MOST_PARTICLES:.0e}: write  dp = {dp:.2}  or more");
+        Err(self.wrong_with("dp", what, help))
+    }
+
+    fn plan(&self) -> Result<Plan> {
+        let folder = &self.origin.folder;
+        let probe = |probe: &ProbeEntry| ProbeWords {
+            name: probe.name.clone().unwrap_or_default(),
+            what: kind(probe),
+            every: probe.every.unwrap_or(self.until),
+        };
+        let mut checks = Vec::new();
+        for (i, words) in self.check.iter().enumerate() {
+            let place = |e: Error| self.origin.place(e, &format!("check.{i}.reference"));
+            let time = words.time.clone().unwrap_or_default();
+            let path = table::beside(folder, &words.reference).map_err(place)?;
+            table::series(&path, &time, &words.column).map_err(place)?;
+            checks.push(CheckWords {
+                series: words.series.clone(),
+                reference: Path::new(&words.reference).to_path_buf(),
+                time,
+                column: words.column.clone(),
+                delay: words.delay.unwrap_or_default(),
+                paper: words.paper,
+                bound: words.bound,
+            });
+        }
+        let frames = match &self.frames {
+            Some(Frames::On(words)) => Some(FrameWords {
+                every: words.every.unwrap_or(self.until),
+                fields: words.fields.clone().unwrap_or_default(),
+            }),
+            _ => None,
+        };
+        Ok(Plan {
+            title: self.title.clone().unwrap_or_default(),
+            until: self.until,
+            probes: self.probe.iter().map(probe).collect(),
+            frames,
+            checkpoint_every: self.checkpoint.as_ref().map(|c| c.every),
+            checks,
+            folder: folder.clone(),
+        })
+    }
+}
+
+fn kind(probe: &ProbeEntry) -> ProbeKind {
+    match probe {
+        ProbeEntry { motion: Some(solid), .. } => ProbeKind::Motion { solid: solid.clone() },
+        ProbeEntry { force: Some(solid), .. } => ProbeKind::Force { solid: solid.clone() },
+        ProbeEntry { elevation: Some(place), .. } => {
+            ProbeKind::Elevation { at: [Some(place.x), place.y].into_iter().flatten().collect() }
+        }
+        ProbeEntry { velocity: Some(at), .. } => ProbeKind::Velocity { at: at.clone() },
+        ProbeEntry { pressure: Some(at), .. } => ProbeKind::Pressure { at: at.clone() },
+        _ => ProbeKind::Energy,
+    }
+}
+
+/// What looks wrong but may be meant: points that are watched inside a solid.
+fn warnings<const D: usize>(plan: &Plan, solids: &[SolidSpec<D>]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for probe in &plan.probes {
+        let (ProbeKind::Velocity { at } | ProbeKind::Pressure { at }) = &probe.what else { continue };
+        let x: Vector<D> = vector(at);
+        let holds = |solid: &&SolidSpec<D>| solid.shape.signed_distance(&solid.pose.local(&x)) < 0.0;
+        if let Some(solid) = solids.iter().find(holds) {
+            warnings.push(format!("probe \"{}\" at {at:?} m is inside solid \"{}\"", probe.name, solid.name));
+        }
+    }
+    warnings
+}

@@ -1,0 +1,132 @@
+//! From words to solids: shape, pose, role; floats are put at their draft.
+
+use super::{
+    Draft, DrivenWords, FreeWords, LawWords, Lock, Numbers, Scene, SolidWords,
+    geometry::{pose, shape, vector},
+    table,
+};
+use crate::{
+    error::{Error, Result},
+    series::Series,
+    shape::Shape,
+    solid::{Formula, FreeBody, Law, Motion, Role, SolidSpec, hydrostatics::equilibrium_height},
+    space::{Matrix, Vector, Wedge},
+};
+
+impl Scene {
+    /// The solids of the scene; drafts are below `level` (m).
+    pub(super) fn solids<const D: usize>(&self, level: f64) -> Result<Vec<SolidSpec<D>>> {
+        self.solid.iter().enumerate().map(|(i, words)| self.solid_spec(&format!("solid.{i}"), words, level)).collect()
+    }
+
+    fn solid_spec<const D: usize>(&self, key: &str, words: &SolidWords, level: f64) -> Result<SolidSpec<D>> {
+        let place = |part: &str| {
+            let key = format!("{key}.{part}");
+            move |e: Error| self.origin.place(e, &key)
+        };
+        let shape: Shape<D> = shape(self, &words.shape).map_err(place("shape"))?;
+        let at = words.at.clone().unwrap_or_default();
+        let mut pose = pose(&at, &shape, level);
+        let role = match (&words.driven, &words.free) {
+            (Some(words), _) => Role::Driven(self.motion(words).map_err(place("driven"))?),
+            (None, Some(words)) => Role::Free(free(words, &shape)),
+            (None, None) => Role::Fixed,
+        };
+        if at.draft == Some(Draft::Equilibrium) {
+            let Role::Free(body) = &role else {
+                let key = format!("{key}.at.draft");
+                return Err(self.wrong_with(
+                    &key,
+                    "only a free body finds its own draft",
+                    "give the height or a draft in metres",
+                ));
+            };
+            let rho0 = self.model.rho0.unwrap_or_default();
+            let rise = equilibrium_height(&shape, &pose, body.mass, rho0, level).map_err(place("at.draft"))?;
+            pose.position[D - 1] += rise;
+        }
+        Ok(SolidSpec {
+            name: words.name.clone(),
+            shape,
+            pose,
+            role,
+            friction: words.friction.unwrap_or_default(),
+            restitution: words.restitution.unwrap_or_default(),
+        })
+    }
+
+    fn motion<const D: usize>(&self, words: &DrivenWords) -> Result<Motion<D>> {
+        let unit = |x: &[f64]| vector::<D>(x).normalize();
+        if let (Some(along), Some(distance)) = (&words.along, &words.distance) {
+            return Ok(Motion::slide(unit(along), self.law(distance, Unit::Metres)?));
+        }
+        let centre = vector(words.hinge.as_deref().unwrap_or(&[]));
+        let axis = words.axis.as_ref().map_or_else(|| vec![1.0], |axis| unit(axis).iter().copied().collect());
+        let law = match (&words.angle, &words.angle_deg) {
+            (Some(law), _) => self.law(law, Unit::Radians)?,
+            (None, Some(law)) => self.law(law, Unit::Degrees)?,
+            (None, None) => return Err(Error::scene("this does not say one motion")),
+        };
+        Ok(Motion::hinge(centre, &axis, law))
+    }
+
+    fn law(&self, words: &LawWords, unit: Unit) -> Result<Law> {
+        if let Some(text) = &words.formula {
+            let formula = Formula::parse(text)?;
+            return Ok(Law::Formula(match unit {
+                Unit::Degrees => Formula::parse(&format!("({text})*(pi/180)"))?,
+                Unit::Metres | Unit::Radians => formula,
+            }));
+        }
+        let path = table::beside(&self.origin.folder, words.file.as_deref().unwrap_or(""))?;
+        let column = words.column.as_deref().unwrap_or("");
+        let series = table::series(&path, words.time.as_deref().unwrap_or("t_s"), column)?;
+        let degrees = unit == Unit::Degrees || (unit == Unit::Radians && column.ends_with("_deg"));
+        let factor = words.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
+        let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
+        Ok(Law::Table(Series::new(series.times(), values)?))
+    }
+}
+
+/// The unit in which a law is written.
+#[derive(Clone, Copy, PartialEq)]
+enum Unit {
+    Metres,
+    Radians,
+    Degrees,
+}
+
+fn free<const D: usize>(words: &FreeWords, shape: &Shape<D>) -> FreeBody<D> {
+    let mut body = match (words.density, words.mass) {
+        (Some(density), _) => FreeBody::from_density(shape, density),
+        (None, mass) => FreeBody::from_mass(shape, mass.unwrap_or_default()),
+    };
+    match &words.inertia {
+        Some(Numbers::One(x)) => {
+            body.inertia = Matrix::zeros();
+            body.inertia[(0, 0)] = *x;
+        }
+        Some(Numbers::List(list)) => body.inertia = Matrix::from_diagonal(&vector(list)),
+        Some(Numbers::Rows(rows)) => body.inertia = Matrix::from_fn(|i, j| rows[i][j]),
+        None => {}
+    }
+    let given = |x: &Option<Vec<f64>>| x.as_ref().map_or_else(Vector::zeros, |x| vector(x));
+    body.centre += given(&words.centre_offset);
+    body.velocity = given(&words.velocity);
+    body.spin = match &words.spin {
+        Some(Numbers::One(x)) => Wedge::from_axial(&[*x]),
+        Some(Numbers::List(list)) => Wedge::from_axial(list),
+        _ => Wedge::zero(),
+    };
+    for lock in &words.locked {
+        match lock {
+            Lock::X => body.locked_translations[0] = true,
+            Lock::Y => body.locked_translations[1] = true,
+            Lock::Z => body.locked_translations[D - 1] = true,
+            Lock::Turn | Lock::TurnX => body.locked_rotations[0] = true,
+            Lock::TurnY => body.locked_rotations[1] = true,
+            Lock::TurnZ => body.locked_rotations[2] = true,
+        }
+    }
+    body
+}

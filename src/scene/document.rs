@@ -1,0 +1,242 @@
+//! From text to words: parses TOML, applies `--set`, and remembers where every word was written, so that
+//! each error can point at it.
+//!
+//! A choice written as a bare word, `viscosity = "artificial"`, is read as the choice with nothing set,
+//! `viscosity = { artificial = {} }`.
+
+use std::{
+    borrow::Cow,
+    collections::BTreeMap,
+    ops::Range,
+    path::{Path, PathBuf},
+};
+
+use serde::Deserialize;
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
+
+use super::{Scene, sets, wording};
+use crate::error::{Error, Result};
+
+/// Keys whose value is one choice out of several laws.
+pub(super) const CHOICES: [&str; 6] =
+    ["model.kernel", "model.viscosity", "model.diffusion", "model.shifting", "model.walls", "time.scheme"];
+
+/// Where the words of a scene were written. Two scenes that say the same are equal wherever it was written.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Origin {
+    /// The file as the user named it; empty if a program built the scene.
+    pub file: String,
+    /// Where the files that the scene names are looked for.
+    pub folder: PathBuf,
+    /// Line and column of every key.
+    places: BTreeMap<String, (usize, usize)>,
+    /// Keys set on the command line.
+    sets: Vec<String>,
+    /// Names of the solids, in order, so that a key can say `solid.box` for `solid.2`.
+    names: Vec<String>,
+}
+
+impl PartialEq for Origin {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// Who said it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Nobody: the default, with its reason.
+    Default(String),
+    /// This line of the scene.
+    Line(usize),
+    /// `--set` on the command line.
+    Set,
+    /// The program that built the scene.
+    Program,
+}
+
+impl Origin {
+    /// The place of `key`, or of the nearest key above it that was written, put on `error`.
+    pub fn place(&self, error: Error, key: &str) -> Error {
+        if self.sets.iter().any(|set| key.starts_with(set.as_str())) {
+            return error.at("--set", None, self.shown(key));
+        }
+        if self.file.is_empty() {
+            return error.at("a scene built by a program", None, self.shown(key));
+        }
+        let mut above = key;
+        while !self.places.contains_key(above) && above.contains('.') {
+            above = above.rsplit_once('.').map_or("", |(parent, _)| parent);
+        }
+        error.at(self.file.clone(), self.places.get(above).copied(), self.shown(key))
+    }
+
+    /// Who said `key`; `None` if nobody did.
+    pub fn source(&self, key: &str) -> Option<Source> {
+        if self.sets.iter().any(|set| key == set || key.starts_with(&format!("{set}."))) {
+            return Some(Source::Set);
+        }
+        if self.file.is_empty() {
+            return None;
+        }
+        self.places.get(key).map(|(line, _)| Source::Line(*line))
+    }
+
+    /// `key` with the names of solids in place of their numbers.
+    pub fn shown(&self, key: &str) -> String {
+        let mut parts: Vec<&str> = key.split('.').collect();
+        if let ["solid", number, ..] = parts[..]
+            && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.names.get(i))
+            && !name.contains(['.', '/'])
+        {
+            parts[1] = name;
+        }
+        parts.join(".")
+    }
+}
+
+/// Reads the words of a scene from `text`; `file` is its name for messages, `sets` the keys and values of
+/// `--set`, which win over the text.
+pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, String)]) -> Result<Scene> {
+    let mut root = DeTable::parse(text).map_err(|e| {
+        let at = e.span().map(|span| line_column(text, span.start));
+        Error::scene(format!("this is not TOML: {}", e.message()))
+            .at(file, at, "")
+            .help(wording::toml_help(e.message()))
+    })?;
+    let mut entries = Vec::new();
+    walk(root.get_ref(), "", &mut entries);
+    let names = names(root.get_ref());
+    let mut origin = Origin { file: file.into(), folder: folder.into(), names, ..Origin::default() };
+    origin.places = entries.iter().map(|e| (e.path.clone(), line_column(text, e.key.start))).collect();
+    spell_out(root.get_mut());
+    for (number, (key, value)) in sets.iter().enumerate() {
+        let span = beyond(text, number)..beyond(text, number);
+        let key = sets::set(root.get_mut(), key, value, span).map_err(|e| e.at("--set", None, key.clone()))?;
+        origin.sets.push(key);
+    }
+    spell_out(root.get_mut());
+    finite(root.get_ref(), "", &origin)?;
+    let mut scene = Scene::deserialize(toml::Deserializer::from(root)).map_err(|e| {
+        let start = e.span().map_or(0, |span| span.start);
+        let key = match start.checked_sub(beyond(text, 0)) {
+            Some(number) => origin.sets.get(number).cloned().unwrap_or_default(),
+            None => key_at(&entries, &e.span().unwrap_or(0..0)),
+        };
+        let (error, key) = wording::explain(e.message(), &key);
+        let shown = origin.shown(&key);
+        match start > text.len() {
+            true => error.at("--set", None, shown),
+            false => error.at(file, Some(line_column(text, start)), shown),
+        }
+    })?;
+    scene.origin = origin;
+    Ok(scene)
+}
+
+/// A span that lies in no text: that of the words of `--set` number `number`.
+fn beyond(text: &str, number: usize) -> usize {
+    text.len() + 1 + number
+}
+
+/// Line and column, from 1, of the byte `at`.
+fn line_column(text: &str, at: usize) -> (usize, usize) {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let before = &text[..at];
+    let start = before.rfind('\n').map_or(0, |i| i + 1);
+    (before.matches('\n').count() + 1, before[start..].chars().count() + 1)
+}
+
+/// A key that was written.
+struct Entry {
+    path: String,
+    key: Range<usize>,
+    value: Range<usize>,
+}
+
+/// The key `part` inside the key `path`.
+pub(super) fn under(path: &str, part: impl std::fmt::Display) -> String {
+    if path.is_empty() { part.to_string() } else { format!("{path}.{part}") }
+}
+
+fn walk(table: &DeTable, path: &str, entries: &mut Vec<Entry>) {
+    for (key, value) in table {
+        let path = under(path, key.get_ref());
+        entries.push(Entry { path: path.clone(), key: key.span(), value: value.span() });
+        walk_value(value, &path, entries);
+    }
+}
+
+fn walk_value(value: &Spanned<DeValue>, path: &str, entries: &mut Vec<Entry>) {
+    match value.get_ref() {
+        DeValue::Table(inner) => walk(inner, path, entries),
+        DeValue::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                let path = under(path, i);
+                entries.push(Entry { path: path.clone(), key: item.span(), value: item.span() });
+                walk_value(item, &path, entries);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The key that was written at `span`, or whose value encloses it most closely.
+fn key_at(entries: &[Entry], span: &Range<usize>) -> String {
+    let exact = entries.iter().find(|e| e.key == *span);
+    let enclosing = || {
+        let holds = |e: &&Entry| e.value.start <= span.start && span.end <= e.value.end;
+        entries.iter().filter(holds).min_by_key(|e| e.value.end - e.value.start)
+    };
+    exact.or_else(enclosing).map(|e| e.path.clone()).unwrap_or_default()
+}
+
+fn names(root: &DeTable) -> Vec<String> {
+    let solids = root.get("solid").and_then(|s| s.get_ref().as_array());
+    let name = |solid: &Spanned<DeValue>| {
+        let name = solid.get_ref().as_table()?.get("name")?.get_ref().as_str()?;
+        Some(name.to_string())
+    };
+    solids.into_iter().flat_map(|s| s.iter()).enumerate().map(|(i, s)| name(s).unwrap_or(i.to_string())).collect()
+}
+
+/// Writes out every choice given as a bare word.
+fn spell_out(root: &mut DeTable) {
+    for choice in CHOICES {
+        let Some((section, key)) = choice.split_once('.') else { continue };
+        let Some(DeValue::Table(section)) = root.get_mut(section).map(Spanned::get_mut) else { continue };
+        let Some(value) = section.get_mut(key) else { continue };
+        let span = value.span();
+        let DeValue::String(word) = value.get_ref() else { continue };
+        let mut table = DeTable::new();
+        let nothing = Spanned::new(span.clone(), DeValue::Table(DeTable::new()));
+        table.insert(Spanned::new(span, Cow::Owned(word.to_string())), nothing);
+        *value.get_mut() = DeValue::Table(table);
+    }
+}
+
+/// Refuses numbers that are not numbers.
+fn finite(table: &DeTable, path: &str, origin: &Origin) -> Result<()> {
+    table.iter().try_for_each(|(key, value)| finite_value(value, &under(path, key.get_ref()), origin))
+}
+
+fn finite_value(value: &Spanned<DeValue>, path: &str, origin: &Origin) -> Result<()> {
+    match value.get_ref() {
+        DeValue::Float(x) if !x.as_str().replace('_', "").parse::<f64>().is_ok_and(f64::is_finite) => {
+            let error = Error::scene(format!("{} is not a finite number", x.as_str()))
+                .help("write a number; where you mean \"no limit\", leave the line out");
+            Err(origin.place(error, path))
+        }
+        DeValue::Table(inner) => finite(inner, path, origin),
+        DeValue::Array(items) => {
+            items.iter().enumerate().try_for_each(|(i, item)| finite_value(item, &under(path, i), origin))
+        }
+        _ => Ok(()),
+    }
+}

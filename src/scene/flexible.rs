@@ -1,0 +1,198 @@
+//! Words that may be written in more than one form: a word or a table, a number or a list.
+
+use std::fmt;
+
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
+};
+
+/// Frames for ParaView: `"off"`, or when and which fields.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Frames {
+    /// None are written.
+    Off,
+    /// Some are.
+    On(FramesWords),
+}
+
+/// When frames are written, and with which fields.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FramesWords {
+    /// Simulated time between frames, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub every: Option<f64>,
+    /// Fields of the particles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fields: Option<Vec<String>>,
+}
+
+impl Serialize for Frames {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Off => serializer.serialize_str("off"),
+            Self::On(words) => words.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Frames {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct Words;
+        impl<'de> Visitor<'de> for Words {
+            type Value = Frames;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "a table with `every` and `fields`, or \"off\"")
+            }
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<Frames, E> {
+                match word {
+                    "off" => Ok(Frames::Off),
+                    _ => Err(E::invalid_value(de::Unexpected::Str(word), &self)),
+                }
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Frames, A::Error> {
+                FramesWords::deserialize(MapAccessDeserializer::new(map)).map(Frames::On)
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}
+
+/// A draft: in metres, or the one at which the body floats at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Draft {
+    /// Where weight and buoyancy balance.
+    Equilibrium,
+    /// Depth of the lowest point below the still level, m.
+    Metres(f64),
+}
+
+impl Serialize for Draft {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Equilibrium => serializer.serialize_str("equilibrium"),
+            Self::Metres(draft) => serializer.serialize_f64(*draft),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Draft {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct Words;
+        impl Visitor<'_> for Words {
+            type Value = Draft;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "\"equilibrium\" or a number of metres")
+            }
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<Draft, E> {
+                match word {
+                    "equilibrium" => Ok(Draft::Equilibrium),
+                    _ => Err(E::invalid_value(de::Unexpected::Str(word), &self)),
+                }
+            }
+            fn visit_f64<E: de::Error>(self, metres: f64) -> Result<Draft, E> {
+                Ok(Draft::Metres(metres))
+            }
+            fn visit_i64<E: de::Error>(self, metres: i64) -> Result<Draft, E> {
+                Ok(Draft::Metres(metres as f64))
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}
+
+/// A number, a list of numbers, or a list of rows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Numbers {
+    /// One.
+    One(f64),
+    /// A list.
+    List(Vec<f64>),
+    /// Rows of a matrix.
+    Rows(Vec<Vec<f64>>),
+}
+
+impl<'de> Deserialize<'de> for Numbers {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct Words;
+        impl<'de> Visitor<'de> for Words {
+            type Value = Numbers;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "a number, a list of numbers, or a list of rows")
+            }
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<Numbers, E> {
+                Ok(Numbers::One(x))
+            }
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<Numbers, E> {
+                Ok(Numbers::One(x as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Numbers, A::Error> {
+                let (mut list, mut rows) = (Vec::new(), Vec::new());
+                while let Some(entry) = seq.next_element::<Numbers>()? {
+                    match entry {
+                        Numbers::One(x) => list.push(x),
+                        Numbers::List(row) => rows.push(row),
+                        Numbers::Rows(_) => return Err(de::Error::custom("a list nested too deep")),
+                    }
+                }
+                match (list.is_empty(), rows.is_empty()) {
+                    (_, true) => Ok(Numbers::List(list)),
+                    (true, false) => Ok(Numbers::Rows(rows)),
+                    (false, false) => Err(de::Error::custom("a list that mixes numbers and lists")),
+                }
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}
+
+/// A line: its points, or a table with the columns `x_m` and `y_m`; as a wall it may have a thickness.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LineWords {
+    /// Points, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<Vec<Vec<f64>>>,
+    /// A table of points, beside the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Thickness of a wall, m; as many dp as the kernel reaches if not said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
+}
+
+impl LineWords {
+    /// The line through `points` (m).
+    pub fn through<const N: usize>(points: [[f64; 2]; N]) -> Self {
+        Self { points: Some(points.iter().map(|p| p.to_vec()).collect()), ..Self::default() }
+    }
+}
+
+impl<'de> Deserialize<'de> for LineWords {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        #[derive(Default, Deserialize)]
+        #[serde(deny_unknown_fields, default)]
+        struct Table {
+            points: Option<Vec<Vec<f64>>>,
+            file: Option<String>,
+            thickness: Option<f64>,
+        }
+        struct Words;
+        impl<'de> Visitor<'de> for Words {
+            type Value = LineWords;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "a list of points, or a table with `points` or `file`")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<LineWords, A::Error> {
+                let points = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
+                Ok(LineWords { points: Some(points), ..LineWords::default() })
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LineWords, A::Error> {
+                let Table { points, file, thickness } = Table::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(LineWords { points, file, thickness })
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}

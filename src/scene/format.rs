@@ -1,0 +1,298 @@
+//! The words of a scene, as plain data: what `scene.toml` may say, and what a program may build.
+//!
+//! A missing word is `None` here; its default is filled in by [`resolve`](super::resolve), which also
+//! says why. Vectors are lists of as many numbers as the scene has dimensions. Units are SI; keys that
+//! end in `_deg` are in degrees. `docs/scene.md` explains every key.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    bodies::{AtWords, ShapeWords, SolidWords},
+    document::Origin,
+    flexible::Frames,
+    plan::Score,
+};
+use crate::model::{Diffusion, Kernel, Scheme, Shifting, Viscosity, Walls};
+
+/// A scene: the caption of an experiment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Caption.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particle spacing, m.
+    pub dp: f64,
+    /// Simulated time at which the run ends, s.
+    pub until: f64,
+    /// Acceleration of gravity, m/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<Vec<f64>>,
+    /// Box that nothing may leave.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub domain: Option<BoxWords>,
+    /// Bodies of water.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub water: Vec<WaterWords>,
+    /// Solids.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub solid: Vec<SolidWords>,
+    /// The chosen laws.
+    #[serde(default)]
+    pub model: ModelWords,
+    /// The time scheme.
+    #[serde(default)]
+    pub time: TimeWords,
+    /// What is watched.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probe: Vec<ProbeEntry>,
+    /// Frames for ParaView.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frames: Option<Frames>,
+    /// Checkpoints.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checkpoint: Option<CheckpointWords>,
+    /// What the run is held against.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub check: Vec<CheckEntry>,
+    /// Where each word was written.
+    #[serde(skip)]
+    pub(super) origin: Origin,
+}
+
+/// A box given by two corners.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxWords {
+    /// Lowest corner, m.
+    pub min: Vec<f64>,
+    /// Highest corner, m.
+    pub max: Vec<f64>,
+}
+
+/// A body of water.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WaterWords {
+    /// What it fills, minus the solids.
+    pub fill: FillWords,
+    /// Height of its surface, m, where that lies below the top of `fill`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<f64>,
+}
+
+/// What a body of water fills: a box by its corners, or any shape somewhere.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FillWords {
+    /// A box by its corners.
+    #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+    pub corners: Option<BoxWords>,
+    /// Any shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<ShapeWords>,
+    /// Where that shape is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<AtWords>,
+}
+
+/// The chosen laws.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ModelWords {
+    /// Kernel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kernel: Option<Kernel>,
+    /// Smoothing length over particle spacing, –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub h_over_dp: Option<f64>,
+    /// Smoothing length over the spacing's diagonal √D·dp, –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub c_h: Option<f64>,
+    /// Viscosity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub viscosity: Option<Viscosity>,
+    /// Density diffusion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diffusion: Option<Diffusion>,
+    /// Particle shifting.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shifting: Option<Shifting>,
+    /// Walls.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub walls: Option<Walls>,
+    /// Speed of sound, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub c0: Option<f64>,
+    /// Speed of sound over √(g · depth), –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub c0_factor: Option<f64>,
+    /// Reference density, kg/m³.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rho0: Option<f64>,
+    /// Exponent of the equation of state, –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gamma: Option<f64>,
+}
+
+/// The time scheme.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TimeWords {
+    /// Scheme.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scheme: Option<Scheme>,
+    /// Courant number, –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cfl: Option<f64>,
+    /// Longest step, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dt_max: Option<f64>,
+}
+
+/// One `[[probe]]`: exactly one of the words that say what it looks at.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ProbeEntry {
+    /// Stem of the file it writes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Simulated time between readings, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub every: Option<f64>,
+    /// Motion of the solid of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+    /// Force and torque on the solid of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<String>,
+    /// Surface elevation at a place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elevation: Option<PlaceWords>,
+    /// Velocity at a point, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<Vec<f64>>,
+    /// Pressure at a point, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<Vec<f64>>,
+    /// Energies of water and bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<bool>,
+}
+
+/// A place on the plan: x in 2-D, x and y in 3-D.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaceWords {
+    /// m.
+    pub x: f64,
+    /// m; 3-D only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+}
+
+/// Checkpoints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CheckpointWords {
+    /// Simulated time between them, s.
+    pub every: f64,
+}
+
+/// One `[[check]]`: a column of a probe held against a column of a reference table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CheckEntry {
+    /// `probe.column`, as in `box.heave_m`.
+    pub series: String,
+    /// The reference table, beside the scene.
+    pub reference: String,
+    /// Its column of values.
+    pub column: String,
+    /// Its column of times, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
+    /// Time added to the reference's, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delay: Option<f64>,
+    /// What the paper reached.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub paper: Option<Score>,
+    /// What the run must reach.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<Score>,
+}
+
+impl Scene {
+    /// A scene of `dimension` 2 or 3, particle spacing `dp` (m), that ends at `until` (s).
+    pub fn new(dimension: usize, dp: f64, until: f64) -> Self {
+        Self {
+            title: None,
+            dimension,
+            dp,
+            until,
+            gravity: None,
+            domain: None,
+            water: Vec::new(),
+            solid: Vec::new(),
+            model: ModelWords::default(),
+            time: TimeWords::default(),
+            probe: Vec::new(),
+            frames: None,
+            checkpoint: None,
+            check: Vec::new(),
+            origin: Origin::default(),
+        }
+    }
+
+    /// The same scene with a caption.
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = Some(title.into());
+        self
+    }
+
+    /// The same scene with water in the box from corner `min` to corner `max` (m) too.
+    pub fn water_box(mut self, min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
+        let corners = Some(BoxWords { min: min.into(), max: max.into() });
+        self.water.push(WaterWords { fill: FillWords { corners, ..FillWords::default() }, level: None });
+        self
+    }
+
+    /// The same scene with a solid more.
+    pub fn solid(mut self, solid: SolidWords) -> Self {
+        self.solid.push(solid);
+        self
+    }
+
+    /// The same scene with these laws.
+    pub fn model(mut self, model: ModelWords) -> Self {
+        self.model = model;
+        self
+    }
+
+    /// The same scene with a probe more.
+    pub fn probe(mut self, probe: ProbeEntry) -> Self {
+        self.probe.push(probe);
+        self
+    }
+
+    /// The same scene without frames.
+    pub fn without_frames(mut self) -> Self {
+        self.frames = Some(Frames::Off);
+        self
+    }
+}
+
+impl ProbeEntry {
+    /// The motion of the solid of this name.
+    pub fn motion(solid: impl Into<String>) -> Self {
+        Self { motion: Some(solid.into()), ..Self::default() }
+    }
+
+    /// Force and torque on the solid of this name.
+    pub fn force(solid: impl Into<String>) -> Self {
+        Self { force: Some(solid.into()), ..Self::default() }
+    }
+}

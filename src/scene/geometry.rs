@@ -1,0 +1,121 @@
+//! From words to shapes and poses. Lengths of vectors and defaults have been seen to before.
+
+use super::{AtWords, Axis, LineWords, Scene, ShapeWords, table};
+use crate::{
+    error::Result,
+    shape::Shape,
+    space::{Bounds, Pose, Vector},
+};
+
+/// The vector of the numbers `x`; as many as there are are taken.
+pub(super) fn vector<const D: usize>(x: &[f64]) -> Vector<D> {
+    Vector::from_fn(|i, _| x.get(i).copied().unwrap_or(0.0))
+}
+
+/// The shape that `words` say.
+pub(super) fn shape<const D: usize>(scene: &Scene, words: &ShapeWords) -> Result<Shape<D>> {
+    let thickness = |given: Option<f64>| given.unwrap_or(scene.layers() as f64 * scene.dp);
+    let number = |axis: Option<Axis>| axis.map_or(D - 1, |axis| axis as usize);
+    let shape = match words {
+        ShapeWords::Box { size } => Shape::Box { size: vector(size) },
+        ShapeWords::Ball { radius } => Shape::Ball { radius: *radius },
+        ShapeWords::Capsule { length, radius, axis } => {
+            Shape::Capsule { length: *length, radius: *radius, axis: number(*axis) }
+        }
+        ShapeWords::Cylinder { length, radius, axis } => {
+            Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
+        }
+        ShapeWords::Polygon(words) => Shape::Polygon { points: points(scene, words)? },
+        ShapeWords::Polyline(words) => {
+            Shape::Polyline { points: points(scene, words)?, thickness: thickness(words.thickness) }
+        }
+        ShapeWords::Tank { size, thickness: given } => Shape::Tank { size: vector(size), thickness: thickness(*given) },
+        ShapeWords::Compound(parts) => {
+            let part = |part: &super::PartWords| {
+                let inner = self::shape(scene, &part.shape)?;
+                let pose = part.at.as_ref().map_or_else(Pose::identity, |at| pose(at, &inner, 0.0));
+                Ok((pose, inner))
+            };
+            Shape::Compound(parts.iter().map(part).collect::<Result<_>>()?)
+        }
+    };
+    shape.check()?;
+    Ok(shape)
+}
+
+fn points<const D: usize>(scene: &Scene, words: &LineWords) -> Result<Vec<Vector<D>>> {
+    if let Some(points) = &words.points {
+        return Ok(points.iter().map(|p| vector(p)).collect());
+    }
+    let path = table::beside(&scene.origin.folder, words.file.as_deref().unwrap_or(""))?;
+    let columns = table::columns(&path, &["x_m", "y_m"])?;
+    Ok(columns[0].iter().zip(&columns[1]).map(|(&x, &y)| vector(&[x, y])).collect())
+}
+
+/// Where `at` puts `shape`; a draft in metres is below `level`, and one of equilibrium is left at zero.
+pub(super) fn pose<const D: usize>(at: &AtWords, shape: &Shape<D>, level: f64) -> Pose<D> {
+    let position = vector(&[at.x.unwrap_or(0.0), at.y.unwrap_or(0.0), at.z.unwrap_or(0.0)]);
+    let turn: Vec<f64> = match (&at.angle_deg, &at.turn_deg) {
+        (Some(angle), _) => vec![angle.to_radians()],
+        (None, Some(turn)) => turn.iter().map(|x| x.to_radians()).collect(),
+        (None, None) => vec![0.0; 3],
+    };
+    let mut pose = Pose::turned(position, &turn);
+    let bottom = match at.draft {
+        Some(super::Draft::Metres(draft)) => Some(level - draft),
+        Some(super::Draft::Equilibrium) => Some(level),
+        None => at.bottom,
+    };
+    if let Some(bottom) = bottom {
+        pose.position[D - 1] = 0.0;
+        pose.position[D - 1] = bottom - world_bounds(shape, &pose).min[D - 1];
+    }
+    pose
+}
+
+/// The smallest box around the posed shape, m.
+pub(super) fn world_bounds<const D: usize>(shape: &Shape<D>, pose: &Pose<D>) -> Bounds<D> {
+    let extent = |i: usize, sign: f64| {
+        let mut direction = Vector::<D>::zeros();
+        direction[i] = sign;
+        sign * pose.position[i] + reach(shape, &(pose.rotation.transpose() * direction))
+    };
+    Bounds { min: Vector::from_fn(|i, _| -extent(i, -1.0)), max: Vector::from_fn(|i, _| extent(i, 1.0)) }
+}
+
+/// The support function: how far the shape reaches in the direction `n`, a unit vector of its own frame, m.
+fn reach<const D: usize>(shape: &Shape<D>, n: &Vector<D>) -> f64 {
+    match shape {
+        Shape::Box { size } => 0.5 * n.abs().dot(size),
+        Shape::Ball { radius } => *radius,
+        Shape::Capsule { length, radius, axis } => 0.5 * n[*axis].abs() * length + radius,
+        Shape::Cylinder { length, radius, axis } => {
+            0.5 * n[*axis].abs() * length + radius * (1.0 - n[*axis] * n[*axis]).max(0.0).sqrt()
+        }
+        Shape::Polygon { points } => points.iter().map(|p| p.dot(n)).fold(f64::NEG_INFINITY, f64::max),
+        Shape::Compound(parts) => parts
+            .iter()
+            .map(|(pose, part)| pose.position.dot(n) + reach(part, &(pose.rotation.transpose() * n)))
+            .fold(f64::NEG_INFINITY, f64::max),
+        Shape::Polyline { .. } | Shape::Tank { .. } => {
+            let bounds = shape.bounds();
+            (0..D).map(|i| (n[i] * bounds.min[i]).max(n[i] * bounds.max[i])).sum()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_box_reaches_as_far_as_its_corner() {
+        let shape = Shape::<2>::Box { size: vector(&[0.2, 0.2]) };
+        let at = AtWords { bottom: Some(0.5), angle_deg: Some(45.0), ..AtWords::default() };
+        let bounds = world_bounds(&shape, &pose(&at, &shape, 0.0));
+        let half_diagonal = 0.1 * 2f64.sqrt();
+        // round-off of a sine and a product: a few 1e-16
+        assert!((bounds.min[1] - 0.5).abs() < 1e-15);
+        assert!((bounds.max[1] - 0.5 - 2.0 * half_diagonal).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,108 @@
+//! What is to be watched, kept and judged in a run, every default filled in: plain data, no files open.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+/// What a run does besides stepping.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Caption of the scene.
+    pub title: String,
+    /// Simulated time at which the run ends, s.
+    pub until: f64,
+    /// What is watched.
+    pub probes: Vec<ProbeWords>,
+    /// Frames for ParaView, if any.
+    pub frames: Option<FrameWords>,
+    /// Simulated time from one checkpoint to the next, s; none if not asked for.
+    pub checkpoint_every: Option<f64>,
+    /// What the run is held against.
+    pub checks: Vec<CheckWords>,
+    /// Folder of the scene file: where the tables it names lie.
+    pub folder: PathBuf,
+}
+
+/// One probe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProbeWords {
+    /// Stem of the file it writes; unique within a scene.
+    pub name: String,
+    /// What it looks at.
+    pub what: ProbeKind,
+    /// Simulated time from one reading to the next, s.
+    pub every: f64,
+}
+
+/// What a probe looks at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeKind {
+    /// Pose and velocity of a solid.
+    Motion {
+        /// The solid's name.
+        solid: String,
+    },
+    /// Force and torque of the water on a solid.
+    Force {
+        /// The solid's name.
+        solid: String,
+    },
+    /// Height of the free surface above a place.
+    Elevation {
+        /// Horizontal coordinates, m: D − 1 of them.
+        at: Vec<f64>,
+    },
+    /// Velocity of the water at a point.
+    Velocity {
+        /// The point, m.
+        at: Vec<f64>,
+    },
+    /// Pressure at a point.
+    Pressure {
+        /// The point, m.
+        at: Vec<f64>,
+    },
+    /// Energies of water and bodies.
+    Energy,
+}
+
+/// When frames are written, and with which fields.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameWords {
+    /// Simulated time from one frame to the next, s.
+    pub every: f64,
+    /// Fields of the particles, by name.
+    pub fields: Vec<String>,
+}
+
+/// A series of the run held against a reference.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CheckWords {
+    /// `probe.column`, as in `box.heave_m`.
+    pub series: String,
+    /// The reference table, beside the scene.
+    pub reference: PathBuf,
+    /// The reference's column of times, s.
+    pub time: String,
+    /// The reference's column of values.
+    pub column: String,
+    /// Time added to the reference's, s: what the reference calls 0 happens `delay` into the run.
+    pub delay: f64,
+    /// What the paper reached.
+    pub paper: Option<Score>,
+    /// What the run must reach.
+    pub bound: Option<Score>,
+}
+
+/// Figures of a comparison; one that is not given is not judged.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Score {
+    /// Relative deviation N, –: 0 is perfect.
+    #[serde(rename = "N")]
+    pub n: Option<f64>,
+    /// Amplitude ratio M, –: 1 is perfect.
+    #[serde(rename = "M")]
+    pub m: Option<f64>,
+}

@@ -1,0 +1,300 @@
+//! Fills in the defaults, each with its reason: the one place where a default stands.
+
+use std::{collections::BTreeMap, fmt};
+
+use super::{
+    AtWords, Axis, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, document::Source, verify::FIELDS,
+};
+use crate::{
+    error::Result,
+    law::{diffusion::Fourtakas, viscosity::Artificial},
+    model::{Diffusion, Kernel, Scheme, Shifting, Viscosity, Walls},
+};
+
+/// A value in force and who said it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resolved {
+    /// The key, as in `solid.box.free.density`.
+    pub key: String,
+    /// The value, as TOML.
+    pub value: String,
+    /// Who said it.
+    pub source: Source,
+}
+
+impl fmt::Display for Resolved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}  ({})", self.key, self.value, self.source)
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Default(reason) => write!(f, "default: {reason}"),
+            Self::Line(line) => write!(f, "scene line {line}"),
+            Self::Set => write!(f, "--set"),
+            Self::Program => write!(f, "program"),
+        }
+    }
+}
+
+/// Reasons of the defaults that were filled in, by key.
+pub(super) type Reasons = BTreeMap<String, String>;
+
+struct Filler(Reasons);
+
+impl Filler {
+    fn fill<T>(&mut self, key: impl Into<String>, slot: &mut Option<T>, value: T, reason: impl Into<String>) {
+        if slot.is_none() {
+            *slot = Some(value);
+            self.0.insert(key.into(), reason.into());
+        }
+    }
+}
+
+impl Scene {
+    /// Smoothing length over particle spacing where nobody says it, and why.
+    pub(super) fn default_h_over_dp(&self) -> (f64, &'static str) {
+        match self.dimension {
+            3 => (3f64.sqrt(), "the method's choice, h = √3 dp: about 170 neighbours"),
+            _ => (1.7, "waves lose height below 1.7 dp; about 36 neighbours"),
+        }
+    }
+
+    /// Layers of boundary particles: as many as the kernel reaches.
+    pub(super) fn layers(&self) -> usize {
+        (2.0 * self.h() / self.dp - 1e-9).ceil() as usize
+    }
+
+    /// The scene with every default filled in, and the reason of each.
+    ///
+    /// # Errors
+    /// `Scene` if the words contradict one another or cannot be meant.
+    pub(super) fn filled(&self) -> Result<(Self, Reasons)> {
+        self.verify()?;
+        let mut scene = self.clone();
+        let mut filler = Filler(Reasons::new());
+        filler.fill("title", &mut scene.title, "untitled".into(), "the scene has no title");
+        let mut gravity = vec![0.0; scene.dimension];
+        gravity[scene.dimension - 1] = -9.81;
+        filler.fill("gravity", &mut scene.gravity, gravity, "the earth's, down the last axis");
+        scene.fill_laws(&mut filler);
+        scene.fill_solids(&mut filler);
+        scene.fill_records(&mut filler);
+        Ok((scene, filler.0))
+    }
+
+    fn fill_laws(&mut self, filler: &mut Filler) {
+        let (ratio, why) = self.default_h_over_dp();
+        let (model, time) = (&mut self.model, &mut self.time);
+        let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
+        filler.fill("model.kernel", &mut model.kernel, Kernel::Wendland, wendland);
+        if model.c_h.is_none() {
+            filler.fill("model.h_over_dp", &mut model.h_over_dp, ratio, why);
+        }
+        let viscosity = Viscosity::Artificial(Artificial::default());
+        filler.fill(
+            "model.viscosity",
+            &mut model.viscosity,
+            viscosity,
+            "robust in any flow; α = 0.02 as in the method",
+        );
+        let diffusion = Diffusion::Fourtakas(Fourtakas::default());
+        let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
+        filler.fill("model.diffusion", &mut model.diffusion, diffusion, why);
+        filler.fill("model.shifting", &mut model.shifting, Shifting::None, "shifting slowly inflates the water");
+        filler.fill("model.walls", &mut model.walls, Walls::Dbc, "the method's wall, robust in violent flow");
+        if model.c0.is_none() {
+            let why = "density then varies by less than 1 %; the depth is from the lowest water to the highest level";
+            filler.fill("model.c0_factor", &mut model.c0_factor, 20.0, why);
+        }
+        filler.fill("model.rho0", &mut model.rho0, 1000.0, "fresh water, kg/m³");
+        filler.fill("model.gamma", &mut model.gamma, 7.0, "water");
+        let why = "second order, and less work for the same error than Verlet";
+        filler.fill("time.scheme", &mut time.scheme, Scheme::Symplectic, why);
+        let (cfl, why) = match time.scheme {
+            Some(Scheme::Verlet { .. }) => (0.2, "the method's, for Verlet"),
+            _ => (0.4, "two force passes a step allow twice Verlet's 0.2"),
+        };
+        filler.fill("time.cfl", &mut time.cfl, cfl, why);
+    }
+
+    fn fill_solids(&mut self, filler: &mut Filler) {
+        let sheet =
+            Sheet { thickness: self.layers() as f64 * self.dp, upright: [Axis::Y, Axis::Z][self.dimension - 2] };
+        for (i, water) in self.water.iter_mut().enumerate() {
+            if let Some(shape) = &mut water.fill.shape {
+                sheet.fill(filler, &format!("water.{i}.fill.shape"), shape);
+            }
+        }
+        for (i, solid) in self.solid.iter_mut().enumerate() {
+            let key = format!("solid.{i}");
+            sheet.fill(filler, &format!("{key}.shape"), &mut solid.shape);
+            filler.fill(format!("{key}.at"), &mut solid.at, AtWords::default(), "the shape's frame is the world's");
+            filler.fill(format!("{key}.friction"), &mut solid.friction, 0.3, "wet wood or plastic");
+            let why = "the water between bodies takes the bounce";
+            filler.fill(format!("{key}.restitution"), &mut solid.restitution, 0.0, why);
+            let Some(driven) = &mut solid.driven else { continue };
+            let laws = [
+                ("distance", &mut driven.distance),
+                ("angle", &mut driven.angle),
+                ("angle_deg", &mut driven.angle_deg),
+            ];
+            for (word, law) in laws {
+                if let Some(law @ LawWords { file: Some(_), .. }) = law {
+                    let key = format!("{key}.driven.{word}");
+                    filler.fill(format!("{key}.time"), &mut law.time, "t_s".into(), "the name our own tables have");
+                    filler.fill(format!("{key}.scale"), &mut law.scale, 1.0, "as in the table");
+                }
+            }
+        }
+    }
+
+    fn fill_records(&mut self, filler: &mut Filler) {
+        for (i, name) in self.probe_names().into_iter().enumerate() {
+            let probe = &mut self.probe[i];
+            filler.fill(format!("probe.{i}.name"), &mut probe.name, name, "after what it looks at");
+            filler.fill(format!("probe.{i}.every"), &mut probe.every, self.until / 1000.0, "1000 readings a run");
+        }
+        let frames = self.frames.get_or_insert(Frames::On(FramesWords::default()));
+        if let Frames::On(words) = frames {
+            filler.fill("frames.every", &mut words.every, self.until / 100.0, "100 frames a run");
+            let fields = FIELDS.map(String::from).to_vec();
+            filler.fill("frames.fields", &mut words.fields, fields, "all that there are");
+        }
+        for (i, check) in self.check.iter_mut().enumerate() {
+            filler.fill(format!("check.{i}.time"), &mut check.time, "t_s".into(), "the name our own tables have");
+            filler.fill(format!("check.{i}.delay"), &mut check.delay, 0.0, "the clocks agree");
+        }
+    }
+
+    /// Every value in force and who said it, in the order of `docs/scene.md`.
+    ///
+    /// # Errors
+    /// `Scene` if the words contradict one another or cannot be meant, or a file that gives a shape is
+    /// missing or wrong.
+    pub fn resolve(&self) -> Result<Vec<Resolved>> {
+        let (scene, reasons) = self.filled()?;
+        let words = toml::Table::try_from(&scene).unwrap_or_default();
+        let mut lines = Vec::new();
+        for section in ORDER {
+            if let Some(value) = words.get(section) {
+                self.flatten(section.into(), value, &reasons, &mut lines);
+            }
+        }
+        let derived = |key: &str, value: f64, why: &str| Resolved {
+            key: key.into(),
+            value: format!("{value}"),
+            source: Source::Default(why.into()),
+        };
+        let c0 = match self.dimension {
+            2 => scene.sound_speed::<2>()?,
+            _ => scene.sound_speed::<3>()?,
+        };
+        let at = lines.iter().position(|line| line.key.starts_with("time.")).unwrap_or(lines.len());
+        if scene.model.c0.is_none() {
+            lines.insert(at, derived("model.c0", c0, "c0_factor · √(g · depth), m/s"));
+        }
+        lines.insert(at, derived("model.h", scene.h(), "smoothing length from dp, m"));
+        Ok(lines)
+    }
+
+    fn flatten(&self, key: String, value: &toml::Value, reasons: &Reasons, lines: &mut Vec<Resolved>) {
+        match value {
+            toml::Value::Table(table) if !table.is_empty() => {
+                table.iter().for_each(|(part, value)| self.flatten(format!("{key}.{part}"), value, reasons, lines));
+            }
+            toml::Value::Array(items) if items.iter().any(toml::Value::is_table) => {
+                items
+                    .iter()
+                    .enumerate()
+                    .for_each(|(i, value)| self.flatten(format!("{key}.{i}"), value, reasons, lines));
+            }
+            leaf => {
+                let source = self.source(&key, reasons);
+                lines.push(Resolved { key: self.origin.shown(&key), value: leaf.to_string(), source });
+            }
+        }
+    }
+
+    /// Who said `key`: the default above it, its line, or else the law's or shape's own default.
+    fn source(&self, key: &str, reasons: &Reasons) -> Source {
+        let above = |key: &str| key.rsplit_once('.').map(|(parent, _)| parent.to_string());
+        let mut place = Some(key.to_string());
+        while let Some(at) = place {
+            if let Some(reason) = reasons.get(&at) {
+                return Source::Default(reason.clone());
+            }
+            if at == key
+                && let Some(source) = self.origin.source(&at)
+            {
+                return source;
+            }
+            place = above(&at);
+        }
+        if self.origin.file.is_empty() { Source::Program } else { self.inherited(key) }
+    }
+
+    /// The source of a value that was not written itself, but whose table may have been.
+    fn inherited(&self, key: &str) -> Source {
+        let written = |parent: &str| self.origin.source(parent);
+        match key.rsplit_once('.') {
+            Some((parent, "points")) => written(parent).unwrap_or(Source::Program),
+            Some((parent, _)) if written(parent).is_some() => {
+                Source::Default("of this choice, see docs/scene.md".into())
+            }
+            _ => Source::Default("see docs/scene.md".into()),
+        }
+    }
+}
+
+/// The order in which values are listed.
+const ORDER: [&str; 14] = [
+    "title",
+    "dimension",
+    "dp",
+    "until",
+    "gravity",
+    "domain",
+    "water",
+    "solid",
+    "model",
+    "time",
+    "probe",
+    "frames",
+    "checkpoint",
+    "check",
+];
+
+/// What a shape needs to know of the scene for its defaults.
+struct Sheet {
+    thickness: f64,
+    upright: Axis,
+}
+
+impl Sheet {
+    fn fill(&self, filler: &mut Filler, key: &str, shape: &mut ShapeWords) {
+        let thick = "as many dp as the kernel reaches";
+        match shape {
+            ShapeWords::Capsule { axis, .. } => {
+                filler.fill(format!("{key}.capsule.axis"), axis, self.upright, "upright");
+            }
+            ShapeWords::Cylinder { axis, .. } => {
+                filler.fill(format!("{key}.cylinder.axis"), axis, self.upright, "upright");
+            }
+            ShapeWords::Polyline(LineWords { thickness, .. }) => {
+                filler.fill(format!("{key}.polyline.thickness"), thickness, self.thickness, thick);
+            }
+            ShapeWords::Tank { thickness, .. } => {
+                filler.fill(format!("{key}.tank.thickness"), thickness, self.thickness, thick);
+            }
+            ShapeWords::Compound(parts) => {
+                for (i, part) in parts.iter_mut().enumerate() {
+                    self.fill(filler, &format!("{key}.compound.{i}.shape"), &mut part.shape);
+                }
+            }
+            ShapeWords::Box { .. } | ShapeWords::Ball { .. } | ShapeWords::Polygon(_) => {}
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! The scenes that come with the program, for a binary that stands alone.
+
+/// A scene of the program's own: the name of its folder, its `scene.toml`, and the other files of the folder
+/// by name.
+pub type Shipped = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+
+/// Text of a file of the folder of a scene.
+macro_rules! text {
+    ($scene:literal, $file:literal) => {
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $scene, "/", $file))
+    };
+}
+
+macro_rules! scene {
+    ($scene:literal $(, $file:literal)*) => {
+        (
+            $scene,
+            text!($scene, "scene.toml"),
+            &[("README.md", text!($scene, "README.md")) $(, ($file, text!($scene, $file)))*],
+        )
+    };
+}
+
+/// All of them.
+pub fn shipped() -> &'static [Shipped] {
+    &[
+        scene!("raft"),
+        scene!("still-tank"),
+        scene!("buoyancy"),
+        scene!("buoyancy-3d"),
+        scene!("dam-break", "tip.csv"),
+        scene!("flume-box", "flap.csv", "body.csv", "elevation_1.csv", "elevation_2.csv"),
+        scene!("column", "force.csv", "velocity.csv"),
+    ]
+}

@@ -1,0 +1,258 @@
+//! Holds the words of solids against one another.
+
+use super::{
+    AtWords, DrivenWords, FreeWords, LawWords, Lock, Numbers, Scene, ShapeWords, SolidWords,
+    flexible::LineWords,
+    verify::{last, said},
+};
+use crate::error::Result;
+
+impl Scene {
+    pub(super) fn verify_solids(&self) -> Result<()> {
+        for (i, solid) in self.solid.iter().enumerate() {
+            let key = format!("solid.{i}");
+            self.good_name(&format!("{key}.name"), &solid.name)?;
+            if self.solid[..i].iter().any(|other| other.name == solid.name) {
+                let what = format!("two solids are called \"{}\"", solid.name);
+                return Err(self.wrong_with(&format!("{key}.name"), what, "give each its own name"));
+            }
+            shape(self, &format!("{key}.shape"), &solid.shape)?;
+            if let Some(words) = &solid.at {
+                at(self, &format!("{key}.at"), words, true)?;
+            }
+            self.role(&key, solid)?;
+            for (word, x, most) in [("friction", solid.friction, 10.0), ("restitution", solid.restitution, 1.0)] {
+                if x.is_some_and(|x| !(0.0..=most).contains(&x)) {
+                    let help = format!("{word} is a number from 0 to {most}");
+                    let what = format!("{word} cannot be {}", x.unwrap_or_default());
+                    return Err(self.wrong_with(&format!("{key}.{word}"), what, help));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn role(&self, key: &str, solid: &SolidWords) -> Result<()> {
+        let roles =
+            [("fixed", solid.fixed.is_some()), ("driven", solid.driven.is_some()), ("free", solid.free.is_some())];
+        let roles: Vec<&str> = roles.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect();
+        if roles.len() != 1 {
+            let what = match roles.len() {
+                0 => format!("nothing says what moves solid \"{}\"", solid.name),
+                _ => format!("solid \"{}\" is {}; it can be one of them", solid.name, said(&roles)),
+            };
+            let help = "write one of\n  fixed  = true\n  driven = { along = [1.0, 0.0], distance = { formula = \
+                        \"0.05*sin(2*pi*t)\" } }\n  free   = { density = 500.0 }";
+            let place = roles.last().map_or(key.to_string(), |role| format!("{key}.{role}"));
+            return Err(self.wrong_with(&place, what, help));
+        }
+        if solid.fixed == Some(false) {
+            let help = "a solid that is not fixed is driven = { ... } or free = { ... }";
+            return Err(self.wrong_with(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
+        }
+        if let Some(words) = &solid.driven {
+            self.driven(&format!("{key}.driven"), words)?;
+        }
+        if let Some(words) = &solid.free {
+            self.free(&format!("{key}.free"), words)?;
+        }
+        Ok(())
+    }
+
+    fn driven(&self, key: &str, words: &DrivenWords) -> Result<()> {
+        let laws = [("distance", &words.distance), ("angle", &words.angle), ("angle_deg", &words.angle_deg)];
+        let laws: Vec<(&str, &LawWords)> = laws.into_iter().filter_map(|(word, l)| Some((word, l.as_ref()?))).collect();
+        let (law, fits) = match (&words.along, &words.hinge, &laws[..]) {
+            (Some(_), None, [("distance", law)]) => (law, words.axis.is_none()),
+            (None, Some(_), [("angle" | "angle_deg", law)]) => (law, words.axis.is_some() == (self.dimension == 3)),
+            _ => {
+                let help = "either  along with distance, or  hinge (in 3-D with axis) with angle or angle_deg";
+                return Err(self.wrong_with(key, "this does not say one motion", help));
+            }
+        };
+        if !fits {
+            let help =
+                "in 3-D a hinge has an axis, as in axis = [0.0, 1.0, 0.0]; in 2-D, and along a line, there is none";
+            return Err(self.wrong_with(key, "axis is missing, or has no meaning here", help));
+        }
+        for (word, vector) in [("along", &words.along), ("hinge", &words.hinge), ("axis", &words.axis)] {
+            let Some(vector) = vector else { continue };
+            let key = format!("{key}.{word}");
+            self.vector(&key, vector)?;
+            if word != "hinge" && vector.iter().all(|x| x.abs() < 1e-12) {
+                return Err(self.wrong(&key, format!("{word} points nowhere")));
+            }
+        }
+        let key = format!("{key}.{}", laws[0].0);
+        match (&law.formula, &law.file) {
+            (Some(_), None) if law.column.is_none() && law.scale.is_none() && law.time.is_none() => Ok(()),
+            (Some(_), None) => Err(self.wrong(&key, "column, time and scale belong to a file, not to a formula")),
+            (None, Some(_)) if law.column.is_some() => Ok(()),
+            (None, Some(_)) => Err(self.wrong(&key, "which column of the file?")),
+            _ => Err(self.wrong(&key, "a law is either a formula or a file with a column")),
+        }
+    }
+
+    fn free(&self, key: &str, words: &FreeWords) -> Result<()> {
+        self.positive(&format!("{key}.density"), words.density)?;
+        self.positive(&format!("{key}.mass"), words.mass)?;
+        if words.density.is_some() == words.mass.is_some() {
+            return Err(self.wrong_with(
+                key,
+                "a free body has either a density or a mass",
+                "write  free = { density = 500.0 }        # kg/m³",
+            ));
+        }
+        for (word, vector) in [("centre_offset", &words.centre_offset), ("velocity", &words.velocity)] {
+            if let Some(vector) = vector {
+                self.vector(&format!("{key}.{word}"), vector)?;
+            }
+        }
+        let three = self.dimension == 3;
+        let spin_fits = match &words.spin {
+            None => true,
+            Some(Numbers::One(_)) => !three,
+            Some(Numbers::List(list)) => three && list.len() == 3,
+            Some(Numbers::Rows(_)) => false,
+        };
+        if !spin_fits {
+            return Err(self.wrong_with(
+                &format!("{key}.spin"),
+                "spin does not fit the dimension",
+                "in 2-D a number, spin = 0.5; in 3-D a vector, spin = [0.0, 0.0, 0.5]        # rad/s",
+            ));
+        }
+        self.inertia(&format!("{key}.inertia"), words)?;
+        let foreign = |lock: &&Lock| match lock {
+            Lock::X | Lock::Y => false,
+            Lock::Z | Lock::TurnX | Lock::TurnY | Lock::TurnZ => !three,
+            Lock::Turn => three,
+        };
+        match words.locked.iter().find(foreign) {
+            Some(_) => Err(self.wrong_with(
+                &format!("{key}.locked"),
+                format!("there is no such motion in {}-D", self.dimension),
+                "in 2-D: x, y, turn; in 3-D: x, y, z, turn_x, turn_y, turn_z",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn inertia(&self, key: &str, words: &FreeWords) -> Result<()> {
+        let good = match (&words.inertia, self.dimension) {
+            (None, _) => true,
+            (Some(Numbers::One(x)), 2) => *x > 0.0,
+            (Some(Numbers::List(list)), 3) => list.len() == 3 && list.iter().all(|x| *x > 0.0),
+            (Some(Numbers::Rows(rows)), 3) => {
+                rows.len() == 3
+                    && rows.iter().all(|row| row.len() == 3)
+                    && (0..3).all(|i| rows[i][i] > 0.0 && (0..i).all(|j| rows[i][j] == rows[j][i]))
+            }
+            _ => false,
+        };
+        if good {
+            return Ok(());
+        }
+        let help = "in 2-D a positive number, kg m²/m; in 3-D three positive numbers or a symmetric 3×3 tensor, kg m²";
+        Err(self.wrong_with(key, "this cannot be an inertia", help))
+    }
+}
+
+/// Refuses a shape that has no meaning in the scene's dimension, or whose lengths are not lengths.
+pub(super) fn shape(scene: &Scene, key: &str, words: &ShapeWords) -> Result<()> {
+    let sizes = |key: &str, size: &[f64]| {
+        scene.vector(&format!("{key}.size"), size)?;
+        size.iter().try_for_each(|x| scene.positive(&format!("{key}.size"), Some(*x)))
+    };
+    let only = |dimension: usize, word: &str, instead: &str| match scene.dimension == dimension {
+        true => Ok(()),
+        false => {
+            let what = format!("a {word} needs a {dimension}-D scene, and this one is {}-D", scene.dimension);
+            Err(scene.wrong_with(key, what, instead))
+        }
+    };
+    let axis = |key: &str, axis: Option<super::Axis>| match axis {
+        Some(super::Axis::Z) if scene.dimension == 2 => {
+            Err(scene.wrong_with(&format!("{key}.axis"), "a 2-D scene has no z axis", "write  axis = \"x\""))
+        }
+        _ => Ok(()),
+    };
+    match words {
+        ShapeWords::Box { size } => sizes(&format!("{key}.box"), size),
+        ShapeWords::Ball { radius } => scene.positive(&format!("{key}.ball.radius"), Some(*radius)),
+        ShapeWords::Capsule { length, radius, axis: a } => {
+            let key = format!("{key}.capsule");
+            scene.positive(&format!("{key}.length"), Some(*length))?;
+            scene.positive(&format!("{key}.radius"), Some(*radius))?;
+            axis(&key, *a)
+        }
+        ShapeWords::Cylinder { length, radius, .. } => {
+            only(3, "cylinder", "in 2-D a ball is a disc:  shape = { ball = { radius = 0.1 } }")?;
+            scene.positive(&format!("{key}.cylinder.length"), Some(*length))?;
+            scene.positive(&format!("{key}.cylinder.radius"), Some(*radius))
+        }
+        ShapeWords::Polygon(words) => {
+            only(2, "polygon", "in 3-D, boxes, balls, cylinders and capsules can be put together as a compound")?;
+            line(scene, &format!("{key}.polygon"), words)?;
+            match words.thickness {
+                Some(_) => Err(scene.wrong(&format!("{key}.polygon"), "a polygon is solid: it has no thickness")),
+                None => Ok(()),
+            }
+        }
+        ShapeWords::Polyline(words) => {
+            only(2, "polyline", "in 3-D, walls are boxes or a tank")?;
+            line(scene, &format!("{key}.polyline"), words)
+        }
+        ShapeWords::Tank { size, thickness } => {
+            scene.positive(&format!("{key}.tank.thickness"), *thickness)?;
+            sizes(&format!("{key}.tank"), size)
+        }
+        ShapeWords::Compound(parts) => {
+            let key = format!("{key}.compound");
+            if parts.is_empty() {
+                return Err(scene.wrong(&key, "a compound has one part or more"));
+            }
+            parts.iter().enumerate().try_for_each(|(i, part)| {
+                shape(scene, &format!("{key}.{i}.shape"), &part.shape)?;
+                part.at.as_ref().map_or(Ok(()), |words| at(scene, &format!("{key}.{i}.at"), words, false))
+            })
+        }
+    }
+}
+
+fn line(scene: &Scene, key: &str, words: &LineWords) -> Result<()> {
+    scene.positive(&format!("{key}.thickness"), words.thickness)?;
+    match (&words.points, &words.file) {
+        (Some(points), None) => points.iter().try_for_each(|p| scene.vector(key, p)),
+        (None, Some(_)) => Ok(()),
+        _ => Err(scene.wrong(key, format!("a {} has either points or a file of points", last(key)))),
+    }
+}
+
+/// Refuses a place that has no meaning in the scene's dimension, or says the height twice.
+pub(super) fn at(scene: &Scene, key: &str, words: &AtWords, afloat: bool) -> Result<()> {
+    let three = scene.dimension == 3;
+    let refuse = |word: &str, what: &str, help: &str| Err(scene.wrong_with(&format!("{key}.{word}"), what, help));
+    if words.z.is_some() && !three {
+        return refuse("z", "a 2-D scene has no z", "in 2-D x is horizontal and y is up");
+    }
+    if words.angle_deg.is_some() && three {
+        return refuse("angle_deg", "a turn in 3-D has an axis", "write  turn_deg = [0.0, 30.0, 0.0]");
+    }
+    match &words.turn_deg {
+        Some(_) if !three => return refuse("turn_deg", "a turn in 2-D is one angle", "write  angle_deg = 30.0"),
+        Some(turn) => scene.vector(&format!("{key}.turn_deg"), turn)?,
+        None => {}
+    }
+    let up = if three { ("z", words.z.is_some()) } else { ("y", words.y.is_some()) };
+    let heights = [up, ("bottom", words.bottom.is_some()), ("draft", words.draft.is_some())];
+    let heights: Vec<&str> = heights.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect();
+    if heights.len() > 1 {
+        let help = "give one: the height of the frame, of the lowest point, or the draft";
+        return refuse(heights[1], &format!("{} say the height twice", said(&heights)), help);
+    }
+    if !afloat && words.draft.is_some() {
+        return refuse("draft", "only a solid has a draft", "give the height");
+    }
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! Tables beside a scene: CSV with a header row; lines that begin with `#` are comments.
+
+use std::path::{Component, Path, PathBuf};
+
+use crate::{
+    error::{Error, Result, nearest},
+    series::Series,
+};
+
+/// The file `name` beside the scene in `folder`.
+///
+/// # Errors
+/// `Scene` if the name leads out of the folder, or no file is there.
+pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
+    let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
+    let path = Path::new(name);
+    if name.is_empty() || name.contains('\\') || !path.components().all(inside) {
+        return Err(Error::scene(format!("\"{name}\" leads out of the scene's folder"))
+            .help("put the file beside scene.toml and give its name alone"));
+    }
+    let full = folder.join(path);
+    if !full.is_file() {
+        let others = neighbours(folder);
+        let guess = nearest(name, others.iter().map(String::as_str));
+        let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
+        return Err(Error::scene(format!("there is no file \"{name}\" beside the scene{guess}"))
+            .help("files that a scene names are looked for in the folder of the scene"));
+    }
+    Ok(full)
+}
+
+fn neighbours(folder: &Path) -> Vec<String> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries.filter_map(|e| e.file_name().into_string().ok()).collect();
+    names.sort();
+    names
+}
+
+/// The columns `names` of the table at `path`, one list each; rows in which one of them is blank are left
+/// out.
+///
+/// # Errors
+/// `File` if it cannot be read; `Scene` if a column is missing or a cell is not a finite number: says which.
+pub fn columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_path(path)
+        .map_err(|e| Error::file(path, e))?;
+    let file = path.display().to_string();
+    let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
+    let number = |name: &&str| {
+        header.iter().position(|column| column == *name).ok_or_else(|| {
+            let guess = nearest(name, header.iter());
+            let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
+            let known: Vec<&str> = header.iter().collect();
+            Error::scene(format!("{file} has no column \"{name}\"{guess}"))
+                .help(format!("its columns: {}", known.join(", ")))
+        })
+    };
+    let numbers: Vec<usize> = names.iter().map(number).collect::<Result<_>>()?;
+    let mut columns = vec![Vec::new(); names.len()];
+    for record in reader.records() {
+        let record = record.map_err(|e| Error::file(path, e))?;
+        let cells: Vec<&str> = numbers.iter().map(|&i| record.get(i).unwrap_or("")).collect();
+        if cells.iter().any(|cell| cell.is_empty()) {
+            continue;
+        }
+        for (column, cell) in columns.iter_mut().zip(cells) {
+            let x = cell.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| {
+                let line = record.position().map_or(0, csv::Position::line);
+                Error::scene(format!("\"{cell}\" in line {line} of {file} is not a number"))
+            })?;
+            column.push(x);
+        }
+    }
+    Ok(columns)
+}
+
+/// The series of `column` over `time` of the table at `path`.
+///
+/// # Errors
+/// As [`columns`], and as [`Series::new`].
+pub fn series(path: &Path, time: &str, column: &str) -> Result<Series> {
+    let mut both = columns(path, &[time, column])?;
+    let x = both.pop().unwrap_or_default();
+    let t = both.pop().unwrap_or_default();
+    Series::new(t, x).map_err(|e| Error::scene(format!("{}, {column}: {}", path.display(), e.what)))
+}

@@ -1,0 +1,283 @@
+//! Holds the words of a scene against one another, before any file is opened: what cannot be meant is
+//! refused with its place.
+
+use super::{
+    BoxWords, Frames, ProbeEntry, Scene, WaterWords,
+    flexible::FramesWords,
+    solids::{at, shape},
+    wording,
+};
+use crate::error::{Error, Result, nearest};
+
+/// Fields that a frame can hold.
+pub(super) const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
+
+impl Scene {
+    /// The error that `what` is wrong at `key`, with its place and an example.
+    pub(super) fn wrong(&self, key: &str, what: impl Into<String>) -> Error {
+        let error = Error::scene(what);
+        let error = match wording::example(key) {
+            Some(example) => error.help(example),
+            None => error,
+        };
+        self.origin.place(error, key)
+    }
+
+    /// As [`Scene::wrong`], with this help in place of the example.
+    pub(super) fn wrong_with(&self, key: &str, what: impl Into<String>, help: impl Into<String>) -> Error {
+        self.origin.place(Error::scene(what).help(help), key)
+    }
+
+    /// Refuses a number that is given and not positive.
+    pub(super) fn positive(&self, key: &str, x: Option<f64>) -> Result<()> {
+        match x {
+            Some(x) if !(x > 0.0 && x.is_finite()) => {
+                Err(self.wrong(key, format!("{} must be a positive number, not {x}", last(key))))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a vector that has not as many numbers as the scene has dimensions.
+    pub(super) fn vector(&self, key: &str, x: &[f64]) -> Result<()> {
+        let (d, n) = (self.dimension, x.len());
+        if n != d {
+            let help = format!("a {d}-D scene has vectors of {d} numbers, as in [{}]", vec!["0.0"; d].join(", "));
+            return Err(self.wrong_with(key, format!("{} has {n} numbers, not {d}", last(key)), help));
+        }
+        match x.iter().find(|x| !x.is_finite()) {
+            Some(x) => Err(self.wrong(key, format!("{x} is not a finite number"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Everything that can be judged without opening a file.
+    pub(super) fn verify(&self) -> Result<()> {
+        if !(2..=3).contains(&self.dimension) {
+            return Err(self.wrong("dimension", format!("dimension is 2 or 3, not {}", self.dimension)));
+        }
+        self.positive("dp", Some(self.dp))?;
+        self.positive("until", Some(self.until))?;
+        if let Some(gravity) = &self.gravity {
+            self.vector("gravity", gravity)?;
+        }
+        if let Some(domain) = &self.domain {
+            self.corners("domain", domain)?;
+        }
+        if self.water.is_empty() {
+            return Err(self.wrong("water", "the scene has no water"));
+        }
+        self.water.iter().enumerate().try_for_each(|(i, water)| self.verify_water(&format!("water.{i}"), water))?;
+        self.verify_solids()?;
+        self.verify_laws()?;
+        self.verify_probes()?;
+        self.verify_records()
+    }
+
+    fn corners(&self, key: &str, corners: &BoxWords) -> Result<()> {
+        self.vector(&format!("{key}.min"), &corners.min)?;
+        self.vector(&format!("{key}.max"), &corners.max)?;
+        match (0..self.dimension).find(|&i| corners.min[i] >= corners.max[i]) {
+            Some(i) => {
+                let (min, max) = (corners.min[i], corners.max[i]);
+                let axis = ["x", "y", "z"][i];
+                let what = format!("{axis} goes from {min} to {max}: nothing lies between");
+                Err(self.wrong_with(&format!("{key}.max"), what, "max is the corner with the greater coordinates"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn verify_water(&self, key: &str, water: &WaterWords) -> Result<()> {
+        let fill = &water.fill;
+        let key = format!("{key}.fill");
+        match (&fill.corners, &fill.shape) {
+            (Some(corners), None) if fill.at.is_none() => self.corners(&format!("{key}.box"), corners),
+            (Some(_), None) => Err(self.wrong(&format!("{key}.at"), "a box by its corners needs no place")),
+            (None, Some(words)) => {
+                shape(self, &format!("{key}.shape"), words)?;
+                fill.at.as_ref().map_or(Ok(()), |words| at(self, &format!("{key}.at"), words, false))
+            }
+            _ => Err(self.wrong(&key, "fill takes either a box or a shape")),
+        }
+    }
+
+    fn verify_laws(&self) -> Result<()> {
+        let (model, time) = (&self.model, &self.time);
+        let numbers = [
+            ("model.h_over_dp", model.h_over_dp),
+            ("model.c_h", model.c_h),
+            ("model.c0", model.c0),
+            ("model.c0_factor", model.c0_factor),
+            ("model.rho0", model.rho0),
+            ("model.gamma", model.gamma),
+            ("time.cfl", time.cfl),
+            ("time.dt_max", time.dt_max),
+        ];
+        numbers.into_iter().try_for_each(|(key, x)| self.positive(key, x))?;
+        let both = |a: &str, b: &str, help: &str| {
+            Err(self.wrong_with(&format!("model.{b}"), format!("{a} and {b} say the same thing twice"), help))
+        };
+        if model.h_over_dp.is_some() && model.c_h.is_some() {
+            return both("h_over_dp", "c_h", "give one: h = h_over_dp · dp = c_h · √dimension · dp");
+        }
+        if model.c0.is_some() && model.c0_factor.is_some() {
+            return both("c0", "c0_factor", "give one: c0 = c0_factor · √(g · depth)");
+        }
+        let reach = 2.0 * self.h() / self.dp;
+        if !(1.6..=12.0).contains(&reach) {
+            let key = if model.c_h.is_some() { "model.c_h" } else { "model.h_over_dp" };
+            let what = format!("the kernel would reach {reach:.2} dp; sums over neighbours need 1.6 to 12");
+            return Err(self.wrong_with(key, what, "write  h_over_dp = 1.7"));
+        }
+        Ok(())
+    }
+
+    /// Smoothing length h, m.
+    pub(super) fn h(&self) -> f64 {
+        match (self.model.h_over_dp, self.model.c_h) {
+            (Some(ratio), _) => ratio * self.dp,
+            (None, Some(c_h)) => c_h * (self.dimension as f64).sqrt() * self.dp,
+            (None, None) => self.default_h_over_dp().0 * self.dp,
+        }
+    }
+
+    fn verify_probes(&self) -> Result<()> {
+        for (i, probe) in self.probe.iter().enumerate() {
+            let key = format!("probe.{i}");
+            self.positive(&format!("{key}.every"), probe.every)?;
+            if kinds(probe).len() != 1 {
+                let what = format!("a probe looks at one thing; this one at {}", said(&kinds(probe)));
+                let help = "one of motion, force, elevation, velocity, pressure, energy; a [[probe]] section for each";
+                return Err(self.wrong_with(&key, what, help));
+            }
+            for (word, solid) in [("motion", &probe.motion), ("force", &probe.force)] {
+                if let Some(name) = solid {
+                    self.known_solid(&format!("{key}.{word}"), name)?;
+                }
+            }
+            for (word, at) in [("velocity", &probe.velocity), ("pressure", &probe.pressure)] {
+                if let Some(at) = at {
+                    self.vector(&format!("{key}.{word}"), at)?;
+                }
+            }
+            match &probe.elevation {
+                Some(place) if place.y.is_some() != (self.dimension == 3) => {
+                    let help = "write  elevation = { x = 1.16 } in 2-D, elevation = { x = 1.16, y = 0.3 } in 3-D";
+                    return Err(self.wrong_with(
+                        &format!("{key}.elevation"),
+                        "a gauge stands at x in 2-D, at x and y in 3-D",
+                        help,
+                    ));
+                }
+                _ => {}
+            }
+            if probe.energy == Some(false) {
+                return Err(self.wrong_with(&format!("{key}.energy"), "energy = false watches nothing", "remove it"));
+            }
+            if let Some(name) = &probe.name {
+                self.good_name(&format!("{key}.name"), name)?;
+            }
+        }
+        let names: Vec<String> = self.probe_names();
+        match (0..names.len()).find(|&i| names[..i].contains(&names[i])) {
+            Some(i) => Err(self.wrong_with(
+                &format!("probe.{i}"),
+                format!("two probes are called \"{}\"", names[i]),
+                "give each its own:  name = \"...\"",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn known_solid(&self, key: &str, name: &str) -> Result<()> {
+        if self.solid.iter().any(|solid| solid.name == name) {
+            return Ok(());
+        }
+        let names: Vec<&str> = self.solid.iter().map(|solid| solid.name.as_str()).collect();
+        let known =
+            if names.is_empty() { "the scene has no solids".into() } else { format!("known: {}", names.join(", ")) };
+        Err(self.wrong_with(key, format!("no solid is called \"{name}\"{}", guess(name, &names)), known))
+    }
+
+    /// Refuses a name that could not be a file's.
+    pub(super) fn good_name(&self, key: &str, name: &str) -> Result<()> {
+        let good = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || name.len() > 64 || !name.chars().all(good) {
+            let help = "a name has letters, digits, _ and -, as in \"box_1\"; files are called after it";
+            return Err(self.wrong_with(key, format!("\"{name}\" cannot be a name"), help));
+        }
+        Ok(())
+    }
+
+    fn verify_records(&self) -> Result<()> {
+        if let Some(Frames::On(FramesWords { every, fields })) = &self.frames {
+            self.positive("frames.every", *every)?;
+            if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
+                let what = format!("no field is called \"{field}\"{}", guess(field, &FIELDS));
+                return Err(self.wrong_with("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
+            }
+        }
+        self.positive("checkpoint.every", self.checkpoint.as_ref().map(|c| c.every))?;
+        let names = self.probe_names();
+        for (i, check) in self.check.iter().enumerate() {
+            let key = format!("check.{i}.series");
+            let Some((probe, _)) = check.series.rsplit_once('.') else {
+                return Err(self.wrong(&key, "a series is a probe and its column, with a point between"));
+            };
+            if !names.iter().any(|name| name == probe) {
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                let what = format!("no probe is called \"{probe}\"{}", guess(probe, &names));
+                return Err(self.wrong_with(&key, what, format!("known: {}", names.join(", "))));
+            }
+        }
+        Ok(())
+    }
+
+    /// Stem of each probe's file: its name, or else the solid's name for a motion, `solid_force` for a
+    /// force, and the kind with a number from the second on.
+    pub(super) fn probe_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for (i, probe) in self.probe.iter().enumerate() {
+            let kind = kinds(probe).first().copied().unwrap_or("probe");
+            let alike = self.probe[..i].iter().filter(|p| p.name.is_none() && kinds(p).first() == Some(&kind)).count();
+            let own = match (&probe.name, &probe.motion, &probe.force) {
+                (Some(name), ..) => name.clone(),
+                (None, Some(solid), _) => solid.clone(),
+                (None, None, Some(solid)) => format!("{solid}_force"),
+                _ if alike == 0 => kind.to_string(),
+                _ => format!("{kind}_{}", alike + 1),
+            };
+            names.push(own);
+        }
+        names
+    }
+}
+
+/// The words of a probe that say what it looks at.
+fn kinds(probe: &ProbeEntry) -> Vec<&'static str> {
+    let given = [
+        ("motion", probe.motion.is_some()),
+        ("force", probe.force.is_some()),
+        ("elevation", probe.elevation.is_some()),
+        ("velocity", probe.velocity.is_some()),
+        ("pressure", probe.pressure.is_some()),
+        ("energy", probe.energy.is_some()),
+    ];
+    given.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()
+}
+
+/// A list of words for a sentence.
+pub(super) fn said(words: &[&str]) -> String {
+    if words.is_empty() { "nothing".into() } else { words.join(" and ") }
+}
+
+/// Advice on the nearest of `known`, to end a sentence.
+pub(super) fn guess(word: &str, known: &[&str]) -> String {
+    nearest(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
+}
+
+/// The last part of a key.
+pub(super) fn last(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}

@@ -1,0 +1,174 @@
+//! Our wording of the parser's messages: what is wrong, the nearest valid word, what to write instead.
+
+use crate::error::{Error, nearest};
+
+/// What to write, by key: the longest entry that the key ends with is shown.
+const EXAMPLES: &[(&str, &str)] = &[
+    ("title", "title = \"Box in a wave train\""),
+    ("dimension", "dimension = 2"),
+    ("dp", "dp = 0.01          # particle spacing, m"),
+    ("until", "until = 10.0       # s"),
+    ("gravity", "gravity = [0.0, -9.81]"),
+    ("domain", "domain = { min = [0.0, 0.0], max = [2.0, 1.0] }"),
+    ("water", "[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
+    ("fill", "fill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
+    ("level", "level = 0.4        # height of the surface, m"),
+    ("solid", "[[solid]]\nname  = \"box\"\nshape = { box = { size = [0.1, 0.05] } }\nfree  = { density = 500.0 }"),
+    ("name", "name = \"box\""),
+    ("shape", "shape = { box = { size = [0.1, 0.05] } }"),
+    ("shape.box", "shape = { box = { size = [0.1, 0.05] } }"),
+    ("shape.ball", "shape = { ball = { radius = 0.1 } }"),
+    ("shape.capsule", "shape = { capsule = { length = 0.2, radius = 0.05, axis = \"x\" } }"),
+    ("shape.cylinder", "shape = { cylinder = { length = 0.2, radius = 0.05, axis = \"z\" } }"),
+    ("shape.polygon", "shape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }"),
+    ("shape.polyline", "shape = { polyline = [[0.0, 0.0], [4.0, 0.0], [10.0, 0.6]] }"),
+    ("shape.tank", "shape = { tank = { size = [1.0, 0.5] } }"),
+    ("shape.compound", "shape = { compound = [{ shape = { ball = { radius = 0.1 } }, at = { x = 0.1 } }] }"),
+    ("at", "at = { x = 2.0, draft = \"equilibrium\" }"),
+    ("draft", "at = { x = 2.0, draft = \"equilibrium\" }"),
+    ("fixed", "fixed = true"),
+    ("driven", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
+    ("along", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
+    ("distance", "distance = { formula = \"0.05*sin(2*pi*t)\" }"),
+    ("hinge", "driven = { hinge = [0.0, 0.0], angle = { file = \"flap.csv\", column = \"angle_deg\" } }"),
+    ("angle", "angle = { file = \"flap.csv\", column = \"angle_deg\" }"),
+    ("angle_deg", "angle_deg = { formula = \"5*sin(2*pi*t)\" }"),
+    ("formula", "formula = \"0.05*sin(2*pi*t)\""),
+    ("free", "free = { density = 500.0 }"),
+    ("density", "free = { density = 500.0 }        # kg/m³"),
+    ("inertia", "free = { density = 500.0, inertia = 0.005 }        # kg m²/m; three numbers in 3-D"),
+    ("locked", "free = { density = 500.0, locked = [\"x\", \"turn\"] }"),
+    ("model", "[model]\nviscosity = { artificial = { alpha = 0.02 } }"),
+    ("kernel", "kernel = \"wendland\""),
+    ("viscosity", "viscosity = { artificial = { alpha = 0.02 } }"),
+    ("viscosity.artificial", "viscosity = { artificial = { alpha = 0.02 } }"),
+    ("viscosity.laminar", "viscosity = { laminar = { nu0 = 1e-6 } }"),
+    ("viscosity.sps", "viscosity = { sps = { nu0 = 1e-6 } }"),
+    ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
+    ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
+    ("walls", "walls = \"dbc\""),
+    ("time", "[time]\nscheme = \"symplectic\""),
+    ("scheme", "scheme = { verlet = { euler_every = 50 } }"),
+    ("probe", "[[probe]]\nmotion = \"box\""),
+    ("motion", "motion = \"box\""),
+    ("force", "force = \"box\""),
+    ("elevation", "elevation = { x = 1.16 }"),
+    ("velocity", "velocity = [0.75, 0.03]"),
+    ("pressure", "pressure = [0.75, 0.03]"),
+    ("frames", "frames = { every = 0.05, fields = [\"velocity\", \"pressure\"] }"),
+    ("fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
+    ("checkpoint", "checkpoint = { every = 1.0 }"),
+    ("check", "[[check]]\nseries = \"box.heave_m\"\nreference = \"body.csv\"\ncolumn = \"heave_m\""),
+    ("series", "series = \"box.heave_m\""),
+    ("reference", "reference = \"body.csv\""),
+    ("bound", "bound = { N = 0.3 }"),
+    ("paper", "paper = { N = 0.355, M = 1.115 }"),
+];
+
+/// What to write at `key`, for the user to copy.
+pub(super) fn example(key: &str) -> Option<String> {
+    let parts: Vec<&str> = key.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+    let tail = |from: usize| parts[from..].join(".");
+    let own = parts.len().checked_sub(2).map(tail).into_iter().chain(parts.len().checked_sub(1).map(tail));
+    let mut found = own.filter_map(|tail| EXAMPLES.iter().find(|(key, _)| *key == tail));
+    found.next().map(|(_, example)| write(example))
+}
+
+fn write(example: &str) -> String {
+    format!("write  {}", example.replace('\n', "\n       "))
+}
+
+/// The words in backticks in the parser's `message`.
+fn quoted(message: &str) -> Vec<&str> {
+    message.split('`').skip(1).step_by(2).collect()
+}
+
+fn list(words: &[&str]) -> String {
+    words.join(", ")
+}
+
+/// The kind of thing that `key` holds, for a sentence: its last part that is not a number.
+fn noun(key: &str) -> &str {
+    key.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(key)
+}
+
+/// The error of the parser's `message` about `key`, and the key that it is about.
+pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
+    let words = quoted(message);
+    let did_you_mean = |word: &str, known: &[&str]| {
+        nearest(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
+    };
+    let with = |error: Error, lines: Vec<String>| match lines.is_empty() {
+        true => error,
+        false => error.help(lines.join("\n")),
+    };
+    if let (true, [word, known @ ..]) = (message.starts_with("unknown field"), &words[..]) {
+        let parent = key.strip_suffix(word).map_or(key, |parent| parent.trim_end_matches('.'));
+        let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
+        let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
+        let guess = nearest(word, known.iter().copied()).and_then(example).or_else(|| example(parent));
+        let known = format!("known here: {}", list(known));
+        return (with(error, [known].into_iter().chain(guess).collect()), shown);
+    }
+    if let (true, [word, known @ ..]) = (message.starts_with("unknown variant"), &words[..]) {
+        let key = key.strip_suffix(&format!(".{word}")).unwrap_or(key);
+        let error = Error::scene(format!("unknown {} \"{word}\"{}", noun(key), did_you_mean(word, known)));
+        let known = format!("known: {}", list(known));
+        return (with(error, [known].into_iter().chain(example(key)).collect()), key.to_string());
+    }
+    if let (true, [word]) = (message.starts_with("missing field"), &words[..]) {
+        let error = Error::scene(format!("\"{word}\" is missing"));
+        let full = if key.is_empty() { word.to_string() } else { format!("{key}.{word}") };
+        return (with(error, example(&full).or_else(|| example(key)).into_iter().collect()), full);
+    }
+    if let Some((found, wanted)) = message
+        .strip_prefix("invalid type: ")
+        .or_else(|| message.strip_prefix("invalid value: "))
+        .and_then(|rest| rest.split_once(", expected "))
+    {
+        let found = named(found);
+        let error = Error::scene(format!("{} must be {}, not {found}", noun(key), plain(wanted)));
+        return (with(error, example(key).into_iter().collect()), key.to_string());
+    }
+    if message.contains("exactly 1 element") {
+        let error = Error::scene(format!("{} takes one choice: a word, or a table with one key", noun(key)));
+        return (with(error, example(key).into_iter().collect()), key.to_string());
+    }
+    let error = Error::scene(format!("{}: {message}", noun(key)).trim_start_matches(": ").to_string());
+    (with(error, example(key).into_iter().collect()), key.to_string())
+}
+
+/// What the parser found, in our words.
+fn named(found: &str) -> String {
+    let (kind, rest) = found.split_once(' ').unwrap_or((found, ""));
+    let rest = rest.trim_start_matches("point ").replace('`', "");
+    match kind {
+        "string" => format!("the text {rest}"),
+        "sequence" => "a list".into(),
+        "map" => "a table".into(),
+        "integer" | "floating" | "boolean" => rest,
+        _ => found.replace('`', ""),
+    }
+}
+
+/// The parser's word for a type, in ours.
+fn plain(wanted: &str) -> &str {
+    match wanted {
+        "f64" => "a number",
+        "usize" | "u32" | "u64" => "a whole number, not negative",
+        "a boolean" => "true or false",
+        "a sequence" => "a list",
+        other if other.starts_with("struct") || other.starts_with("internally") => "a table",
+        other if other.contains("enum") || other.contains("string only") => "a word, or a table with one key",
+        other => other,
+    }
+}
+
+/// Advice on TOML itself.
+pub(super) fn toml_help(message: &str) -> &'static str {
+    if message.contains("duplicate") {
+        "each key once; several solids are several [[solid]] sections, with two brackets"
+    } else {
+        "words need quotes, decimals a digit on both sides of the point: fixed = true, dp = 0.01, name = \"box\""
+    }
+}

@@ -1,0 +1,259 @@
+//! Wrong scenes: what the user reads, word for word, in `tests/golden/errors/`. A golden says "changed", not
+//! "right": renew with `UPDATE_GOLDEN=1`, and say why.
+
+use std::path::{Path, PathBuf};
+
+use pontoon::{
+    Error,
+    scene::{Frames, Scene},
+};
+use proptest::prelude::*;
+
+/// A scene with which nothing is wrong.
+const GOOD: &str = r#"title     = "A box afloat"
+dimension = 2
+dp        = 0.05
+until     = 1.0
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [1.0, 1.0] } }
+
+[[solid]]
+name  = "box"
+shape = { box = { size = [0.2, 0.1] } }
+at    = { x = 0.5, draft = "equilibrium" }
+free  = { density = 500.0 }
+
+[[solid]]
+name   = "paddle"
+shape  = { box = { size = [0.05, 0.5] } }
+at     = { x = 0.025, bottom = 0.0 }
+driven = { along = [1.0, 0.0], distance = { formula = "0.05*(1-cos(2*pi*t))" } }
+
+[model]
+viscosity = { artificial = { alpha = 0.02 } }
+
+[[probe]]
+motion = "box"
+"#;
+
+fn golden(name: &str, message: &str) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/errors").join(format!("{name}.txt"));
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&path, format!("{message}\n")).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(message, kept.trim_end(), "the message \"{name}\" changed; renew with UPDATE_GOLDEN=1");
+}
+
+fn folder() -> &'static Path {
+    Path::new("tests/golden/errors")
+}
+
+/// Reads, resolves and builds, as a run does before its first step.
+fn try_out(text: &str, sets: &[(&str, &str)]) -> Result<(), Error> {
+    let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+    let scene = Scene::parse(text, folder(), &sets)?;
+    scene.resolve()?;
+    match scene.dimension {
+        2 => scene.build::<2>().map(|_| ()),
+        _ => scene.build::<3>().map(|_| ()),
+    }
+}
+
+/// What the user reads of the good scene with `from` replaced by `to`.
+fn wrong(name: &str, from: &str, to: &str) {
+    assert!(GOOD.contains(from), "\"{from}\" is not in the good scene");
+    let message = try_out(&GOOD.replacen(from, to, 1), &[]).expect_err("this scene is wrong").to_string();
+    golden(name, &message);
+}
+
+fn wrong_set(name: &str, key: &str, value: &str) {
+    golden(name, &try_out(GOOD, &[(key, value)]).expect_err("this setting is wrong").to_string());
+}
+
+#[test]
+fn the_good_scene_is_good() {
+    try_out(GOOD, &[]).unwrap();
+}
+
+#[test]
+fn wrong_words_name_the_nearest_right_ones() {
+    wrong("unknown_key", "viscosity =", "viscocity =");
+    wrong("unknown_key_in_a_solid", "density =", "densty =");
+    wrong("unknown_section", "[model]", "[modle]");
+    wrong("unknown_choice", "{ artificial = { alpha = 0.02 } }", "\"artifical\"");
+    wrong("unknown_shape", "{ box = { size = [0.2", "{ bx = { size = [0.2");
+    wrong("unknown_parameter", "alpha = 0.02", "alfa = 0.02");
+    wrong("wrong_type", "0.05\nuntil", "\"small\"\nuntil");
+    wrong("wrong_type_of_a_solid", "fixed = true", "fixed = \"yes\"");
+    wrong("missing_dp", "dp        = 0.05\n", "");
+    wrong("two_choices", "artificial = { alpha = 0.02 }", "artificial = {}, laminar = {}");
+    wrong("not_toml", "fixed = true", "fixed = yes");
+    wrong("not_a_number", "density = 500.0", "density = nan");
+}
+
+#[test]
+fn values_that_cannot_be_meant_are_refused() {
+    wrong("negative_dp", "dp        = 0.05", "dp        = -0.05");
+    wrong("four_dimensions", "dimension = 2", "dimension = 4");
+    wrong("two_roles", "fixed = true", "fixed = true\nfree = { density = 500.0 }");
+    wrong("no_role", "fixed = true\n", "");
+    wrong("two_densities", "density = 500.0", "density = 500.0, mass = 10.0");
+    wrong("unknown_solid", "motion = \"box\"", "motion = \"bocks\"");
+    wrong("wrong_vector", "min = [0.0, 0.0]", "min = [0.0, 0.0, 0.0]");
+    wrong("same_name", "name  = \"box\"", "name  = \"tank\"");
+    wrong("name_of_a_path", "name  = \"box\"", "name  = \"../box\"");
+    wrong("two_heights", "draft = \"equilibrium\"", "y = 0.5, draft = \"equilibrium\"");
+    wrong("two_smoothing_lengths", "[model]", "[model]\nh_over_dp = 1.7\nc_h = 1.2");
+    wrong("empty_box_of_water", "max = [1.0, 0.5]", "max = [1.0, 0.0]");
+    wrong("too_many_particles", "dp        = 0.05", "dp        = 1e-5");
+    wrong("no_sound", "until     = 1.0", "until     = 1.0\ngravity = [0.0, 0.0]");
+}
+
+#[test]
+fn shapes_laws_and_files_that_are_wrong_are_refused() {
+    let box_shape = "{ box = { size = [0.2, 0.1] } }";
+    wrong("bad_polygon", box_shape, "{ polygon = [[0.0, 0.0], [0.1, 0.1], [0.1, 0.0], [0.0, 0.1]] }");
+    wrong("polygon_of_two_points", box_shape, "{ polygon = [[0.0, 0.0], [0.1, 0.1]] }");
+    wrong("cylinder_in_2d", box_shape, "{ cylinder = { length = 0.1, radius = 0.1 } }");
+    wrong("sinking_draft", "density = 500.0", "density = 1500.0");
+    wrong("bad_formula", "0.05*(1-cos(2*pi*t))", "0.05*(1-cos(2*pi*t)");
+    wrong("unknown_function", "0.05*(1-cos(2*pi*t))", "0.05*(1-cosinus(2*pi*t))");
+    let formula = "formula = \"0.05*(1-cos(2*pi*t))\"";
+    wrong("missing_file", formula, "file = \"mising.csv\", column = \"x_m\"");
+    wrong("path_outside", formula, "file = \"../secret.csv\", column = \"x_m\"");
+    wrong("absolute_path", formula, "file = \"/etc/passwd\", column = \"x_m\"");
+    wrong("missing_column", formula, "file = \"table.csv\", column = \"x\"");
+    wrong("bad_cell", formula, "file = \"table.csv\", column = \"bad_m\"");
+    wrong("body_outside_the_domain", "[model]", "[domain]\nmin = [0.0, 0.0]\nmax = [0.55, 2.0]\n\n[model]");
+}
+
+#[test]
+fn settings_of_the_command_line_are_judged_alike() {
+    wrong_set("set_unknown_key", "model.viscocity", "none");
+    wrong_set("set_unknown_choice", "model.viscosity", "viscous");
+    wrong_set("set_unknown_solid", "solid.bos.free.density", "500");
+    wrong_set("set_wrong_type", "dp", "small");
+    wrong_set("set_negative", "solid.box.free.density", "-1");
+    wrong_set("set_no_key", "model..viscosity", "none");
+}
+
+#[test]
+fn settings_win_over_the_scene() {
+    let sets = [
+        ("model.viscosity", "none"),
+        ("model.diffusion.molteni.delta", "0.2"),
+        ("solid.box.free.density", "600"),
+        ("probe.0.every", "0.5"),
+        ("frames", "off"),
+    ];
+    let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+    let scene = Scene::parse(GOOD, folder(), &sets).unwrap();
+    assert_eq!(scene.solid[1].free.as_ref().unwrap().density, Some(600.0));
+    assert_eq!(scene.probe[0].every, Some(0.5));
+    assert_eq!(scene.frames, Some(Frames::Off));
+    let lines: Vec<String> = scene.resolve().unwrap().iter().map(ToString::to_string).collect();
+    for line in [
+        "dp = 0.05  (scene line 3)",
+        "model.viscosity = \"none\"  (--set)",
+        "model.diffusion.molteni.delta = 0.2  (--set)",
+        "solid.box.free.density = 600.0  (--set)",
+        "model.rho0 = 1000.0  (default: fresh water, kg/m³)",
+    ] {
+        assert!(lines.iter().any(|l| l == line), "no line \"{line}\" in\n{}", lines.join("\n"));
+    }
+}
+
+#[test]
+fn a_bare_word_is_the_choice_with_its_defaults() {
+    let bare = GOOD.replace("{ artificial = { alpha = 0.02 } }", "\"artificial\"");
+    let read = |text: &str| Scene::parse(text, folder(), &[]).unwrap();
+    assert_eq!(read(&bare), read(GOOD));
+}
+
+#[test]
+fn a_scene_that_is_written_reads_the_same() {
+    for (name, text, _) in pontoon::scene::shipped() {
+        let folder = Path::new("scenes").join(name);
+        let scene = Scene::parse(text, &folder, &[]).unwrap();
+        let again = Scene::parse(&scene.to_toml().unwrap(), &folder, &[]).unwrap();
+        assert_eq!(scene, again, "{name}");
+        assert!(scene.resolve().unwrap().len() > 30, "{name}: every value in force is listed");
+    }
+}
+
+#[test]
+fn every_shipped_scene_is_built() {
+    for (name, _, files) in pontoon::scene::shipped() {
+        assert!(files.iter().any(|(file, _)| *file == "README.md"), "{name} has a README");
+        let scene = Scene::read(&Path::new("scenes").join(name), &[]).unwrap();
+        let (water, warnings) = match scene.dimension {
+            2 => scene.build::<2>().map(|b| (b.setup.water.len(), b.warnings)).unwrap(),
+            _ => scene.build::<3>().map(|b| (b.setup.water.len(), b.warnings)).unwrap(),
+        };
+        assert!(water > 500, "{name}: {water} particles of water");
+        assert!(warnings.is_empty(), "{name}: {warnings:?}");
+    }
+}
+
+/// Words and signs that are swapped into a scene.
+const PIECES: [&str; 24] = [
+    "",
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    "\"",
+    ",",
+    ".",
+    "\n",
+    "-",
+    "0",
+    "nan",
+    "inf",
+    "1e300",
+    "-1",
+    "true",
+    "[[solid]]",
+    "box",
+    "\u{e9}",
+    "polygon",
+    "[[]]",
+    "1e-300",
+    "999999999999999999999",
+];
+
+proptest! {
+    // enough to break every line of the scene in some way, few enough for a few seconds
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_text_makes_the_reader_panic(
+        changes in prop::collection::vec((0usize..900, 0usize..6, 0usize..PIECES.len()), 1..4)
+    ) {
+        let mut text: Vec<char> = GOOD.chars().collect();
+        for (at, length, piece) in changes {
+            let at = at.min(text.len());
+            let end = (at + length).min(text.len());
+            text.splice(at..end, PIECES[piece].chars());
+        }
+        let text: String = text.into_iter().collect();
+        if let Ok(scene) = Scene::parse(&text, folder(), &[]) {
+            let _ = scene.resolve();
+        }
+    }
+
+    #[test]
+    fn no_setting_makes_the_reader_panic(key in "[a-z_.0-9]{0,24}", value in "\\PC{0,12}") {
+        if let Ok(scene) = Scene::parse(GOOD, folder(), &[(key, value)]) {
+            let _ = scene.resolve();
+        }
+    }
+}
