@@ -68,7 +68,7 @@ impl<const D: usize> Wedge<D> {
         let angle = (0.5 * self.0.norm_squared()).sqrt();
         let (a, b) =
             if angle < 1e-8 { (1.0, 0.5) } else { (angle.sin() / angle, (1.0 - angle.cos()) / (angle * angle)) };
-        Matrix::identity() + self.0 * a + self.0 * self.0 * b
+        Matrix::identity() + self.0 * (Matrix::identity() * a + self.0 * b)
     }
 }
 

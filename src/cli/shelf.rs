@@ -82,7 +82,7 @@ fn unpack(name: &str, toml: &str, others: &[(&str, &str)]) -> Result<Found> {
 
 /// All scenes that come with the program.
 pub fn all() -> Vec<Listed> {
-    let listed = |(name, toml, others): (&str, &str, Vec<(&str, &str)>)| {
+    let listed = |(name, toml, others): &scene::Shipped| {
         let title = toml.parse::<toml::Table>().ok();
         let title = title.and_then(|t| Some(t.get("title")?.as_str()?.to_owned())).unwrap_or_default();
         let readme = others.iter().find(|(file, _)| *file == "README.md").map_or("", |(_, text)| text);

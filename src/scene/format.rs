@@ -10,9 +10,11 @@ use super::{
     bodies::{AtWords, ShapeWords, SolidWords},
     document::Origin,
     flexible::Frames,
+};
+use crate::{
+    model::{Diffusion, Kernel, Scheme, Shifting, Viscosity, Walls},
     plan::Score,
 };
-use crate::model::{Diffusion, Kernel, Scheme, Shifting, Viscosity, Walls};
 
 /// A scene: the caption of an experiment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -10,7 +10,6 @@ mod document;
 pub mod flexible;
 pub mod format;
 mod geometry;
-pub mod plan;
 pub mod resolve;
 mod sets;
 pub mod shipped;
@@ -26,7 +25,7 @@ pub use flexible::{Draft, Frames, FramesWords, LineWords, Numbers};
 pub use format::{
     BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,
 };
-pub use plan::{CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Score};
+pub use crate::plan::{CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Score};
 pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 
