@@ -161,14 +161,16 @@ impl Scene {
             let bounds = world_bounds(shape, pose);
             !(domain.contains(&bounds.min) && domain.contains(&bounds.max))
         };
+        let help =
+            "enlarge the domain: what leaves it stops the run. Leave [domain] out for one with room on all sides";
         if let Some(i) = water.iter().position(|body| out(&body.region.shape, &body.region.pose)) {
-            return Err(self.wrong(&format!("water.{i}"), "this water is not wholly inside the domain"));
+            return Err(self.wrong_with(&format!("water.{i}"), "this water is not wholly inside the domain", help));
         }
         let still = |solid: &SolidSpec<D>| matches!(solid.role, crate::solid::Role::Fixed);
         match solids.iter().position(|solid| !still(solid) && out(&solid.shape, &solid.pose)) {
             Some(i) => {
                 let what = format!("solid \"{}\" starts outside the domain", solids[i].name);
-                Err(self.wrong(&format!("solid.{i}.at"), what))
+                Err(self.wrong_with(&format!("solid.{i}.at"), what, help))
             }
             None => Ok(()),
         }
@@ -193,8 +195,8 @@ impl Scene {
             self.layers(),
             ["", "²"][D - 2],
         );
-        let dp = self.dp * (all / MOST_PARTICLES).powf(1.0 / D as f64);
-        let help = format!("the most is {MOST_PARTICLES:.0e}: write  dp = {dp:.2}  or more");
+        let dp = 1.05 * self.dp * (all / MOST_PARTICLES).powf(1.0 / D as f64);
+        let help = format!("the most is {MOST_PARTICLES:.0e}: write  dp = {dp:.1e}  or more");
         Err(self.wrong_with("dp", what, help))
     }
 

@@ -28,7 +28,7 @@ impl Scene {
         let at = words.at.clone().unwrap_or_default();
         let mut pose = pose(&at, &shape, level);
         let role = match (&words.driven, &words.free) {
-            (Some(words), _) => Role::Driven(self.motion(words).map_err(place("driven"))?),
+            (Some(words), _) => Role::Driven(self.motion(&format!("{key}.driven"), words)?),
             (None, Some(words)) => Role::Free(free(words, &shape)),
             (None, None) => Role::Fixed,
         };
@@ -45,46 +45,51 @@ impl Scene {
             let rise = equilibrium_height(&shape, &pose, body.mass, rho0, level).map_err(place("at.draft"))?;
             pose.position[D - 1] += rise;
         }
-        Ok(SolidSpec {
+        let spec = SolidSpec {
             name: words.name.clone(),
             shape,
             pose,
             role,
             friction: words.friction.unwrap_or_default(),
             restitution: words.restitution.unwrap_or_default(),
-        })
+        };
+        spec.check().map_err(|e| self.origin.place(e, key))?;
+        Ok(spec)
     }
 
-    fn motion<const D: usize>(&self, words: &DrivenWords) -> Result<Motion<D>> {
+    fn motion<const D: usize>(&self, key: &str, words: &DrivenWords) -> Result<Motion<D>> {
         let unit = |x: &[f64]| vector::<D>(x).normalize();
         if let (Some(along), Some(distance)) = (&words.along, &words.distance) {
-            return Ok(Motion::slide(unit(along), self.law(distance, Unit::Metres)?));
+            return Ok(Motion::slide(unit(along), self.law(&format!("{key}.distance"), distance, Unit::Metres)?));
         }
         let centre = vector(words.hinge.as_deref().unwrap_or(&[]));
         let axis = words.axis.as_ref().map_or_else(|| vec![1.0], |axis| unit(axis).iter().copied().collect());
         let law = match (&words.angle, &words.angle_deg) {
-            (Some(law), _) => self.law(law, Unit::Radians)?,
-            (None, Some(law)) => self.law(law, Unit::Degrees)?,
-            (None, None) => return Err(Error::scene("this does not say one motion")),
+            (Some(law), _) => self.law(&format!("{key}.angle"), law, Unit::Radians)?,
+            (None, Some(law)) => self.law(&format!("{key}.angle_deg"), law, Unit::Degrees)?,
+            (None, None) => return Err(self.wrong(key, "this does not say one motion")),
         };
         Ok(Motion::hinge(centre, &axis, law))
     }
 
-    fn law(&self, words: &LawWords, unit: Unit) -> Result<Law> {
+    fn law(&self, key: &str, words: &LawWords, unit: Unit) -> Result<Law> {
+        let place = |word: &str, e: Error| self.origin.place(e, &format!("{key}.{word}"));
         if let Some(text) = &words.formula {
-            let formula = Formula::parse(text)?;
+            let formula = Formula::parse(text).map_err(|e| place("formula", e))?;
             return Ok(Law::Formula(match unit {
-                Unit::Degrees => Formula::parse(&format!("({text})*(pi/180)"))?,
+                Unit::Degrees => Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?,
                 Unit::Metres | Unit::Radians => formula,
             }));
         }
-        let path = table::beside(&self.origin.folder, words.file.as_deref().unwrap_or(""))?;
+        let file = words.file.as_deref().unwrap_or("");
+        let path = table::beside(&self.origin.folder, file).map_err(|e| place("file", e))?;
         let column = words.column.as_deref().unwrap_or("");
-        let series = table::series(&path, words.time.as_deref().unwrap_or("t_s"), column)?;
+        let time = words.time.as_deref().unwrap_or("");
+        let series = table::series(&path, time, column).map_err(|e| place("column", e))?;
         let degrees = unit == Unit::Degrees || (unit == Unit::Radians && column.ends_with("_deg"));
         let factor = words.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
         let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
-        Ok(Law::Table(Series::new(series.times(), values)?))
+        Series::new(series.times(), values).map(Law::Table).map_err(|e| place("scale", e))
     }
 }
 

@@ -20,7 +20,7 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
     }
     let full = folder.join(path);
     if !full.is_file() {
-        let others = neighbours(folder);
+        let others = neighbours(folder, path);
         let guess = nearest(name, others.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
         return Err(Error::scene(format!("there is no file \"{name}\" beside the scene{guess}"))
@@ -29,10 +29,12 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
     Ok(full)
 }
 
-fn neighbours(folder: &Path) -> Vec<String> {
+/// Names of the files in `folder` that are of the same kind as `path`.
+fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> = entries.filter_map(|e| e.file_name().into_string().ok()).collect();
+    let alike = entries.filter(|e| e.path().extension() == path.extension());
+    let mut names: Vec<String> = alike.filter_map(|e| e.file_name().into_string().ok()).collect();
     names.sort();
     names
 }

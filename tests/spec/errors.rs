@@ -126,12 +126,12 @@ fn shapes_laws_and_files_that_are_wrong_are_refused() {
     wrong("bad_formula", "0.05*(1-cos(2*pi*t))", "0.05*(1-cos(2*pi*t)");
     wrong("unknown_function", "0.05*(1-cos(2*pi*t))", "0.05*(1-cosinus(2*pi*t))");
     let formula = "formula = \"0.05*(1-cos(2*pi*t))\"";
-    wrong("missing_file", formula, "file = \"mising.csv\", column = \"x_m\"");
+    wrong("missing_file", formula, "file = \"tabel.csv\", column = \"x_m\"");
     wrong("path_outside", formula, "file = \"../secret.csv\", column = \"x_m\"");
     wrong("absolute_path", formula, "file = \"/etc/passwd\", column = \"x_m\"");
     wrong("missing_column", formula, "file = \"table.csv\", column = \"x\"");
     wrong("bad_cell", formula, "file = \"table.csv\", column = \"bad_m\"");
-    wrong("body_outside_the_domain", "[model]", "[domain]\nmin = [0.0, 0.0]\nmax = [0.55, 2.0]\n\n[model]");
+    wrong("body_outside_the_domain", "[model]", "[domain]\nmin = [0.0, 0.0]\nmax = [1.0, 0.52]\n\n[model]");
 }
 
 #[test]
