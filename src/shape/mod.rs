@@ -1,9 +1,22 @@
 //! Geometry: what a solid or a body of water looks like. No motion, no mass.
+//!
+//! A [`Shape`] gives its exact volume properties, its signed distance, the part of it under water and its
+//! boundary particles; [`fill()`] puts water on a lattice and fits it to the solids.
 
+mod cells;
+mod check;
+mod distance;
+mod draught;
 pub mod fill;
+mod fit;
+mod moments;
+mod offset;
+mod pack;
+mod skin;
 
-use crate::error::Result;
-use crate::space::{Bounds, Matrix, Pose, Vector};
+use crate::space::{Matrix, Pose, Vector};
+
+pub use fill::{Filled, Region, fill};
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +32,8 @@ pub enum Shape<const D: usize> {
     /// A simple polygon, counter-clockwise; 2-D only.
     Polygon { points: Vec<Vector<D>> },
     /// A wall along an open line, 2-D only: walking from the first point to the last, the water is on
-    /// the left and the solid, `thickness` thick, on the right.
+    /// the left and the solid, `thickness` thick, on the right. A line walked towards +x is a bed: no
+    /// water is filled below it, however thin it is.
     Polyline { points: Vec<Vector<D>>, thickness: f64 },
     /// An open-topped tank: bottom and side walls `thickness` thick around the inner box from the
     /// origin to `size`.
@@ -47,35 +61,4 @@ pub struct SkinPoint<const D: usize> {
     pub r: Vector<D>,
     /// Layer, 0 the one nearest the water, half a dp inside the true face.
     pub layer: u8,
-}
-
-impl<const D: usize> Shape<D> {
-    /// Stub.
-    pub fn check(&self) -> Result<()> {
-        unimplemented!()
-    }
-    /// Stub.
-    pub fn signed_distance(&self, _x: &Vector<D>) -> f64 {
-        unimplemented!()
-    }
-    /// Stub.
-    pub fn bounds(&self) -> Bounds<D> {
-        unimplemented!()
-    }
-    /// Stub.
-    pub fn volume(&self) -> Volume<D> {
-        unimplemented!()
-    }
-    /// Stub.
-    pub fn surface(&self) -> f64 {
-        unimplemented!()
-    }
-    /// Stub.
-    pub fn skin(&self, _dp: f64, _layers: usize) -> Vec<SkinPoint<D>> {
-        unimplemented!()
-    }
-    /// Stub.
-    pub fn submerged(&self, _pose: &Pose<D>, _level: f64) -> (f64, Vector<D>) {
-        unimplemented!()
-    }
 }

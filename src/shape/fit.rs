@@ -1,0 +1,171 @@
+//! How water and solids fit together: which points lie in a solid, which are too near to its face, and
+//! the packing of the water around the solids that do not fit the lattice.
+
+use super::{Shape, fill::Lattice, pack};
+use crate::space::{Bounds, Pose, Vector};
+
+/// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
+const ZONE: f64 = 6.0;
+/// Layers of skin in the packing: as deep as its kernel reaches.
+const LAYERS: usize = 3;
+/// The widest gap, beyond half a dp, between a face and its water that is let be, dp.
+const GAP: f64 = 0.1;
+
+/// A solid in the way of the water.
+pub(super) struct Obstacle<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    pose: &'a Pose<D>,
+    dp: f64,
+    /// Everything within one dp.
+    close: Bounds<D>,
+    /// Everything that the packing of its water involves.
+    around: Bounds<D>,
+    /// The lines of its polyline walls, in the world.
+    lines: Vec<Vec<Vector<D>>>,
+    /// Whether water on the lattice would lie too near to its face, or too far.
+    misfit: bool,
+}
+
+impl<'a, const D: usize> Obstacle<'a, D> {
+    pub fn new(shape: &'a Shape<D>, pose: &'a Pose<D>, dp: f64) -> Self {
+        let bounds = shape.bounds_at(pose);
+        let mut lines = Vec::new();
+        collect_lines(shape, pose, &mut lines);
+        let around = bounds.grown((ZONE + pack::REACH + 1.0) * dp);
+        Self { shape, pose, dp, close: bounds.grown(dp), around, lines, misfit: false }
+    }
+
+    fn distance(&self, x: &Vector<D>) -> f64 {
+        self.shape.signed_distance(&self.pose.local(x))
+    }
+
+    fn outward(&self, x: &Vector<D>) -> Vector<D> {
+        self.pose.rotation * self.shape.outward(&self.pose.local(x), 1e-3 * self.dp)
+    }
+
+    /// Whether the cell at `x` belongs to the solid or to the ground below a bed.
+    pub fn holds(&self, x: &Vector<D>) -> bool {
+        if self.close.contains(x) {
+            // A nudge decides for a centre right on a face: of two opposite faces one gets the cell.
+            let nudged = x + Vector::from_fn(|i, _| 1e-6 * self.dp * 0.7_f64.powi(i as i32));
+            if self.distance(&nudged) < 0.0 {
+                return true;
+            }
+        }
+        self.lines.iter().any(|line| below_bed(x, line))
+    }
+
+    /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
+    /// belongs to the water (`in_water`) or is not above it.
+    pub fn judge(&mut self, x: &Vector<D>, in_water: impl Fn(&Vector<D>) -> bool) {
+        if self.misfit || !self.close.contains(x) {
+            return;
+        }
+        let distance = self.distance(x) / self.dp;
+        self.misfit = distance < 0.5 - 1e-6;
+        if distance > 0.5 + GAP && distance < 1.0 {
+            // Only before a face along the lattice: at a corner this distance is as it should be.
+            let n = self.outward(x);
+            let is_above = n[D - 1] < -0.5;
+            self.misfit = n.amax() > 1.0 - 1e-6 && (!is_above || in_water(&(x - n * self.dp)));
+        }
+    }
+
+    /// Puts `x` back to half a dp from the face if it is nearer.
+    fn push_out(&self, x: &mut Vector<D>) {
+        if self.close.contains(x) {
+            let lack = 0.5 * self.dp - self.distance(x);
+            if lack > 0.0 {
+                *x += self.outward(x) * lack;
+            }
+        }
+    }
+}
+
+fn collect_lines<const D: usize>(shape: &Shape<D>, pose: &Pose<D>, lines: &mut Vec<Vec<Vector<D>>>) {
+    match shape {
+        Shape::Polyline { points, .. } => lines.push(points.iter().map(|x| pose.point(x)).collect()),
+        Shape::Compound(parts) => parts.iter().for_each(|(inner, part)| collect_lines(part, &pose.then(inner), lines)),
+        _ => (),
+    }
+}
+
+/// Whether the part of the line next above `x` is a bed: walked towards +x, the water above it.
+fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
+    let (mut lowest, mut bed) = (f64::INFINITY, false);
+    for ab in line.windows(2) {
+        let (a, b) = (&ab[0], &ab[1]);
+        if (a[0] > x[0]) != (b[0] > x[0]) {
+            let height = a[1] + (x[0] - a[0]) * (b[1] - a[1]) / (b[0] - a[0]);
+            if height > x[1] && height < lowest {
+                (lowest, bed) = (height, b[0] > a[0]);
+            }
+        }
+    }
+    bed
+}
+
+/// Packs the water around the solids that do not fit the lattice; `home` is each point's lattice.
+pub(super) fn fit<const D: usize>(
+    water: &mut [Vector<D>],
+    home: &[usize],
+    lattices: &[Lattice<D>],
+    obstacles: &[Obstacle<D>],
+    dp: f64,
+) {
+    let misfits: Vec<_> = obstacles.iter().filter(|o| o.misfit).collect();
+    if misfits.is_empty() {
+        return;
+    }
+    let to_misfit = |x: &Vector<D>| {
+        let near = misfits.iter().filter(|o| o.around.contains(x));
+        near.map(|o| o.distance(x)).fold(f64::INFINITY, f64::min) / dp
+    };
+    let (mut movable, mut held) = (Vec::new(), Vec::new());
+    for (i, x) in water.iter().enumerate() {
+        match to_misfit(x) {
+            d if d < ZONE => movable.push(i),
+            d if d < ZONE + pack::REACH + 1.0 => held.push(*x),
+            _ => (),
+        }
+    }
+    let mut points: Vec<_> = movable.iter().map(|&i| water[i]).collect();
+    // The water is continued beyond its regions, or it would creep out of them; that part is left behind.
+    let beyond = ghosts(lattices, obstacles);
+    let (moving, still): (Vec<_>, Vec<_>) = beyond.into_iter().partition(|x| to_misfit(x) < ZONE);
+    points.extend(moving);
+    let all_movable = points.len();
+    points.extend(held);
+    points.extend(still);
+    let near = Bounds::around(&points).grown(pack::REACH * dp);
+    for o in obstacles {
+        let skin = o.shape.skin(dp, LAYERS);
+        points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
+    }
+    pack::relax(&mut points, all_movable, dp, |i, x| {
+        if let Some(&w) = movable.get(i) {
+            lattices[home[w]].keep_within(x);
+        }
+        // Twice: what one face of a corner pushes out, it may push into the other.
+        (0..2).for_each(|_| obstacles.iter().for_each(|o| o.push_out(x)));
+    });
+    movable.iter().zip(&points).for_each(|(&i, x)| water[i] = *x);
+}
+
+/// Lattice points in a margin around the regions, near the solids that do not fit.
+fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &[Obstacle<D>]) -> Vec<Vector<D>> {
+    const MARGIN: i64 = 5;
+    let mut ghosts = Vec::new();
+    for (k, lattice) in lattices.iter().enumerate() {
+        lattice.each(MARGIN, |x| {
+            if obstacles.iter().any(|o| o.misfit && o.around.contains(x))
+                && !lattices.iter().any(|l| l.holds(x))
+                && !lattices[..k].iter().any(|l| l.grown(MARGIN).contains(x))
+                && !obstacles.iter().any(|o| o.holds(x))
+            {
+                ghosts.push(*x);
+            }
+        });
+    }
+    ghosts
+}
