@@ -7,7 +7,7 @@ use std::{
 
 use pontoon::{
     error::{Error, Kind, Result, nearest},
-    scene::shipped,
+    scene::{Shipped, shipped},
 };
 
 /// A scene that was found; one that is built in lies in a temporary folder for as long as this lives.
@@ -57,10 +57,10 @@ pub fn find(word: &Path) -> Result<Found> {
     }
     let shelf = shipped();
     let name = word.to_string_lossy();
-    if let Some((name, toml, others)) = shelf.iter().find(|(n, ..)| *n == name) {
-        return unpack(name, toml, others);
+    if let Some(scene) = shelf.iter().find(|(known, ..)| *known == name) {
+        return unpack(scene);
     }
-    let help = match nearest(&name, shelf.iter().map(|(n, ..)| *n)) {
+    let help = match nearest(&name, shelf.iter().map(|(known, ..)| *known)) {
         Some(near) => format!("did you mean {near:?}? `pontoon scenes` lists all that come with the program"),
         None => "name a folder with a scene.toml, a scene file, or a scene of `pontoon scenes`".into(),
     };
@@ -68,12 +68,12 @@ pub fn find(word: &Path) -> Result<Found> {
 }
 
 /// Lays a built-in scene out in a temporary folder.
-fn unpack(name: &str, toml: &str, others: &[(&str, &str)]) -> Result<Found> {
+fn unpack((name, text, files): &Shipped) -> Result<Found> {
     let temporary = std::env::temp_dir().join(format!("pontoon-{}", std::process::id()));
     let found = Found { path: temporary.join(name), temporary: Some(temporary) };
     let refused = |why| Error::file(&found.path, format!("cannot be written: {why}"));
     fs::create_dir_all(&found.path).map_err(refused)?;
-    for (file, text) in others.iter().chain([&("scene.toml", toml)]) {
+    for (file, text) in files.iter().chain([&("scene.toml", *text)]) {
         let target = found.path.join(file);
         fs::write(&target, text).map_err(|why| Error::file(&target, format!("cannot be written: {why}")))?;
     }
@@ -82,19 +82,18 @@ fn unpack(name: &str, toml: &str, others: &[(&str, &str)]) -> Result<Found> {
 
 /// All scenes that come with the program.
 pub fn all() -> Vec<Listed> {
-    let listed = |(name, toml, others): &scene::Shipped| {
-        let title = toml.parse::<toml::Table>().ok();
-        let title = title.and_then(|t| Some(t.get("title")?.as_str()?.to_owned())).unwrap_or_default();
-        let readme = others.iter().find(|(file, _)| *file == "README.md").map_or("", |(_, text)| text);
+    let listed = |(name, text, files): &Shipped| {
+        let words = text.parse::<toml::Table>().ok();
+        let readme = files.iter().find(|(file, _)| *file == "README.md").map_or("", |(_, readme)| readme);
         let folder = Path::new("scenes").join(name);
         Listed {
-            name: name.into(),
-            title,
+            name: name.to_string(),
+            title: words.and_then(|w| Some(w.get("title")?.as_str()?.to_owned())).unwrap_or_default(),
             about: first_line(readme),
             folder: folder.join("scene.toml").is_file().then_some(folder),
         }
     };
-    shipped().into_iter().map(listed).collect()
+    shipped().iter().map(listed).collect()
 }
 
 /// The first line of `readme` that is no heading.
