@@ -46,6 +46,10 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+fn threads(n: usize) -> String {
+    if n == 1 { "1 thread".into() } else { format!("{n} threads") }
+}
+
 /// Said when a run begins.
 pub fn started(start: &Start) -> String {
     let (manifest, count) = (start.manifest, start.manifest.particles);
@@ -55,11 +59,10 @@ pub fn started(start: &Start) -> String {
     }
     let _ = writeln!(
         text,
-        "{} water and {} boundary particles, {} thread{}, results in {}",
+        "{} water and {} boundary particles, {}, results in {}",
         count.fluid,
         count.boundary,
-        manifest.threads,
-        if manifest.threads == 1 { "" } else { "s" },
+        threads(manifest.threads),
         start.folder.display()
     );
     text
@@ -79,7 +82,7 @@ pub fn ended(outcome: &Outcome) -> String {
             "simulated".into(),
             format!("{:.6} of {} s in {} steps", manifest.simulated_s, manifest.until_s, manifest.steps),
         ],
-        vec!["wall time".into(), format!("{} with {} threads", duration(manifest.wall_s), manifest.threads)],
+        vec!["wall time".into(), format!("{} with {}", duration(manifest.wall_s), threads(manifest.threads))],
         vec!["speed".into(), format!("{} particle-steps/s", short(manifest.particle_steps_per_second))],
     ]);
     if !outcome.bodies.is_empty() {
