@@ -12,7 +12,7 @@ use crate::{
     particles::{PER_TASK, Particles},
     solid::{Kinematics, Load, Role, Solid, SolidSpec, skin},
     space::{Bounds, Matrix, Vector, Wedge},
-    sweep::{Input, Node, Sums, Sweep},
+    sweep::{self, Input, Node, Sums, Sweep},
 };
 
 /// Water and solids at one instant.
@@ -183,8 +183,7 @@ impl<const D: usize> System<D> {
         if self.sweep.extra() {
             self.extra.resize(self.fluid.len(), Extra::zero());
         }
-        self.sweep.water(&input, &mut self.sums, &mut self.extra);
-        self.sweep.skin(&input, &mut self.skin_sums);
+        sweep::all(self.sweep.as_ref(), &input, &mut self.sums, &mut self.skin_sums, &mut self.extra);
         if let Viscosity::Sps(sps) = self.model.viscosity {
             let (medium, nodes, extra) = (&self.medium, &self.nodes.0, &self.extra);
             self.stress.par_iter_mut().enumerate().for_each(|(i, stress)| {

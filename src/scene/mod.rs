@@ -18,6 +18,7 @@ pub mod table;
 mod verify;
 mod wording;
 
+pub use crate::plan::{CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Score};
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, PartWords, ShapeWords, SolidWords};
 pub use build::Built;
 pub use document::Source;
@@ -25,7 +26,6 @@ pub use flexible::{Draft, Frames, FramesWords, LineWords, Numbers};
 pub use format::{
     BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,
 };
-pub use crate::plan::{CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Score};
 pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 

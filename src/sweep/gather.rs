@@ -1,12 +1,10 @@
 //! The f64 oracle: each particle gathers its own neighbours in stored order, so that the bits depend on
 //! neither threads nor chunks.
 
-use rayon::prelude::*;
-
 use super::{Input, Node, Sums, Sweep};
 use crate::{
     law::{Extra, Medium, Pair, Side, Term, kernel::Kernel},
-    near::{CHUNK, Chunk},
+    near::CHUNK,
     space::{Matrix, Vector},
 };
 
@@ -80,24 +78,21 @@ impl<const D: usize> Running<D> {
     }
 }
 
-impl<K, T, W> Gather<K, T, W> {
-    /// Sums of the water particles `first..` of one chunk.
-    fn water_chunk<const D: usize>(
-        &self,
-        input: &Input<'_, D>,
-        first: usize,
-        chunk: &Chunk,
-        sums: &mut [Sums<D>],
-        extra: &mut [Extra<f64, D>],
-    ) where
-        K: Kernel,
-        T: Term<f64, D>,
-        W: Term<f64, D>,
-    {
+fn rows<const D: usize>(m: &Matrix<D>) -> [[f64; D]; D] {
+    std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
+}
+
+impl<const D: usize, K: Kernel, T: Term<f64, D>, W: Term<f64, D>> Sweep<D> for Gather<K, T, W> {
+    fn extra(&self) -> bool {
+        T::EXTRA
+    }
+
+    fn water(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>], extra: &mut [Extra<f64, D>]) {
         let none = [[0.0; D]; D];
         let stress = |i: usize| if T::STRESS { rows(&input.stress[i]) } else { none };
+        let (first, lists) = (chunk * CHUNK, &input.lists.water[chunk]);
         for (i, out) in sums.iter_mut().enumerate() {
-            let (water, skin) = chunk.of(i);
+            let (water, skin) = lists.of(i);
             let a = &input.water[first + i];
             let stress_a = stress(first + i);
             let mut sum = Running::zero();
@@ -114,42 +109,20 @@ impl<K, T, W> Gather<K, T, W> {
             }
         }
     }
-}
 
-fn rows<const D: usize>(m: &Matrix<D>) -> [[f64; D]; D] {
-    std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
-}
-
-impl<const D: usize, K: Kernel, T: Term<f64, D>, W: Term<f64, D>> Sweep<D> for Gather<K, T, W> {
-    fn extra(&self) -> bool {
-        T::EXTRA
-    }
-
-    fn water(&self, input: &Input<'_, D>, sums: &mut [Sums<D>], extra: &mut [Extra<f64, D>]) {
-        let chunks = input.lists.water.par_iter().zip(sums.par_chunks_mut(CHUNK)).enumerate();
-        if T::EXTRA {
-            chunks.zip(extra.par_chunks_mut(CHUNK)).for_each(|((c, (chunk, sums)), extra)| {
-                self.water_chunk(input, c * CHUNK, chunk, sums, extra);
-            });
-        } else {
-            chunks.for_each(|(c, (chunk, sums))| self.water_chunk(input, c * CHUNK, chunk, sums, &mut []));
-        }
-    }
-
-    fn skin(&self, input: &Input<'_, D>, sums: &mut [Sums<D>]) {
+    fn skin(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>]) {
         let none = [[0.0; D]; D];
-        input.lists.skin.par_iter().zip(sums.par_chunks_mut(CHUNK)).enumerate().for_each(|(c, (chunk, sums))| {
-            for (i, out) in sums.iter_mut().enumerate() {
-                let (water, _) = chunk.of(i);
-                let a = &input.skin[c * CHUNK + i];
-                let mut sum = Running::zero();
-                for &j in water {
-                    let j = j as usize;
-                    let stress = if W::STRESS { rows(&input.stress[j]) } else { none };
-                    self.add(&self.wall, (a, &none), (&input.water[j], &stress), &mut sum);
-                }
-                *out = sum.sums();
+        let (first, lists) = (chunk * CHUNK, &input.lists.skin[chunk]);
+        for (i, out) in sums.iter_mut().enumerate() {
+            let (water, _) = lists.of(i);
+            let a = &input.skin[first + i];
+            let mut sum = Running::zero();
+            for &j in water {
+                let j = j as usize;
+                let stress = if W::STRESS { rows(&input.stress[j]) } else { none };
+                self.add(&self.wall, (a, &none), (&input.water[j], &stress), &mut sum);
             }
-        });
+            *out = sum.sums();
+        }
     }
 }

@@ -4,9 +4,11 @@ mod gather;
 
 pub use gather::Gather;
 
+use rayon::prelude::*;
+
 use crate::{
     law::{Extra, Side},
-    near::Lists,
+    near::{CHUNK, Lists},
     space::{Matrix, Vector},
 };
 
@@ -63,14 +65,33 @@ impl<const D: usize> Sums<D> {
     }
 }
 
-/// A sweep with its laws compiled in.
+/// A sweep with its laws compiled in: the sums of one chunk of particles. One call a chunk goes through the
+/// trait object; inside there is no branch on a choice of law.
 pub trait Sweep<const D: usize>: Send + Sync {
     /// Whether [`Extra`] sums are made.
     fn extra(&self) -> bool;
 
-    /// Sums over all neighbours of the water into `sums`, and into `extra` where the laws need it (else empty).
-    fn water(&self, input: &Input<'_, D>, sums: &mut [Sums<D>], extra: &mut [Extra<f64, D>]);
+    /// Sums over all neighbours of the water particles of chunk `chunk` into `sums`, and into `extra` where
+    /// the laws need it (else empty).
+    fn water(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>], extra: &mut [Extra<f64, D>]);
 
-    /// Sums over the water around each boundary particle.
-    fn skin(&self, input: &Input<'_, D>, sums: &mut [Sums<D>]);
+    /// Sums over the water around the boundary particles of chunk `chunk`.
+    fn skin(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>]);
+}
+
+/// Sweeps all chunks of water and skin, each by one thread.
+pub fn all<const D: usize>(
+    sweep: &dyn Sweep<D>,
+    input: &Input<'_, D>,
+    sums: &mut [Sums<D>],
+    skin_sums: &mut [Sums<D>],
+    extra: &mut [Extra<f64, D>],
+) {
+    let chunks = sums.par_chunks_mut(CHUNK).enumerate();
+    if sweep.extra() {
+        chunks.zip(extra.par_chunks_mut(CHUNK)).for_each(|((c, sums), extra)| sweep.water(input, c, sums, extra));
+    } else {
+        chunks.for_each(|(c, sums)| sweep.water(input, c, sums, &mut []));
+    }
+    skin_sums.par_chunks_mut(CHUNK).enumerate().for_each(|(c, sums)| sweep.skin(input, c, sums));
 }

@@ -40,7 +40,10 @@ fn a_linear_velocity_is_read_exactly_at_a_point_of_symmetry() -> Result<()> {
 fn still_water_has_its_level_and_its_pressure() -> Result<()> {
     let sim = pool();
     let level = Elevation::new(sim.system(), &[0.2])?.look(&sim);
-    assert!((level[0] - 0.2).abs() < 0.1 * DP, "a tenth of the spacing, as the water ends half of it above its last row");
+    assert!(
+        (level[0] - 0.2).abs() < 0.1 * DP,
+        "a tenth of the spacing, as the water ends half of it above its last row"
+    );
     assert_eq!(level[1], 0.0, "η counts from the start");
     let p = Pressure::<2>::new(&[0.2, 0.1])?.look(&sim)[0];
     assert!((p / (1000.0 * 9.81 * 0.1) - 1.0).abs() < 0.02, "hydrostatic within 2 %; got {p}");
@@ -66,7 +69,14 @@ fn motion_counts_from_the_start_and_reads_the_velocity() -> Result<()> {
     let now = probe.look(&sim);
     assert_eq!(columns.len(), now.len());
     let of = |name: &str| columns.iter().position(|c| c == name).map(|i| now[i]);
-    for (name, expected) in [("surge_m", 0.0), ("heave_m", 0.0), ("pitch_deg", 0.0), ("vx_mps", 0.5), ("vy_mps", -0.25), ("spin_radps", 2.0)] {
+    for (name, expected) in [
+        ("surge_m", 0.0),
+        ("heave_m", 0.0),
+        ("pitch_deg", 0.0),
+        ("vx_mps", 0.5),
+        ("vy_mps", -0.25),
+        ("spin_radps", 2.0),
+    ] {
         assert_eq!(of(name), Some(expected), "{name}");
     }
     let unknown = Motion::new(sim.system(), "flaot").err().and_then(|e| e.help);
