@@ -10,13 +10,16 @@ pub(super) struct Cells<const D: usize> {
     /// Where each cell's points start in `order`.
     start: Vec<usize>,
     order: Vec<usize>,
+    /// The points in that order, side by side in memory.
+    points: Vec<Vector<D>>,
 }
 
 impl<const D: usize> Cells<D> {
     /// A grid over `points` in which everything within `reach` (m) of a place lies in the cells around it.
     pub fn new(points: &[Vector<D>], reach: f64) -> Self {
         let bounds = Bounds::around(points);
-        let mut grid = Self { min: bounds.min, size: reach, count: [0; D], start: vec![0], order: Vec::new() };
+        let mut grid =
+            Self { min: bounds.min, size: reach, count: [0; D], start: vec![0], order: Vec::new(), points: Vec::new() };
         if points.is_empty() {
             return grid;
         }
@@ -38,6 +41,7 @@ impl<const D: usize> Cells<D> {
             grid.order[next[c]] = i;
             next[c] += 1;
         }
+        grid.points = grid.order.iter().map(|&i| points[i]).collect();
         grid
     }
 
@@ -51,7 +55,7 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Visits every point within the reach of `x`, and some farther ones, in an order fixed by the points.
-    pub fn near(&self, x: &Vector<D>, mut visit: impl FnMut(usize)) {
+    pub fn near(&self, x: &Vector<D>, mut visit: impl FnMut(usize, &Vector<D>)) {
         if self.order.is_empty() {
             return;
         }
@@ -65,7 +69,8 @@ impl<const D: usize> Cells<D> {
         loop {
             let first = self.index(&row);
             let last = first + (high[0] - low[0]) as usize;
-            self.order[self.start[first]..self.start[last + 1]].iter().for_each(|&i| visit(i));
+            let run = self.start[first]..self.start[last + 1];
+            self.order[run.clone()].iter().zip(&self.points[run]).for_each(|(&i, y)| visit(i, y));
             // The next row: count up the axes after the first.
             let Some(axis) = (1..D).find(|&i| (row[i] as isize) < high[i]) else { return };
             row[axis] += 1;
@@ -80,7 +85,7 @@ pub(super) fn spaced<const D: usize>(points: &[Vector<D>], distance: f64) -> Vec
     let mut kept = vec![false; points.len()];
     for (i, x) in points.iter().enumerate() {
         let mut free = true;
-        cells.near(x, |j| free &= !(kept[j] && (x - points[j]).norm_squared() < distance * distance));
+        cells.near(x, |j, y| free &= !(kept[j] && (x - y).norm_squared() < distance * distance));
         kept[i] = free;
     }
     kept

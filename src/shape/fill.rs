@@ -180,10 +180,11 @@ mod tests {
 
     fn fits<const D: usize>(filled: &Filled<D>, shape: &Shape<D>, pose: &Pose<D>, dp: f64) {
         let (nearest, bare) = clearance(&filled.r, shape, pose, dp);
-        eprintln!("{nearest:.3} {bare:.3} {shape:?} {pose:?}");
-        // Half a dp in front of every face; half a spacing aside of it in D − 1 directions.
         assert!(nearest >= 0.45, "{shape:?}: water {nearest} dp from the face");
-        assert!(bare <= if D == 2 { 0.8 } else { 1.0 }, "{shape:?}: a gap of {bare} dp");
+        // Half a dp in front, half a spacing aside in D − 1 directions: 0.71 and 0.87 dp on a lattice that
+        // fits; uneven places add a fifth.
+        let most = if D == 2 { 0.85 } else { 1.04 };
+        assert!(bare <= most, "{shape:?}: a gap of {bare} dp");
         let cells = crate::shape::cells::spaced(&filled.r, 0.5 * dp);
         assert!(cells.iter().all(|kept| *kept), "{shape:?}: points nearer than half a dp");
     }

@@ -7,7 +7,7 @@ use crate::space::{Bounds, Pose, Vector};
 /// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
 const ZONE: f64 = 6.0;
 /// Layers of skin in the packing: as deep as its kernel reaches.
-const LAYERS: usize = 3;
+const LAYERS: usize = 2;
 /// The widest gap, beyond half a dp, between a face and its water that is let be, dp.
 const GAP: f64 = 0.1;
 
@@ -131,8 +131,7 @@ pub(super) fn fit<const D: usize>(
     }
     let mut points: Vec<_> = movable.iter().map(|&i| water[i]).collect();
     // The water is continued beyond its regions, or it would creep out of them; that part is left behind.
-    let beyond = ghosts(lattices, obstacles);
-    let (moving, still): (Vec<_>, Vec<_>) = beyond.into_iter().partition(|x| to_misfit(x) < ZONE);
+    let (moving, still) = ghosts(lattices, obstacles);
     points.extend(moving);
     let all_movable = points.len();
     points.extend(held);
@@ -152,20 +151,23 @@ pub(super) fn fit<const D: usize>(
     movable.iter().zip(&points).for_each(|(&i, x)| water[i] = *x);
 }
 
-/// Lattice points in a margin around the regions, near the solids that do not fit.
-fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &[Obstacle<D>]) -> Vec<Vector<D>> {
-    const MARGIN: i64 = 5;
-    let mut ghosts = Vec::new();
+/// Lattice points in a margin around the regions, near the solids that do not fit: those that may move,
+/// and the outermost, which hold them.
+fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &[Obstacle<D>]) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
+    const MARGIN: i64 = 8;
+    const RIM: i64 = 3;
+    let (mut moving, mut still) = (Vec::new(), Vec::new());
     for (k, lattice) in lattices.iter().enumerate() {
+        let inner = lattice.grown(MARGIN - RIM);
         lattice.each(MARGIN, |x| {
             if obstacles.iter().any(|o| o.misfit && o.around.contains(x))
                 && !lattices.iter().any(|l| l.holds(x))
                 && !lattices[..k].iter().any(|l| l.grown(MARGIN).contains(x))
                 && !obstacles.iter().any(|o| o.holds(x))
             {
-                ghosts.push(*x);
+                if inner.contains(x) { &mut moving } else { &mut still }.push(*x);
             }
         });
     }
-    ghosts
+    (moving, still)
 }

@@ -9,16 +9,16 @@ use std::f64::consts::PI;
 use super::cells::Cells;
 use crate::space::Vector;
 
-/// Smoothing length, dp. Long enough that a lattice is smooth to it, short enough to be quick.
-const H: f64 = 1.3;
+/// Smoothing length, dp. Of 1.0 to 1.5, tried on boxes, discs, balls and slopes, it leaves the smallest gaps.
+const H: f64 = 1.0;
 /// Reach of the kernel, dp.
 pub(super) const REACH: f64 = 2.0 * H;
 /// Drift factor β, –; above about 0.9 the pairs start to swing.
-const DRIFT: f64 = 0.6;
+const DRIFT: f64 = 0.5;
 /// Longest move in one pass, dp.
 const STEP: f64 = 0.15;
 /// Most passes, and the longest move, in dp, that counts as rest.
-const PASSES: usize = 100;
+const PASSES: usize = 60;
 const REST: f64 = 0.01;
 
 /// Moves the first `movable` of `points` until they are evenly spread among all of them. After each pass
@@ -40,8 +40,8 @@ pub(super) fn relax<const D: usize>(
         for (i, x) in next.iter_mut().enumerate() {
             let at = points[i];
             let mut drift = Vector::zeros();
-            cells.near(&at, |j| {
-                let r = at - points[j];
+            cells.near(&at, |j, y| {
+                let r = at - y;
                 let r2 = r.norm_squared();
                 if r2 < reach * reach && j != i {
                     let tail = 1.0 - r2.sqrt() / reach;
