@@ -4,4 +4,5 @@ mod measure;
 mod verdict;
 
 pub use measure::{amplitude, deviation, peak};
-pub use verdict::{Check, Score, Verdict};
+pub use crate::plan::Score;
+pub use verdict::{Check, Verdict};

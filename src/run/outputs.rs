@@ -9,11 +9,11 @@ use std::{
 };
 
 use crate::{
-    check::{Check, Score},
+    check::Check,
     error::{Error, Kind, Result, nearest},
     probe::{self, Probe},
     record::{Checkpoint, Frames, Table},
-    scene::{self, Plan, ProbeKind, ProbeWords},
+    scene::{CheckWords, Plan, ProbeKind, ProbeWords},
     simulation::Simulation,
     system::System,
 };
@@ -198,8 +198,7 @@ pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Resu
     let columns = plan.probes.iter().zip(probes);
     let known: Vec<String> =
         columns.flat_map(|(words, p)| p.columns().into_iter().map(move |c| format!("{}.{c}", words.name))).collect();
-    let score = |s: scene::Score| Score { n: s.n, m: s.m };
-    let check = |words: &scene::CheckWords| {
+    let check = |words: &CheckWords| {
         if !known.contains(&words.series) {
             let help = match nearest(&words.series, known.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean {near:?}?"),
@@ -210,8 +209,7 @@ pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Resu
             );
         }
         let reference = plan.folder.join(&words.reference);
-        let scores = [words.paper.map(score), words.bound.map(score)];
-        Check::new(&words.series, &reference, [&words.time, &words.column], words.delay, scores)
+        Check::new(&words.series, &reference, [&words.time, &words.column], words.delay, [words.paper, words.bound])
     };
     plan.checks.iter().map(check).collect()
 }
