@@ -55,6 +55,15 @@ impl<const D: usize> Watched<D> {
     }
 }
 
+/// What a look wrote besides rows, or asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// A frame was written.
+    pub frame: bool,
+    /// A checkpoint is due.
+    pub checkpoint: bool,
+}
+
 /// All outputs of a run.
 pub struct Outputs<const D: usize> {
     watched: Vec<Watched<D>>,
@@ -97,12 +106,13 @@ impl<const D: usize> Outputs<D> {
         Ok(Self { watched, frames, checkpoint })
     }
 
-    /// Writes what is due now. Returns whether a checkpoint is.
+    /// Writes what is due now, but for the checkpoint.
     ///
     /// # Errors
     /// `File` if something cannot be written.
-    pub fn look(&mut self, sim: &Simulation<D>) -> Result<bool> {
+    pub fn look(&mut self, sim: &Simulation<D>) -> Result<Written> {
         let t = sim.time();
+        let mut written = Written::default();
         for watched in &mut self.watched {
             if watched.due.take(t) {
                 watched.look(sim)?;
@@ -112,8 +122,10 @@ impl<const D: usize> Outputs<D> {
             && due.take(t)
         {
             frames.write(sim.system(), t)?;
+            written.frame = true;
         }
-        Ok(self.checkpoint.as_mut().is_some_and(|due| due.take(t)))
+        written.checkpoint = self.checkpoint.as_mut().is_some_and(|due| due.take(t));
+        Ok(written)
     }
 
     /// Writes the last row of every table and the last frame, unless they are there already.
