@@ -197,7 +197,7 @@ fn help_and_lists_teach() {
     shows(&["run", "--help"], &["--dp", "--until", "--out", "--threads", "--set", "Examples:", "Ctrl-C", "Exit codes"]);
     shows(&["resume", "--help"], &["pontoon resume runs/raft"]);
     shows(&["scenes"], &["raft", "still-tank", "flume-box", "column", "dam-break", "buoyancy-3d", "pontoon run NAME"]);
-    shows(&["inspect", "raft", "--dp", "0.02"], &["3510", "paddle", "driven", "scene line", "--set", "default: "]);
+    shows(&["inspect", "raft", "--dp", "0.02"], &["particles", "paddle", "driven", "scene line", "--set", "default: "]);
     assert_eq!(fs::read_dir(&desk.0).unwrap().count(), 0, "none of these writes anything");
     assert_eq!(desk.pontoon(&[]).code, Some(2));
 }

@@ -1,0 +1,91 @@
+//! Without a scene: water, tank and laws put together by hand, and a start that no scene can say. The water
+//! begins flat, with the velocity of the tank's first standing wave, u = ∇φ, φ ~ cos(kx) cosh(ky), k = π/L.
+//! Half a period later the surface is flat again: linear theory says T = 2π/√(g k tanh(k depth)).
+//!
+//! `cargo run --release --example own_setup`, some seconds.
+
+use std::f64::consts::PI;
+
+use pontoon::{
+    Result,
+    law::{diffusion::Fourtakas, viscosity::Artificial},
+    model::{Diffusion, Kernel, Model, Scheme, Shifting, Viscosity, Walls},
+    probe::{Elevation, Probe},
+    shape::{Region, Shape, fill},
+    simulation::{Setup, Simulation},
+    solid::{Role, SolidSpec},
+    space::{Pose, Vector},
+};
+
+/// Length and depth of the water, m.
+const SIZE: [f64; 2] = [1.0, 0.4];
+
+/// Particle spacing, m.
+const DP: f64 = 0.02;
+
+const GRAVITY: f64 = 9.81;
+
+fn main() -> Result<()> {
+    let mut sim = Simulation::new(setup()?)?;
+    let k = PI / SIZE[0];
+    let top = 0.05;
+    sim.set_water_velocity(|r| {
+        let (up, along) = ((k * r[1]).sinh(), (k * r[1]).cosh());
+        Vector::from([-(k * r[0]).sin() * along, (k * r[0]).cos() * up]) * (top / (k * SIZE[1]).sinh())
+    });
+    sim.refresh();
+
+    // Where the level at the left passes its start on the way down, half a period is over.
+    let gauge = Elevation::new(sim.system(), &[0.1])?;
+    let (mut before, mut highest) = ((0.0, 0.0), 0.0_f64);
+    let half = loop {
+        sim.step()?;
+        let now = (sim.time(), gauge.look(&sim)[1]);
+        highest = highest.max(now.1);
+        if highest > 0.005 && now.1 <= 0.0 {
+            break before.0 + (now.0 - before.0) * before.1 / (before.1 - now.1);
+        }
+        before = now;
+    };
+
+    let theory = 2.0 * PI / (GRAVITY * k * (k * SIZE[1]).tanh()).sqrt();
+    println!("highest level at x = 0.1 m   {:.1} mm", 1e3 * highest);
+    println!("period                       {:.4} s", 2.0 * half);
+    println!("linear theory                {theory:.4} s, {:+.1} %", 100.0 * (2.0 * half / theory - 1.0));
+    assert!((2.0 * half / theory - 1.0).abs() < 0.03, "20 spacings of depth give the period within 3 %");
+    Ok(())
+}
+
+/// Still water in a tank.
+fn setup() -> Result<Setup<2>> {
+    let model = Model {
+        kernel: Kernel::Wendland,
+        h: 1.7 * DP,
+        dp: DP,
+        rho0: 1000.0,
+        c0: 20.0 * (GRAVITY * SIZE[1]).sqrt(),
+        gamma: 7.0,
+        gravity: vec![0.0, -GRAVITY],
+        viscosity: Viscosity::Artificial(Artificial { alpha: 0.01, ..Artificial::default() }),
+        diffusion: Diffusion::Fourtakas(Fourtakas::default()),
+        shifting: Shifting::None,
+        walls: Walls::Dbc,
+        scheme: Scheme::Symplectic,
+        cfl: 0.4,
+        dt_max: f64::INFINITY,
+    };
+    let tank = SolidSpec {
+        name: "tank".into(),
+        shape: Shape::Tank { size: Vector::from([SIZE[0], 0.6]), thickness: 4.0 * DP },
+        pose: Pose::identity(),
+        role: Role::Fixed,
+        friction: 0.3,
+        restitution: 0.0,
+    };
+    // The frame of a box is its middle.
+    let size = Vector::from(SIZE);
+    let region = Region { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
+    let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
+    let levels = vec![SIZE[1]; water.len()];
+    Ok(Setup { model, water, levels, solids: vec![tank], domain: None })
+}
