@@ -54,8 +54,10 @@ Examples:
   pontoon run my-bay.toml --until 2 --dp 0.02       a scene file, shorter and coarser
   pontoon run raft --set model.viscosity=none       one key of the scene changed
   pontoon run raft --set solid.box.free.density=500
-Ctrl-C stops after the present step with a checkpoint; `pontoon resume` goes on from there to the same
-bits. The number of threads changes the speed, never the result.")]
+Ctrl-C stops after the present step with a checkpoint; `pontoon resume` goes on from there to
+the same bits. The number of threads changes the speed, never the result.
+Exit codes: 0 all well; 1 the computation could not go on; 2 something in the command, the scene
+or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
     Run(RunArgs),
     /// Go on with an interrupted run, to the same bits as an unbroken one
     #[command(after_help = "Example:\n  pontoon resume runs/raft")]
@@ -86,10 +88,10 @@ struct SceneArgs {
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     /// Particle spacing, m: half of it costs about 8 times as much in 2-D, 16 times in 3-D
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     dp: Option<f64>,
     /// Simulated time at the end, s
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     until: Option<f64>,
     /// Change a key of the scene; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]

@@ -25,8 +25,8 @@ pub mod simulation;
 // results
 pub mod plan;
 pub mod probe;
-pub mod record;
 pub mod check;
+pub mod record;
 // entrance
 pub mod scene;
 pub mod run;

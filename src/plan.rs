@@ -99,10 +99,10 @@ pub struct CheckWords {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Score {
-    /// Relative deviation N, –: 0 is perfect.
+    /// Relative deviation N, –: 0 is perfect. As a bound: the largest that passes.
     #[serde(rename = "N")]
     pub n: Option<f64>,
-    /// Amplitude ratio M, –: 1 is perfect.
+    /// Amplitude ratio M, –: 1 is perfect. As a bound: the largest |M − 1| that passes.
     #[serde(rename = "M")]
     pub m: Option<f64>,
 }

@@ -13,11 +13,14 @@
 mod course;
 mod folder;
 mod inspect;
+mod lock;
 mod outputs;
 
 pub use inspect::{Report, inspect};
 
 use std::path::{Path, PathBuf};
+
+use lock::Lock;
 
 use crate::{
     error::{Error, Kind, Result},
@@ -126,8 +129,12 @@ pub fn run(path: &Path, options: &Options, watch: &mut dyn Watch) -> Result<Outc
 /// Goes on with the interrupted run in `folder`, to the same bits as if it had not been interrupted.
 ///
 /// # Errors
-/// `Restart` if it has finished, holds no whole checkpoint, or its scene has changed since; else as [`run`].
+/// `Restart` if it has finished or still goes on, holds no whole checkpoint, or its scene has changed since;
+/// else as [`run`].
 pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> Result<Outcome> {
+    Manifest::read(folder)?;
+    let lock = Lock::take(folder)?;
+    // Read again under the lock: a run that was still going on may have finished since.
     if Manifest::read(folder)?.status == Status::Finished {
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
@@ -138,7 +145,8 @@ pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> R
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
     }
-    with_threads(threads, || by_dimension(&scene, Origin::Resumed { folder, checkpoint: Box::new(checkpoint) }, watch))
+    let origin = Origin::Resumed { folder, checkpoint: Box::new(checkpoint), lock };
+    with_threads(threads, || by_dimension(&scene, origin, watch))
 }
 
 /// Where a run comes from.
@@ -146,7 +154,7 @@ enum Origin<'a> {
     /// A scene file, for the folder `out` or one of our choice.
     Fresh { file: &'a Path, out: Option<&'a Path>, sets: &'a [(String, String)] },
     /// A checkpoint in the run's folder.
-    Resumed { folder: &'a Path, checkpoint: Box<Checkpoint> },
+    Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, lock: Lock },
 }
 
 /// Chooses the dimension: the one place.

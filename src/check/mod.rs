@@ -3,5 +3,6 @@
 mod measure;
 mod verdict;
 
+pub use crate::plan::Score;
 pub use measure::{amplitude, deviation, peak};
-pub use verdict::{Check, Score, Verdict};
+pub use verdict::{Check, Verdict};

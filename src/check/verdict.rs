@@ -10,19 +10,9 @@ use serde::{Deserialize, Serialize};
 use super::measure::{amplitude, deviation, peak};
 use crate::{
     error::{Error, Result, nearest},
+    plan::Score,
     series::Series,
 };
-
-/// Figures of a comparison; one that is not given is not judged.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Score {
-    /// Relative deviation N, –: 0 is perfect. As a bound: the largest that passes.
-    #[serde(rename = "N")]
-    pub n: Option<f64>,
-    /// Amplitude ratio M, –: 1 is perfect. As a bound: the largest |M − 1| that passes.
-    #[serde(rename = "M")]
-    pub m: Option<f64>,
-}
 
 /// A reference that a run is to be held against.
 #[derive(Clone, Debug)]

@@ -89,14 +89,31 @@ pub fn all() -> Vec<Listed> {
         Listed {
             name: name.to_string(),
             title: words.and_then(|w| Some(w.get("title")?.as_str()?.to_owned())).unwrap_or_default(),
-            about: first_line(readme),
+            about: first_sentence(readme),
             folder: folder.join("scene.toml").is_file().then_some(folder),
         }
     };
     shipped().iter().map(listed).collect()
 }
 
-/// The first line of `readme` that is no heading.
-fn first_line(readme: &str) -> String {
-    readme.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or("").into()
+/// The first sentence of `readme` that is no heading, of a line however long.
+fn first_sentence(readme: &str) -> String {
+    let paragraph = readme.split("\n\n").map(str::trim).find(|text| !text.is_empty() && !text.starts_with('#'));
+    let text = paragraph.unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" ");
+    text.split_once(". ").map_or(text.clone(), |(first, _)| format!("{first}."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_said_of_a_scene_is_the_first_sentence_of_its_readme() {
+        let readme = "# A raft\n\nSix bodies, 1.7 m\nlong. More.\n\nSource.\n";
+        assert_eq!(first_sentence(readme), "Six bodies, 1.7 m long.");
+        assert_eq!(first_sentence("# Only a heading\n"), "");
+        for scene in all() {
+            assert!(scene.about.ends_with('.') && !scene.title.is_empty(), "{}: {:?}", scene.name, scene.about);
+        }
+    }
 }

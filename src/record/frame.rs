@@ -122,7 +122,7 @@ fn cloud<const D: usize>(points: &[Vector<D>], fields: Vec<Attribute>) -> std::r
         data: Attributes { point: fields, cell: vec![] },
     };
     let vtk = Vtk {
-        version: Version::new((1, 0)),
+        version: Version::new_xml(1, 0),
         title: String::new(),
         byte_order: ByteOrder::LittleEndian,
         file_path: None,

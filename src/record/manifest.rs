@@ -19,6 +19,8 @@ pub struct Manifest {
     pub title: String,
     /// Version of this crate.
     pub version: String,
+    /// Name and version of the engine that moves the bodies.
+    pub engine: String,
     /// Threads used.
     pub threads: usize,
     /// How many particles of each sort.

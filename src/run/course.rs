@@ -4,6 +4,7 @@ use std::{path::PathBuf, time::Instant};
 
 use super::{
     Body, Origin, Outcome, Progress, Start, Watch, folder,
+    lock::Lock,
     outputs::{self, Outputs, series_folder},
 };
 use crate::{
@@ -33,6 +34,7 @@ pub struct Course<const D: usize> {
     checkpoint: Checkpoint,
     resumed: bool,
     begun: Instant,
+    _lock: Lock,
 }
 
 impl<const D: usize> Course<D>
@@ -48,20 +50,24 @@ where
         let checks = outputs::checks(&plan, &probes)?;
         let text = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(InForce::from).collect();
-        let (folder, mut checkpoint, resumed) = match origin {
+        let (folder, mut checkpoint, resumed, lock) = match origin {
             Origin::Fresh { file, out, sets } => {
                 let folder = folder::create(file, out)?;
-                folder::keep_scene(file, sets, &folder)?;
-                (folder, first_checkpoint(&text, sets), false)
+                let lock = Lock::take(&folder)?;
+                folder::keep_scene(file, &text, &folder)?;
+                (folder, first_checkpoint(&text, sets), false, lock)
             }
-            Origin::Resumed { folder, checkpoint } => (folder.to_owned(), *checkpoint, true),
+            Origin::Resumed { folder, checkpoint, lock } => (folder.to_owned(), *checkpoint, true, lock),
         };
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint))?;
         if resumed {
             sim.restore(&std::mem::take(&mut checkpoint.state))?;
+            folder::forget_failure(&folder)?;
         }
-        let manifest = Manifest { warnings, values, scene: text, ..first_manifest(&sim, &plan, &checkpoint) };
-        Ok(Self { sim, outputs, checks, manifest, folder, checkpoint, resumed, begun })
+        let (name, version) = Dim::<D>::VERSION;
+        let engine = format!("{name} {version}");
+        let manifest = Manifest { engine, warnings, values, scene: text, ..first_manifest(&sim, &plan, &checkpoint) };
+        Ok(Self { sim, outputs, checks, manifest, folder, checkpoint, resumed, begun, _lock: lock })
     }
 }
 
@@ -98,8 +104,13 @@ impl<const D: usize> Course<D> {
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping += clock.elapsed().as_secs_f64();
             stepped?;
-            if self.outputs.look(&self.sim)? {
+            let written = self.outputs.look(&self.sim)?;
+            if written.checkpoint {
                 self.save()?;
+            }
+            if written.checkpoint || written.frame {
+                self.update();
+                self.manifest.write(&self.folder)?;
             }
             going = watch.step(&self.progress());
         }
@@ -126,7 +137,7 @@ impl<const D: usize> Course<D> {
             // Whatever of this fails, the fault itself is what the user must hear.
             reports.push(self.outputs.last_frame(&self.sim));
             let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
-            reports.push(write_whole(&self.folder.join("failure.json"), &text));
+            reports.push(write_whole(&self.folder.join(folder::FAILURE), &text));
         }
         self.update();
         self.manifest.fail(&error);
@@ -149,7 +160,7 @@ impl<const D: usize> Course<D> {
         self.manifest.wall_s = now.wall;
         self.manifest.particle_steps_per_second = now.rate;
         let there = |name: &&str| self.folder.join(name).exists();
-        let fixed = ["frames.pvd", CHECKPOINT, "failure.json", folder::SCENE];
+        let fixed = ["frames.pvd", CHECKPOINT, folder::FAILURE, folder::SCENE];
         let mut files: Vec<String> = self.outputs.tables().collect();
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
         files.push("manifest.json".into());
@@ -197,6 +208,7 @@ fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: 
         status: Status::Running,
         title: plan.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
+        engine: String::new(),
         threads: rayon::current_num_threads(),
         particles: Count { fluid: sim.system().fluid().len(), boundary: sim.system().skin().len() },
         steps: 0,

@@ -10,6 +10,9 @@ use crate::error::{Error, Kind, Result};
 /// The kept scene, in the run's folder.
 pub const SCENE: &str = "scene/scene.toml";
 
+/// The report of a run that could not go on, in its folder.
+pub const FAILURE: &str = "failure.json";
+
 /// The scene file that `path` means: itself, or the `scene.toml` in it.
 pub fn scene_file(path: &Path) -> PathBuf {
     if path.is_dir() { path.join("scene.toml") } else { path.to_owned() }
@@ -57,16 +60,29 @@ pub fn create(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
     }
 }
 
-/// Copies the scene in `file` into the run's `folder`, and the tables beside it that the scene or one of
-/// `sets` names, so that the folder can be resumed wherever it is moved.
+/// Removes the report of an earlier failure from the `folder` of a run that goes on.
+///
+/// # Errors
+/// `File` if it cannot be removed.
+pub fn forget_failure(folder: &Path) -> Result<()> {
+    let path = folder.join(FAILURE);
+    match fs::remove_file(&path) {
+        Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::file(&path, format!("cannot be removed: {why}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Copies the scene in `file` into the run's `folder`, and the tables beside it that `words` names, the
+/// TOML of the scene in force, so that the folder can be resumed wherever it is moved.
 ///
 /// # Errors
 /// `File` if something cannot be read or written.
-pub fn keep_scene(file: &Path, sets: &[(String, String)], folder: &Path) -> Result<()> {
-    let text = fs::read_to_string(file).map_err(|why| Error::file(file, why))?;
-    let mut words: Vec<String> = sets.iter().map(|(_, value)| value.trim_matches('"').to_owned()).collect();
-    if let Ok(table) = text.parse::<toml::Table>() {
-        table.values().for_each(|value| strings(value, &mut words));
+pub fn keep_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
+    let mut names = Vec::new();
+    if let Ok(table) = words.parse::<toml::Table>() {
+        table.values().for_each(|value| strings(value, &mut names));
     }
     let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let copy = |source: &Path, target: &Path| -> Result<()> {
@@ -75,11 +91,11 @@ pub fn keep_scene(file: &Path, sets: &[(String, String)], folder: &Path) -> Resu
         fs::copy(source, target).map(|_| ()).map_err(|why| Error::file(target, format!("cannot be written: {why}")))
     };
     copy(file, &folder.join(SCENE))?;
-    for word in words {
-        let inside = Path::new(&word).components().all(|part| matches!(part, Component::Normal(_)));
-        let source = from.join(&word);
-        if inside && !word.is_empty() && source.is_file() {
-            copy(&source, &to.join(&word))?;
+    for name in names {
+        let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        let source = from.join(&name);
+        if !name.is_empty() && Path::new(&name).components().all(inside) && source.is_file() {
+            copy(&source, &to.join(&name))?;
         }
     }
     Ok(())
@@ -104,7 +120,8 @@ mod tests {
         let home = std::env::temp_dir().join(format!("pontoon-folder-{}", std::process::id()));
         let scene = home.join("bay");
         fs::create_dir_all(scene.join("data"))?;
-        fs::write(scene.join("scene.toml"), "a = { file = \"data/flap.csv\" }\nb = [\"../secret.csv\", \"no.csv\"]\n")?;
+        let words = "a = { file = \"./data/flap.csv\" }\nb = [\"../secret.csv\", \"no.csv\"]\n";
+        fs::write(scene.join("scene.toml"), words)?;
         fs::write(scene.join("data/flap.csv"), "t_s,x_m\n")?;
         fs::write(scene.join("other.csv"), "")?;
         fs::write(home.join("secret.csv"), "")?;
@@ -112,7 +129,7 @@ mod tests {
         assert_eq!(name(&file), "bay");
         let out = home.join("out");
         let folder = create(&file, Some(&out)).map_err(std::io::Error::other)?;
-        keep_scene(&file, &[], &folder).map_err(std::io::Error::other)?;
+        keep_scene(&file, words, &folder).map_err(std::io::Error::other)?;
         assert!(out.join("scene/data/flap.csv").is_file() && out.join(SCENE).is_file());
         assert!(!out.join("scene/other.csv").exists() && !out.join("secret.csv").exists());
         let again = create(&file, Some(&out)).err().map(|e| e.kind);

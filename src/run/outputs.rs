@@ -9,11 +9,11 @@ use std::{
 };
 
 use crate::{
-    check::{Check, Score},
+    check::Check,
     error::{Error, Kind, Result, nearest},
     probe::{self, Probe},
     record::{Checkpoint, Frames, Table},
-    scene::{self, Plan, ProbeKind, ProbeWords},
+    scene::{CheckWords, Plan, ProbeKind, ProbeWords},
     simulation::Simulation,
     system::System,
 };
@@ -53,6 +53,15 @@ impl<const D: usize> Watched<D> {
         }
         self.table.row(sim.time(), &row)
     }
+}
+
+/// What a look wrote besides rows, or asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// A frame was written.
+    pub frame: bool,
+    /// A checkpoint is due.
+    pub checkpoint: bool,
 }
 
 /// All outputs of a run.
@@ -97,12 +106,13 @@ impl<const D: usize> Outputs<D> {
         Ok(Self { watched, frames, checkpoint })
     }
 
-    /// Writes what is due now. Returns whether a checkpoint is.
+    /// Writes what is due now, but for the checkpoint.
     ///
     /// # Errors
     /// `File` if something cannot be written.
-    pub fn look(&mut self, sim: &Simulation<D>) -> Result<bool> {
+    pub fn look(&mut self, sim: &Simulation<D>) -> Result<Written> {
         let t = sim.time();
+        let mut written = Written::default();
         for watched in &mut self.watched {
             if watched.due.take(t) {
                 watched.look(sim)?;
@@ -112,8 +122,10 @@ impl<const D: usize> Outputs<D> {
             && due.take(t)
         {
             frames.write(sim.system(), t)?;
+            written.frame = true;
         }
-        Ok(self.checkpoint.as_mut().is_some_and(|due| due.take(t)))
+        written.checkpoint = self.checkpoint.as_mut().is_some_and(|due| due.take(t));
+        Ok(written)
     }
 
     /// Writes the last row of every table and the last frame, unless they are there already.
@@ -198,8 +210,7 @@ pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Resu
     let columns = plan.probes.iter().zip(probes);
     let known: Vec<String> =
         columns.flat_map(|(words, p)| p.columns().into_iter().map(move |c| format!("{}.{c}", words.name))).collect();
-    let score = |s: scene::Score| Score { n: s.n, m: s.m };
-    let check = |words: &scene::CheckWords| {
+    let check = |words: &CheckWords| {
         if !known.contains(&words.series) {
             let help = match nearest(&words.series, known.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean {near:?}?"),
@@ -210,8 +221,7 @@ pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Resu
             );
         }
         let reference = plan.folder.join(&words.reference);
-        let scores = [words.paper.map(score), words.bound.map(score)];
-        Check::new(&words.series, &reference, [&words.time, &words.column], words.delay, scores)
+        Check::new(&words.series, &reference, [&words.time, &words.column], words.delay, [words.paper, words.bound])
     };
     plan.checks.iter().map(check).collect()
 }

@@ -75,6 +75,9 @@ pub struct Dim<const D: usize>;
 
 /// Dimensions that have an engine.
 pub trait HasEngine<const D: usize> {
+    /// Name and version of the engine.
+    const VERSION: (&'static str, &'static str);
+
     /// Makes the engine of `solids`, each starting as `start` says, under `gravity` (m/s²).
     ///
     /// `dp`: particle spacing (m), the measure of what overlap is too deep. Shapes are not checked here but by
@@ -93,6 +96,8 @@ pub trait HasEngine<const D: usize> {
 
 #[cfg(feature = "dim2")]
 impl HasEngine<2> for Dim<2> {
+    const VERSION: (&'static str, &'static str) = ("rapier2d", rapier2d::VERSION);
+
     fn engine(
         solids: &[SolidSpec<2>],
         start: &[Kinematics<2>],
@@ -105,6 +110,8 @@ impl HasEngine<2> for Dim<2> {
 
 #[cfg(feature = "dim3")]
 impl HasEngine<3> for Dim<3> {
+    const VERSION: (&'static str, &'static str) = ("rapier3d", rapier3d::VERSION);
+
     fn engine(
         solids: &[SolidSpec<3>],
         start: &[Kinematics<3>],

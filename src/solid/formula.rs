@@ -206,7 +206,7 @@ impl<'a> Reader<'a> {
             Some('(') => {
                 self.place += 1;
                 let inner = self.sum()?;
-                self.expect(')')?;
+                self.take(')')?;
                 Ok(inner)
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
@@ -245,17 +245,17 @@ impl<'a> Reader<'a> {
             return Err(self.wrong(format!("\"{word}\" is not known{meant}")));
         }
         self.place += end;
-        self.expect('(')?;
+        self.take('(')?;
         let first = Box::new(self.sum()?);
         let node = match (function, choice) {
             (Some((_, function)), _) => Node::Call(*function, first),
             (None, Some((_, binary))) => {
-                self.expect(',')?;
+                self.take(',')?;
                 Node::Binary(*binary, first, Box::new(self.sum()?))
             }
             (None, None) => *first,
         };
-        self.expect(')')?;
+        self.take(')')?;
         Ok(node)
     }
 
@@ -266,7 +266,7 @@ impl<'a> Reader<'a> {
         self.text[self.place..].chars().next()
     }
 
-    fn expect(&mut self, wanted: char) -> Result<()> {
+    fn take(&mut self, wanted: char) -> Result<()> {
         match self.peek() {
             Some(c) if c == wanted => {
                 self.place += c.len_utf8();

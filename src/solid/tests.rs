@@ -236,7 +236,7 @@ fn bodies_inside_one_another_are_refused() {
     };
     assert!(near(0.0).is_ok() && near(-0.0004).is_ok());
     let error = near(-0.0006).unwrap_err().to_string();
-    assert!(error.contains("\"floor\" starts 6.000e-4 m inside \"box\""), "{error}");
+    assert!(error.contains("\"box\" starts 0.00060 m inside \"floor\""), "{error}");
     let massless = FreeBody { mass: 0.0, ..light() };
     let error = engine(&[solid("ghost", cube(0.1), [0.0, 0.0], Role::Free(massless))], down()).map(|_| ());
     assert!(error.unwrap_err().to_string().contains("\"ghost\": its mass is 0 kg"));

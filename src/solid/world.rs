@@ -343,11 +343,11 @@ fn refuse_overlap(solids: &[SolidSpec<D>], start: &[Kinematics<D>], parts: &[Par
                 }
             }
             if depth > allowed {
-                return Err(Error::scene(format!(
-                    "\"{}\" starts {depth:.3e} m inside \"{}\"",
-                    solids[a].name, solids[b].name
-                ))
-                .help(format!("move one of them by that much or more; {allowed:.1e} m (0.05 dp) is let pass")));
+                let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
+                let (inner, outer) = (&solids[inner].name, &solids[outer].name);
+                let help = "move one of them by that much or more, or make it smaller";
+                return Err(Error::scene(format!("\"{inner}\" starts {depth:.5} m inside \"{outer}\""))
+                    .help(format!("{help}; {allowed:.5} m (0.05 dp) is let pass")));
             }
         }
     }

@@ -10,4 +10,5 @@ mod near;
 mod probes;
 mod quiet;
 mod rig;
+mod scenes;
 mod steppers;

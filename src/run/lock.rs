@@ -1,0 +1,64 @@
+//! One program at a time in a run's folder: `run.lock` is locked by the system for as long as the run goes
+//! on, so that a run that was killed leaves no lock behind, only the file.
+
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use crate::error::{Error, Kind, Result};
+
+/// The right to write in a run's folder; the file goes when this is dropped.
+pub struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Lock {
+    /// Takes the right to write in `folder`.
+    ///
+    /// # Errors
+    /// `Restart` if a run goes on there: names its process; `File` if the lock cannot be made.
+    pub fn take(folder: &Path) -> Result<Self> {
+        let path = folder.join("run.lock");
+        let refused = |why: std::io::Error| Error::file(&path, format!("cannot be written: {why}"));
+        let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(refused)?;
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let process = fs::read_to_string(&path).unwrap_or_default();
+            let what = format!("the run in {} still goes on: process {}", folder.display(), process.trim());
+            let help = "wait for its end, or stop it with Ctrl-C and resume it then";
+            return Err(Error::new(Kind::Restart, what).help(help));
+        }
+        // A file system that knows no locks is no reason to refuse a run there.
+        file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(refused)?;
+        Ok(Self { path, _file: file })
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Left over, it does no harm: the system has let go of it.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_run_at_a_time_and_what_a_killed_one_leaves_is_no_hindrance() -> Result<()> {
+        let folder = std::env::temp_dir().join(format!("pontoon-lock-{}", std::process::id()));
+        fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
+        fs::write(folder.join("run.lock"), "1234567 left over").map_err(|e| Error::file(&folder, e))?;
+        let lock = Lock::take(&folder)?;
+        let second = Lock::take(&folder).err().map(|e| (e.kind, e.what)).unwrap_or((Kind::File, String::new()));
+        assert_eq!(second.0, Kind::Restart);
+        assert!(second.1.ends_with(&format!("process {}", std::process::id())), "names the process: {}", second.1);
+        drop(lock);
+        assert!(!folder.join("run.lock").exists());
+        Lock::take(&folder)?;
+        fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
+    }
+}

@@ -1,0 +1,257 @@
+//! The program as a stranger meets it: commands, exit codes, messages, files. All through the binary.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+/// A fresh folder that is the working folder of a test.
+struct Desk(PathBuf);
+
+impl Desk {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("pontoon-cli-{name}-{}", std::process::id()));
+        // Left over from a killed test of the same number, if at all.
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pontoon"));
+        command.args(words).current_dir(&self.0).stdin(Stdio::null());
+        command
+    }
+
+    fn pontoon(&self, words: &[&str]) -> Said {
+        Said::from(self.command(words).output().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    fn manifest(&self, run: &str) -> serde_json::Value {
+        serde_json::from_str(&self.read(&format!("{run}/manifest.json"))).unwrap()
+    }
+
+    /// The tables of a run by name, whole.
+    fn series(&self, run: &str) -> Vec<(String, String)> {
+        let entries = fs::read_dir(self.path(run).join("series")).unwrap().flatten();
+        let mut names: Vec<String> = entries.map(|e| e.file_name().into_string().unwrap()).collect();
+        names.sort();
+        names.into_iter().map(|name| (name.clone(), self.read(&format!("{run}/series/{name}")))).collect()
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// What the program answered.
+struct Said {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+impl From<Output> for Said {
+    fn from(output: Output) -> Self {
+        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).expect("UTF-8");
+        Self { code: output.status.code(), out: text(&output.stdout), err: text(&output.stderr) }
+    }
+}
+
+impl Said {
+    /// Ended with `code` and said all of `words` on standard error, without a panic.
+    #[track_caller]
+    fn refused(&self, code: i32, words: &[&str]) {
+        assert_eq!(self.code, Some(code), "{}", self.err);
+        assert!(!self.err.contains("panicked"), "{}", self.err);
+        for word in words {
+            assert!(self.err.contains(word), "\"{word}\" is not in:\n{}", self.err);
+        }
+    }
+}
+
+/// Every row of a table has as many fields as its header, and the last row is whole.
+#[track_caller]
+fn whole(name: &str, table: &str) {
+    assert!(table.ends_with('\n'), "{name} ends within a row");
+    let count = |line: &str| line.split(',').count();
+    let header = table.lines().next().map_or(0, count);
+    assert!(table.lines().all(|line| count(line) == header), "{name} has rows of different lengths");
+}
+
+#[test]
+fn a_run_leaves_what_its_manifest_says_and_every_column_has_its_unit() {
+    let desk = Desk::new("run");
+    let said = desk.pontoon(&["run", "still-tank", "--until", "0.05", "--out", "a"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    for word in ["finished", "simulated", "particle-steps/s", "files in a", "series/low.csv", "frames.pvd"] {
+        assert!(said.out.contains(word), "\"{word}\" is not in:\n{}", said.out);
+    }
+    let manifest = desk.manifest("a");
+    assert_eq!(manifest["status"], "finished");
+    assert_eq!(manifest["simulated_s"], 0.05);
+    for key in
+        ["/threads", "/particles/fluid", "/particles/boundary", "/steps", "/wall_s", "/particle_steps_per_second"]
+    {
+        let figure = manifest.pointer(key).and_then(serde_json::Value::as_f64);
+        assert!(figure.is_some_and(|x| x > 0.0), "{key}: {figure:?}");
+    }
+    assert!(manifest["checks"].is_array());
+    assert!(manifest["engine"].as_str().is_some_and(|e| e.starts_with("rapier")));
+    for file in manifest["files"].as_array().unwrap() {
+        assert!(desk.path("a").join(file.as_str().unwrap()).is_file(), "{file} is named, but not there");
+    }
+    assert!(!desk.path("a/run.lock").exists(), "the lock goes with the run");
+    const UNITS: [&str; 11] = ["s", "m", "mps", "deg", "radps", "Pa", "N", "Nm", "J", "J_per_m", "N_per_m"];
+    for (name, table) in desk.series("a") {
+        whole(&name, &table);
+        for column in table.lines().next().unwrap().split(',') {
+            let unit = |unit: &&str| column.ends_with(&format!("_{unit}"));
+            assert!(UNITS.iter().any(|u| unit(&u)) || column.ends_with("_Nm_per_m"), "{name}: {column}");
+        }
+    }
+}
+
+#[test]
+fn a_misspelt_key_is_told_where_it_stands_and_what_was_meant() {
+    let desk = Desk::new("misspelt");
+    let scene = include_str!("../scenes/buoyancy/scene.toml").replace("free  = { density", "free  = { densty");
+    fs::write(desk.path("bay.toml"), scene).unwrap();
+    let said = desk.pontoon(&["run", "bay.toml"]);
+    said.refused(2, &["unknown key \"densty\"; did you mean \"density\"?", "bay.toml:18:11", "solid.box.free"]);
+    assert!(!desk.path("runs").exists(), "nothing is written before the scene is known to be right");
+}
+
+#[test]
+fn wrong_commands_are_told_what_to_do() {
+    let desk = Desk::new("wrong");
+    desk.pontoon(&["run", "raff"]).refused(2, &["there is no scene \"raff\"", "did you mean \"raft\"?"]);
+    desk.pontoon(&["run", "bathtub"]).refused(2, &["\"bathtub\"", "pontoon scenes"]);
+    desk.pontoon(&["run", "raft", "--dp", "-1"]).refused(2, &["dp must be a positive number, not -1"]);
+    desk.pontoon(&["run", "raft", "--until", "0"]).refused(2, &["until"]);
+    desk.pontoon(&["run", "raft", "--threads", "0"]).refused(2, &["0 threads cannot run anything"]);
+    desk.pontoon(&["run", "raft", "--set", "dp"]).refused(2, &["write key=value"]);
+    desk.pontoon(&["run", "raft", "--set", "solid.boot.free.density=1"]).refused(2, &["boot", "boat"]);
+    desk.pontoon(&["run", "still-tank", "--dp", "1e-6"]).refused(2, &["particles", "or more"]);
+    desk.pontoon(&["resume", "nowhere"]).refused(2, &["nowhere holds no run", "pontoon resume runs/raft"]);
+    fs::write(desk.path("file"), "").unwrap();
+    desk.pontoon(&["run", "raft", "--out", "file/x"]).refused(2, &["file/x: cannot be made", "--out"]);
+    desk.pontoon(&["run", "raft", "--out", "."]).refused(2, &["is not empty"]);
+    assert!(!desk.path("runs").exists());
+}
+
+#[test]
+fn a_body_wider_than_its_tank_is_refused_before_the_run() {
+    let desk = Desk::new("wide");
+    for command in ["run", "inspect"] {
+        let said = desk.pontoon(&[command, "buoyancy", "--set", "solid.box.shape.box.size=[1.4, 0.2]"]);
+        said.refused(2, &["\"box\" starts ", " m inside \"tank\"", "make it smaller"]);
+    }
+    let table = "solid.box.at.draft=0.1";
+    let file = "solid.tank.shape={polygon={file=\"../hull.csv\"}}";
+    desk.pontoon(&["run", "buoyancy", "--set", table, "--set", file]).refused(2, &["leads out of the scene's folder"]);
+}
+
+#[test]
+fn a_blow_up_names_the_particle_and_keeps_everything_recorded() {
+    let desk = Desk::new("blow");
+    let said = desk.pontoon(&["run", "still-tank", "--set", "time.cfl=6", "--out", "a", "--quiet"]);
+    said.refused(1, &["of water particle ", "step ", "Usual cause", "everything recorded so far is in a"]);
+    let failure: serde_json::Value = serde_json::from_str(&desk.read("a/failure.json")).unwrap();
+    assert!(failure["who"].as_str().is_some_and(|who| who.starts_with("water particle ")));
+    assert!(failure["step"].as_u64().is_some() && failure["position"].as_array().is_some_and(|x| x.len() == 2));
+    let manifest = desk.manifest("a");
+    assert_eq!(manifest["status"], "failed");
+    assert_eq!(manifest["fault"]["who"], failure["who"]);
+    for (name, table) in desk.series("a") {
+        whole(&name, &table);
+        assert!(table.lines().count() >= 2, "{name} has the row of the start");
+    }
+    assert!(desk.read("a/frames.pvd").ends_with("</VTKFile>\n"));
+}
+
+#[test]
+fn help_and_lists_teach() {
+    let desk = Desk::new("help");
+    let shows = |words: &[&str], expected: &[&str]| {
+        let said = desk.pontoon(words);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        for word in expected {
+            assert!(said.out.contains(word), "{words:?} does not say \"{word}\":\n{}", said.out);
+        }
+    };
+    shows(&["--help"], &["pontoon run raft", "pontoon scenes", "resume", "inspect", "frames.pvd"]);
+    shows(&["run", "--help"], &["--dp", "--until", "--out", "--threads", "--set", "Examples:", "Ctrl-C", "Exit codes"]);
+    shows(&["resume", "--help"], &["pontoon resume runs/raft"]);
+    shows(&["scenes"], &["raft", "still-tank", "flume-box", "column", "dam-break", "buoyancy-3d", "pontoon run NAME"]);
+    shows(&["inspect", "raft", "--dp", "0.02"], &["3510", "paddle", "driven", "scene line", "--set", "default: "]);
+    assert_eq!(fs::read_dir(&desk.0).unwrap().count(), 0, "none of these writes anything");
+    assert_eq!(desk.pontoon(&[]).code, Some(2));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_ends_as_an_unbroken_one_to_the_byte() {
+    let desk = Desk::new("resume");
+    let run = ["run", "raft", "--until", "0.15", "--set", "frames.every=0.03", "--quiet"];
+    let mut running = desk.command(&run).args(["--out", "broken"]).spawn().unwrap();
+    // Some steps into the run, and long before its end.
+    let (begun, table) = (Instant::now(), desk.path("broken/series/energy.csv"));
+    while fs::read_to_string(&table).map_or(0, |text| text.lines().count()) < 20 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the run does not come to its 20th step");
+        sleep(Duration::from_millis(5));
+    }
+    desk.pontoon(&["resume", "broken"]).refused(2, &["the run in broken still goes on: process "]);
+    Command::new("kill").args(["-INT", &running.id().to_string()]).status().unwrap();
+    assert_eq!(running.wait().unwrap().code(), Some(130));
+    assert_eq!(desk.manifest("broken")["status"], "interrupted");
+
+    let (checkpoint, scene) = (desk.path("broken/checkpoint.bin"), desk.path("broken/scene/scene.toml"));
+    let (bytes, words) = (fs::read(&checkpoint).unwrap(), fs::read_to_string(&scene).unwrap());
+    fs::write(&checkpoint, &bytes[..bytes.len() / 2]).unwrap();
+    desk.pontoon(&["resume", "broken"]).refused(2, &["the checkpoint is cut short", "pontoon run"]);
+    fs::write(&checkpoint, &bytes).unwrap();
+    fs::write(&scene, words.replace("density = 300.0", "density = 310.0")).unwrap();
+    desk.pontoon(&["resume", "broken"]).refused(2, &["is not the one that this run began with"]);
+    fs::write(&scene, &words).unwrap();
+
+    // Another number of threads makes no difference.
+    let said = desk.pontoon(&["resume", "broken", "--threads", "1"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert_eq!(desk.pontoon(&[&run[..], &["--out", "unbroken"]].concat()).code, Some(0));
+    let (broken, unbroken) = (desk.manifest("broken"), desk.manifest("unbroken"));
+    assert_eq!(broken["steps"], unbroken["steps"]);
+    assert!(desk.series("broken") == desk.series("unbroken"), "the tables differ");
+    assert_eq!(desk.read("broken/frames.pvd"), desk.read("unbroken/frames.pvd"));
+    desk.pontoon(&["resume", "broken"]).refused(2, &["has finished: there is nothing to go on with"]);
+}
+
+/// A full disk, as far as a test can make one: files longer than 20 kB cannot be written.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_the_run_with_whole_rows() {
+    let desk = Desk::new("full");
+    let program = Path::new(env!("CARGO_BIN_EXE_pontoon")).display().to_string();
+    let words = "run still-tank --until 0.3 --set frames=off --out a --quiet";
+    let limited = format!("trap '' XFSZ; ulimit -f 40; exec '{program}' {words}");
+    let said = Said::from(Command::new("sh").args(["-c", &limited]).current_dir(&desk.0).output().unwrap());
+    said.refused(2, &["a/series/energy.csv: cannot be written", "what was written before is intact"]);
+    assert_eq!(desk.manifest("a")["status"], "failed");
+    for (name, table) in desk.series("a") {
+        whole(&name, &table);
+        assert!(table.lines().count() > 50, "{name} keeps the rows before");
+    }
+}
