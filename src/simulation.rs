@@ -112,7 +112,7 @@ impl<const D: usize> Simulation<D> {
         let left = end - self.clock.time;
         // The last two steps share what is left, so that none is far shorter than the others.
         let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
-        if !(dt > 0.0) {
+        if dt.is_nan() || dt <= 0.0 {
             return Err(self.fault("time step of no length", NO_STEP, 0));
         }
         self.stepper.step(&mut self.system, &mut self.bodies, Interval { t: self.clock.time, dt })?;

@@ -56,11 +56,12 @@ impl<const D: usize> Near<D> {
                 .zip(then)
                 .with_min_len(PER_TASK)
                 .map(|(a, b)| (a - b).norm_squared())
-                .reduce(|| 0.0, f64::max)
+                // The larger of two, and NaN if either is.
+                .reduce(|| 0.0, |a, b| if a.is_nan() || a > b { a } else { b })
                 .sqrt()
         };
-        // Negated, so that NaN counts as due.
-        !(far(water, &self.built.0) + far(skin, &self.built.1) < self.margin)
+        let moved = far(water, &self.built.0) + far(skin, &self.built.1);
+        moved.is_nan() || moved >= self.margin
     }
 
     /// The order in which water at `r` lies along the cells: `order[new] = old`.

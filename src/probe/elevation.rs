@@ -56,7 +56,7 @@ fn fall(filled: impl Fn(f64) -> f64, low: f64, high: f64, step: f64, tolerance: 
     let (mut wet, mut dry) = (high, high);
     while filled(wet) < 0.5 {
         (dry, wet) = (wet, wet - step);
-        if !(wet >= low) {
+        if wet.is_nan() || wet < low {
             return None;
         }
     }

@@ -45,9 +45,14 @@ pub(super) struct Body<const D: usize> {
 }
 
 impl<const D: usize> Body<D> {
+    /// Signed distance (m) of the point `x` (m) from this water, negative inside.
+    fn distance(&self, x: &Vector<D>) -> f64 {
+        self.region.shape.signed_distance(&self.region.pose.local(x))
+    }
+
     /// Whether `x` (m) is in this water, or so near to it that only round-off says otherwise.
     fn holds(&self, x: &Vector<D>) -> bool {
-        self.region.shape.signed_distance(&self.region.pose.local(x)) < 1e-9
+        self.distance(x) < 1e-9
     }
 }
 
@@ -84,7 +89,9 @@ impl Scene {
         }
         let plan = scene.plan()?;
         let warnings = warnings(&plan, &solids);
-        let level = |x: &Vector<D>| water.iter().find(|body| body.holds(x)).map_or(still_level, |body| body.level);
+        // Packing may have moved a particle a little way out of its water.
+        let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
+        let level = |x: &Vector<D>| nearest(x).map_or(still_level, |body| body.level);
         let levels = filled.r.iter().map(level).collect();
         let setup = Setup { model, water: filled.r, levels, solids, domain };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, warnings })

@@ -32,7 +32,7 @@ impl<const D: usize> Shape<D> {
 
     /// The direction in which the signed distance grows at `x` (m, own frame), unit length: the outward
     /// normal of the nearest face. By central differences over `step` (m).
-    pub(super) fn outward(&self, x: &Vector<D>, step: f64) -> Vector<D> {
+    pub(crate) fn outward(&self, x: &Vector<D>, step: f64) -> Vector<D> {
         let mut n = Vector::<D>::zeros();
         for i in 0..D {
             let mut e = Vector::zeros();

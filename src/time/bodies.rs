@@ -40,7 +40,7 @@ impl<const D: usize> Bodies<D> {
         });
     }
 
-    /// Moves the solids over the whole step under the loads of the last force pass times `weight`.
+    /// Moves the solids over the whole step, under the loads of the last force pass and weights times `weight`.
     pub(super) fn advance(&mut self, system: &mut System<D>, over: Interval, weight: f64) -> Result<()> {
         let end = over.t + over.dt;
         let driven = |solid: &Solid<D>| match &solid.spec.role {
@@ -49,8 +49,13 @@ impl<const D: usize> Bodies<D> {
         };
         if let Some(engine) = &mut self.engine {
             let targets: Vec<_> = system.solids.iter().map(driven).collect();
-            let weigh = |load: &Load<D>| Load { force: load.force * weight, torque: load.torque * weight };
-            let loads: Vec<_> = system.solids.iter().map(|s| weigh(&s.load)).collect();
+            // The engine itself adds the weight once.
+            let gravity = system.gravity() * (weight - 1.0);
+            let weighed = |solid: &Solid<D>| {
+                let mass = if let Role::Free(body) = &solid.spec.role { body.mass } else { 0.0 };
+                Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight }
+            };
+            let loads: Vec<_> = system.solids.iter().map(weighed).collect();
             let step = self.steps;
             engine.step(over.dt, &loads, &targets).map_err(|fault| stopped(system, fault, step, over.t))?;
         }
@@ -91,8 +96,6 @@ fn stopped<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64,
         position: fault.position.iter().copied().collect(),
         velocity: fault.velocity.iter().copied().collect(),
         density: None,
-        cause: "Usual cause: bodies pressed into one another or into a wall, or a body too light for the time step. \
-            Look at the last frame, move the bodies apart or lower time.cfl."
-            .into(),
+        cause: fault.cause.into(),
     })
 }

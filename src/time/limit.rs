@@ -34,7 +34,7 @@ pub fn stiffest<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &M
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
     for point in shape.skin(medium.dp, 1) {
-        let normal = outward(shape, &point.r, medium.dp);
+        let normal = shape.outward(&point.r, 0.05 * medium.dp);
         along += normal.component_mul(&normal) * spring;
         for (sum, arm) in about.iter_mut().zip(Wedge::torque(&(point.r - body.centre), &normal).axial()) {
             *sum += arm * arm * spring;
@@ -43,15 +43,4 @@ pub fn stiffest<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &M
     let inertia = |i: usize| if D == 2 { body.inertia[(0, 0)] } else { body.inertia[(i, i)] };
     let turning = (0..Wedge::<D>::COMPONENTS).map(|i| about[i] / inertia(i));
     turning.fold(along.max() / body.mass, f64::max).sqrt()
-}
-
-/// Outward normal of the shape near `x`, by differences of the signed distance.
-fn outward<const D: usize>(shape: &Shape<D>, x: &Vector<D>, dp: f64) -> Vector<D> {
-    let step = 0.05 * dp;
-    let gradient = Vector::<D>::from_fn(|i, _| {
-        let mut e = Vector::zeros();
-        e[i] = step;
-        shape.signed_distance(&(x + e)) - shape.signed_distance(&(x - e))
-    });
-    gradient.try_normalize(1e-9 * dp).unwrap_or_else(Vector::zeros)
 }

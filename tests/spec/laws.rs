@@ -25,13 +25,8 @@ fn medium() -> Medium<3> {
 fn pair(dice: &mut Dice) -> [Pair<f64, 3>; 2] {
     let mut side = || {
         let x = 0.02 * (dice.roll() - 0.5);
-        let mut stress = [[0.0; 3]; 3];
-        for i in 0..3 {
-            for j in 0..=i {
-                stress[i][j] = dice.roll() - 0.5;
-                stress[j][i] = stress[i][j];
-            }
-        }
+        let [xx, yy, zz, xy, xz, yz]: [f64; 6] = std::array::from_fn(|_| dice.roll() - 0.5);
+        let stress = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
         Side { x, p: 400.0 * x, s: 1.0 / (1.0 + x), stress }
     };
     let (a, b) = (side(), side());

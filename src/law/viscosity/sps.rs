@@ -56,9 +56,9 @@ impl<N: Num, const D: usize> Term<N, D> for SpsTerm {
 
     #[inline(always)]
     fn vector(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
-        for i in 0..D {
+        for (i, sum) in sum.iter_mut().enumerate() {
             for j in 0..D {
-                sum[i] = sum[i] + (ab.a.stress[i][j] + ab.b.stress[i][j]) * ab.r_ab[j];
+                *sum = *sum + (ab.a.stress[i][j] + ab.b.stress[i][j]) * ab.r_ab[j];
             }
         }
         sum

@@ -1,8 +1,13 @@
 //! The system of water and solids at one instant, and its rates on one page: neighbours, sweep, loads.
 //! It does not know the time step.
 
+mod guard;
+mod kept;
+mod view;
+
+pub(crate) use kept::SystemState;
+
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Result},
@@ -10,7 +15,7 @@ use crate::{
     model::{Model, Shifting, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
-    solid::{Kinematics, Load, Role, Solid, SolidSpec, skin},
+    solid::{Load, Role, Solid, SolidSpec, skin},
     space::{Bounds, Matrix, Vector, Wedge},
     sweep::{self, Input, Node, Sums, Sweep},
 };
@@ -34,18 +39,6 @@ pub struct System<const D: usize> {
     pub(crate) sums: Vec<Sums<D>>,
     pub(crate) skin_sums: Vec<Sums<D>>,
     extra: Vec<Extra<f64, D>>,
-    passes: u64,
-}
-
-/// What of a system must be kept to go on to the same bits.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct SystemState<const D: usize> {
-    fluid: Particles<D>,
-    skin: Particles<D>,
-    kinematics: Vec<Kinematics<D>>,
-    loads: Vec<Load<D>>,
-    stress: Vec<Matrix<D>>,
-    built: (Vec<Vector<D>>, Vec<Vector<D>>),
     passes: u64,
 }
 
@@ -304,159 +297,6 @@ impl<const D: usize> System<D> {
             .enumerate()
             .with_min_len(PER_TASK)
             .for_each(|(i, out)| *out = Dbc.close(rho(i), rho0));
-    }
-
-    /// The first water particle that has left the valid range, with what is wrong and its usual cause.
-    pub(crate) fn first_fault(&self) -> Option<(usize, &'static str, &'static str)> {
-        let limit2 = self.medium.c0 * self.medium.c0;
-        let bad = |i: usize| {
-            let (r, v, rho) = (&self.fluid.r[i], &self.fluid.v[i], self.fluid.rho[i]);
-            let finite = r.iter().chain(v.iter()).all(|x| x.is_finite()) && rho.is_finite();
-            if !finite {
-                Some(("non-finite state", NON_FINITE))
-            } else if v.norm_squared() > limit2 {
-                Some(("speed above the speed of sound", TOO_FAST))
-            } else if rho <= 0.0 {
-                Some(("density at or below zero", TOO_FAST))
-            } else if !self.domain.contains(r) {
-                Some(("escape from the domain", ESCAPED))
-            } else {
-                None
-            }
-        };
-        let i = (0..self.fluid.len()).into_par_iter().with_min_len(PER_TASK).find_first(|&i| bad(i).is_some())?;
-        bad(i).map(|(what, cause)| (i, what, cause))
-    }
-
-    /// Everything that must be kept to go on to the same bits.
-    pub(crate) fn save(&self) -> SystemState<D> {
-        SystemState {
-            fluid: self.fluid.clone(),
-            skin: self.skin.clone(),
-            kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
-            loads: self.solids.iter().map(|s| s.load).collect(),
-            stress: self.stress.clone(),
-            built: self.near.built().clone(),
-            passes: self.passes,
-        }
-    }
-
-    /// Goes back to a kept state of the same scene.
-    pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
-        let same = kept.fluid.len() == self.fluid.len()
-            && kept.skin.len() == self.skin.len()
-            && kept.kinematics.len() == self.solids.len()
-            && kept.loads.len() == self.solids.len()
-            && kept.stress.len() == self.stress.len()
-            && kept.built.0.len() == kept.fluid.len()
-            && kept.built.1.len() == kept.skin.len();
-        if !same {
-            return Err(Error::new(crate::error::Kind::Restart, "the checkpoint holds another number of particles")
-                .help("it belongs to another scene: resume in the folder of its own run"));
-        }
-        (self.fluid, self.skin, self.stress, self.passes) = (kept.fluid, kept.skin, kept.stress, kept.passes);
-        for ((solid, k), load) in self.solids.iter_mut().zip(kept.kinematics).zip(kept.loads) {
-            (solid.kinematics, solid.load) = (k, load);
-        }
-        self.near.rebuild(kept.built);
-        Ok(())
-    }
-}
-
-const NON_FINITE: &str = "Usual cause: two particles or bodies pressed into one another at the start, or a time step \
-    too long for a very light body. Try a smaller time.cfl, and look at the last frame.";
-const TOO_FAST: &str = "Usual cause: a speed of sound too low for this flow, or a body that starts inside water. Raise \
-    model.c0 (or model.c0_factor), or lower time.cfl.";
-const ESCAPED: &str = "Usual cause: splash over a wall, or a wall thinner than the kernel's support. Make the walls \
-    higher or thicker, or set domain.min and domain.max wider.";
-
-/// What may be read of a system.
-impl<const D: usize> System<D> {
-    /// The model.
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// The constants that the laws share.
-    pub fn medium(&self) -> &Medium<D> {
-        &self.medium
-    }
-
-    /// The water.
-    pub fn fluid(&self) -> &Particles<D> {
-        &self.fluid
-    }
-
-    /// The boundary particles of all solids.
-    pub fn skin(&self) -> &Particles<D> {
-        &self.skin
-    }
-
-    /// The solids.
-    pub fn solids(&self) -> &[Solid<D>] {
-        &self.solids
-    }
-
-    /// Number of the solid of that name.
-    pub fn solid(&self, name: &str) -> Option<usize> {
-        self.solids.iter().position(|s| s.spec.name == name)
-    }
-
-    /// Where particles may be.
-    pub fn domain(&self) -> &Bounds<D> {
-        &self.domain
-    }
-
-    /// Mass of every particle, ρ₀ dpᴰ (kg; kg/m in 2-D).
-    pub fn particle_mass(&self) -> f64 {
-        self.medium.rho0 * self.medium.volume0()
-    }
-
-    /// Pressure (Pa) at density `rho` (kg/m³).
-    pub fn pressure(&self, rho: f64) -> f64 {
-        self.medium.rho0 * self.state.pressure(rho / self.medium.rho0 - 1.0)
-    }
-
-    /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
-    pub fn compression(&self, rho: f64) -> f64 {
-        self.state.energy(rho / self.medium.rho0 - 1.0)
-    }
-
-    /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
-    pub fn fluid_dv(&self, i: usize) -> Vector<D> {
-        self.sums[i].dv
-    }
-
-    /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
-    pub fn fluid_drho(&self, i: usize) -> f64 {
-        self.sums[i].dx * self.medium.rho0
-    }
-
-    /// Force passes so far.
-    pub fn passes(&self) -> u64 {
-        self.passes
-    }
-
-    /// Acceleration of gravity, m/s².
-    pub fn gravity(&self) -> Vector<D> {
-        self.medium.gravity
-    }
-
-    /// Calls `visit` with index and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m).
-    pub fn water_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, f64)) {
-        self.near.water_around(x, &mut |i| self.weigh(&self.fluid.r[i], x, i, visit));
-    }
-
-    /// Calls `visit` with index and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
-    pub fn solid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, f64)) {
-        self.near.skin_around(x, &mut |i| self.weigh(&self.skin.r[i], x, i, visit));
-    }
-
-    fn weigh(&self, r: &Vector<D>, x: &Vector<D>, i: usize, visit: &mut dyn FnMut(usize, f64)) {
-        let r2 = (r - x).norm_squared();
-        if r2 < self.model.reach().powi(2) {
-            visit(i, self.model.kernel_value(r2, D));
-        }
     }
 }
 

@@ -1,0 +1,59 @@
+//! What of a system must be kept to go on to the same bits.
+
+use serde::{Deserialize, Serialize};
+
+use super::System;
+use crate::{
+    error::{Error, Kind, Result},
+    particles::Particles,
+    solid::{Kinematics, Load},
+    space::{Matrix, Vector},
+};
+
+/// What of a system must be kept to go on to the same bits.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct SystemState<const D: usize> {
+    fluid: Particles<D>,
+    skin: Particles<D>,
+    kinematics: Vec<Kinematics<D>>,
+    loads: Vec<Load<D>>,
+    stress: Vec<Matrix<D>>,
+    built: (Vec<Vector<D>>, Vec<Vector<D>>),
+    passes: u64,
+}
+
+impl<const D: usize> System<D> {
+    /// Everything that must be kept to go on to the same bits.
+    pub(crate) fn save(&self) -> SystemState<D> {
+        SystemState {
+            fluid: self.fluid.clone(),
+            skin: self.skin.clone(),
+            kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
+            loads: self.solids.iter().map(|s| s.load).collect(),
+            stress: self.stress.clone(),
+            built: self.near.built().clone(),
+            passes: self.passes,
+        }
+    }
+
+    /// Goes back to a kept state of the same scene.
+    pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
+        let same = kept.fluid.len() == self.fluid.len()
+            && kept.skin.len() == self.skin.len()
+            && kept.kinematics.len() == self.solids.len()
+            && kept.loads.len() == self.solids.len()
+            && kept.stress.len() == self.stress.len()
+            && kept.built.0.len() == kept.fluid.len()
+            && kept.built.1.len() == kept.skin.len();
+        if !same {
+            return Err(Error::new(Kind::Restart, "the checkpoint holds another number of particles")
+                .help("it belongs to another scene: resume in the folder of its own run"));
+        }
+        (self.fluid, self.skin, self.stress, self.passes) = (kept.fluid, kept.skin, kept.stress, kept.passes);
+        for ((solid, k), load) in self.solids.iter_mut().zip(kept.kinematics).zip(kept.loads) {
+            (solid.kinematics, solid.load) = (k, load);
+        }
+        self.near.rebuild(kept.built);
+        Ok(())
+    }
+}

@@ -1,0 +1,99 @@
+//! What may be read of a system.
+
+use super::System;
+use crate::{
+    law::Medium,
+    model::Model,
+    particles::Particles,
+    solid::Solid,
+    space::{Bounds, Vector},
+};
+
+impl<const D: usize> System<D> {
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The constants that the laws share.
+    pub fn medium(&self) -> &Medium<D> {
+        &self.medium
+    }
+
+    /// The water.
+    pub fn fluid(&self) -> &Particles<D> {
+        &self.fluid
+    }
+
+    /// The boundary particles of all solids.
+    pub fn skin(&self) -> &Particles<D> {
+        &self.skin
+    }
+
+    /// The solids.
+    pub fn solids(&self) -> &[Solid<D>] {
+        &self.solids
+    }
+
+    /// Number of the solid of that name.
+    pub fn solid(&self, name: &str) -> Option<usize> {
+        self.solids.iter().position(|s| s.spec.name == name)
+    }
+
+    /// Where particles may be.
+    pub fn domain(&self) -> &Bounds<D> {
+        &self.domain
+    }
+
+    /// Mass of every particle, ρ₀ dpᴰ (kg; kg/m in 2-D).
+    pub fn particle_mass(&self) -> f64 {
+        self.medium.rho0 * self.medium.volume0()
+    }
+
+    /// Pressure (Pa) at density `rho` (kg/m³).
+    pub fn pressure(&self, rho: f64) -> f64 {
+        self.medium.rho0 * self.state.pressure(rho / self.medium.rho0 - 1.0)
+    }
+
+    /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
+    pub fn compression(&self, rho: f64) -> f64 {
+        self.state.energy(rho / self.medium.rho0 - 1.0)
+    }
+
+    /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
+    pub fn fluid_dv(&self, i: usize) -> Vector<D> {
+        self.sums[i].dv
+    }
+
+    /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
+    pub fn fluid_drho(&self, i: usize) -> f64 {
+        self.sums[i].dx * self.medium.rho0
+    }
+
+    /// Force passes so far.
+    pub fn passes(&self) -> u64 {
+        self.passes
+    }
+
+    /// Acceleration of gravity, m/s².
+    pub fn gravity(&self) -> Vector<D> {
+        self.medium.gravity
+    }
+
+    /// Calls `visit` with index and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m).
+    pub fn water_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, f64)) {
+        self.near.water_around(x, &mut |i| self.weigh(&self.fluid.r[i], x, i, visit));
+    }
+
+    /// Calls `visit` with index and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
+    pub fn solid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, f64)) {
+        self.near.skin_around(x, &mut |i| self.weigh(&self.skin.r[i], x, i, visit));
+    }
+
+    fn weigh(&self, r: &Vector<D>, x: &Vector<D>, i: usize, visit: &mut dyn FnMut(usize, f64)) {
+        let r2 = (r - x).norm_squared();
+        if r2 < self.model.reach().powi(2) {
+            visit(i, self.model.kernel_value(r2, D));
+        }
+    }
+}
