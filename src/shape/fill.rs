@@ -65,7 +65,7 @@ pub fn fill<const D: usize>(regions: &[Region<D>], solids: &[(&Shape<D>, &Pose<D
             }
             if lattices[..k].iter().any(|earlier| earlier.holds(x)) {
                 filled.doubled += 1;
-            } else if obstacles.iter().any(|o| o.holds(x)) {
+            } else if obstacles.iter_mut().any(|o| o.takes(x)) {
                 filled.overlapped += 1;
             } else {
                 obstacles.iter_mut().for_each(|o| o.judge(x, |cell| lattice.holds(cell)));
@@ -74,7 +74,7 @@ pub fn fill<const D: usize>(regions: &[Region<D>], solids: &[(&Shape<D>, &Pose<D
             }
         });
     }
-    fit(&mut filled.r, &home, &lattices, &obstacles, dp);
+    fit(&mut filled.r, &home, &lattices, &mut obstacles, dp);
     Ok(filled)
 }
 

@@ -22,6 +22,8 @@ pub(super) struct Obstacle<'a, const D: usize> {
     around: Bounds<D>,
     /// The lines of its polyline walls, in the world.
     lines: Vec<Vec<Vector<D>>>,
+    /// What the cells taken so far lack in the solid's volume, on each side, cells.
+    owed: Vec<f64>,
     /// Whether water on the lattice would lie too near to its face, or too far.
     misfit: bool,
 }
@@ -32,7 +34,7 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         let mut lines = Vec::new();
         collect_lines(shape, pose, &mut lines);
         let around = bounds.grown((ZONE + pack::REACH + 1.0) * dp);
-        Self { shape, pose, dp, close: bounds.grown(dp), around, lines, misfit: false }
+        Self { shape, pose, dp, close: bounds.grown(dp), around, lines, owed: vec![0.0; 2 * D], misfit: false }
     }
 
     fn distance(&self, x: &Vector<D>) -> f64 {
@@ -43,16 +45,33 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         self.pose.rotation * self.shape.outward(&self.pose.local(x), 1e-3 * self.dp)
     }
 
-    /// Whether the cell at `x` belongs to the solid or to the ground below a bed.
-    pub fn holds(&self, x: &Vector<D>) -> bool {
+    /// Whether the cell at `x` goes to the solid, or lies in the ground below a bed. Cells that a face cuts are
+    /// shared out so that, along each side, the solid gets its volume and not half a row more or less.
+    pub fn takes(&mut self, x: &Vector<D>) -> bool {
         if self.close.contains(x) {
-            // A nudge decides for a centre right on a face: of two opposite faces one gets the cell.
-            let nudged = x + Vector::from_fn(|i, _| 1e-6 * self.dp * 0.7_f64.powi(i as i32));
-            if self.distance(&nudged) < 0.0 {
+            let (share, side) = self.share(x);
+            let owed = &mut self.owed[side];
+            let taken = share + *owed >= 0.5;
+            *owed += share - if taken { 1.0 } else { 0.0 };
+            if taken {
                 return true;
             }
         }
         self.lines.iter().any(|line| below_bed(x, line))
+    }
+
+    /// The solid's share of the cell at `x`, as if its face were flat, and the side of the solid, 0 … 2D − 1,
+    /// that the face is on.
+    fn share(&self, x: &Vector<D>) -> (f64, usize) {
+        let distance = self.distance(x) / self.dp;
+        if distance.abs() > 0.5 * (D as f64).sqrt() {
+            return (if distance < 0.0 { 1.0 } else { 0.0 }, 0);
+        }
+        let n = self.outward(x);
+        let axis = n.iamax();
+        // A flat face passes from the cell's nearest corner to its farthest over Σ|n| dp.
+        let share = (0.5 - distance / n.lp_norm(1)).clamp(0.0, 1.0);
+        (share, 2 * axis + usize::from(n[axis] > 0.0))
     }
 
     /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
@@ -110,13 +129,14 @@ pub(super) fn fit<const D: usize>(
     water: &mut [Vector<D>],
     home: &[usize],
     lattices: &[Lattice<D>],
-    obstacles: &[Obstacle<D>],
+    obstacles: &mut [Obstacle<D>],
     dp: f64,
 ) {
-    let misfits: Vec<_> = obstacles.iter().filter(|o| o.misfit).collect();
-    if misfits.is_empty() {
+    if obstacles.iter().all(|o| !o.misfit) {
         return;
     }
+    let (moving, still) = ghosts(lattices, obstacles);
+    let misfits: Vec<_> = obstacles.iter().filter(|o| o.misfit).collect();
     let to_misfit = |x: &Vector<D>| {
         let near = misfits.iter().filter(|o| o.around.contains(x));
         near.map(|o| o.distance(x)).fold(f64::INFINITY, f64::min) / dp
@@ -131,13 +151,12 @@ pub(super) fn fit<const D: usize>(
     }
     let mut points: Vec<_> = movable.iter().map(|&i| water[i]).collect();
     // The water is continued beyond its regions, or it would creep out of them; that part is left behind.
-    let (moving, still) = ghosts(lattices, obstacles);
     points.extend(moving);
     let all_movable = points.len();
     points.extend(held);
     points.extend(still);
     let near = Bounds::around(&points).grown(pack::REACH * dp);
-    for o in obstacles {
+    for o in &*obstacles {
         let skin = o.shape.skin(dp, LAYERS);
         points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
     }
@@ -153,7 +172,7 @@ pub(super) fn fit<const D: usize>(
 
 /// Lattice points in a margin around the regions, near the solids that do not fit: those that may move,
 /// and the outermost, which hold them.
-fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &[Obstacle<D>]) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
+fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
     const MARGIN: i64 = 8;
     const RIM: i64 = 3;
     let (mut moving, mut still) = (Vec::new(), Vec::new());
@@ -163,7 +182,7 @@ fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &[Obstacle<D>]) ->
             if obstacles.iter().any(|o| o.misfit && o.around.contains(x))
                 && !lattices.iter().any(|l| l.holds(x))
                 && !lattices[..k].iter().any(|l| l.grown(MARGIN).contains(x))
-                && !obstacles.iter().any(|o| o.holds(x))
+                && !obstacles.iter_mut().any(|o| o.takes(x))
             {
                 if inner.contains(x) { &mut moving } else { &mut still }.push(*x);
             }
