@@ -66,7 +66,7 @@ fn setup() -> Result<Setup<2>> {
         c0: 20.0 * (GRAVITY * SIZE[1]).sqrt(),
         gamma: 7.0,
         gravity: vec![0.0, -GRAVITY],
-        viscosity: Viscosity::Artificial(Artificial { alpha: 0.01, ..Artificial::default() }),
+        viscosity: Viscosity::Artificial(Artificial { alpha: 0.01 }),
         diffusion: Diffusion::Fourtakas(Fourtakas::default()),
         shifting: Shifting::None,
         walls: Walls::Dbc,

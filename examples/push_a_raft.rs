@@ -40,7 +40,7 @@ fn main() -> Result<()> {
 
     // Proportional, integral and a damper, all per metre of width: soft beside the water's own ρ g × width.
     let (spring, reset, damper) = (2000.0, 12000.0, 400.0);
-    let (mut sum, mut mean, mut next) = (0.0, 0.0, 0.0);
+    let (mut sum, mut mean, mut next) = (0.0, 0.0, 0.5);
     println!("{:>7} {:>12} {:>10} {:>15}", "t (s)", "deeper (mm)", "v (m/s)", "force (N per m)");
     while sim.time() < until {
         let now = sim.system().solids()[raft].kinematics;

@@ -12,24 +12,35 @@ pub use table::Table;
 
 use std::{
     fs::{self, File},
-    io::Write,
+    io::{self, Write},
     path::Path,
 };
 
 use crate::error::{Error, Result};
 
-/// Writes the file at `path` all at once: a reader, or the next start after a power cut, sees the old file
-/// or the new one, never a part.
+/// Writes the file at `path` all at once: a reader sees the old file or the new one, never a part.
 ///
 /// # Errors
 /// `File`, naming the file, if the disk is full or the folder cannot be written; the old file stays.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    replace(path, |file| file.write_all(bytes))
+}
+
+/// As [`write_whole`], and waits for the disk, some milliseconds: the next start after a power cut, too, sees
+/// the old file or the new one.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_lasting(path: &Path, bytes: &[u8]) -> Result<()> {
+    replace(path, |file| file.write_all(bytes).and_then(|()| file.sync_all()))
+}
+
+fn replace(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".part");
     let temporary = Path::new(&temporary);
     let written = File::create(temporary).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()?;
+        fill(&mut file)?;
         fs::rename(temporary, path)
     });
     written.map_err(|why| {
@@ -40,7 +51,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
 }
 
 /// The error of a file that cannot be written.
-fn cannot_write(path: &Path, why: &std::io::Error) -> Error {
+fn cannot_write(path: &Path, why: &io::Error) -> Error {
     Error::file(path, format!("cannot be written: {why}"))
         .help("what was written before is intact; free some space or choose another folder with --out")
 }

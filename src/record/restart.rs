@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::write_whole;
+use super::write_lasting;
 use crate::error::{Error, Kind, Result};
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
@@ -51,7 +51,7 @@ impl Checkpoint {
         bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
         bytes.extend_from_slice(&hash(&payload).to_le_bytes());
         bytes.extend_from_slice(&payload);
-        write_whole(path, &bytes)
+        write_lasting(path, &bytes)
     }
 
     /// Reads the checkpoint at `path`.
