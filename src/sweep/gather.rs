@@ -3,7 +3,10 @@
 
 use super::{Input, Node, Sums, Sweep};
 use crate::{
-    law::{Extra, Medium, Pair, Side, Term, kernel::Kernel},
+    law::{
+        Extra, Medium, Pair, Side, Term,
+        kernel::{Kernel, REACH},
+    },
     near::CHUNK,
     space::{Matrix, Vector},
 };
@@ -17,12 +20,14 @@ pub struct Gather<K, T, W> {
     /// V₀ = m/ρ₀, mᴰ.
     volume: f64,
     eta2: f64,
+    /// Square of the kernel's support, m².
+    reach2: f64,
 }
 
 impl<K, T, W> Gather<K, T, W> {
     /// The sweep in water of the given constants.
     pub fn new<const D: usize>(kernel: K, inner: T, wall: W, medium: &Medium<D>) -> Self {
-        Self { kernel, inner, wall, volume: medium.volume0(), eta2: medium.eta2() }
+        Self { kernel, inner, wall, volume: medium.volume0(), eta2: medium.eta2(), reach2: (REACH * medium.h).powi(2) }
     }
 }
 
@@ -47,6 +52,10 @@ impl<K: Kernel, T, W> Gather<K, T, W> {
         let r_ab: [f64; D] = std::array::from_fn(|i| a.0.r[i] - b.0.r[i]);
         let v_ab: [f64; D] = std::array::from_fn(|i| a.0.v[i] - b.0.v[i]);
         let r2: f64 = r_ab.iter().map(|x| x * x).sum();
+        // The lists look further than the kernel: a quarter of their entries end here.
+        if r2 >= self.reach2 {
+            return;
+        }
         let factor = self.volume * self.kernel.slope(r2);
         let side = |(node, stress): (&Node<D>, &[[f64; D]; D])| -> Side<f64, D> { node.side(*stress) };
         let ab = Pair::new(r_ab, v_ab, r2, self.kernel.w(r2), self.eta2, side(a), side(b));
@@ -57,9 +66,7 @@ impl<K: Kernel, T, W> Gather<K, T, W> {
             sum.dv[i] += factor * (along_r * r_ab[i] + along_v * v_ab[i] + vector[i]);
         }
         sum.dx += factor * term.rate(&ab, (0.0, 0.0)).0;
-        // Only neighbours within the support count: the lists hold a few beyond it.
-        let closing = if factor != 0.0 { ab.vr.abs() * ab.inv_r2 } else { 0.0 };
-        sum.closing = sum.closing.max(closing);
+        sum.closing = sum.closing.max(ab.vr.abs() * ab.inv_r2);
         if L::EXTRA {
             term.extra(&ab, factor, &mut sum.extra, &mut Extra::zero());
         }
