@@ -7,7 +7,7 @@ use crate::space::{Bounds, Pose, Vector};
 /// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
 const ZONE: f64 = 6.0;
 /// Layers of skin in the packing: as deep as its kernel reaches.
-const LAYERS: usize = 2;
+const LAYERS: usize = 4;
 /// The widest gap, beyond half a dp, between a face and its water that is let be, dp.
 const GAP: f64 = 0.1;
 
@@ -173,8 +173,8 @@ pub(super) fn fit<const D: usize>(
 /// Lattice points in a margin around the regions, near the solids that do not fit: those that may move,
 /// and the outermost, which hold them.
 fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
-    const MARGIN: i64 = 8;
-    const RIM: i64 = 3;
+    const MARGIN: i64 = 10;
+    const RIM: i64 = 4;
     let (mut moving, mut still) = (Vec::new(), Vec::new());
     for (k, lattice) in lattices.iter().enumerate() {
         let inner = lattice.grown(MARGIN - RIM);
@@ -184,7 +184,8 @@ fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]
                 && !lattices[..k].iter().any(|l| l.grown(MARGIN).contains(x))
                 && !obstacles.iter_mut().any(|o| o.takes(x))
             {
-                if inner.contains(x) { &mut moving } else { &mut still }.push(*x);
+                let zone = obstacles.iter().any(|o| o.misfit && o.distance(x) < ZONE * o.dp);
+                if zone && inner.contains(x) { &mut moving } else { &mut still }.push(*x);
             }
         });
     }
