@@ -65,8 +65,13 @@ where
         pool[D - 1] = depth;
         let region = Region { shape: Shape::Box { size: pool }, pose: Pose::at(pool * 0.5) };
         let water = fill(&[region], &[(&tank, &Pose::identity()), (&self.shape, &pose)], dp)?.r;
-        let solid = |name: &str, shape, pose, role| {
-            SolidSpec { name: name.into(), shape, pose, role, friction: 0.0, restitution: 0.0 }
+        let solid = |name: &str, shape, pose, role| SolidSpec {
+            name: name.into(),
+            shape,
+            pose,
+            role,
+            friction: 0.0,
+            restitution: 0.0,
         };
         let solids = vec![
             solid("tank", tank, Pose::identity(), Role::Fixed),
@@ -104,20 +109,54 @@ where
             let count = system.fluid().len() as f64 * self.dp.powi(D as i32);
             let by_count = (0..40).fold(count / area, |l, _| (count + self.shape.submerged(pose, l).0) / area);
             let b = self.shape.bounds().size()[0];
-            let x1 = 0.5 * (size[0] - b); 
+            let x1 = 0.5 * (size[0] - b);
             let mut g = 0.0;
-            for k in 1..10 { let x = x1 * (0.2 + 0.6 * k as f64 / 10.0); for xx in [x, size[0] - x] { g += Elevation::new(system, &[xx, 0.5 * size[0]][..up]).unwrap().look(sim)[0] / 18.0; } }
+            for k in 1..10 {
+                let x = x1 * (0.2 + 0.6 * k as f64 / 10.0);
+                for xx in [x, size[0] - x] {
+                    g += Elevation::new(system, &[xx, 0.5 * size[0]][..up]).unwrap().look(sim)[0] / 18.0;
+                }
+            }
             let e = |x: f64| (x - 1.5 * HEIGHT) / self.dp;
             let n = system.fluid().len() as f64;
             let ymean: f64 = system.fluid().r.iter().map(|r| r[up]).sum::<f64>() / n;
             let vr = (system.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>() / n).sqrt();
             let inner = pose;
-            [(lowest(pose) - lowest(&system.solids()[1].spec.pose)) / self.dp, inner.turn()[0].to_degrees(), e(self.level(sim)), e(by_count), e(g), ymean / self.dp, vr]
+            [
+                (lowest(pose) - lowest(&system.solids()[1].spec.pose)) / self.dp,
+                inner.turn()[0].to_degrees(),
+                e(self.level(sim)),
+                e(by_count),
+                e(g),
+                ymean / self.dp,
+                vr,
+            ]
         };
         let begin = tell(&sim);
-        let profile = |sim: &Simulation<D>| { for k in 0..(self.tank()[0] / self.dp) as usize { let x = self.dp * (0.5 + k as f64); eprint!("{:.1}:{:+.2} ", x / self.dp, (Elevation::new(sim.system(), &[x, 0.5 * self.tank()[0]][..up]).unwrap().look(&sim)[0] - 1.5 * HEIGHT) / self.dp); } eprintln!(); };
+        let profile = |sim: &Simulation<D>| {
+            for k in 0..(self.tank()[0] / self.dp) as usize {
+                let x = self.dp * (0.5 + k as f64);
+                eprint!(
+                    "{:.1}:{:+.2} ",
+                    x / self.dp,
+                    (Elevation::new(sim.system(), &[x, 0.5 * self.tank()[0]][..up]).unwrap().look(&sim)[0]
+                        - 1.5 * HEIGHT)
+                        / self.dp
+                );
+            }
+            eprintln!();
+        };
 
-        if let Ok(f) = std::env::var("DUMP") { use std::io::Write; let mut w = std::fs::File::create(f).unwrap(); for r in &sim.system().fluid().r { writeln!(w, "f {} {}", r[0]/self.dp, r[1]/self.dp).unwrap(); } for r in &sim.system().skin().r { writeln!(w, "s {} {}", r[0]/self.dp, r[1]/self.dp).unwrap(); } }
+        if let Ok(f) = std::env::var("DUMP") {
+            use std::io::Write;
+            let mut w = std::fs::File::create(f).unwrap();
+            for r in &sim.system().fluid().r {
+                writeln!(w, "f {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
+            }
+            for r in &sim.system().skin().r {
+                writeln!(w, "s {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
+            }
+        }
         for i in 1..=samples {
             let until = first + period * i as f64 / samples as f64;
             while sim.time() < until {
@@ -129,9 +168,17 @@ where
             far += gauge.look(&sim)[0] - bottom;
             n += 1.0;
         }
-        
 
-        if let Ok(f) = std::env::var("DUMP") { use std::io::Write; let mut w = std::fs::File::create(f + "e").unwrap(); for r in &sim.system().fluid().r { writeln!(w, "f {} {}", r[0]/self.dp, r[1]/self.dp).unwrap(); } for r in &sim.system().skin().r { writeln!(w, "s {} {}", r[0]/self.dp, r[1]/self.dp).unwrap(); } }
+        if let Ok(f) = std::env::var("DUMP") {
+            use std::io::Write;
+            let mut w = std::fs::File::create(f + "e").unwrap();
+            for r in &sim.system().fluid().r {
+                writeln!(w, "f {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
+            }
+            for r in &sim.system().skin().r {
+                writeln!(w, "s {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
+            }
+        }
         eprintln!("start {begin:.3?}\nend   {:.3?}", acc.map(|x| x / n));
         let error = |sum: f64| (sum / n - true_draft) / self.dp;
         Ok(Drafts { true_draft: true_draft / self.dp, by_volume: error(volume), by_gauge: error(far) })
@@ -178,11 +225,19 @@ fn flat(ratio: f64, n: f64) -> Result<()> {
     let (dp, periods) = (HEIGHT / n, 3.0);
     let block = Shape::Box { size: Vector::from([1.5 * HEIGHT, HEIGHT]) };
     let only = std::env::var("ONLY").unwrap_or_default();
-    if only.is_empty() || only == "on" { Case { name: "box on the lattice", shape: block.clone(), ratio, shift: 0.0, dp, periods }.row()?; }
-    let sv: f64 = std::env::var("SV").ok().and_then(|c| c.parse().ok()).unwrap_or(0.3); let sh: f64 = std::env::var("SH").ok().and_then(|c| c.parse().ok()).unwrap_or(0.3); let lower = ratio + sv / n;
-    if only.is_empty() || only == "off" { Case { name: "box off the lattice", shape: block, ratio: lower, shift: sh, dp, periods }.row()?; }
+    if only.is_empty() || only == "on" {
+        Case { name: "box on the lattice", shape: block.clone(), ratio, shift: 0.0, dp, periods }.row()?;
+    }
+    let sv: f64 = std::env::var("SV").ok().and_then(|c| c.parse().ok()).unwrap_or(0.3);
+    let sh: f64 = std::env::var("SH").ok().and_then(|c| c.parse().ok()).unwrap_or(0.3);
+    let lower = ratio + sv / n;
+    if only.is_empty() || only == "off" {
+        Case { name: "box off the lattice", shape: block, ratio: lower, shift: sh, dp, periods }.row()?;
+    }
     let disc = Shape::<2>::Ball { radius: 0.5 * HEIGHT };
-    if only.is_empty() || only == "ball" { Case { name: "ball", shape: disc, ratio, shift: 0.0, dp, periods }.row()?; }
+    if only.is_empty() || only == "ball" {
+        Case { name: "ball", shape: disc, ratio, shift: 0.0, dp, periods }.row()?;
+    }
     Ok(())
 }
 
@@ -198,7 +253,13 @@ fn main() -> Result<()> {
     let quick = std::env::args().any(|a| a == "--quick");
     println!("| body | | ratio | dp per height | draft, dp | error, dp | error, % | error by a gauge, dp |");
     println!("|---|---|---|---|---|---|---|---|");
-    for n in if let Ok(n) = std::env::var("N") { vec![n.parse().unwrap()] } else if quick { vec![10.0] } else { vec![10.0, 20.0] } {
+    for n in if let Ok(n) = std::env::var("N") {
+        vec![n.parse().unwrap()]
+    } else if quick {
+        vec![10.0]
+    } else {
+        vec![10.0, 20.0]
+    } {
         for ratio in std::env::var("R").map(|r| vec![r.parse().unwrap()]).unwrap_or(vec![0.3, 0.5, 0.7, 0.9]) {
             flat(ratio, n)?;
         }

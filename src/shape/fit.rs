@@ -7,7 +7,7 @@ use crate::space::{Bounds, Pose, Vector};
 /// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
 const ZONE: f64 = 6.0;
 /// Layers of skin in the packing: as deep as its kernel reaches.
-const LAYERS: usize = 4;
+const LAYERS: usize = 2;
 /// The widest gap, beyond half a dp, between a face and its water that is let be, dp.
 const GAP: f64 = 0.1;
 
@@ -48,30 +48,28 @@ impl<'a, const D: usize> Obstacle<'a, D> {
     /// Whether the cell at `x` goes to the solid, or lies in the ground below a bed. Cells that a face cuts are
     /// shared out so that, along each side, the solid gets its volume and not half a row more or less.
     pub fn takes(&mut self, x: &Vector<D>) -> bool {
-        if self.close.contains(x) {
-            let (share, side) = self.share(x);
-            let owed = &mut self.owed[side];
-            let taken = share + *owed >= 0.5;
-            *owed += share - if taken { 1.0 } else { 0.0 };
-            if taken {
-                return true;
-            }
+        // A line over one dp has a cubic cell's second moment along any normal: before a curved face, too, the
+        // shares add up to the volume.
+        let share = if self.close.contains(x) { 0.5 - self.distance(x) / self.dp } else { 0.0 };
+        let cut = share > 0.0 && share < 1.0;
+        if share >= 1.0 || (cut && self.settle(x, share)) {
+            return true;
         }
-        self.lines.iter().any(|line| below_bed(x, line))
+        let inside = cut && share > 0.5;
+        !inside && self.lines.iter().any(|line| below_bed(x, line))
     }
 
-    /// The solid's share of the cell at `x`, as if its face were flat, and the side of the solid, 0 … 2D − 1,
-    /// that the face is on.
-    fn share(&self, x: &Vector<D>) -> (f64, usize) {
-        let distance = self.distance(x) / self.dp;
-        if distance.abs() > 0.5 * (D as f64).sqrt() {
-            return (if distance < 0.0 { 1.0 } else { 0.0 }, 0);
-        }
+    /// Settles a cut cell: the side of the solid that cuts it takes it, or is owed its `share`.
+    fn settle(&mut self, x: &Vector<D>, share: f64) -> bool {
         let n = self.outward(x);
         let axis = n.iamax();
-        // A flat face passes from the cell's nearest corner to its farthest over Σ|n| dp.
-        let share = (0.5 - distance / n.lp_norm(1)).clamp(0.0, 1.0);
-        (share, 2 * axis + usize::from(n[axis] > 0.0))
+        let owed = &mut self.owed[2 * axis + usize::from(n[axis] > 0.0)];
+        *owed += share;
+        let taken = *owed >= 0.5;
+        if taken {
+            *owed -= 1.0;
+        }
+        taken
     }
 
     /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
@@ -173,8 +171,8 @@ pub(super) fn fit<const D: usize>(
 /// Lattice points in a margin around the regions, near the solids that do not fit: those that may move,
 /// and the outermost, which hold them.
 fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
-    const MARGIN: i64 = 10;
-    const RIM: i64 = 4;
+    const MARGIN: i64 = 8;
+    const RIM: i64 = 3;
     let (mut moving, mut still) = (Vec::new(), Vec::new());
     for (k, lattice) in lattices.iter().enumerate() {
         let inner = lattice.grown(MARGIN - RIM);

@@ -10,7 +10,7 @@ use super::cells::Cells;
 use crate::space::Vector;
 
 /// Smoothing length, dp. Of 1.0 to 1.5, tried on boxes, discs, balls and slopes, it leaves the smallest gaps.
-const H: f64 = 1.6;
+const H: f64 = 1.0;
 /// Reach of the kernel, dp.
 pub(super) const REACH: f64 = 2.0 * H;
 /// Drift factor β, –; above about 0.9 the pairs start to swing.
@@ -32,7 +32,7 @@ pub(super) fn relax<const D: usize>(
     let reach = REACH * dp;
     // Wendland C2: ∇W = norm · (−5 q / h) (1 − q/2)³ r/|r|, times V = dp^D.
     let norm = if D == 2 { 7.0 / (4.0 * PI) } else { 21.0 / (16.0 * PI) } / H.powi(D as i32);
-    let factor = 5.0 * norm * DRIFT;
+    let factor = 5.0 * norm * DRIFT / (H * H);
     for _ in 0..PASSES {
         let cells = Cells::new(points, reach);
         let mut moved: f64 = 0.0;
