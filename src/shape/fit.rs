@@ -51,17 +51,16 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         // A line over one dp has a cubic cell's second moment along any normal: before a curved face, too, the
         // shares add up to the volume.
         let share = if self.close.contains(x) { 0.5 - self.distance(x) / self.dp } else { 0.0 };
-        let cut = share > 0.0 && share < 1.0;
-        if share >= 1.0 || (cut && self.settle(x, share)) {
-            return true;
+        if share <= 0.0 || share >= 1.0 {
+            return share >= 1.0 || self.buries(x);
         }
-        let inside = cut && share > 0.5;
-        !inside && self.lines.iter().any(|line| below_bed(x, line))
+        let n = self.outward(x);
+        // A cell cut by the bed's own face is not ground, one cut by its underside is.
+        self.buries(&(x + n * self.dp)) || self.settle(share, &n)
     }
 
-    /// Settles a cut cell: the side of the solid that cuts it takes it, or is owed its `share`.
-    fn settle(&mut self, x: &Vector<D>, share: f64) -> bool {
-        let n = self.outward(x);
+    /// Settles a cell of which the solid has a `share`: the side that faces along `n` takes it or is owed.
+    fn settle(&mut self, share: f64, n: &Vector<D>) -> bool {
         let axis = n.iamax();
         let owed = &mut self.owed[2 * axis + usize::from(n[axis] > 0.0)];
         *owed += share;
@@ -70,6 +69,11 @@ impl<'a, const D: usize> Obstacle<'a, D> {
             *owed -= 1.0;
         }
         taken
+    }
+
+    /// Whether `x` lies in the ground below a bed.
+    fn buries(&self, x: &Vector<D>) -> bool {
+        self.lines.iter().any(|line| below_bed(x, line))
     }
 
     /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
