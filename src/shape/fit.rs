@@ -48,30 +48,32 @@ impl<'a, const D: usize> Obstacle<'a, D> {
     /// Whether the cell at `x` goes to the solid, or lies in the ground below a bed. Cells that a face cuts are
     /// shared out so that, along each side, the solid gets its volume and not half a row more or less.
     pub fn takes(&mut self, x: &Vector<D>) -> bool {
-        if self.close.contains(x) {
-            let (share, side) = self.share(x);
-            let owed = &mut self.owed[side];
-            let taken = share + *owed >= 0.5;
-            *owed += share - if taken { 1.0 } else { 0.0 };
-            if taken {
-                return true;
-            }
-        }
-        self.lines.iter().any(|line| below_bed(x, line))
-    }
-
-    /// The solid's share of the cell at `x`, as if its face were flat, and the side of the solid, 0 … 2D − 1,
-    /// that the face is on.
-    fn share(&self, x: &Vector<D>) -> (f64, usize) {
-        let distance = self.distance(x) / self.dp;
-        if distance.abs() > 0.5 * (D as f64).sqrt() {
-            return (if distance < 0.0 { 1.0 } else { 0.0 }, 0);
+        // A line over one dp has a cubic cell's second moment along any normal: before a curved face, too, the
+        // shares add up to the volume.
+        let share = if self.close.contains(x) { 0.5 - self.distance(x) / self.dp } else { 0.0 };
+        if share <= 0.0 || share >= 1.0 {
+            return share >= 1.0 || self.buries(x);
         }
         let n = self.outward(x);
+        // A cell cut by the bed's own face is not ground, one cut by its underside is.
+        self.buries(&(x + n * self.dp)) || self.settle(share, &n)
+    }
+
+    /// Settles a cell of which the solid has a `share`: the side that faces along `n` takes it or is owed.
+    fn settle(&mut self, share: f64, n: &Vector<D>) -> bool {
         let axis = n.iamax();
-        // A flat face passes from the cell's nearest corner to its farthest over Σ|n| dp.
-        let share = (0.5 - distance / n.lp_norm(1)).clamp(0.0, 1.0);
-        (share, 2 * axis + usize::from(n[axis] > 0.0))
+        let owed = &mut self.owed[2 * axis + usize::from(n[axis] > 0.0)];
+        *owed += share;
+        let taken = *owed >= 0.5;
+        if taken {
+            *owed -= 1.0;
+        }
+        taken
+    }
+
+    /// Whether `x` lies in the ground below a bed.
+    fn buries(&self, x: &Vector<D>) -> bool {
+        self.lines.iter().any(|line| below_bed(x, line))
     }
 
     /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
@@ -184,7 +186,8 @@ fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]
                 && !lattices[..k].iter().any(|l| l.grown(MARGIN).contains(x))
                 && !obstacles.iter_mut().any(|o| o.takes(x))
             {
-                if inner.contains(x) { &mut moving } else { &mut still }.push(*x);
+                let zone = obstacles.iter().any(|o| o.misfit && o.distance(x) < ZONE * o.dp);
+                if zone && inner.contains(x) { &mut moving } else { &mut still }.push(*x);
             }
         });
     }
