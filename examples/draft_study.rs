@@ -1,9 +1,10 @@
 //! How deep do bodies float? Boxes and balls of several densities and resolutions at rest in a closed tank,
-//! against Archimedes: `cargo run --release --example draft_study -- --quick`.
+//! against Archimedes: `cargo run --release --example draft_study -- --quick` (a minute or two; without
+//! `--quick` about ten). Prints a table in markdown.
 //!
-//! Each body starts at its draft of equilibrium, is left alone for some heave periods, and its draft is
-//! averaged over the last of them. The water level is that of the tank's volume: water (Σ m/ρ) and
-//! displaced volume over the tank's area. Prints a table in markdown.
+//! Each body starts at its draft of equilibrium, is left alone for a few heave periods, and the error of its
+//! draft is averaged over the last of them. The water level is sounded by volume: (particles × dpᴰ + displaced
+//! volume) ÷ area of the tank; beside it, by a gauge halfway between body and wall.
 
 use std::f64::consts::TAU;
 
@@ -22,8 +23,10 @@ const RHO0: f64 = 1000.0;
 const G: f64 = 9.81;
 /// Height of every body, m.
 const HEIGHT: f64 = 0.2;
+/// Readings in the last period.
+const READINGS: usize = 50;
 
-/// A body afloat.
+/// A body afloat in the middle of a tank.
 struct Case<const D: usize> {
     name: &'static str,
     shape: Shape<D>,
@@ -31,171 +34,88 @@ struct Case<const D: usize> {
     ratio: f64,
     /// Sideways shift off the lattice, dp.
     shift: f64,
-    dp: f64,
+    /// Particles per body height.
+    n: f64,
+    /// Inner size of the tank and, last, depth of the water, m.
+    pool: Vector<D>,
+    /// Heave periods to run.
     periods: f64,
-}
-
-/// What came out, dp: draft by Archimedes, and the error of the measured one by the level of the volume
-/// and by that of a gauge.
-struct Drafts {
-    true_draft: f64,
-    by_volume: f64,
-    by_gauge: f64,
 }
 
 impl<const D: usize> Case<D>
 where
     Dim<D>: HasEngine<D>,
 {
-    fn tank(&self) -> Vector<D> {
-        let breadth = self.shape.bounds().size()[0];
-        let wide = if D == 2 { 3.0 } else { 2.4 };
-        let even = |x: f64| (x / self.dp).round() * self.dp;
-        Vector::from_fn(|i, _| if i == D - 1 { 2.0 * HEIGHT } else { even(wide * breadth) })
+    fn dp(&self) -> f64 {
+        HEIGHT / self.n
+    }
+
+    fn body(&self) -> FreeBody<D> {
+        // A cube would turn over at most of these densities: it may not. In 2-D everything may.
+        let locked_rotations = [D == 3; 3];
+        FreeBody { locked_rotations, ..FreeBody::from_density(&self.shape, self.ratio * RHO0) }
     }
 
     fn simulation(&self) -> Result<Simulation<D>> {
-        let (dp, size) = (self.dp, self.tank());
-        let depth = 1.5 * HEIGHT;
-        let body = FreeBody::from_density(&self.shape, self.ratio * RHO0);
-        let mut pose = Pose::at(Vector::from_fn(|i, _| if i == D - 1 { 0.0 } else { 0.5 * size[i] + self.shift * dp }));
-        pose.position[D - 1] = equilibrium_height(&self.shape, &pose, body.mass, RHO0, depth)?;
+        let (dp, depth, body) = (self.dp(), self.pool[D - 1], self.body());
+        let mut pose = Pose::at(self.pool * 0.5 + Vector::repeat(self.shift * dp));
+        pose.position[D - 1] += equilibrium_height(&self.shape, &pose, body.mass, RHO0, depth)?;
+        let mut size = self.pool;
+        size[D - 1] += 0.5 * HEIGHT;
         let tank = Shape::Tank { size, thickness: 4.0 * dp };
-        let mut pool = size;
-        pool[D - 1] = depth;
-        let region = Region { shape: Shape::Box { size: pool }, pose: Pose::at(pool * 0.5) };
+        let region = Region { shape: Shape::Box { size: self.pool }, pose: Pose::at(self.pool * 0.5) };
         let water = fill(&[region], &[(&tank, &Pose::identity()), (&self.shape, &pose)], dp)?.r;
-        let solid = |name: &str, shape, pose, role| SolidSpec {
-            name: name.into(),
-            shape,
-            pose,
-            role,
-            friction: 0.0,
-            restitution: 0.0,
+        let solid = |name: &str, shape, pose, role| {
+            let name = name.into();
+            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0 }
         };
-        let solids = vec![
-            solid("tank", tank, Pose::identity(), Role::Fixed),
-            solid("float", self.shape.clone(), pose, Role::Free(body)),
-        ];
+        let tank = solid("tank", tank, Pose::identity(), Role::Fixed);
+        let float = solid("float", self.shape.clone(), pose, Role::Free(body));
         let levels = vec![depth; water.len()];
-        Simulation::new(Setup { model: model(D, dp, depth), water, levels, solids, domain: None })
+        let model = model(D, dp, depth);
+        Simulation::new(Setup { model, water, levels, solids: vec![tank, float], domain: None })
     }
 
     /// The water level (m) that the tank's volume gives.
     fn level(&self, sim: &Simulation<D>) -> f64 {
-        let (system, size) = (sim.system(), self.tank());
-        let area: f64 = (0..D - 1).map(|i| size[i]).product();
-        let water: f64 = system.fluid().rho.iter().map(|rho| system.particle_mass() / rho).sum();
-        let pose = &system.solids()[1].kinematics.pose;
+        let area = self.pool.product() / self.pool[D - 1];
+        let water = sim.system().fluid().len() as f64 * self.dp().powi(D as i32);
+        let pose = &sim.system().solids()[1].kinematics.pose;
         // The body covers less than half of the tank: each round halves the error at least.
         (0..40).fold(water / area, |level, _| (water + self.shape.submerged(pose, level).0) / area)
     }
 
-    /// Settles the body and measures its draft over the last period.
-    fn run(&self) -> Result<Drafts> {
+    /// By how much (dp) the body lies too deep on the mean of the last period, by volume and by gauge.
+    fn run(&self) -> Result<(f64, f64)> {
         let mut sim = self.simulation()?;
-        let (pose, up) = (sim.system().solids()[1].spec.pose, D - 1);
-        let lowest = |pose: &Pose<D>| self.shape.bounds_at(pose).min[up];
-        let true_draft = 1.5 * HEIGHT - lowest(&pose);
+        let beside = 0.25 * (self.pool[0] - HEIGHT);
+        let gauge = Elevation::new(sim.system(), &[beside, 0.5 * self.pool[0]][..D - 1])?;
         let period = TAU * (self.ratio * HEIGHT / G).sqrt();
-        let gauge = Elevation::new(sim.system(), &[0.1 * self.tank()[0], 0.5 * self.tank()[0]][..up])?;
-        let (mut volume, mut far, mut n) = (0.0, 0.0, 0.0);
-        let (first, samples) = ((self.periods - 1.0) * period, 40);
-        let mut acc = [0.0; 7];
-        let tell = |sim: &Simulation<D>| -> [f64; 7] {
-            let (system, size) = (sim.system(), self.tank());
-            let area: f64 = (0..D - 1).map(|i| size[i]).product();
-            let pose = &system.solids()[1].kinematics.pose;
-            let count = system.fluid().len() as f64 * self.dp.powi(D as i32);
-            let by_count = (0..40).fold(count / area, |l, _| (count + self.shape.submerged(pose, l).0) / area);
-            let b = self.shape.bounds().size()[0];
-            let x1 = 0.5 * (size[0] - b);
-            let mut g = 0.0;
-            for k in 1..10 {
-                let x = x1 * (0.2 + 0.6 * k as f64 / 10.0);
-                for xx in [x, size[0] - x] {
-                    g += Elevation::new(system, &[xx, 0.5 * size[0]][..up]).unwrap().look(sim)[0] / 18.0;
-                }
-            }
-            let e = |x: f64| (x - 1.5 * HEIGHT) / self.dp;
-            let n = system.fluid().len() as f64;
-            let ymean: f64 = system.fluid().r.iter().map(|r| r[up]).sum::<f64>() / n;
-            let vr = (system.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>() / n).sqrt();
-            let inner = pose;
-            [
-                (lowest(pose) - lowest(&system.solids()[1].spec.pose)) / self.dp,
-                inner.turn()[0].to_degrees(),
-                e(self.level(sim)),
-                e(by_count),
-                e(g),
-                ymean / self.dp,
-                vr,
-            ]
-        };
-        let begin = tell(&sim);
-        let profile = |sim: &Simulation<D>| {
-            for k in 0..(self.tank()[0] / self.dp) as usize {
-                let x = self.dp * (0.5 + k as f64);
-                eprint!(
-                    "{:.1}:{:+.2} ",
-                    x / self.dp,
-                    (Elevation::new(sim.system(), &[x, 0.5 * self.tank()[0]][..up]).unwrap().look(&sim)[0]
-                        - 1.5 * HEIGHT)
-                        / self.dp
-                );
-            }
-            eprintln!();
-        };
-
-        if let Ok(f) = std::env::var("DUMP") {
-            use std::io::Write;
-            let mut w = std::fs::File::create(f).unwrap();
-            for r in &sim.system().fluid().r {
-                writeln!(w, "f {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
-            }
-            for r in &sim.system().skin().r {
-                writeln!(w, "s {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
-            }
-        }
-        for i in 1..=samples {
-            let until = first + period * i as f64 / samples as f64;
+        let mut mean = (0.0, 0.0);
+        for i in 1..=READINGS {
+            let until = period * (self.periods - 1.0 + i as f64 / READINGS as f64);
             while sim.time() < until {
                 sim.step_to(until)?;
             }
-            acc.iter_mut().zip(tell(&sim)).for_each(|(a, b)| *a += b);
-            let bottom = lowest(&sim.system().solids()[1].kinematics.pose);
-            volume += self.level(&sim) - bottom;
-            far += gauge.look(&sim)[0] - bottom;
-            n += 1.0;
+            let pose = sim.system().solids()[1].kinematics.pose;
+            // The lift that would float it as it is turned.
+            let too_deep = |level| -> Result<f64> {
+                Ok(equilibrium_height(&self.shape, &pose, self.body().mass, RHO0, level)? / self.dp())
+            };
+            mean.0 += too_deep(self.level(&sim))? / READINGS as f64;
+            mean.1 += too_deep(gauge.look(&sim)[0])? / READINGS as f64;
         }
-
-        if let Ok(f) = std::env::var("DUMP") {
-            use std::io::Write;
-            let mut w = std::fs::File::create(f + "e").unwrap();
-            for r in &sim.system().fluid().r {
-                writeln!(w, "f {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
-            }
-            for r in &sim.system().skin().r {
-                writeln!(w, "s {} {}", r[0] / self.dp, r[1] / self.dp).unwrap();
-            }
-        }
-        eprintln!("start {begin:.3?}\nend   {:.3?}", acc.map(|x| x / n));
-        let error = |sum: f64| (sum / n - true_draft) / self.dp;
-        Ok(Drafts { true_draft: true_draft / self.dp, by_volume: error(volume), by_gauge: error(far) })
+        Ok(mean)
     }
 
     fn row(&self) -> Result<()> {
-        let d = self.run()?;
-        println!(
-            "| {} | {D}-D | {:.2} | {:.0} | {:.2} | {:+.3} | {:+.2} | {:+.3} |",
-            self.name,
-            self.ratio,
-            HEIGHT / self.dp,
-            d.true_draft,
-            d.by_volume,
-            100.0 * d.by_volume / d.true_draft,
-            d.by_gauge
-        );
+        let (by_volume, by_gauge) = self.run()?;
+        let pose = Pose::identity();
+        let draft = equilibrium_height(&self.shape, &pose, self.body().mass, RHO0, 0.0)?;
+        let draft = (0.5 * HEIGHT - draft) / self.dp();
+        let percent = 100.0 * by_volume / draft;
+        let Self { name, ratio, n, .. } = self;
+        println!("| {name} | {ratio:.3} | {n} | {draft:.2} | {by_volume:+.2} | {percent:+.1} | {by_gauge:+.2} |");
         Ok(())
     }
 }
@@ -208,7 +128,7 @@ fn model(dimension: usize, dp: f64, depth: f64) -> Model {
         h: if dimension == 2 { 1.7 * dp } else { 3f64.sqrt() * dp },
         dp,
         rho0: RHO0,
-        c0: std::env::var("C").ok().and_then(|c| c.parse().ok()).unwrap_or(10.0) * (G * depth).sqrt(),
+        c0: 10.0 * (G * depth).sqrt(),
         gamma: 7.0,
         gravity,
         viscosity: Viscosity::Artificial(Artificial::default()),
@@ -221,53 +141,49 @@ fn model(dimension: usize, dp: f64, depth: f64) -> Model {
     }
 }
 
-fn flat(ratio: f64, n: f64) -> Result<()> {
-    let (dp, periods) = (HEIGHT / n, 3.0);
+/// Bodies in 2-D, `n` particles high. A box off the lattice lies 0.3 dp aside and draws 0.3 dp more.
+fn flat(n: f64, ratio: f64) -> Result<()> {
     let block = Shape::Box { size: Vector::from([1.5 * HEIGHT, HEIGHT]) };
-    let only = std::env::var("ONLY").unwrap_or_default();
-    if only.is_empty() || only == "on" {
-        Case { name: "box on the lattice", shape: block.clone(), ratio, shift: 0.0, dp, periods }.row()?;
-    }
-    let sv: f64 = std::env::var("SV").ok().and_then(|c| c.parse().ok()).unwrap_or(0.3);
-    let sh: f64 = std::env::var("SH").ok().and_then(|c| c.parse().ok()).unwrap_or(0.3);
-    let lower = ratio + sv / n;
-    if only.is_empty() || only == "off" {
-        Case { name: "box off the lattice", shape: block, ratio: lower, shift: sh, dp, periods }.row()?;
-    }
-    let disc = Shape::<2>::Ball { radius: 0.5 * HEIGHT };
-    if only.is_empty() || only == "ball" {
-        Case { name: "ball", shape: disc, ratio, shift: 0.0, dp, periods }.row()?;
-    }
-    Ok(())
+    let case = |name, shape, ratio, shift, wide: f64| Case {
+        name,
+        shape,
+        ratio,
+        shift,
+        n,
+        pool: Vector::from([wide, 1.5]) * HEIGHT,
+        periods: 3.0,
+    };
+    case("2-D box on the lattice", block.clone(), ratio, 0.0, 4.5).row()?;
+    case("2-D box off the lattice", block, ratio + 0.3 / n, 0.3, 4.5).row()?;
+    case("2-D ball", Shape::Ball { radius: 0.5 * HEIGHT }, ratio, 0.0, 3.0).row()
 }
 
-fn solid(ratio: f64) -> Result<()> {
-    let (dp, periods) = (HEIGHT / 10.0, 2.0);
-    let block = Shape::Box { size: Vector::from([HEIGHT; 3]) };
-    Case { name: "box on the lattice", shape: block, ratio, shift: 0.0, dp, periods }.row()?;
-    let ball = Shape::<3>::Ball { radius: 0.5 * HEIGHT };
-    Case { name: "ball", shape: ball, ratio, shift: 0.0, dp, periods }.row()
+/// Bodies in 3-D, `n` particles high.
+fn spatial(n: f64, ratio: f64) -> Result<()> {
+    let case = |name, shape| Case {
+        name,
+        shape,
+        ratio,
+        shift: 0.0,
+        n,
+        pool: Vector::from([2.2, 2.2, 1.3]) * HEIGHT,
+        periods: 1.3,
+    };
+    case("3-D cube on the lattice", Shape::Box { size: Vector::repeat(HEIGHT) }).row()?;
+    case("3-D ball", Shape::Ball { radius: 0.5 * HEIGHT }).row()
 }
 
 fn main() -> Result<()> {
     let quick = std::env::args().any(|a| a == "--quick");
-    println!("| body | | ratio | dp per height | draft, dp | error, dp | error, % | error by a gauge, dp |");
-    println!("|---|---|---|---|---|---|---|---|");
-    for n in if let Ok(n) = std::env::var("N") {
-        vec![n.parse().unwrap()]
-    } else if quick {
-        vec![10.0]
-    } else {
-        vec![10.0, 20.0]
-    } {
-        for ratio in std::env::var("R").map(|r| vec![r.parse().unwrap()]).unwrap_or(vec![0.3, 0.5, 0.7, 0.9]) {
-            flat(ratio, n)?;
-        }
-    }
-    if std::env::args().any(|a| a == "--solid") {
+    println!("| body | ratio | dp a height | draft, dp | error, dp | error, % of the draft | by a gauge, dp |");
+    println!("|---|---|---|---|---|---|---|");
+    for n in if quick { vec![10.0] } else { vec![10.0, 20.0] } {
         for ratio in [0.3, 0.5, 0.7, 0.9] {
-            solid(ratio)?;
+            flat(n, ratio)?;
         }
     }
-    Ok(())
+    for ratio in [0.3, 0.5, 0.7, 0.9] {
+        spatial(10.0, ratio)?;
+    }
+    if quick { Ok(()) } else { flat(40.0, 0.5) }
 }
