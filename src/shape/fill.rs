@@ -239,6 +239,16 @@ mod tests {
     }
 
     #[test]
+    fn packing_round_a_float_leaves_the_surface_level() {
+        let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
+        let at = Pose::at(Vector::from([2.03, 3.95]));
+        let filled = fill(&[pool([4.0, 4.0])], &[(&block, &at)], 0.1).unwrap();
+        let top = filled.r.iter().map(|x| (x[1] - 3.95) / 0.1).fold(f64::NEG_INFINITY, f64::max);
+        // No mound: uneven places within a quarter of a spacing. A hollow would be a lack in the count.
+        assert!(top < 0.25, "the top row rises to {top} dp above its height");
+    }
+
+    #[test]
     fn water_lies_on_a_slope_and_not_beneath_it() {
         let points = [[0.0, 0.0], [1.0, 0.0], [4.0, 1.2]].map(Vector::from).to_vec();
         let bed = Shape::Polyline { points, thickness: 0.2 };

@@ -182,7 +182,6 @@ fn a_box_dropped_from_above_its_draft_comes_back_to_it() {
     let left = mean(&bobbing[50..].iter().map(|x| x.abs()).collect::<Vec<_>>());
     assert!(left < 1.0, "waves carry off half of the motion; {left} dp are left");
     let error = mean(&box_.watch(1.3, Afloat::too_deep));
-    println!("dropped: {error:+.3} dp; deepest {deepest:+.2}, left {left:.2}");
     // It is on the lattice at the start, and nothing that it stirs up may be remembered.
     assert!(error.abs() < 0.25, "{error} dp");
 }
