@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    law::{diffusion::Fourtakas, viscosity::Artificial},
-    model::{Diffusion, Kernel, Model, Scheme, Shifting, Viscosity, Walls},
+    law::viscosity::Artificial,
+    model::{Model, Viscosity},
     probe::{Elevation, Probe},
     shape::{Region, Shape, fill},
     simulation::{Setup, Simulation},
@@ -58,22 +58,8 @@ fn main() -> Result<()> {
 
 /// Still water in a tank.
 fn setup() -> Result<Setup<2>> {
-    let model = Model {
-        kernel: Kernel::Wendland,
-        h: 1.7 * DP,
-        dp: DP,
-        rho0: 1000.0,
-        c0: 20.0 * (GRAVITY * SIZE[1]).sqrt(),
-        gamma: 7.0,
-        gravity: vec![0.0, -GRAVITY],
-        viscosity: Viscosity::Artificial(Artificial { alpha: 0.01 }),
-        diffusion: Diffusion::Fourtakas(Fourtakas::default()),
-        shifting: Shifting::None,
-        walls: Walls::Dbc,
-        scheme: Scheme::Symplectic,
-        cfl: 0.4,
-        dt_max: f64::INFINITY,
-    };
+    let viscosity = Viscosity::Artificial(Artificial { alpha: 0.01 });
+    let model = Model { viscosity, ..Model::water(2, DP, SIZE[1]) };
     let tank = SolidSpec {
         name: "tank".into(),
         shape: Shape::Tank { size: Vector::from([SIZE[0], 0.6]), thickness: 4.0 * DP },

@@ -7,8 +7,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    law::{diffusion::Fourtakas, viscosity::Artificial},
-    model::{Diffusion, Kernel, Scheme, Shifting, Viscosity, Walls},
+    model::{Model, Scheme},
 };
 
 /// A value in force and who said it.
@@ -56,9 +55,10 @@ impl Filler {
 impl Scene {
     /// Smoothing length over particle spacing where nobody says it, and why.
     pub(super) fn default_h_over_dp(&self) -> (f64, &'static str) {
+        let usual = Model::water(self.dimension, 1.0, 1.0);
         match self.dimension {
-            3 => (3f64.sqrt(), "the method's choice, h = √3 dp: about 170 neighbours"),
-            _ => (1.7, "waves lose height below 1.7 dp; about 36 neighbours"),
+            3 => (usual.h / usual.dp, "the method's choice, h = √3 dp: about 170 neighbours"),
+            _ => (usual.h / usual.dp, "waves lose height below 1.7 dp; about 36 neighbours"),
         }
     }
 
@@ -76,46 +76,43 @@ impl Scene {
         let mut scene = self.clone();
         let mut filler = Filler(Reasons::new());
         filler.fill("title", &mut scene.title, "untitled".into(), "the scene has no title");
-        let mut gravity = vec![0.0; scene.dimension];
-        gravity[scene.dimension - 1] = -9.81;
-        filler.fill("gravity", &mut scene.gravity, gravity, "the earth's, down the last axis");
-        scene.fill_laws(&mut filler);
+        let usual = Model::water(scene.dimension, scene.dp, 1.0);
+        filler.fill("gravity", &mut scene.gravity, usual.gravity.clone(), "the earth's, down the last axis");
+        scene.fill_laws(&mut filler, &usual);
         scene.fill_solids(&mut filler);
         scene.fill_records(&mut filler);
         Ok((scene, filler.0))
     }
 
-    fn fill_laws(&mut self, filler: &mut Filler) {
+    fn fill_laws(&mut self, filler: &mut Filler, usual: &Model) {
         let (ratio, why) = self.default_h_over_dp();
         let (model, time) = (&mut self.model, &mut self.time);
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
-        filler.fill("model.kernel", &mut model.kernel, Kernel::Wendland, wendland);
+        filler.fill("model.kernel", &mut model.kernel, usual.kernel, wendland);
         if model.c_h.is_none() {
             filler.fill("model.h_over_dp", &mut model.h_over_dp, ratio, why);
         }
-        let viscosity = Viscosity::Artificial(Artificial::default());
         filler.fill(
             "model.viscosity",
             &mut model.viscosity,
-            viscosity,
+            usual.viscosity,
             "robust in any flow; α = 0.02 as in the method",
         );
-        let diffusion = Diffusion::Fourtakas(Fourtakas::default());
         let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
-        filler.fill("model.diffusion", &mut model.diffusion, diffusion, why);
-        filler.fill("model.shifting", &mut model.shifting, Shifting::None, "shifting slowly inflates the water");
-        filler.fill("model.walls", &mut model.walls, Walls::Dbc, "the method's wall, robust in violent flow");
+        filler.fill("model.diffusion", &mut model.diffusion, usual.diffusion, why);
+        filler.fill("model.shifting", &mut model.shifting, usual.shifting, "shifting slowly inflates the water");
+        filler.fill("model.walls", &mut model.walls, usual.walls, "the method's wall, robust in violent flow");
         if model.c0.is_none() {
             let why = "density then varies by less than 1 %; the depth is from the lowest water to the highest level";
             filler.fill("model.c0_factor", &mut model.c0_factor, 20.0, why);
         }
-        filler.fill("model.rho0", &mut model.rho0, 1000.0, "fresh water, kg/m³");
-        filler.fill("model.gamma", &mut model.gamma, 7.0, "water");
+        filler.fill("model.rho0", &mut model.rho0, usual.rho0, "fresh water, kg/m³");
+        filler.fill("model.gamma", &mut model.gamma, usual.gamma, "water");
         let why = "second order, and less work for the same error than Verlet";
-        filler.fill("time.scheme", &mut time.scheme, Scheme::Symplectic, why);
+        filler.fill("time.scheme", &mut time.scheme, usual.scheme, why);
         let (cfl, why) = match time.scheme {
             Some(Scheme::Verlet { .. }) => (0.2, "the method's, for Verlet"),
-            _ => (0.4, "two force passes a step allow twice Verlet's 0.2"),
+            _ => (usual.cfl, "two force passes a step allow twice Verlet's 0.2"),
         };
         filler.fill("time.cfl", &mut time.cfl, cfl, why);
     }

@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 
 use pontoon::{
+    model::Model,
     shape::{Region, Shape, fill},
     simulation::Simulation,
     solid::{Dim, FreeBody, HasEngine, Role, hydrostatics},
@@ -72,7 +73,7 @@ where
         let tank = rig::tank(size.into(), DP);
         let region = Region { shape: Shape::Box { size: pool }, pose: Pose::at(pool * 0.5) };
         let water = fill(&[region], &[(&tank.shape, &tank.pose), (&shape, &float.pose)], DP).unwrap().r;
-        let mut model = rig::model(D, DP, pool[up]);
+        let mut model = Model::water(D, DP, pool[up]);
         model.c0 *= 0.5;
         if D == 3 {
             model.h = 3f64.sqrt() * DP;

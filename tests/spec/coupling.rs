@@ -1,7 +1,7 @@
 //! Water and solids: what one loses the other gains.
 
 use pontoon::{
-    model::{Diffusion, Scheme, Viscosity},
+    model::{Diffusion, Model, Scheme, Viscosity},
     shape::Shape,
     simulation::Simulation,
     solid::{Formula, Law, Motion, Role},
@@ -13,7 +13,7 @@ use crate::rig;
 /// A drop in free space with a body inside it, started spinning and stretching.
 fn drop_with_body(scheme: Scheme) -> Simulation<2> {
     let dp = 0.02;
-    let mut model = rig::model(2, dp, 0.3);
+    let mut model = Model::water(2, dp, 0.3);
     (model.scheme, model.gravity) = (scheme, vec![0.0, 0.0]);
     if scheme != Scheme::Symplectic {
         // Without damping no Euler step comes before its time.
@@ -53,7 +53,7 @@ fn a_free_drop_with_a_body_inside_keeps_its_momentum() {
 #[test]
 fn a_free_drop_keeps_its_angular_momentum() {
     let dp = 0.02;
-    let mut model = rig::model(2, dp, 0.3);
+    let mut model = Model::water(2, dp, 0.3);
     model.gravity = vec![0.0, 0.0];
     let mut sim = rig::simulation(model, rig::lattice([-0.2, -0.2], [0.4, 0.4], dp), -1.0, vec![]);
     sim.set_water_velocity(|r| Vector::from([2.0 * r[0] + 3.0 * r[1], -2.0 * r[1] - 5.0 * r[0]]));
@@ -97,7 +97,7 @@ fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
 #[test]
 fn a_piston_gives_the_water_the_work_that_it_records() {
     let dp = 0.02;
-    let mut model = rig::model(2, dp, 0.3);
+    let mut model = Model::water(2, dp, 0.3);
     (model.viscosity, model.diffusion) = (Viscosity::None, Diffusion::None);
     let law = Law::Formula(Formula::parse("0.06*(1-cos(6*t))/2").unwrap());
     let motion = Motion::slide(Vector::from([1.0, 0.0]), law);

@@ -2,7 +2,7 @@
 
 use pontoon::{
     law::{shifting::Shift, viscosity::Sps},
-    model::{Scheme, Shifting, Viscosity},
+    model::{Model, Scheme, Shifting, Viscosity},
     shape::Shape,
     simulation::Simulation,
     solid::{Formula, Law, Motion, Role},
@@ -14,7 +14,7 @@ use crate::rig;
 /// A dam break onto two floats that collide, beside a paddle, with every term that remembers something.
 fn scene(scheme: Scheme) -> Simulation<2> {
     let dp = 0.02;
-    let mut model = rig::model(2, dp, 0.3);
+    let mut model = Model::water(2, dp, 0.3);
     (model.scheme, model.cfl) = (scheme, 0.2);
     model.viscosity = Viscosity::Sps(Sps::default());
     model.shifting = Shifting::AwayFromFixed(Shift::default());

@@ -11,7 +11,7 @@ use pontoon::{
         shifting::{Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
     },
-    model::{Diffusion, Kernel, Viscosity},
+    model::{Diffusion, Kernel, Model, Viscosity},
     space::Vector,
 };
 
@@ -130,7 +130,7 @@ fn shifting_stops_at_the_free_surface_and_is_held_to_a_tenth_of_dp() {
 #[test]
 fn the_sweep_agrees_with_a_loop_over_all_pairs() {
     let dp = 0.02;
-    let mut model = rig::model(2, dp, 0.3);
+    let mut model = Model::water(2, dp, 0.3);
     model.viscosity = Viscosity::Artificial(Artificial { alpha: 0.1 });
     model.diffusion = Diffusion::Molteni(Molteni::default());
     model.kernel = Kernel::Wendland;
@@ -180,7 +180,7 @@ fn diffusion_flattens_a_bump() {
         [Diffusion::Molteni(Molteni::default()), Diffusion::Fourtakas(Fourtakas::default()), Diffusion::None]
     {
         let dp = 0.02;
-        let mut model = rig::model(2, dp, 0.3);
+        let mut model = Model::water(2, dp, 0.3);
         (model.diffusion, model.gravity) = (diffusion, vec![0.0, 0.0]);
         let mut sim = rig::simulation(model, rig::lattice([0.0, 0.0], [0.6, 0.6], dp), 0.0, vec![]);
         let bump = |r: &Vector<2>| 1000.0 + 0.5 * (-(r - Vector::from([0.3, 0.3])).norm_squared() / 0.002).exp();

@@ -2,6 +2,7 @@
 
 use pontoon::{
     Result,
+    model::Model,
     probe::{Elevation, Energy, Force, Motion, Pressure, Probe, Velocity},
     shape::Shape,
     simulation::Simulation,
@@ -15,14 +16,14 @@ const DP: f64 = 0.02;
 /// Still water 0.4 m wide and 0.2 m deep in a tank.
 fn pool() -> Simulation<2> {
     let water = rig::lattice([0.0, 0.0], [0.4, 0.2], DP);
-    rig::simulation(rig::model(2, DP, 0.2), water, 0.2, vec![rig::tank([0.4, 0.4], DP)])
+    rig::simulation(Model::water(2, DP, 0.2), water, 0.2, vec![rig::tank([0.4, 0.4], DP)])
 }
 
 /// A body in the air above the water.
 fn floats() -> Simulation<2> {
     let water = rig::lattice([0.0, 0.0], [0.4, 0.1], DP);
     let body = rig::float(Shape::Box { size: Vector::from([0.1, 0.06]) }, [0.2, 0.3], 500.0);
-    rig::simulation(rig::model(2, DP, 0.1), water, 0.1, vec![rig::tank([0.4, 0.4], DP), body])
+    rig::simulation(Model::water(2, DP, 0.1), water, 0.1, vec![rig::tank([0.4, 0.4], DP), body])
 }
 
 #[test]

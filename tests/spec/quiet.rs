@@ -2,7 +2,7 @@
 
 use pontoon::{
     law::shifting::Shift,
-    model::{Scheme, Shifting},
+    model::{Model, Scheme, Shifting},
     simulation::Simulation,
 };
 
@@ -11,7 +11,7 @@ use crate::rig;
 const DEPTH: f64 = 0.4;
 
 fn still_tank(scheme: Scheme, shifting: Shifting, dp: f64, seconds: f64) -> Simulation<2> {
-    let mut model = rig::model(2, dp, DEPTH);
+    let mut model = Model::water(2, dp, DEPTH);
     (model.scheme, model.shifting) = (scheme, shifting);
     if scheme != Scheme::Symplectic {
         model.cfl = 0.2;

@@ -1,35 +1,12 @@
 //! What the tests share: models, lattices and tanks.
 
 use pontoon::{
-    law::{diffusion::Fourtakas, viscosity::Artificial},
-    model::{Diffusion, Kernel, Model, Scheme, Shifting, Viscosity, Walls},
+    model::Model,
     shape::Shape,
     simulation::{Setup, Simulation},
     solid::{Dim, FreeBody, HasEngine, Role, SolidSpec},
     space::{Pose, Vector},
 };
-
-/// A model of water `depth` deep with the project's usual choices: Wendland, h = 1.7 dp, α = 0.02, Fourtakas.
-pub fn model(dimension: usize, dp: f64, depth: f64) -> Model {
-    let mut gravity = vec![0.0; dimension];
-    gravity[dimension - 1] = -9.81;
-    Model {
-        kernel: Kernel::Wendland,
-        h: 1.7 * dp,
-        dp,
-        rho0: 1000.0,
-        c0: 20.0 * (9.81 * depth).sqrt(),
-        gamma: 7.0,
-        gravity,
-        viscosity: Viscosity::Artificial(Artificial::default()),
-        diffusion: Diffusion::Fourtakas(Fourtakas::default()),
-        shifting: Shifting::None,
-        walls: Walls::Dbc,
-        scheme: Scheme::Symplectic,
-        cfl: 0.4,
-        dt_max: f64::INFINITY,
-    }
-}
 
 /// Lattice points of spacing `dp` filling the box from `min` to `min + size`, cell centres.
 pub fn lattice<const D: usize>(min: [f64; D], size: [f64; D], dp: f64) -> Vec<Vector<D>> {

@@ -1,7 +1,7 @@
 //! Steppers: their order on motions whose solution is known or refines itself, and the length of a step.
 
 use pontoon::{
-    model::{Diffusion, Scheme, Viscosity},
+    model::{Diffusion, Model, Scheme, Viscosity},
     simulation::Simulation,
     space::Vector,
     time::limit,
@@ -14,7 +14,7 @@ const SCHEMES: [Scheme; 2] = [Scheme::Verlet { euler_every: 1_000_000 }, Scheme:
 /// A small drop that swings between round and flat, stepped by `dt` up to `until`.
 fn drop(scheme: Scheme, dt: f64, until: f64) -> Simulation<2> {
     let dp = 0.02;
-    let mut model = rig::model(2, dp, 0.2);
+    let mut model = Model::water(2, dp, 0.2);
     (model.scheme, model.cfl, model.dt_max) = (scheme, 1e3, dt);
     (model.gravity, model.viscosity, model.diffusion) = (vec![0.0, 0.0], Viscosity::None, Diffusion::None);
     let mut sim = rig::simulation(model, rig::lattice([-0.1, -0.1], [0.2, 0.2], dp), 0.0, vec![]);
@@ -51,7 +51,7 @@ fn both_schemes_are_of_second_order() {
 #[test]
 fn free_fall_is_exact() {
     for scheme in SCHEMES {
-        let mut model = rig::model(2, 0.01, 0.1);
+        let mut model = Model::water(2, 0.01, 0.1);
         model.scheme = scheme;
         let mut sim = rig::simulation(model, vec![Vector::from([0.0, 0.0])], 0.0, vec![]);
         let until = 0.05;
@@ -67,7 +67,7 @@ fn free_fall_is_exact() {
 
 #[test]
 fn a_step_is_as_long_as_force_and_sound_allow() {
-    let model = rig::model(2, 0.01, 1.0);
+    let model = Model::water(2, 0.01, 1.0);
     let mut sim = rig::simulation(model.clone(), vec![Vector::from([0.0, 0.0])], 0.0, vec![]);
     sim.step().unwrap();
     // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀.
@@ -82,7 +82,7 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
 fn a_light_body_shortens_the_step_by_the_root_of_its_mass() {
     use pontoon::{shape::Shape, solid::FreeBody};
     let dp = 0.01;
-    let medium = rig::model(2, dp, 1.0).medium::<2>();
+    let medium = Model::water(2, dp, 1.0).medium::<2>();
     let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };
     let of = |density| limit::body(&shape, &FreeBody::from_density(&shape, density), &medium);
     assert!((of(1000.0) / of(10.0) - 10.0).abs() < 1e-9);
