@@ -126,8 +126,7 @@ where
         let draft = volume / (self.shape.volume().volume / self.shape.bounds().size()[D - 1]);
         let period = TAU * (draft / 9.81).sqrt();
         self.watch((periods - 1.0) * period, |_| 0.0);
-        let error = mean(&self.watch(period, Self::too_deep));
-        error
+        mean(&self.watch(period, Self::too_deep))
     }
 }
 
