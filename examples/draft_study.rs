@@ -1,6 +1,6 @@
 //! How deep do bodies float? Boxes and balls of several densities and resolutions at rest in a closed tank,
-//! against Archimedes: `cargo run --release --example draft_study -- --quick` (a minute or two; without
-//! `--quick` about ten). Prints a table in markdown.
+//! against Archimedes: `cargo run --release --example draft_study -- --quick` (six minutes of one core; without
+//! `--quick` fourteen). Prints a table in markdown.
 //!
 //! Each body starts at its draft of equilibrium, is left alone for a few heave periods, and the error of its
 //! draft is averaged over the last of them. The water level is sounded by volume: (particles × dpᴰ + displaced
