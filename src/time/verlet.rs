@@ -4,7 +4,8 @@
 //! Δt⁻ is the step before: with a constant step this is 2Δt, eqs. (12), (13) of the paper, and with a varying one
 //! it is centred still. A body gets the impulse ½(Δt⁻ + Δt) F a step, by which ½(P⁺ + P) of the water and
 //! P⁺ of the bodies add up to a constant: their plain sum differs from it by half a step's change of the
-//! water's momentum, ½(P⁺ − P), and does not drift. An Euler step gives Δt F and adds ½Δt times the change of F in half a step.
+//! water's momentum, ½(P⁺ − P), and does not drift. An Euler step gives Δt F and adds ½(P − P⁻ − Δt F),
+//! less than the largest change in a step.
 //!
 //! A leapfrog amplifies what damps: under diffusion and viscosity the difference of even and odd steps grows as
 //! exp(λt), λ = (7 δ + 3.5 α) c₀/h for the shortest waves (Σ V |∂W| = 3.5/h² under Wendland C2). With δ = 0.1 and

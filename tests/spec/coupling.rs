@@ -95,6 +95,26 @@ fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
 }
 
 #[test]
+fn an_euler_step_moves_the_shared_momentum_by_less_than_a_step_does() {
+    let (every, steps) = (50, 500);
+    let mut sim = drop_with_body(Scheme::Verlet { euler_every: every });
+    sim.step().unwrap();
+    let mut before = rig::water_momentum(&sim);
+    let shared = |now: Vector<2>, before: Vector<2>, sim: &Simulation<2>| (now + before) * 0.5 + body_momentum(sim);
+    sim.step().unwrap();
+    let start = shared(rig::water_momentum(&sim), before, &sim);
+    let mut largest_change: f64 = 0.0;
+    for _ in 0..steps {
+        before = rig::water_momentum(&sim);
+        sim.step().unwrap();
+        largest_change = largest_change.max((rig::water_momentum(&sim) - before).norm());
+    }
+    let off = (shared(rig::water_momentum(&sim), before, &sim) - start).norm();
+    // ½|P − P⁻ − Δt F| an Euler step, each of the two no more than the largest change seen.
+    assert!(off < f64::from(steps / every) * largest_change, "{off:e} after changes of up to {largest_change:e}");
+}
+
+#[test]
 fn a_piston_gives_the_water_the_work_that_it_records() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
