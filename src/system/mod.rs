@@ -165,11 +165,16 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Rates of the water and loads on the solids at the present places, velocities and densities.
-    pub(crate) fn rates(&mut self) {
+    /// Makes new lists within a step if they are due, the water left in its order.
+    pub(crate) fn relist(&mut self) {
         if self.near.due(&self.fluid.r, &self.skin.r) {
             self.lists();
         }
+    }
+
+    /// Rates of the water and loads on the solids at the present places, velocities and densities; the lists
+    /// must hold.
+    pub(crate) fn rates(&mut self) {
         self.nodes.0 = self.pack(&self.fluid);
         self.nodes.1 = self.pack(&self.skin);
         let input = Input { lists: self.near.lists(), water: &self.nodes.0, skin: &self.nodes.1, stress: &self.stress };

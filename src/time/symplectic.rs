@@ -35,6 +35,7 @@ impl Symplectic {
         system.set_skin_density(|i| start.1[i] + rho0 * rates[i].dx * half);
         bodies.drift(system, over);
 
+        system.relist();
         system.rates();
 
         let shifts = system.shifts(dt);
