@@ -10,11 +10,11 @@ use std::f64::consts::TAU;
 
 use pontoon::{
     error::Result,
-    model::Model,
+    model::{Dimension, Model},
     probe::{Elevation, Probe},
     shape::{Region, Shape, fill},
     simulation::{Setup, Simulation},
-    solid::{Dim, FreeBody, HasEngine, Role, SolidSpec, hydrostatics::equilibrium_height},
+    solid::{Dim, FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
     space::{Pose, Vector},
 };
 
@@ -43,7 +43,7 @@ struct Case<const D: usize> {
 
 impl<const D: usize> Case<D>
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     fn dp(&self) -> f64 {
         HEIGHT / self.n

@@ -3,6 +3,7 @@
 //! Exit codes: 0 all well; 1 the computation could not go on; 2 something in the command, the scene or a file
 //! is wrong; 3 a check misses its bound; 130 interrupted.
 
+mod bench;
 mod progress;
 mod report;
 mod shelf;
@@ -80,6 +81,11 @@ or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
     },
     /// List the scenes that come with the program
     Scenes,
+    /// Time standard works on this machine: particle-steps per second, where a step goes, memory
+    #[command(
+        after_help = "Examples:\n  pontoon bench\n  pontoon bench --terms\n  pontoon bench --size 20000,2000000 --json"
+    )]
+    Bench(bench::BenchArgs),
 }
 
 #[derive(Args)]
@@ -93,6 +99,9 @@ struct SceneArgs {
     /// Simulated time at the end, s
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     until: Option<f64>,
+    /// How pairs are added up: fast (default) or reference (double precision, one after the other)
+    #[arg(long, value_name = "SWEEP")]
+    sweep: Option<String>,
     /// Change a key of the scene; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
     set: Vec<(String, String)>,
@@ -119,6 +128,7 @@ impl SceneArgs {
         let mut sets = self.set.clone();
         sets.extend(self.dp.map(|dp| ("dp".into(), format!("{dp:?}"))));
         sets.extend(self.until.map(|until| ("until".into(), format!("{until:?}"))));
+        sets.extend(self.sweep.as_ref().map(|sweep| ("model.sweep".into(), format!("{sweep:?}"))));
         sets
     }
 }
@@ -159,6 +169,10 @@ fn obey(command: Command) -> Result<u8> {
         Command::Inspect { scene } => {
             let found = shelf::find(&scene.scene)?;
             say(&report::inspected(&run::inspect(found.path(), &scene.sets())?));
+            Ok(0)
+        }
+        Command::Bench(args) => {
+            say(&bench::bench(&args)?);
             Ok(0)
         }
         Command::Scenes => {

@@ -8,6 +8,7 @@
 pub mod error;
 pub mod series;
 pub mod space;
+pub mod lanes;
 // equations
 pub mod law;
 // matter
@@ -30,5 +31,6 @@ pub mod record;
 // entrance
 pub mod scene;
 pub mod run;
+pub mod bench;
 
 pub use error::{Error, Result};

@@ -3,17 +3,20 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    lanes::{self, Level},
     law::{
-        Medium, Term,
+        Medium, Term, Units,
         continuity::Continuity,
         diffusion::{Fourtakas, Molteni},
         kernel::{self, Kernel as _, REACH},
         pressure::{Pressure, Tensile},
-        shifting::{Shift, ShiftTerm},
+        shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps},
     },
+    near::Near,
+    solid::{Dim, HasEngine},
     space::Vector,
-    sweep::{Gather, Sweep},
+    sweep::{self, Sweep},
 };
 
 /// Which kernel weighs the neighbours. Scene word `model.kernel`.
@@ -74,6 +77,27 @@ pub enum Shifting {
     Everywhere(Shift),
 }
 
+/// Which sweep adds up the pairs. Scene word `model.sweep`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sweeping {
+    /// Eight pairs at a time in single precision, where the processor can (x86-64 with AVX2, ARM); else the oracle.
+    #[default]
+    Fast,
+    /// The oracle: one after the other in double precision.
+    Reference,
+}
+
+impl Sweeping {
+    /// The instructions that its lanes use, if it has lanes.
+    pub fn level(self) -> Option<Level> {
+        match self {
+            Self::Fast => lanes::level(),
+            Self::Reference => None,
+        }
+    }
+}
+
 /// How a solid's skin acts on the water. Scene word `model.walls`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -125,6 +149,9 @@ pub struct Model {
     pub shifting: Shifting,
     /// Walls.
     pub walls: Walls,
+    /// Which sweep adds up the pairs.
+    #[serde(default)]
+    pub sweep: Sweeping,
     /// Time scheme.
     pub scheme: Scheme,
     /// Courant number, –.
@@ -155,6 +182,7 @@ impl Model {
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
             walls: Walls::Dbc,
+            sweep: Sweeping::Fast,
             scheme: Scheme::Symplectic,
             cfl: 0.4,
             dt_max: f64::INFINITY,
@@ -201,54 +229,86 @@ impl Model {
     }
 
     /// The one sweep that does what this model names, and nothing else.
-    pub fn sweep<const D: usize>(&self) -> Box<dyn Sweep<D>> {
-        let medium = self.medium::<D>();
+    fn sweep_in<const D: usize>(&self) -> Box<dyn Sweep<D>> {
+        let level = self.sweep.level();
+        let units = match level {
+            Some(_) => Units { length: Near::<D>::unit(self.reach()), time: self.h / self.c0 },
+            None => Units::SI,
+        };
+        let make = Make { model: self, medium: self.medium::<D>().counted_in(&units), units, level };
+        let Medium { h, dp, .. } = make.medium;
         match self.kernel {
-            Kernel::Wendland => self.with_kernel(kernel::Wendland::new(self.h, D), (Pressure, Continuity), &medium),
-            Kernel::Cubic { tensile: false } => {
-                self.with_kernel(kernel::Cubic::new(self.h, D), (Pressure, Continuity), &medium)
-            }
+            Kernel::Wendland => make.with_kernel(kernel::Wendland::new(h, D), (Pressure, Continuity)),
+            Kernel::Cubic { tensile: false } => make.with_kernel(kernel::Cubic::new(h, D), (Pressure, Continuity)),
             Kernel::Cubic { tensile: true } => {
-                let kernel = kernel::Cubic::new(self.h, D);
-                let tensile = Tensile { inv_w_dp: 1.0 / kernel.w(self.dp * self.dp) };
-                self.with_kernel(kernel, ((Pressure, tensile), Continuity), &medium)
+                let kernel = kernel::Cubic::new(h, D);
+                let tensile = Tensile { inv_w_dp: 1.0 / kernel.weighed(make.medium.volume0()).w(dp * dp) };
+                make.with_kernel(kernel, ((Pressure, tensile), Continuity))
             }
         }
     }
+}
 
-    fn with_kernel<const D: usize, K, P>(&self, kernel: K, base: P, medium: &Medium<D>) -> Box<dyn Sweep<D>>
-    where
-        K: kernel::Kernel + 'static,
-        P: Term<f64, D> + 'static,
-    {
-        match self.viscosity {
-            Viscosity::None => self.with_viscosity(kernel, base, medium),
-            Viscosity::Artificial(v) => self.with_viscosity(kernel, (base, v.term(medium)), medium),
-            Viscosity::Laminar(v) => self.with_viscosity(kernel, (base, v.term()), medium),
-            Viscosity::Sps(v) => self.with_viscosity(kernel, (base, v.terms()), medium),
+/// Dimensions in which sweeps are compiled, here and once.
+pub trait Dimension<const D: usize>: HasEngine<D> {
+    /// The sweep that does what `model` names, and nothing else.
+    fn sweep(model: &Model) -> Box<dyn Sweep<D>>;
+}
+
+#[cfg(feature = "dim2")]
+impl Dimension<2> for Dim<2> {
+    fn sweep(model: &Model) -> Box<dyn Sweep<2>> {
+        model.sweep_in()
+    }
+}
+
+#[cfg(feature = "dim3")]
+impl Dimension<3> for Dim<3> {
+    fn sweep(model: &Model) -> Box<dyn Sweep<3>> {
+        model.sweep_in()
+    }
+}
+
+/// The making of a sweep, choice by choice, in the units in which it counts.
+struct Make<'a, const D: usize> {
+    model: &'a Model,
+    medium: Medium<D>,
+    units: Units,
+    level: Option<Level>,
+}
+
+impl<const D: usize> Make<'_, D> {
+    fn with_kernel<K: kernel::Kernel + 'static, P: Term<D> + 'static>(&self, kernel: K, base: P) -> Box<dyn Sweep<D>> {
+        match self.model.viscosity {
+            Viscosity::None => self.with_viscosity(kernel, base),
+            Viscosity::Artificial(v) => self.with_viscosity(kernel, (base, v.term(&self.medium))),
+            Viscosity::Laminar(v) => self.with_viscosity(kernel, (base, v.term(&self.units))),
+            Viscosity::Sps(v) => self.with_viscosity(kernel, (base, v.terms(&self.units))),
         }
     }
 
-    fn with_viscosity<const D: usize, K, P>(&self, kernel: K, both: P, medium: &Medium<D>) -> Box<dyn Sweep<D>>
-    where
-        K: kernel::Kernel + 'static,
-        P: Term<f64, D> + 'static,
-    {
-        match self.shifting {
-            Shifting::None => self.with_shifting(kernel, both, medium),
-            _ => self.with_shifting(kernel, (both, ShiftTerm), medium),
+    fn with_viscosity<K: kernel::Kernel + 'static, P: Term<D> + 'static>(
+        &self,
+        kernel: K,
+        both: P,
+    ) -> Box<dyn Sweep<D>> {
+        match self.model.shifting {
+            Shifting::None => self.with_shifting(kernel, both, both),
+            _ => self.with_shifting(kernel, (both, ShiftTerm), ((both, ShiftTerm), HeldTerm)),
         }
     }
 
-    fn with_shifting<const D: usize, K, P>(&self, kernel: K, both: P, medium: &Medium<D>) -> Box<dyn Sweep<D>>
-    where
-        K: kernel::Kernel + 'static,
-        P: Term<f64, D> + 'static,
-    {
-        match self.diffusion {
-            Diffusion::None => Box::new(Gather::new(kernel, both, both, medium)),
-            Diffusion::Molteni(d) => Box::new(Gather::new(kernel, (both, d.term(medium)), both, medium)),
-            Diffusion::Fourtakas(d) => Box::new(Gather::new(kernel, (both, d.term(medium)), both, medium)),
-        }
+    fn with_shifting<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
+        &self,
+        kernel: K,
+        inner: T,
+        wall: W,
+    ) -> Box<dyn Sweep<D>> {
+        let term = match self.model.diffusion {
+            Diffusion::None => return sweep::compile(kernel, inner, wall, &self.medium, self.units, self.level),
+            Diffusion::Molteni(d) => d.term(&self.medium),
+            Diffusion::Fourtakas(d) => d.term(&self.medium),
+        };
+        sweep::compile(kernel, (inner, term), wall, &self.medium, self.units, self.level)
     }
 }

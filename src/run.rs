@@ -24,9 +24,10 @@ use lock::Lock;
 
 use crate::{
     error::{Error, Kind, Result},
+    model::Dimension,
     record::{Checkpoint, Manifest, manifest::Status, restart},
     scene::Scene,
-    solid::{Dim, HasEngine},
+    solid::Dim,
 };
 
 /// What a run is asked for beside its scene.
@@ -170,7 +171,7 @@ fn by_dimension(scene: &Scene, origin: Origin, watch: &mut dyn Watch) -> Result<
 
 fn go<const D: usize>(scene: &Scene, origin: Origin, watch: &mut dyn Watch) -> Result<Outcome>
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     course::Course::<D>::new(scene, origin)?.run(watch)
 }

@@ -1,12 +1,14 @@
 //! A running simulation: limit, step, check; no files.
 
+use std::time::{Duration, Instant};
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Fault, Kind, Result},
-    model::Model,
-    solid::{Dim, HasEngine, Role, SolidSpec},
+    model::{Dimension, Model},
+    solid::{Dim, HasEngine as _, Role, SolidSpec},
     space::{Bounds, Vector, Wedge},
     system::{System, SystemState},
     time::{Bodies, Interval, Stepper, limit},
@@ -35,6 +37,20 @@ pub struct Simulation<const D: usize> {
     /// Longest step that the free bodies allow, s.
     dt_bodies: f64,
     clock: Clock,
+    stepping: Duration,
+}
+
+/// Where the time went, since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spent {
+    /// All steps.
+    pub steps: Duration,
+    /// Lists and sorting.
+    pub lists: Duration,
+    /// Sums over pairs.
+    pub pairs: Duration,
+    /// The rigid-body engine.
+    pub bodies: Duration,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -60,7 +76,7 @@ impl<const D: usize> Simulation<D> {
     /// `Scene` if a constant has no valid value, a solid cannot be made, or bodies overlap: says which.
     pub fn new(setup: Setup<D>) -> Result<Self>
     where
-        Dim<D>: HasEngine<D>,
+        Dim<D>: Dimension<D>,
     {
         check(&setup)?;
         let Setup { model, water, levels, solids, domain } = setup;
@@ -86,7 +102,7 @@ impl<const D: usize> Simulation<D> {
         let system = System::new(model, &water, &levels, solids, domain)?;
         let bodies = Bodies::new(engine, 0);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
-        let simulation = Self { system, stepper, bodies, dt_bodies, clock };
+        let simulation = Self { system, stepper, bodies, dt_bodies, clock, stepping: Duration::ZERO };
         simulation.guard()?;
         Ok(simulation)
     }
@@ -104,8 +120,15 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_to(&mut self, end: f64) -> Result<()> {
-        if let Some(order) = self.system.renew() {
-            self.stepper.permute(&order);
+        let start = Instant::now();
+        let outcome = self.advance(end);
+        self.stepping += start.elapsed();
+        outcome
+    }
+
+    fn advance(&mut self, end: f64) -> Result<()> {
+        if let Some(renewal) = self.system.renew() {
+            self.stepper.follow(&renewal, self.system.medium().rho0);
         }
         self.system.rates();
         let allowed = self.limit();
@@ -160,6 +183,12 @@ impl<const D: usize> Simulation<D> {
     /// Water and solids now.
     pub fn system(&self) -> &System<D> {
         &self.system
+    }
+
+    /// Where the time went; what is left of the steps went into moving particles and packing them.
+    pub fn spent(&self) -> Spent {
+        let (lists, pairs) = self.system.spent();
+        Spent { steps: self.stepping, lists, pairs, bodies: self.bodies.spent() }
     }
 
     /// Simulated time, s.

@@ -181,6 +181,12 @@ impl<const D: usize> Bounds<D> {
         (0..D).all(|i| x[i] >= self.min[i] && x[i] <= self.max[i])
     }
 
+    /// The corners.
+    pub fn corners(&self) -> impl Iterator<Item = Vector<D>> + use<D> {
+        let Self { min, max } = *self;
+        (0..1usize << D).map(move |c| Vector::from_fn(|i, _| if c >> i & 1 == 1 { max[i] } else { min[i] }))
+    }
+
     /// Edge lengths, m.
     pub fn size(&self) -> Vector<D> {
         self.max - self.min

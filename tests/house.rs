@@ -6,10 +6,11 @@ use std::{
 };
 
 /// The rooms in the order in which they depend on one another.
-const ROOMS: [&str; 19] = [
+const ROOMS: [&str; 21] = [
     "error",
     "series",
     "space",
+    "lanes",
     "law",
     "particles",
     "shape",
@@ -26,6 +27,7 @@ const ROOMS: [&str; 19] = [
     "record",
     "scene",
     "run",
+    "bench",
 ];
 
 /// Every Rust file of the library and the binary, with its text.
@@ -124,10 +126,11 @@ fn rooms_import_only_from_rooms_above() {
 
 #[test]
 fn engines_threads_and_printing_stay_in_their_rooms() {
-    let places: [(&str, &[&str]); 5] = [
+    let places: [(&str, &[&str]); 6] = [
         ("rapier", &["solid"]),
         ("parry", &["solid", "shape"]),
-        ("rayon", &["near", "sweep", "system", "time", "simulation", "shape", "run"]),
+        ("rayon", &["near", "sweep", "system", "time", "simulation", "shape", "run", "bench"]),
+        ("fearless_simd", &["lanes", "law", "near", "sweep"]),
         ("vtkio", &["record"]),
         ("println!", &[]),
     ];

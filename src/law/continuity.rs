@@ -9,10 +9,10 @@ use super::{Num, Pair, Term};
 #[derive(Clone, Copy, Debug)]
 pub struct Continuity;
 
-impl<N: Num, const D: usize> Term<N, D> for Continuity {
+impl<const D: usize> Term<D> for Continuity {
     #[inline(always)]
-    fn rate(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
-        let one = N::of(1.0);
-        (sum.0 + (one + ab.a.x) * ab.b.s * ab.vr, sum.1 + (one + ab.b.x) * ab.a.s * ab.vr)
+    fn rate<N: Num>(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
+        let one = ab.of(1.0);
+        (((one + ab.a.x) * ab.b.s).fma(ab.vr, sum.0), ((one + ab.b.x) * ab.a.s).fma(ab.vr, sum.1))
     }
 }

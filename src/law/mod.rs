@@ -7,6 +7,7 @@
 pub mod continuity;
 pub mod diffusion;
 pub mod kernel;
+mod lanes;
 mod medium;
 mod pair;
 pub mod pressure;
@@ -15,5 +16,5 @@ pub mod state;
 pub mod viscosity;
 pub mod wall;
 
-pub use medium::Medium;
+pub use medium::{Medium, Units};
 pub use pair::{Extra, Num, Pair, Side, Term};

@@ -10,8 +10,10 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub trait Num:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// The constant `x`.
-    fn of(x: f64) -> Self;
+    /// The constant `x`, in every lane of a number like this one.
+    fn of(self, x: f64) -> Self;
+    /// self·b + c; lanes round once where the processor can.
+    fn fma(self, b: Self, c: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// The larger of two.
@@ -24,8 +26,12 @@ pub trait Num:
 
 impl Num for f64 {
     #[inline(always)]
-    fn of(x: f64) -> Self {
+    fn of(self, x: f64) -> Self {
         x
+    }
+    #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        self * b + c
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -50,11 +56,16 @@ impl Num for f64 {
 pub struct Side<N, const D: usize> {
     /// Excess density x = ρ/ρ₀ − 1, –.
     pub x: N,
+    /// What single precision cuts off x, so that differences of x keep their digits in deep water; 0 in f64.
+    pub low: N,
     /// Pressure P/ρ₀, m²/s².
     pub p: N,
     /// Specific volume ρ₀/ρ, –.
     pub s: N,
-    /// Sub-particle stress ρ₀ τ/ρ², m²/s² (zero unless the viscosity has one).
+    /// Whether water beside it is not shifted: 1 or 0 (read by laws with [`Term::MARK`]).
+    pub mark: N,
+    /// Sub-particle stress ρ₀ τ/ρ², m²/s²; symmetric, of which laws read `[i][j]` with j ≤ i (read by laws with
+    /// [`Term::STRESS`]).
     pub stress: [[N; D]; D],
 }
 
@@ -69,11 +80,13 @@ pub struct Pair<N, const D: usize> {
     pub r2: N,
     /// v_ab · r_ab, m²/s.
     pub vr: N,
+    /// x_b − x_a, –.
+    pub x_ba: N,
     /// 1/(r² + η²), 1/m².
     pub inv_r2: N,
-    /// ρ₀/ρ̄_ab with ρ̄ the mean of both densities, –.
-    pub s_mean: N,
-    /// Kernel W_ab, 1/mᴰ.
+    /// ρ₀/(ρ̄_ab (r² + η²)) with ρ̄ the mean of both densities, 1/m².
+    pub drag: N,
+    /// Kernel, weighed with a particle's volume at ρ₀: V₀ W_ab, –.
     pub w: N,
     /// Particle a.
     pub a: Side<N, D>,
@@ -87,33 +100,40 @@ impl<N: Num, const D: usize> Pair<N, D> {
     pub fn new(r_ab: [N; D], v_ab: [N; D], r2: N, w: N, eta2: N, a: Side<N, D>, b: Side<N, D>) -> Self {
         let mut vr = r_ab[0] * v_ab[0];
         for i in 1..D {
-            vr = vr + r_ab[i] * v_ab[i];
+            vr = r_ab[i].fma(v_ab[i], vr);
         }
         // One division gives both reciprocals.
-        let (away, twice_rho) = (r2 + eta2, N::of(2.0) + (a.x + b.x));
-        let both = N::of(1.0) / (away * twice_rho);
-        let (inv_r2, s_mean) = (both * twice_rho, N::of(2.0) * both * away);
-        Self { r_ab, v_ab, r2, vr, inv_r2, s_mean, w, a, b }
+        let (away, twice_rho) = (r2 + eta2, (a.x + b.x) + r2.of(2.0));
+        let both = r2.of(1.0) / (away * twice_rho);
+        let x_ba = (b.x - a.x) + (b.low - a.low);
+        Self { r_ab, v_ab, r2, vr, x_ba, inv_r2: both * twice_rho, drag: both + both, w, a, b }
+    }
+
+    /// The constant `x`.
+    #[inline(always)]
+    pub fn of(&self, x: f64) -> N {
+        self.r2.of(x)
     }
 }
 
 /// Sums beyond force and density rate, kept only for the laws that need them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extra<N, const D: usize> {
-    /// Concentration gradient ∇C = Σ V_b ∇_a W, 1/m.
+    /// Concentration gradient ∇C = Σ V_b ∇_a W, 1/m ([`Term::SHIFT`]).
     pub grad_c: [N; D],
-    /// ∇·r = −Σ V_b r_ab·∇_a W, –.
+    /// ∇·r = −Σ V_b r_ab·∇_a W, – ([`Term::SHIFT`]).
     pub div_r: N,
-    /// Strain rate S_ij, symmetric, 1/s.
+    /// Above zero if a marked particle is within the support ([`Term::MARK`]).
+    pub held: N,
+    /// Strain rate S_ij, symmetric, of which `[i][j]` with j ≤ i is kept, 1/s ([`Term::STRESS`]).
     pub strain: [[N; D]; D],
 }
 
 impl<N: Num, const D: usize> Extra<N, D> {
-    /// All sums zero.
+    /// All sums `zero`.
     #[inline(always)]
-    pub fn zero() -> Self {
-        let o = N::of(0.0);
-        Self { grad_c: [o; D], div_r: o, strain: [[o; D]; D] }
+    pub fn all(zero: N) -> Self {
+        Self { grad_c: [zero; D], div_r: zero, held: zero, strain: [[zero; D]; D] }
     }
 }
 
@@ -122,67 +142,75 @@ impl<N: Num, const D: usize> Extra<N, D> {
 ///
 /// The force per unit of mass on a is V₀ ∂W (`along_r` r_ab + `along_v` v_ab + `vector`), and the rate of
 /// x_a is V₀ ∂W times the first of `rate`, with ∂W = (dW/dr)/r, so that ∇_a W = ∂W r_ab.
-pub trait Term<N: Num, const D: usize>: Copy + Send + Sync {
-    /// Whether `extra` is used.
-    const EXTRA: bool = false;
-    /// Whether the sides' `stress` is read.
+pub trait Term<const D: usize>: Copy + Send + Sync {
+    /// Whether `along_v` is used.
+    const DRAG: bool = false;
+    /// Whether the sides' `stress` is read, in `vector`, and the strain summed.
     const STRESS: bool = false;
+    /// Whether the sums of shifting are made.
+    const SHIFT: bool = false;
+    /// Whether the sides' `mark` is read and `held` summed.
+    const MARK: bool = false;
+    /// Whether `extra` is used.
+    const EXTRA: bool = Self::STRESS || Self::SHIFT || Self::MARK;
 
     /// Share along r_ab, m²/s²; symmetric under the swap of a and b.
     #[inline(always)]
-    fn along_r(&self, _ab: &Pair<N, D>, sum: N) -> N {
+    fn along_r<N: Num>(&self, _ab: &Pair<N, D>, sum: N) -> N {
         sum
     }
     /// Share along v_ab, m²/s; symmetric.
     #[inline(always)]
-    fn along_v(&self, _ab: &Pair<N, D>, sum: N) -> N {
+    fn along_v<N: Num>(&self, _ab: &Pair<N, D>, sum: N) -> N {
         sum
     }
     /// Share in any direction, m³/s²; antisymmetric.
     #[inline(always)]
-    fn vector(&self, _ab: &Pair<N, D>, sum: [N; D]) -> [N; D] {
+    fn vector<N: Num>(&self, _ab: &Pair<N, D>, sum: [N; D]) -> [N; D] {
         sum
     }
     /// Shares of the rates of x_a and x_b, m²/s.
     #[inline(always)]
-    fn rate(&self, _ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
+    fn rate<N: Num>(&self, _ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
         sum
     }
     /// Shares of the extra sums of a and b, without the factor V₀ ∂W.
     #[inline(always)]
-    fn extra(&self, _ab: &Pair<N, D>, _factor: N, _a: &mut Extra<N, D>, _b: &mut Extra<N, D>) {}
+    fn extra<N: Num>(&self, _ab: &Pair<N, D>, _factor: N, _a: &mut Extra<N, D>, _b: &mut Extra<N, D>) {}
 }
 
 /// No law.
-impl<N: Num, const D: usize> Term<N, D> for () {}
+impl<const D: usize> Term<D> for () {}
 
 macro_rules! tuple_of_terms {
     ($($name:ident $index:tt),+) => {
-        impl<N: Num, const D: usize, $($name: Term<N, D>),+> Term<N, D> for ($($name,)+) {
-            const EXTRA: bool = $($name::EXTRA)|+;
+        impl<const D: usize, $($name: Term<D>),+> Term<D> for ($($name,)+) {
+            const DRAG: bool = $($name::DRAG)|+;
             const STRESS: bool = $($name::STRESS)|+;
+            const SHIFT: bool = $($name::SHIFT)|+;
+            const MARK: bool = $($name::MARK)|+;
             #[inline(always)]
-            fn along_r(&self, ab: &Pair<N, D>, sum: N) -> N {
+            fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
                 $(let sum = self.$index.along_r(ab, sum);)+
                 sum
             }
             #[inline(always)]
-            fn along_v(&self, ab: &Pair<N, D>, sum: N) -> N {
+            fn along_v<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
                 $(let sum = self.$index.along_v(ab, sum);)+
                 sum
             }
             #[inline(always)]
-            fn vector(&self, ab: &Pair<N, D>, sum: [N; D]) -> [N; D] {
+            fn vector<N: Num>(&self, ab: &Pair<N, D>, sum: [N; D]) -> [N; D] {
                 $(let sum = self.$index.vector(ab, sum);)+
                 sum
             }
             #[inline(always)]
-            fn rate(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
+            fn rate<N: Num>(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
                 $(let sum = self.$index.rate(ab, sum);)+
                 sum
             }
             #[inline(always)]
-            fn extra(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
+            fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
                 $(self.$index.extra(ab, factor, a, b);)+
             }
         }

@@ -6,10 +6,10 @@ use super::{Num, Pair, Term};
 #[derive(Clone, Copy, Debug)]
 pub struct Pressure;
 
-impl<N: Num, const D: usize> Term<N, D> for Pressure {
+impl<const D: usize> Term<D> for Pressure {
     #[inline(always)]
-    fn along_r(&self, ab: &Pair<N, D>, sum: N) -> N {
-        sum - (ab.a.p + ab.b.p) * (ab.a.s * ab.b.s)
+    fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
+        (-(ab.a.p + ab.b.p)).fma(ab.a.s * ab.b.s, sum)
     }
 }
 
@@ -18,16 +18,16 @@ impl<N: Num, const D: usize> Term<N, D> for Pressure {
 /// P < 0 [@monaghan2000].
 #[derive(Clone, Copy, Debug)]
 pub struct Tensile {
-    /// 1/W(dp), mᴰ.
+    /// 1/(V₀ W(dp)), –.
     pub inv_w_dp: f64,
 }
 
-impl<N: Num, const D: usize> Term<N, D> for Tensile {
+impl<const D: usize> Term<D> for Tensile {
     #[inline(always)]
-    fn along_r(&self, ab: &Pair<N, D>, sum: N) -> N {
-        let repulsion = |p: N, s: N| p.if_below(N::of(0.0), N::of(-0.2), N::of(0.01)) * p * s * s;
-        let f = ab.w * N::of(self.inv_w_dp);
+    fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
+        let repulsion = |p: N, s: N| p.if_below(ab.of(0.0), ab.of(-0.2), ab.of(0.01)) * p * (s * s);
+        let f = ab.w * ab.of(self.inv_w_dp);
         let f2 = f * f;
-        sum - (repulsion(ab.a.p, ab.a.s) + repulsion(ab.b.p, ab.b.s)) * (f2 * f2)
+        (-(repulsion(ab.a.p, ab.a.s) + repulsion(ab.b.p, ab.b.s))).fma(f2 * f2, sum)
     }
 }

@@ -39,18 +39,31 @@ impl Shift {
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftTerm;
 
-impl<N: Num, const D: usize> Term<N, D> for ShiftTerm {
-    const EXTRA: bool = true;
+impl<const D: usize> Term<D> for ShiftTerm {
+    const SHIFT: bool = true;
 
     #[inline(always)]
-    fn extra(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
+    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
+        let (of_b, of_a) = (factor * ab.b.s, factor * ab.a.s);
         for i in 0..D {
-            let g = factor * ab.r_ab[i];
-            a.grad_c[i] = a.grad_c[i] + ab.b.s * g;
-            b.grad_c[i] = b.grad_c[i] - ab.a.s * g;
+            a.grad_c[i] = of_b.fma(ab.r_ab[i], a.grad_c[i]);
+            b.grad_c[i] = (-of_a).fma(ab.r_ab[i], b.grad_c[i]);
         }
-        let g = factor * ab.r2;
-        a.div_r = a.div_r - ab.b.s * g;
-        b.div_r = b.div_r - ab.a.s * g;
+        a.div_r = (-of_b).fma(ab.r2, a.div_r);
+        b.div_r = (-of_a).fma(ab.r2, b.div_r);
+    }
+}
+
+/// Notes which particles have a marked one within the support: there shifting is held back.
+#[derive(Clone, Copy, Debug)]
+pub struct HeldTerm;
+
+impl<const D: usize> Term<D> for HeldTerm {
+    const MARK: bool = true;
+
+    #[inline(always)]
+    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
+        a.held = (-factor).fma(ab.b.mark, a.held);
+        b.held = (-factor).fma(ab.a.mark, b.held);
     }
 }

@@ -1,4 +1,4 @@
-//! Neighbour lists in chunks of particles, each made and read by one thread at a time.
+//! Neighbour lists in chunks of particles, for the oracle: each made and read by one thread at a time.
 
 use rayon::prelude::*;
 
@@ -42,22 +42,21 @@ impl Chunk {
 pub struct Lists {
     /// For water: first kind water, second kind skin.
     pub water: Vec<Chunk>,
-    /// For the skin: first kind water; no second.
+    /// For the wet boundary particles: first kind water; no second.
     pub skin: Vec<Chunk>,
 }
 
 impl Lists {
-    /// Lists all pairs nearer than `reach` (m).
+    /// Lists all pairs nearer than `reach` (m) among water and of water with skin; returns which of the boundary
+    /// particles `near` have any.
     pub(super) fn build<const D: usize>(
         &mut self,
-        water: &Grid<D>,
-        skin: &Grid<D>,
-        water_r: &[Vector<D>],
-        skin_r: &[Vector<D>],
+        (water, water_r): (&Grid<D>, &[Vector<D>]),
+        (skin, skin_r): (&Grid<D>, &[Vector<D>]),
+        near: &[u32],
         reach: f64,
-    ) {
+    ) -> Vec<u32> {
         self.water.resize_with(water_r.len().div_ceil(CHUNK), Chunk::default);
-        self.skin.resize_with(skin_r.len().div_ceil(CHUNK), Chunk::default);
         self.water.par_iter_mut().enumerate().for_each(|(c, chunk)| {
             chunk.clear();
             for i in c * CHUNK..water_r.len().min((c + 1) * CHUNK) {
@@ -68,14 +67,25 @@ impl Lists {
                 chunk.close(start, middle);
             }
         });
-        self.skin.par_iter_mut().enumerate().for_each(|(c, chunk)| {
+        let mut beside = vec![false; skin_r.len()];
+        for chunk in &self.water {
+            for span in &chunk.spans {
+                for &j in &chunk.index[span.middle as usize..span.end as usize] {
+                    beside[j as usize] = true;
+                }
+            }
+        }
+        let wet: Vec<u32> = near.iter().copied().filter(|&i| beside[i as usize]).collect();
+        self.skin.resize_with(wet.len().div_ceil(CHUNK), Chunk::default);
+        self.skin.par_iter_mut().zip(wet.par_chunks(CHUNK)).for_each(|(chunk, wet)| {
             chunk.clear();
-            for x in &skin_r[c * CHUNK..skin_r.len().min((c + 1) * CHUNK)] {
+            for &i in wet {
                 let start = chunk.index.len();
-                chunk.append(water, water_r, x, u32::MAX, reach);
+                chunk.append(water, water_r, &skin_r[i as usize], u32::MAX, reach);
                 chunk.close(start, chunk.index.len());
             }
         });
+        wet
     }
 }
 

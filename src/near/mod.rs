@@ -1,110 +1,173 @@
 //! Neighbours: positions in, indices out.
 //!
-//! A cell grid finds, for each water particle, the water and the boundary particles within the kernel's
-//! support and a margin; and for each boundary particle the water. The lists hold while nothing has moved by
-//! half the margin, so most steps search nothing.
+//! The lists look a margin further than the kernel's support and hold while nothing has moved by half the margin,
+//! so most steps search nothing. A sweep in lanes has lists of clusters ([`Clusters`]), the oracle of particles
+//! ([`Lists`]); both know which boundary particles are wet, and the others cost nothing until the next lists.
 
+mod clusters;
+mod columns;
 mod grid;
+mod half;
 mod lists;
 
+pub use clusters::{AWAY, Clusters, PAD, Slab, fill};
 pub use grid::Grid;
 pub use lists::{CHUNK, Chunk, Lists, Span};
+
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use crate::{
+    lanes::Level,
     particles::PER_TASK,
     space::{Bounds, Vector},
 };
+use columns::Columns;
 
-/// Neighbour lists of the water and of the skin, and the positions for which they were made.
+/// How far beyond the support the lists look, over the support: new lists every ten steps or so.
+const MARGIN: f64 = 0.1;
+
+/// Width of a column over dp.
+const WIDTH: f64 = 2.0;
+
+/// Whole units in the kernel's support: a difference of two places within it is exact in single precision.
+const UNITS: f64 = (1 << 24) as f64;
+
+/// Which particles meet which.
+#[derive(Clone, Debug)]
+pub enum Pairs {
+    /// Each with its list of single neighbours.
+    Lists(Lists),
+    /// Each with its list of later clusters, searched with the instructions of that level.
+    Clusters(Clusters, Level),
+}
+
+/// The neighbours of the water and of the skin, and the positions for which they were found.
 #[derive(Clone, Debug)]
 pub struct Near<const D: usize> {
     /// Kernel support, m.
     reach: f64,
-    /// How far beyond the support the lists look, m.
-    margin: f64,
-    water: Grid<D>,
-    skin: Grid<D>,
-    lists: Lists,
+    /// Particle spacing, m.
+    dp: f64,
+    pairs: Pairs,
+    /// Boundary particles with water within the lists' reach, in ascending order.
+    wet: Vec<u32>,
     /// Positions of water and skin at the last build, m.
     built: (Vec<Vector<D>>, Vec<Vector<D>>),
+    /// The same in grids, for those who ask what is near a place; made when one asks.
+    grids: OnceLock<(Grid<D>, Grid<D>)>,
 }
 
 impl<const D: usize> Near<D> {
-    /// No lists yet, for a kernel of support `reach` (m).
-    pub fn new(reach: f64) -> Self {
-        // A tenth of the support: a rebuild every ten steps or so, for a fifth more candidates.
-        Self {
-            reach,
-            margin: 0.1 * reach,
-            water: Grid::default(),
-            skin: Grid::default(),
-            lists: Lists::default(),
-            built: (Vec::new(), Vec::new()),
-        }
-    }
-
-    /// Whether something has moved so far that a pair may be missing. Numbers differ after adding or
-    /// removing particles: due too. A non-finite position is due as well.
-    pub fn due(&self, water: &[Vector<D>], skin: &[Vector<D>]) -> bool {
-        if self.built.0.len() != water.len() || self.built.1.len() != skin.len() {
-            return true;
-        }
-        let far = |now: &[Vector<D>], then: &[Vector<D>]| {
-            now.par_iter()
-                .zip(then)
-                .with_min_len(PER_TASK)
-                .map(|(a, b)| (a - b).norm_squared())
-                // The larger of two, and NaN if either is.
-                .reduce(|| 0.0, |a, b| if a.is_nan() || a > b { a } else { b })
-                .sqrt()
+    /// No lists yet, for a kernel of support `reach` (m) and particles `dp` (m) apart: of clusters, searched with
+    /// the instructions of `level`, or else of single neighbours.
+    pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self {
+        let pairs = match level {
+            Some(level) => Pairs::Clusters(Clusters::default(), level),
+            None => Pairs::Lists(Lists::default()),
         };
-        let moved = far(water, &self.built.0) + far(skin, &self.built.1);
-        moved.is_nan() || moved >= self.margin
+        Self { reach, dp, pairs, wet: Vec::new(), built: (Vec::new(), Vec::new()), grids: OnceLock::new() }
     }
 
-    /// The order in which water at `r` lies along the cells: `order[new] = old`.
+    /// The unit of length in which positions are whole numbers, m.
+    pub fn unit(reach: f64) -> f64 {
+        reach / UNITS
+    }
+
+    /// How far the lists look beyond the support, m.
+    pub fn margin(&self) -> f64 {
+        MARGIN * self.reach
+    }
+
+    /// The order in which water at `r` lies along the columns: `order[new] = old`.
     pub fn order(&self, r: &[Vector<D>]) -> Vec<u32> {
-        Grid::new(r, self.reach + self.margin).into_order()
+        let columns = Columns::new(r, WIDTH * self.dp, self.look());
+        columns.sort(r, &all(r.len())).order
     }
 
-    /// Makes the lists for these positions.
+    /// How far the lists look, m.
+    fn look(&self) -> f64 {
+        self.reach + self.margin()
+    }
+
+    /// Makes the lists for these positions of water and skin.
     pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
-        self.rebuild((water.to_vec(), skin.to_vec()));
+        self.built.0.clear();
+        self.built.0.extend_from_slice(water);
+        self.built.1.clear();
+        self.built.1.extend_from_slice(skin);
+        self.grids = OnceLock::new();
+        let look = self.look();
+        let columns = Columns::new(water, WIDTH * self.dp, look);
+        let water_sorted = columns.sort(water, &all(water.len()));
+        let wet = columns.wet(water, &water_sorted, look);
+        let bounds = Bounds::around(water).grown(look);
+        let near: Vec<u32> = (0..skin.len() as u32)
+            .into_par_iter()
+            .with_min_len(PER_TASK)
+            .filter(|&i| {
+                let x = &skin[i as usize];
+                let height = x[columns.up];
+                bounds.contains(x) && wet[columns.column(x)].is_some_and(|(low, high)| low <= height && height <= high)
+            })
+            .collect();
+        self.wet = match &mut self.pairs {
+            Pairs::Lists(lists) => {
+                let (grid, skin_grid) = (Grid::new(water, look), Grid::new(skin, look));
+                lists.build((&grid, water), (&skin_grid, skin), &near, look)
+            }
+            Pairs::Clusters(clusters, level) => {
+                let shape = half::Shape { reach: look, width: WIDTH * self.dp, inv_unit: 1.0 / Self::unit(self.reach) };
+                let skin_sorted = columns.sort(skin, &near);
+                clusters.build(&columns, (water, &water_sorted), (skin, &skin_sorted), &shape, *level)
+            }
+        };
     }
 
-    /// Makes the lists for the positions of an earlier build, as [`Near::built`] gave them.
-    pub fn rebuild(&mut self, built: (Vec<Vector<D>>, Vec<Vector<D>>)) {
-        let cell = self.reach + self.margin;
-        self.water = Grid::new(&built.0, cell);
-        self.skin = Grid::new(&built.1, cell);
-        self.lists.build(&self.water, &self.skin, &built.0, &built.1, cell);
-        self.built = built;
+    /// The positions of the water for which the lists were made, m.
+    pub fn built(&self) -> &[Vector<D>] {
+        &self.built.0
     }
 
-    /// The positions for which the lists were made: water and skin, m.
-    pub fn built(&self) -> &(Vec<Vector<D>>, Vec<Vector<D>>) {
-        &self.built
+    /// Which particles meet which.
+    pub fn pairs(&self) -> &Pairs {
+        &self.pairs
     }
 
-    /// The lists.
-    pub fn lists(&self) -> &Lists {
-        &self.lists
+    /// The boundary particles that have water within the lists' reach, in ascending order.
+    pub fn wet(&self) -> &[u32] {
+        &self.wet
     }
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
     pub fn water_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        Self::around(&self.water, x, self.reach + self.margin, visit);
+        self.around(&self.grids().0, x, visit);
     }
 
     /// Calls `visit` with the index of every boundary particle that may be within the support of `x`.
     pub fn skin_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        Self::around(&self.skin, x, self.reach + self.margin, visit);
+        self.around(&self.grids().1, x, visit);
     }
 
-    fn around(grid: &Grid<D>, x: &Vector<D>, reach: f64, visit: &mut dyn FnMut(usize)) {
-        let box_ = Bounds { min: *x, max: *x }.grown(reach);
+    fn grids(&self) -> &(Grid<D>, Grid<D>) {
+        self.grids.get_or_init(|| (Grid::new(&self.built.0, self.look()), Grid::new(&self.built.1, self.look())))
+    }
+
+    fn around(&self, grid: &Grid<D>, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+        let box_ = Bounds { min: *x, max: *x }.grown(self.look());
         grid.rows(&box_, |row| row.iter().for_each(|&i| visit(i as usize)));
     }
+}
+
+fn all(n: usize) -> Vec<u32> {
+    (0..n as u32).collect()
+}
+
+/// `x` (m) in whole units of which `inv_unit` are a metre, modulo 2³²: differences of places near one another are
+/// exact wherever they are, up to 2⁵¹ units from the origin.
+#[inline(always)]
+pub fn whole(x: f64, inv_unit: f64) -> i32 {
+    // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.
+    (x * inv_unit + 6_755_399_441_055_744.0).to_bits() as i32
 }

@@ -10,6 +10,7 @@ use super::{
 use crate::{
     check::Check,
     error::{Error, Kind, Result},
+    model::Dimension,
     record::{
         Checkpoint, Manifest,
         manifest::{Count, InForce, Machine, Status},
@@ -17,7 +18,7 @@ use crate::{
     },
     scene::{Built, Plan, Resolved, Scene},
     simulation::Simulation,
-    solid::{Dim, HasEngine, Role},
+    solid::{Dim, HasEngine as _, Role},
 };
 
 /// The checkpoint, in the run's folder.
@@ -39,7 +40,7 @@ pub struct Course<const D: usize> {
 
 impl<const D: usize> Course<D>
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub fn new(scene: &Scene, origin: Origin) -> Result<Self> {

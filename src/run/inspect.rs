@@ -5,10 +5,11 @@ use std::path::Path;
 use super::{folder, not_built, outputs};
 use crate::{
     error::Result,
+    model::Dimension,
     record::manifest::Count,
     scene::{Built, Resolved, Scene},
     simulation::Simulation,
-    solid::{Dim, HasEngine, Role},
+    solid::{Dim, Role},
 };
 
 /// What a scene would run.
@@ -50,7 +51,7 @@ pub fn inspect(path: &Path, sets: &[(String, String)]) -> Result<Report> {
 
 fn report<const D: usize>(scene: &Scene) -> Result<Report>
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     let values = scene.resolve()?;
     let Built { setup, plan, warnings, .. } = scene.build::<D>()?;

@@ -21,8 +21,15 @@ use super::{Scene, sets, wording};
 use crate::error::{Error, Result};
 
 /// Keys whose value is one choice out of several laws.
-pub(super) const CHOICES: [&str; 6] =
-    ["model.kernel", "model.viscosity", "model.diffusion", "model.shifting", "model.walls", "time.scheme"];
+pub(super) const CHOICES: [&str; 7] = [
+    "model.kernel",
+    "model.viscosity",
+    "model.diffusion",
+    "model.shifting",
+    "model.walls",
+    "model.sweep",
+    "time.scheme",
+];
 
 /// Where the words of a scene were written. Two scenes that say the same are equal wherever it was written.
 #[derive(Clone, Debug, Default)]

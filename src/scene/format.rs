@@ -12,7 +12,7 @@ use super::{
     flexible::Frames,
 };
 use crate::{
-    model::{Diffusion, Kernel, Scheme, Shifting, Viscosity, Walls},
+    model::{Diffusion, Kernel, Scheme, Shifting, Sweeping, Viscosity, Walls},
     plan::Score,
 };
 
@@ -125,6 +125,9 @@ pub struct ModelWords {
     /// Walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walls: Option<Walls>,
+    /// Which sweep adds up the pairs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<Sweeping>,
     /// Speed of sound, m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub c0: Option<f64>,

@@ -102,6 +102,8 @@ impl Scene {
         filler.fill("model.diffusion", &mut model.diffusion, usual.diffusion, why);
         filler.fill("model.shifting", &mut model.shifting, usual.shifting, "shifting slowly inflates the water");
         filler.fill("model.walls", &mut model.walls, usual.walls, "the method's wall, robust in violent flow");
+        let why = "single precision where it is harmless; \"reference\" is double precision throughout";
+        filler.fill("model.sweep", &mut model.sweep, usual.sweep, why);
         if model.c0.is_none() {
             let why = "density then varies by less than 1 %; the depth is from the lowest water to the highest level";
             filler.fill("model.c0_factor", &mut model.c0_factor, 20.0, why);

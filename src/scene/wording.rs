@@ -47,6 +47,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
     ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
     ("walls", "walls = \"dbc\""),
+    ("sweep", "sweep = \"fast\""),
     ("time", "[time]\nscheme = \"symplectic\""),
     ("scheme", "scheme = { verlet = { euler_every = 50 } }"),
     ("probe", "[[probe]]\nmotion = \"box\""),

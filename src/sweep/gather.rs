@@ -1,87 +1,119 @@
 //! The f64 oracle: each particle gathers its own neighbours in stored order, so that the bits depend on
 //! neither threads nor chunks.
 
-use super::{Input, Node, Sums, Sweep};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use super::{
+    Input, Output, Peaks, Sums, Sweep,
+    laws::{Compiled, Laws},
+    rows::Running,
+};
 use crate::{
-    law::{
-        Extra, Medium, Pair, Side, Term,
-        kernel::{Kernel, REACH},
-    },
-    near::CHUNK,
+    law::{Extra, Pair, Side, Term, kernel::Kernel},
+    near::{CHUNK, Chunk, Pairs},
+    particles::{PER_TASK, Particles},
     space::{Matrix, Vector},
 };
 
-/// A sweep of the laws `T` among water and `W` between water and solids.
+/// The oracle with its laws.
+pub(super) struct Gather<const D: usize> {
+    laws: Box<dyn Laws<D>>,
+    nodes: [Vec<Node<D>>; 2],
+    spent: Duration,
+}
+
+/// A particle as a pair needs it, packed together.
 #[derive(Clone, Copy, Debug)]
-pub struct Gather<K, T, W> {
-    kernel: K,
-    inner: T,
-    wall: W,
-    /// V₀ = m/ρ₀, mᴰ.
-    volume: f64,
-    eta2: f64,
-    /// Square of the kernel's support, m².
-    reach2: f64,
+pub(super) struct Node<const D: usize> {
+    r: [f64; D],
+    v: [f64; D],
+    side: Side<f64, D>,
 }
 
-impl<K, T, W> Gather<K, T, W> {
-    /// The sweep in water of the given constants.
-    pub fn new<const D: usize>(kernel: K, inner: T, wall: W, medium: &Medium<D>) -> Self {
-        Self { kernel, inner, wall, volume: medium.volume0(), eta2: medium.eta2(), reach2: (REACH * medium.h).powi(2) }
+impl<const D: usize> Gather<D> {
+    /// The oracle of those laws, made in SI.
+    pub(super) fn new(laws: Box<dyn Laws<D>>) -> Self {
+        Self { laws, nodes: [Vec::new(), Vec::new()], spent: Duration::ZERO }
     }
 }
 
-/// The running sums of one particle.
-struct Running<const D: usize> {
-    dv: [f64; D],
-    dx: f64,
-    closing: f64,
-    extra: Extra<f64, D>,
-}
-
-impl<K: Kernel, T, W> Gather<K, T, W> {
-    /// Adds the share of neighbour `b` to `sum` by the laws `term`.
-    #[inline(always)]
-    fn add<const D: usize, L: Term<f64, D>>(
-        &self,
-        term: &L,
-        a: (&Node<D>, &[[f64; D]; D]),
-        b: (&Node<D>, &[[f64; D]; D]),
-        sum: &mut Running<D>,
-    ) {
-        let r_ab: [f64; D] = std::array::from_fn(|i| a.0.r[i] - b.0.r[i]);
-        let v_ab: [f64; D] = std::array::from_fn(|i| a.0.v[i] - b.0.v[i]);
-        let r2: f64 = r_ab.iter().map(|x| x * x).sum();
-        // The lists look further than the kernel: a quarter of their entries end here.
-        if r2 >= self.reach2 {
-            return;
-        }
-        let factor = self.volume * self.kernel.slope(r2);
-        let side = |(node, stress): (&Node<D>, &[[f64; D]; D])| -> Side<f64, D> { node.side(*stress) };
-        let ab = Pair::new(r_ab, v_ab, r2, self.kernel.w(r2), self.eta2, side(a), side(b));
-        let along_r = term.along_r(&ab, 0.0);
-        let along_v = term.along_v(&ab, 0.0);
-        let vector = term.vector(&ab, [0.0; D]);
+/// Adds the share of neighbour `b` to `sum` by the law `law`; gives |v_ab·r_ab|/(r² + η²).
+#[inline(always)]
+fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
+    laws: &Compiled<K, T, W>,
+    law: &L,
+    a: &Node<D>,
+    b: &Node<D>,
+    sum: &mut Running<f64, D>,
+) -> f64 {
+    let r_ab: [f64; D] = std::array::from_fn(|i| a.r[i] - b.r[i]);
+    let v_ab: [f64; D] = std::array::from_fn(|i| a.v[i] - b.v[i]);
+    let r2: f64 = r_ab.iter().map(|x| x * x).sum();
+    // The lists look further than the kernel: a quarter of their entries end here.
+    if r2 >= laws.reach2 {
+        return 0.0;
+    }
+    let factor = laws.kernel.slope(r2);
+    let ab = Pair::new(r_ab, v_ab, r2, laws.kernel.w(r2), laws.eta2, a.side, b.side);
+    let along_r = law.along_r(&ab, 0.0);
+    let along_v = if L::DRAG { law.along_v(&ab, 0.0) } else { 0.0 };
+    for i in 0..D {
+        sum.dv[i] += factor * if L::DRAG { along_r * r_ab[i] + along_v * v_ab[i] } else { along_r * r_ab[i] };
+    }
+    if L::STRESS {
+        let vector = law.vector(&ab, [0.0; D]);
         for i in 0..D {
-            sum.dv[i] += factor * (along_r * r_ab[i] + along_v * v_ab[i] + vector[i]);
-        }
-        sum.dx += factor * term.rate(&ab, (0.0, 0.0)).0;
-        sum.closing = sum.closing.max(ab.vr.abs() * ab.inv_r2);
-        if L::EXTRA {
-            term.extra(&ab, factor, &mut sum.extra, &mut Extra::zero());
+            sum.dv[i] += factor * vector[i];
         }
     }
+    sum.dx += factor * law.rate(&ab, (0.0, 0.0)).0;
+    if L::EXTRA {
+        law.extra(&ab, factor, &mut sum.extra, &mut Extra::all(0.0));
+    }
+    ab.vr.abs() * ab.inv_r2
 }
 
-impl<const D: usize> Running<D> {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self { dv: [0.0; D], dx: 0.0, closing: 0.0, extra: Extra::zero() }
+pub(super) fn water<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
+    laws: &Compiled<K, T, W>,
+    [water, skin]: [&[Node<D>]; 2],
+    first: usize,
+    lists: &Chunk,
+    sums: &mut [Sums<D>],
+    extra: &mut [Extra<f64, D>],
+) -> f64 {
+    let mut closing = 0.0f64;
+    for (k, out) in sums.iter_mut().enumerate() {
+        let (a, (among, beside)) = (&water[first + k], lists.of(k));
+        let mut sum = Running::all(0.0);
+        for &j in among {
+            closing = closing.max(add(laws, &laws.inner, a, &water[j as usize], &mut sum));
+        }
+        for &j in beside {
+            closing = closing.max(add(laws, &laws.wall, a, &skin[j as usize], &mut sum));
+        }
+        *out = Sums { dv: Vector::from(sum.dv), dx: sum.dx };
+        if let Some(extra) = extra.get_mut(k) {
+            *extra = sum.extra;
+        }
     }
+    closing
+}
 
-    #[inline(always)]
-    fn sums(&self) -> Sums<D> {
-        Sums { dv: Vector::from(self.dv), dx: self.dx, closing: self.closing }
+pub(super) fn skin<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
+    laws: &Compiled<K, T, W>,
+    [water, skin]: [&[Node<D>]; 2],
+    wet: &[u32],
+    lists: &Chunk,
+    sums: &mut [Sums<D>],
+) {
+    for (k, (out, &i)) in sums.iter_mut().zip(wet).enumerate() {
+        let mut sum = Running::all(0.0);
+        for &j in lists.of(k).0 {
+            add(laws, &laws.wall, &skin[i as usize], &water[j as usize], &mut sum);
+        }
+        *out = Sums { dv: Vector::from(sum.dv), dx: sum.dx };
     }
 }
 
@@ -89,47 +121,73 @@ fn rows<const D: usize>(m: &Matrix<D>) -> [[f64; D]; D] {
     std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
 }
 
-impl<const D: usize, K: Kernel, T: Term<f64, D>, W: Term<f64, D>> Sweep<D> for Gather<K, T, W> {
+/// The particles as nodes.
+fn nodes<const D: usize>(
+    input: &Input<'_, D>,
+    particles: &Particles<D>,
+    stress: &[Matrix<D>],
+    marks: &[bool],
+    nodes: &mut Vec<Node<D>>,
+) {
+    let rho0 = input.medium.rho0;
+    (0..particles.len())
+        .into_par_iter()
+        .with_min_len(PER_TASK)
+        .map(|i| {
+            let x = (particles.rho[i] - rho0) / rho0;
+            let side = Side {
+                x,
+                low: 0.0,
+                p: input.state.pressure(x),
+                s: 1.0 / (1.0 + x),
+                mark: marks.get(i).map_or(0.0, |&m| f64::from(u8::from(m))),
+                stress: stress.get(i).map_or([[0.0; D]; D], rows),
+            };
+            Node { r: particles.r[i].into(), v: particles.v[i].into(), side }
+        })
+        .collect_into_vec(nodes);
+}
+
+impl<const D: usize> Sweep<D> for Gather<D> {
     fn extra(&self) -> bool {
-        T::EXTRA
+        self.laws.needs().any()
     }
 
-    fn water(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>], extra: &mut [Extra<f64, D>]) {
-        let none = [[0.0; D]; D];
-        let stress = |i: usize| if T::STRESS { rows(&input.stress[i]) } else { none };
-        let (first, lists) = (chunk * CHUNK, &input.lists.water[chunk]);
-        for (i, out) in sums.iter_mut().enumerate() {
-            let (water, skin) = lists.of(i);
-            let a = &input.water[first + i];
-            let stress_a = stress(first + i);
-            let mut sum = Running::zero();
-            for &j in water {
-                let j = j as usize;
-                self.add(&self.inner, (a, &stress_a), (&input.water[j], &stress(j)), &mut sum);
-            }
-            for &j in skin {
-                self.add(&self.wall, (a, &stress_a), (&input.skin[j as usize], &none), &mut sum);
-            }
-            *out = sum.sums();
-            if T::EXTRA {
-                extra[i] = sum.extra;
-            }
-        }
+    fn spent(&self) -> Duration {
+        self.spent
     }
 
-    fn skin(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>]) {
-        let none = [[0.0; D]; D];
-        let (first, lists) = (chunk * CHUNK, &input.lists.skin[chunk]);
-        for (i, out) in sums.iter_mut().enumerate() {
-            let (water, _) = lists.of(i);
-            let a = &input.skin[first + i];
-            let mut sum = Running::zero();
-            for &j in water {
-                let j = j as usize;
-                let stress = if W::STRESS { rows(&input.stress[j]) } else { none };
-                self.add(&self.wall, (a, &none), (&input.water[j], &stress), &mut sum);
-            }
-            *out = sum.sums();
-        }
+    fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
+        let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
+        nodes(input, input.water, input.stress, &[], &mut self.nodes[0]);
+        nodes(input, input.skin, &[], input.marks, &mut self.nodes[1]);
+        let start = Instant::now();
+        let (laws, nodes) = (&self.laws, [&self.nodes[0][..], &self.nodes[1][..]]);
+        let g = input.medium.gravity;
+        let one = |c: usize, sums: &mut [Sums<D>], extra: &mut [Extra<f64, D>]| {
+            let closing = laws.water(nodes, c * CHUNK, &lists.water[c], sums, extra);
+            let a2 = sums.iter_mut().map(|s| {
+                s.dv += g;
+                s.dv.norm_squared()
+            });
+            (a2.fold(0.0, f64::max), closing)
+        };
+        let larger = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.max(b.1));
+        let chunks = output.water.par_chunks_mut(CHUNK).enumerate();
+        let (a2, closing) = if output.extra.is_empty() {
+            chunks.map(|(c, sums)| one(c, sums, &mut [])).reduce(|| (0.0, 0.0), larger)
+        } else {
+            let both = chunks.zip(output.extra.par_chunks_mut(CHUNK));
+            both.map(|((c, sums), extra)| one(c, sums, extra)).reduce(|| (0.0, 0.0), larger)
+        };
+        let wet = input.near.wet().par_chunks(CHUNK);
+        output
+            .skin
+            .par_chunks_mut(CHUNK)
+            .zip(wet)
+            .zip(&lists.skin)
+            .for_each(|((sums, wet), chunk)| laws.skin(nodes, wet, chunk, sums));
+        self.spent += start.elapsed();
+        Peaks { acceleration: a2.sqrt(), closing }
     }
 }

@@ -1,97 +1,108 @@
 //! Loops over pairs: the one place where laws meet arrays and threads. No formulas.
+//!
+//! `gather` is the oracle, in f64; `lanes` does the same eight pairs at a time, each pair once. Threads and buffers are
+//! theirs; what is compiled anew for every choice of laws is in `laws` and no more.
 
 mod gather;
+mod lanes;
+mod laws;
+mod packed;
+mod rows;
 
-pub use gather::Gather;
-
-use rayon::prelude::*;
+use std::time::Duration;
 
 use crate::{
-    law::{Extra, Side},
-    near::{CHUNK, Lists},
+    lanes::Level,
+    law::{Extra, Medium, Term, Units, kernel::Kernel, state::State},
+    near::Near,
+    particles::Particles,
     space::{Matrix, Vector},
 };
 
-/// A particle as the sweep reads it: what a pair needs, packed together.
-#[derive(Clone, Copy, Debug)]
-pub struct Node<const D: usize> {
-    /// Position, m.
-    pub r: [f64; D],
-    /// Velocity, m/s.
-    pub v: [f64; D],
-    /// Excess density ρ/ρ₀ − 1, –.
-    pub x: f64,
-    /// Pressure P/ρ₀, m²/s².
-    pub p: f64,
-    /// Specific volume ρ₀/ρ, –.
-    pub s: f64,
-}
-
-impl<const D: usize> Node<D> {
-    /// The side of a pair that this particle is.
-    #[inline(always)]
-    pub fn side(&self, stress: [[f64; D]; D]) -> Side<f64, D> {
-        Side { x: self.x, p: self.p, s: self.s, stress }
-    }
-}
-
 /// What a sweep reads.
 pub struct Input<'a, const D: usize> {
-    /// Neighbours.
-    pub lists: &'a Lists,
+    /// Which particles meet.
+    pub near: &'a Near<D>,
     /// The water.
-    pub water: &'a [Node<D>],
+    pub water: &'a Particles<D>,
     /// The boundary particles.
-    pub skin: &'a [Node<D>],
+    pub skin: &'a Particles<D>,
     /// Stress of the water, m²/s²; empty unless a law reads it.
     pub stress: &'a [Matrix<D>],
+    /// Beside which boundary particles water is not shifted; empty unless a law reads it.
+    pub marks: &'a [bool],
+    /// Constants of the water.
+    pub medium: &'a Medium<D>,
+    /// Its equation of state.
+    pub state: &'a State,
+}
+
+/// Where a sweep writes.
+pub struct Output<'a, const D: usize> {
+    /// One for each water particle; gravity is in it.
+    pub water: &'a mut [Sums<D>],
+    /// One for each wet boundary particle, in the order of [`Near::wet`].
+    pub skin: &'a mut [Sums<D>],
+    /// One for each water particle, or none if no law needs it.
+    pub extra: &'a mut [Extra<f64, D>],
 }
 
 /// The sums of one particle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sums<const D: usize> {
-    /// Acceleration by pair forces (no gravity), m/s²; for a boundary particle, force over m = ρ₀ dpᴰ.
+    /// Acceleration, m/s²; for a boundary particle, force over m = ρ₀ dpᴰ.
     pub dv: Vector<D>,
     /// Rate of x = ρ/ρ₀ − 1, 1/s.
     pub dx: f64,
-    /// max |v_ab·r_ab|/(r² + η²) over the neighbours, 1/s.
-    pub closing: f64,
 }
 
 impl<const D: usize> Sums<D> {
     /// No neighbour.
     pub fn zero() -> Self {
-        Self { dv: Vector::zeros(), dx: 0.0, closing: 0.0 }
+        Self { dv: Vector::zeros(), dx: 0.0 }
     }
 }
 
-/// A sweep with its laws compiled in: the sums of one chunk of particles. One call a chunk goes through the
-/// trait object; inside there is no branch on a choice of law.
+/// The largest values that limit a time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peaks {
+    /// Largest acceleration of a water particle, m/s².
+    pub acceleration: f64,
+    /// Largest |v_ab·r_ab|/(r² + η²), 1/s.
+    pub closing: f64,
+}
+
+/// A sweep with its laws compiled in. One call a pass goes through the trait object; inside there is no branch
+/// on a choice of law.
 pub trait Sweep<const D: usize>: Send + Sync {
     /// Whether [`Extra`] sums are made.
     fn extra(&self) -> bool;
 
-    /// Sums over all neighbours of the water particles of chunk `chunk` into `sums`, and into `extra` where
-    /// the laws need it (else empty).
-    fn water(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>], extra: &mut [Extra<f64, D>]);
+    /// Time spent on pairs so far.
+    fn spent(&self) -> Duration;
 
-    /// Sums over the water around the boundary particles of chunk `chunk`.
-    fn skin(&self, input: &Input<'_, D>, chunk: usize, sums: &mut [Sums<D>]);
+    /// Sums over all pairs; the lists must hold.
+    fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks;
 }
 
-/// Sweeps all chunks of water and skin, each by one thread.
-pub fn all<const D: usize>(
-    sweep: &dyn Sweep<D>,
-    input: &Input<'_, D>,
-    sums: &mut [Sums<D>],
-    skin_sums: &mut [Sums<D>],
-    extra: &mut [Extra<f64, D>],
-) {
-    let chunks = sums.par_chunks_mut(CHUNK).enumerate();
-    if sweep.extra() {
-        chunks.zip(extra.par_chunks_mut(CHUNK)).for_each(|((c, sums), extra)| sweep.water(input, c, sums, extra));
-    } else {
-        chunks.for_each(|(c, sums)| sweep.water(input, c, sums, &mut []));
+/// The sweep of the laws `inner` among water and `wall` between water and solids, made for `medium`, which is counted
+/// in `units`: in lanes with the instructions of `level`, or else by the oracle, in SI.
+pub fn compile<K, T, W, const D: usize>(
+    kernel: K,
+    inner: T,
+    wall: W,
+    medium: &Medium<D>,
+    units: Units,
+    level: Option<Level>,
+) -> Box<dyn Sweep<D>>
+where
+    K: Kernel + 'static,
+    T: Term<D> + 'static,
+    W: Term<D> + 'static,
+{
+    let laws = Box::new(laws::Compiled::new(kernel, inner, wall, medium));
+    match level {
+        Some(level) => Box::new(lanes::Lanes::new(laws, units, level)),
+        None => Box::new(gather::Gather::new(laws)),
     }
-    skin_sums.par_chunks_mut(CHUNK).enumerate().for_each(|(c, sums)| sweep.skin(input, c, sums));
 }

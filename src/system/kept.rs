@@ -7,7 +7,8 @@ use crate::{
     error::{Error, Kind, Result},
     particles::Particles,
     solid::{Kinematics, Load},
-    space::{Matrix, Vector},
+    space::{Matrix, Pose, Vector},
+    sweep::Sums,
 };
 
 /// What of a system must be kept to go on to the same bits.
@@ -18,7 +19,8 @@ pub(crate) struct SystemState<const D: usize> {
     kinematics: Vec<Kinematics<D>>,
     loads: Vec<Load<D>>,
     stress: Vec<Matrix<D>>,
-    built: (Vec<Vector<D>>, Vec<Vector<D>>),
+    /// Where the water and the solids were when the lists were made.
+    built: (Vec<Vector<D>>, Vec<Pose<D>>),
     passes: u64,
 }
 
@@ -31,7 +33,7 @@ impl<const D: usize> System<D> {
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
             loads: self.solids.iter().map(|s| s.load).collect(),
             stress: self.stress.clone(),
-            built: self.near.built().clone(),
+            built: (self.near.built().to_vec(), self.built.clone().unwrap_or_default()),
             passes: self.passes,
         }
     }
@@ -44,7 +46,7 @@ impl<const D: usize> System<D> {
             && kept.loads.len() == self.solids.len()
             && kept.stress.len() == self.stress.len()
             && kept.built.0.len() == kept.fluid.len()
-            && kept.built.1.len() == kept.skin.len();
+            && kept.built.1.len() == kept.kinematics.len();
         if !same {
             return Err(Error::new(Kind::Restart, "the checkpoint holds another number of particles")
                 .help("it belongs to another scene: resume in the folder of its own run"));
@@ -53,7 +55,17 @@ impl<const D: usize> System<D> {
         for ((solid, k), load) in self.solids.iter_mut().zip(kept.kinematics).zip(kept.loads) {
             (solid.kinematics, solid.load) = (k, load);
         }
-        self.near.rebuild(kept.built);
+        let (water, poses) = kept.built;
+        let mut skin = self.skin.r.clone();
+        for (solid, pose) in self.solids.iter().zip(&poses) {
+            for i in solid.skin.clone() {
+                skin[i] = pose.point(&self.local[i]);
+            }
+        }
+        self.near.build(&water, &skin);
+        self.skin_sums.resize(self.near.wet().len(), Sums::zero());
+        self.built = Some(poses);
+        self.look();
         Ok(())
     }
 }

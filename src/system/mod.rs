@@ -5,19 +5,24 @@ mod guard;
 mod kept;
 mod view;
 
+pub(crate) use guard::Seen;
 pub(crate) use kept::SystemState;
+
+pub use crate::sweep::Peaks;
+
+use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
     law::{Extra, Medium, state::State, wall::Dbc},
-    model::{Model, Shifting, Viscosity},
+    model::{Dimension, Model, Shifting, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
-    solid::{Load, Role, Solid, SolidSpec, skin},
-    space::{Bounds, Matrix, Vector, Wedge},
-    sweep::{self, Input, Node, Sums, Sweep},
+    solid::{Dim, Load, Role, Solid, SolidSpec, skin},
+    space::{Bounds, Matrix, Pose, Vector, Wedge},
+    sweep::{Input, Output, Sums, Sweep},
 };
 
 /// Water and solids at one instant.
@@ -26,29 +31,38 @@ pub struct System<const D: usize> {
     medium: Medium<D>,
     state: State,
     sweep: Box<dyn Sweep<D>>,
-    near: Near<D>,
+    pub(crate) near: Near<D>,
     pub(crate) fluid: Particles<D>,
     pub(crate) skin: Particles<D>,
     /// Places of the boundary particles in their solids' frames, m.
     local: Vec<Vector<D>>,
+    /// The box around each solid's skin in its own frame, m.
+    boxes: Vec<Bounds<D>>,
+    /// Where the solids were when the lists were made, if they were.
+    built: Option<Vec<Pose<D>>>,
     pub(crate) solids: Vec<Solid<D>>,
     domain: Bounds<D>,
     /// Stress of the water from the last pass, m²/s²; empty unless the viscosity has one.
     stress: Vec<Matrix<D>>,
-    nodes: (Vec<Node<D>>, Vec<Node<D>>),
+    /// Beside which boundary particles water is not shifted; empty unless water is shifted.
+    marks: Vec<bool>,
     pub(crate) sums: Vec<Sums<D>>,
+    /// One for each wet boundary particle.
     pub(crate) skin_sums: Vec<Sums<D>>,
     extra: Vec<Extra<f64, D>>,
+    peaks: Peaks,
+    pub(crate) seen: Seen,
     passes: u64,
+    /// Time spent on lists and sorting so far.
+    listing: Duration,
 }
 
-/// The largest values that limit a time step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peaks {
-    /// Largest acceleration of a water particle, m/s².
-    pub acceleration: f64,
-    /// Largest |v_ab·r_ab|/(r² + η²), 1/s.
-    pub closing: f64,
+/// How arrays of particles must change when new lists are made.
+pub(crate) struct Renewal {
+    /// New order of the water: `order[new] = old`.
+    pub(crate) order: Vec<u32>,
+    /// Boundary particles that have lost all their water.
+    pub(crate) dried: Vec<u32>,
 }
 
 impl<const D: usize> System<D> {
@@ -60,7 +74,10 @@ impl<const D: usize> System<D> {
         levels: &[f64],
         specs: Vec<SolidSpec<D>>,
         domain: Option<Bounds<D>>,
-    ) -> Result<Self> {
+    ) -> Result<Self>
+    where
+        Dim<D>: Dimension<D>,
+    {
         let medium = model.medium::<D>();
         let state = State::new(medium.c0, medium.gamma);
         let mut fluid = Particles::default();
@@ -86,30 +103,37 @@ impl<const D: usize> System<D> {
         }
         let everything = Bounds::around(&fluid.r).union(&Bounds::around(&skin.r));
         let domain = domain.unwrap_or_else(|| everything.grown(everything.size().max() + model.reach()));
+        let boxes = solids.iter().map(|s: &Solid<D>| Bounds::around(&local[s.skin.clone()])).collect();
         let mut system = Self {
-            sweep: model.sweep(),
-            near: Near::new(model.reach()),
+            sweep: Dim::<D>::sweep(&model),
+            near: Near::new(model.reach(), model.dp, model.sweep.level()),
             stress: if matches!(model.viscosity, Viscosity::Sps(_)) {
                 vec![Matrix::zeros(); fluid.len()]
             } else {
                 Vec::new()
             },
-            nodes: (Vec::new(), Vec::new()),
+            marks: marks(&model, &solids, skin.len()),
             sums: vec![Sums::zero(); fluid.len()],
-            skin_sums: vec![Sums::zero(); skin.len()],
+            skin_sums: Vec::new(),
             extra: Vec::new(),
+            peaks: Peaks { acceleration: 0.0, closing: 0.0 },
+            seen: Seen::NOTHING,
             passes: 0,
+            listing: Duration::ZERO,
+            built: None,
             model,
             medium,
             state,
             fluid,
             skin,
             local,
+            boxes,
             solids,
             domain,
         };
         system.place_all();
         system.renew();
+        system.look();
         system.still_skin();
         system.rates();
         Ok(system)
@@ -119,164 +143,148 @@ impl<const D: usize> System<D> {
     fn still_skin(&mut self) {
         let up = D - 1;
         let g = -self.medium.gravity[up];
-        let mut still = self.skin.rho.clone();
-        for (i, x) in self.skin.r.iter().enumerate() {
-            let mut nearest = (f64::INFINITY, 0.0);
-            self.near.water_around(x, &mut |j| {
-                let d = (self.fluid.r[j] - x).norm_squared();
-                if d < nearest.0 {
-                    let head = self.state.pressure(self.fluid.rho[j] / self.medium.rho0 - 1.0);
-                    nearest = (d, head + g * (self.fluid.r[j][up] - x[up]));
-                }
-            });
-            still[i] = self.medium.rho0 * (1.0 + self.state.excess(nearest.1.max(0.0)));
-        }
-        self.skin.rho = still;
+        let still: Vec<f64> = self
+            .near
+            .wet()
+            .par_iter()
+            .map(|&i| {
+                let x = &self.skin.r[i as usize];
+                let mut nearest = (f64::INFINITY, 0.0);
+                self.near.water_around(x, &mut |j| {
+                    let d = (self.fluid.r[j] - x).norm_squared();
+                    if d < nearest.0 {
+                        let head = self.state.pressure(self.fluid.rho[j] / self.medium.rho0 - 1.0);
+                        nearest = (d, head + g * (self.fluid.r[j][up] - x[up]));
+                    }
+                });
+                self.medium.rho0 * (1.0 + self.state.excess(nearest.1.max(0.0)))
+            })
+            .collect();
+        self.set_skin_density(|k, _, _| still[k]);
     }
 
-    /// Sorts the water along the cells and makes new neighbour lists, if they are due; returns the order
-    /// (`order[new] = old`) by which whoever keeps arrays of the water must follow.
-    pub(crate) fn renew(&mut self) -> Option<Vec<u32>> {
-        if !self.near.due(&self.fluid.r, &self.skin.r) {
+    /// Sorts the water along the columns and makes new neighbour lists, if they are due; returns what whoever keeps
+    /// arrays of particles must follow.
+    pub(crate) fn renew(&mut self) -> Option<Renewal> {
+        if !self.due() {
             return None;
         }
+        let start = Instant::now();
         let order = self.near.order(&self.fluid.r);
         permute(&mut self.fluid.r, &order);
         permute(&mut self.fluid.v, &order);
         permute(&mut self.fluid.rho, &order);
         permute(&mut self.fluid.id, &order);
         permute(&mut self.stress, &order);
-        self.lists();
-        Some(order)
-    }
-
-    fn lists(&mut self) {
-        self.near.build(&self.fluid.r, &self.skin.r);
-        self.dry();
-    }
-
-    /// A boundary particle that has lost all its water forgets its pressure.
-    fn dry(&mut self) {
-        let spans = self.near.lists().skin.iter().flat_map(|chunk| &chunk.spans);
-        for (rho, span) in self.skin.rho.iter_mut().zip(spans) {
-            if span.start == span.end {
-                *rho = self.medium.rho0;
-            }
-        }
+        self.listing += start.elapsed();
+        Some(Renewal { order, dried: self.lists() })
     }
 
     /// Makes new lists within a step if they are due, the water left in its order.
     pub(crate) fn relist(&mut self) {
-        if self.near.due(&self.fluid.r, &self.skin.r) {
+        if self.due() {
             self.lists();
         }
+    }
+
+    fn due(&self) -> bool {
+        let moved = |(solid, (then, box_)): (&Solid<D>, (&Pose<D>, &Bounds<D>))| {
+            // A rigid motion moves no point of a box further than its furthest corner.
+            let now = &solid.kinematics.pose;
+            box_.corners().map(|x| (now.point(&x) - then.point(&x)).norm()).fold(0.0, f64::max)
+        };
+        let Some(built) = &self.built else { return true };
+        let skin = self.solids.iter().zip(built.iter().zip(&self.boxes)).map(moved).fold(0.0, f64::max);
+        let moved = self.seen.moved2.sqrt() + skin;
+        moved.is_nan() || moved >= self.near.margin()
+    }
+
+    /// Makes new lists; a boundary particle that has lost all its water forgets its pressure. Returns which have.
+    fn lists(&mut self) -> Vec<u32> {
+        let start = Instant::now();
+        let before = self.near.wet().to_vec();
+        self.near.build(&self.fluid.r, &self.skin.r);
+        self.built = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
+        self.seen.moved2 = 0.0;
+        self.skin_sums.resize(self.near.wet().len(), Sums::zero());
+        let mut wet = self.near.wet().iter().copied().peekable();
+        let mut dried = before;
+        dried.retain(|&i| {
+            while wet.next_if(|&w| w < i).is_some() {}
+            wet.peek() != Some(&i)
+        });
+        for &i in &dried {
+            self.skin.rho[i as usize] = self.medium.rho0;
+        }
+        self.listing += start.elapsed();
+        dried
     }
 
     /// Rates of the water and loads on the solids at the present places, velocities and densities; the lists
     /// must hold.
     pub(crate) fn rates(&mut self) {
-        self.nodes.0 = self.pack(&self.fluid);
-        self.nodes.1 = self.pack(&self.skin);
-        let input = Input { lists: self.near.lists(), water: &self.nodes.0, skin: &self.nodes.1, stress: &self.stress };
         if self.sweep.extra() {
-            self.extra.resize(self.fluid.len(), Extra::zero());
+            self.extra.resize(self.fluid.len(), Extra::all(0.0));
         }
-        sweep::all(self.sweep.as_ref(), &input, &mut self.sums, &mut self.skin_sums, &mut self.extra);
+        let input = Input {
+            near: &self.near,
+            water: &self.fluid,
+            skin: &self.skin,
+            stress: &self.stress,
+            marks: &self.marks,
+            medium: &self.medium,
+            state: &self.state,
+        };
+        let mut output = Output { water: &mut self.sums, skin: &mut self.skin_sums, extra: &mut self.extra };
+        self.peaks = self.sweep.rates(&input, &mut output);
         if let Viscosity::Sps(sps) = self.model.viscosity {
-            let (medium, nodes, extra) = (&self.medium, &self.nodes.0, &self.extra);
-            self.stress.par_iter_mut().enumerate().for_each(|(i, stress)| {
-                let rows = sps.close(&extra[i].strain, nodes[i].s, medium);
+            let (medium, rho, extra) = (&self.medium, &self.fluid.rho, &self.extra);
+            self.stress.par_iter_mut().enumerate().with_min_len(PER_TASK).for_each(|(i, stress)| {
+                let rows = sps.close(&extra[i].strain, medium.rho0 / rho[i], medium);
                 *stress = Matrix::from_fn(|i, j| rows[i][j]);
             });
         }
-        let gravity = self.medium.gravity;
-        self.sums.par_iter_mut().with_min_len(PER_TASK).for_each(|s| s.dv += gravity);
         self.load();
         self.passes += 1;
     }
 
-    fn pack(&self, particles: &Particles<D>) -> Vec<Node<D>> {
-        let inv_rho0 = 1.0 / self.medium.rho0;
-        (0..particles.len())
-            .into_par_iter()
-            .with_min_len(PER_TASK)
-            .map(|i| {
-                let x = (particles.rho[i] - self.medium.rho0) * inv_rho0;
-                Node {
-                    r: particles.r[i].into(),
-                    v: particles.v[i].into(),
-                    x,
-                    p: self.state.pressure(x),
-                    s: 1.0 / (1.0 + x),
-                }
-            })
-            .collect()
-    }
-
-    /// Adds up each solid's boundary particles in chunks of fixed size, in order.
+    /// Adds up each solid's wet boundary particles in chunks of fixed size, in order.
     fn load(&mut self) {
         let mass = self.particle_mass();
+        let wet = self.near.wet();
         for solid in &mut self.solids {
             let centre = solid.kinematics.centre;
-            let (r, sums) = (&self.skin.r[solid.skin.clone()], &self.skin_sums[solid.skin.clone()]);
-            let parts: Vec<Load<D>> = r
+            let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
+            let own = place(solid.skin.start)..place(solid.skin.end);
+            let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
+            let parts: Vec<Load<D>> = wet[own.clone()]
                 .par_chunks(CHUNK)
-                .zip(sums.par_chunks(CHUNK))
-                .map(|(r, sums)| {
-                    let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
-                    r.iter().zip(sums).fold(none, |load, (r, s)| {
+                .zip(self.skin_sums[own].par_chunks(CHUNK))
+                .map(|(wet, sums)| {
+                    wet.iter().zip(sums).fold(none, |load, (&i, s)| {
                         let force = s.dv * mass;
-                        Load { force: load.force + force, torque: load.torque + Wedge::torque(&(r - centre), &force) }
+                        let torque = Wedge::torque(&(self.skin.r[i as usize] - centre), &force);
+                        Load { force: load.force + force, torque: load.torque + torque }
                     })
                 })
                 .collect();
-            solid.load = parts
-                .into_iter()
-                .reduce(|a, b| Load { force: a.force + b.force, torque: a.torque + b.torque })
-                .unwrap_or(solid.load);
+            solid.load =
+                parts.into_iter().fold(none, |a, b| Load { force: a.force + b.force, torque: a.torque + b.torque });
         }
     }
 
     /// The largest values that limit the next step.
     pub fn peaks(&self) -> Peaks {
-        let (a2, closing) = self
-            .sums
-            .par_iter()
-            .with_min_len(PER_TASK)
-            .map(|s| (s.dv.norm_squared(), s.closing))
-            .reduce(|| (0.0, 0.0), |a, b| (f64::max(a.0, b.0), f64::max(a.1, b.1)));
-        Peaks { acceleration: a2.sqrt(), closing }
+        self.peaks
     }
 
     /// By how much (m) shifting moves each water particle in a step `dt` (s); `None` if nothing shifts.
     pub(crate) fn shifts(&self, dt: f64) -> Option<Vec<Vector<D>>> {
         let shift = self.model.shift()?;
-        let held = self.held();
-        let reach2 = self.model.reach().powi(2);
-        let shifts = (0..self.fluid.len()).into_par_iter().map(|i| {
-            let (_, skin) = self.near.lists().water[i / CHUNK].of(i % CHUNK);
-            let r = &self.fluid.r[i];
-            let sees = |&j: &u32| held[j as usize] && (self.skin.r[j as usize] - r).norm_squared() < reach2;
-            if skin.iter().any(sees) {
-                return Vector::zeros();
-            }
-            shift.close(&self.extra[i], self.fluid.v[i].norm(), dt, &self.medium)
+        let shifts = self.extra.par_iter().zip(&self.fluid.v).with_min_len(PER_TASK).map(|(extra, v)| {
+            if extra.held > 0.0 { Vector::zeros() } else { shift.close(extra, v.norm(), dt, &self.medium) }
         });
         Some(shifts.collect())
-    }
-
-    /// Beside which boundary particles the water is not shifted.
-    fn held(&self) -> Vec<bool> {
-        let mut held = vec![false; self.skin.len()];
-        for solid in &self.solids {
-            let hold = match self.model.shifting {
-                Shifting::AwayFromSolids(_) => true,
-                Shifting::AwayFromFixed(_) => matches!(solid.spec.role, Role::Fixed),
-                Shifting::None | Shifting::Everywhere(_) => false,
-            };
-            held[solid.skin.clone()].fill(hold);
-        }
-        held
     }
 
     /// Places the skins of all solids.
@@ -293,16 +301,32 @@ impl<const D: usize> System<D> {
         skin::place(kinematics, &self.local[range.clone()], &mut self.skin.r[range.clone()], &mut self.skin.v[range]);
     }
 
-    /// Lets the density of the boundary particles follow `rho`, never below what the wall law allows.
-    pub(crate) fn set_skin_density(&mut self, rho: impl Fn(usize) -> f64 + Sync) {
+    /// Lets the density (kg/m³) of each wet boundary particle become what `rho` makes of its place among the wet, its
+    /// index and its density, never below what the wall law allows. The dry ones stay at ρ₀.
+    pub(crate) fn set_skin_density(&mut self, mut rho: impl FnMut(usize, usize, f64) -> f64) {
         let rho0 = self.medium.rho0;
-        self.skin
-            .rho
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(PER_TASK)
-            .for_each(|(i, out)| *out = Dbc.close(rho(i), rho0));
+        for (k, &i) in self.near.wet().iter().enumerate() {
+            let i = i as usize;
+            self.skin.rho[i] = Dbc.close(rho(k, i, self.skin.rho[i]), rho0);
+        }
     }
+}
+
+/// Beside which boundary particles water is not shifted.
+fn marks<const D: usize>(model: &Model, solids: &[Solid<D>], skin: usize) -> Vec<bool> {
+    let held = |solid: &Solid<D>| match model.shifting {
+        Shifting::AwayFromSolids(_) => true,
+        Shifting::AwayFromFixed(_) => matches!(solid.spec.role, Role::Fixed),
+        Shifting::None | Shifting::Everywhere(_) => false,
+    };
+    if model.shift().is_none() {
+        return Vec::new();
+    }
+    let mut marks = vec![false; skin];
+    for solid in solids {
+        marks[solid.skin.clone()].fill(held(solid));
+    }
+    marks
 }
 
 /// Puts `array` into `order`: the new i-th is the old `order[i]`-th. An empty array stays empty.

@@ -1,5 +1,7 @@
 //! What may be read of a system.
 
+use std::time::Duration;
+
 use super::System;
 use crate::{
     law::Medium,
@@ -68,6 +70,16 @@ impl<const D: usize> System<D> {
     /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
     pub fn fluid_drho(&self, i: usize) -> f64 {
         self.sums[i].dx * self.medium.rho0
+    }
+
+    /// Number of boundary particles that have water near them; the others cost nothing.
+    pub fn wet(&self) -> usize {
+        self.near.wet().len()
+    }
+
+    /// Time spent so far on lists and sorting, and on pairs.
+    pub fn spent(&self) -> (Duration, Duration) {
+        (self.listing, self.sweep.spent())
     }
 
     /// Force passes so far.

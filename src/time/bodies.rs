@@ -1,5 +1,7 @@
 //! Moving the solids: driven ones by their law, free ones by rapier, and then their skins.
 
+use std::time::{Duration, Instant};
+
 use super::Interval;
 use crate::{
     error::{Error, Fault, Result},
@@ -12,12 +14,18 @@ use crate::{
 pub struct Bodies<const D: usize> {
     engine: Option<Box<dyn Engine<D>>>,
     steps: u64,
+    spent: Duration,
 }
 
 impl<const D: usize> Bodies<D> {
     /// The bodies that `engine` moves, after `steps` steps.
     pub fn new(engine: Option<Box<dyn Engine<D>>>, steps: u64) -> Self {
-        Self { engine, steps }
+        Self { engine, steps, spent: Duration::ZERO }
+    }
+
+    /// Time spent in the engine so far.
+    pub fn spent(&self) -> Duration {
+        self.spent
     }
 
     /// The engine, if there are free bodies.
@@ -57,7 +65,9 @@ impl<const D: usize> Bodies<D> {
             };
             let loads: Vec<_> = system.solids.iter().map(weighed).collect();
             let step = self.steps;
+            let start = Instant::now();
             engine.step(over.dt, &loads, &targets).map_err(|fault| stopped(system, fault, step, over.t))?;
+            self.spent += start.elapsed();
         }
         self.steps += 1;
         let engine = self.engine.as_deref();

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     error::Result,
     model::{Model, Scheme},
-    system::System,
+    system::{Renewal, System},
 };
 
 /// Where a step starts and how long it is, s.
@@ -44,10 +44,10 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Follows the water into a new order.
-    pub fn permute(&mut self, order: &[u32]) {
+    /// Follows the particles to new lists in water of reference density `rho0` (kg/m³).
+    pub(crate) fn follow(&mut self, renewal: &Renewal, rho0: f64) {
         if let Self::Verlet(verlet) = self {
-            verlet.permute(order);
+            verlet.follow(renewal, rho0);
         }
     }
 

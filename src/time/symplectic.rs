@@ -10,7 +10,11 @@
 use rayon::prelude::*;
 
 use super::{Bodies, Interval};
-use crate::{error::Result, particles::PER_TASK, system::System};
+use crate::{
+    error::Result,
+    particles::PER_TASK,
+    system::{Seen, System},
+};
 
 /// The scheme [@dominguez2022]; it remembers nothing between steps.
 pub struct Symplectic;
@@ -22,17 +26,22 @@ impl Symplectic {
         let rho0 = system.medium().rho0;
         let start = (system.fluid.clone(), system.skin.rho.clone());
 
-        let sums = &system.sums;
-        let fluid = &mut system.fluid;
-        fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums).with_min_len(PER_TASK).for_each(
-            |(((r, v), rho), s)| {
+        let guard = system.guard();
+        let (sums, fluid) = (&system.sums, &mut system.fluid);
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        system.seen = now
+            .zip(system.near.built())
+            .with_min_len(PER_TASK)
+            .map(|((((r, v), rho), s), then)| {
                 *r += *v * half;
                 *v += s.dv * half;
                 *rho += rho0 * s.dx * half;
-            },
-        );
-        let rates = system.skin_sums.clone();
-        system.set_skin_density(|i| start.1[i] + rho0 * rates[i].dx * half);
+                guard.see(then, r, v, *rho)
+            })
+            .reduce(|| Seen::NOTHING, Seen::and);
+        let rates = std::mem::take(&mut system.skin_sums);
+        system.set_skin_density(|k, _, rho| rho + rho0 * rates[k].dx * half);
+        system.skin_sums = rates;
         bodies.drift(system, over);
 
         system.relist();
@@ -45,24 +54,25 @@ impl Symplectic {
         };
         let (sums, was) = (&system.sums, &start.0);
         let fluid = &mut system.fluid;
-        fluid
-            .r
-            .par_iter_mut()
-            .zip(&mut fluid.v)
-            .zip(&mut fluid.rho)
-            .zip(sums)
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        system.seen = now
+            .zip(system.near.built())
             .enumerate()
             .with_min_len(PER_TASK)
-            .for_each(|(i, (((r, v), rho), s))| {
+            .map(|(i, ((((r, v), rho), s), then))| {
                 *v = was.v[i] + s.dv * dt;
                 *r = was.r[i] + (was.v[i] + *v) * half;
                 *rho = whole(was.rho[i], *rho, s.dx);
-            });
+                guard.see(then, r, v, *rho)
+            })
+            .reduce(|| Seen::NOTHING, Seen::and);
         if let Some(shifts) = shifts {
             fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
+            system.look();
         }
-        let (rates, at_half) = (system.skin_sums.clone(), system.skin.rho.clone());
-        system.set_skin_density(|i| whole(start.1[i], at_half[i], rates[i].dx));
+        let rates = std::mem::take(&mut system.skin_sums);
+        system.set_skin_density(|k, i, rho| whole(start.1[i], rho, rates[k].dx));
+        system.skin_sums = rates;
         bodies.advance(system, over, 1.0)
     }
 }

@@ -21,7 +21,7 @@ use crate::{
     model::{Diffusion, Model, Viscosity},
     particles::PER_TASK,
     space::Vector,
-    system::{System, permute},
+    system::{Renewal, Seen, System, permute},
 };
 
 /// How many e-foldings of the difference of even and odd steps are let grow. A still tank (2-D, 10 dp deep, h = √3 dp)
@@ -64,10 +64,13 @@ impl<const D: usize> Verlet<D> {
         }
     }
 
-    /// Follows the water into a new order.
-    pub fn permute(&mut self, order: &[u32]) {
-        permute(&mut self.v_before, order);
-        permute(&mut self.rho_before, order);
+    /// Follows the water into a new order; the dried boundary particles are at `rho0` (kg/m³).
+    pub(crate) fn follow(&mut self, renewal: &Renewal, rho0: f64) {
+        permute(&mut self.v_before, &renewal.order);
+        permute(&mut self.rho_before, &renewal.order);
+        if !self.skin_rho_before.is_empty() {
+            renewal.dried.iter().for_each(|&i| self.skin_rho_before[i as usize] = rho0);
+        }
     }
 
     /// Moves the system, whose rates at the start are known, over an interval.
@@ -86,29 +89,28 @@ impl<const D: usize> Verlet<D> {
         let span = if euler { dt } else { self.dt_before + dt };
         let shifts = system.shifts(dt);
 
-        let sums = &system.sums;
-        let fluid = &mut system.fluid;
+        let guard = system.guard();
+        let (sums, fluid) = (&system.sums, &mut system.fluid);
         let before = self.v_before.par_iter_mut().zip(&mut self.rho_before);
-        fluid
-            .r
-            .par_iter_mut()
-            .zip(&mut fluid.v)
-            .zip(&mut fluid.rho)
-            .zip(sums)
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        system.seen = now
             .zip(before)
+            .zip(system.near.built())
             .with_min_len(PER_TASK)
-            .for_each(|((((r, v), rho), s), (v_before, rho_before))| {
+            .map(|(((((r, v), rho), s), (v_before, rho_before)), then)| {
                 *r += *v * dt + s.dv * (0.5 * dt * dt);
                 (*v_before, *v) = (*v, *v_before + s.dv * span);
                 (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.dx * span);
-            });
+                guard.see(then, r, v, *rho)
+            })
+            .reduce(|| Seen::NOTHING, Seen::and);
         if let Some(shifts) = shifts {
             fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
+            system.look();
         }
-        let now = system.skin.rho.clone();
-        let (rates, was) = (system.skin_sums.clone(), &self.skin_rho_before);
-        system.set_skin_density(|i| was[i] + rho0 * rates[i].dx * span);
-        self.skin_rho_before = now;
+        let (rates, before) = (std::mem::take(&mut system.skin_sums), &mut self.skin_rho_before);
+        system.set_skin_density(|k, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * rates[k].dx * span);
+        system.skin_sums = rates;
 
         let weight = if euler { 1.0 } else { 0.5 * span / dt };
         bodies.advance(system, over, weight)?;

@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 
 use pontoon::{
     law::viscosity::Artificial,
-    model::{Model, Viscosity},
+    model::{Dimension, Model, Viscosity},
     shape::{Region, Shape, fill},
     simulation::Simulation,
-    solid::{Dim, FreeBody, HasEngine, Role, hydrostatics},
+    solid::{Dim, FreeBody, Role, hydrostatics},
     space::{Pose, Vector},
 };
 
@@ -60,7 +60,7 @@ struct Afloat<const D: usize> {
 
 impl<const D: usize> Afloat<D>
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     fn new(case: Case<D>) -> Self {
         let Case { shape, ratio, pool, shift, turn, alpha } = case;

@@ -3,15 +3,15 @@
 
 use pontoon::{
     law::{
-        Extra, Medium, Pair, Side, Term,
+        Extra, Medium, Pair, Side, Term, Units,
         continuity::Continuity,
         diffusion::{Fourtakas, Molteni},
         kernel::{Kernel as _, Wendland},
         pressure::{Pressure, Tensile},
-        shifting::{Shift, ShiftTerm},
+        shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
     },
-    model::{Diffusion, Kernel, Model, Viscosity},
+    model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
     space::Vector,
 };
 
@@ -27,7 +27,7 @@ fn pair(dice: &mut Dice) -> [Pair<f64, 3>; 2] {
         let x = 0.02 * (dice.roll() - 0.5);
         let [xx, yy, zz, xy, xz, yz]: [f64; 6] = std::array::from_fn(|_| dice.roll() - 0.5);
         let stress = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        Side { x, p: 400.0 * x, s: 1.0 / (1.0 + x), stress }
+        Side { x, low: 0.0, p: 400.0 * x, s: 1.0 / (1.0 + x), mark: 1.0, stress }
     };
     let (a, b) = (side(), side());
     let r: [f64; 3] = std::array::from_fn(|_| 0.02 * (dice.roll() - 0.5));
@@ -38,7 +38,7 @@ fn pair(dice: &mut Dice) -> [Pair<f64, 3>; 2] {
     [make(r, v, a, b), make(r.map(|x: f64| -x), v.map(|x: f64| -x), b, a)]
 }
 
-fn odd_under_swap(name: &str, term: impl Term<f64, 3>) {
+fn odd_under_swap(name: &str, term: impl Term<3>) {
     let mut dice = Dice(7);
     for _ in 0..200 {
         let [ab, ba] = pair(&mut dice);
@@ -47,7 +47,7 @@ fn odd_under_swap(name: &str, term: impl Term<f64, 3>) {
         assert_eq!(term.vector(&ab, [0.0; 3]), term.vector(&ba, [0.0; 3]).map(|x| -x), "{name}: vector");
         let (there, back) = (term.rate(&ab, (0.0, 0.0)), term.rate(&ba, (0.0, 0.0)));
         assert_eq!((there.0, there.1), (back.1, back.0), "{name}: rates");
-        let (mut a, mut b, mut c, mut d) = (Extra::zero(), Extra::zero(), Extra::zero(), Extra::zero());
+        let (mut a, mut b, mut c, mut d) = (Extra::all(0.0), Extra::all(0.0), Extra::all(0.0), Extra::all(0.0));
         term.extra(&ab, -2.0, &mut a, &mut b);
         term.extra(&ba, -2.0, &mut c, &mut d);
         assert_eq!((a, b), (d, c), "{name}: extra sums");
@@ -61,16 +61,17 @@ fn swapping_the_particles_changes_the_sign_and_no_bit() {
     odd_under_swap("tensile", Tensile { inv_w_dp: 1e-6 });
     odd_under_swap("continuity", Continuity);
     odd_under_swap("artificial", Artificial::default().term(&m));
-    odd_under_swap("laminar", Laminar::default().term());
+    odd_under_swap("laminar", Laminar::default().term(&Units::SI));
     odd_under_swap("sps", SpsTerm);
     odd_under_swap("molteni", Molteni::default().term(&m));
     odd_under_swap("fourtakas", Fourtakas::default().term(&m));
     odd_under_swap("shifting", ShiftTerm);
+    odd_under_swap("held", HeldTerm);
 }
 
 #[test]
 fn viscosity_takes_energy_and_never_gives_it() {
-    let (artificial, laminar) = (Artificial { alpha: 0.3 }.term(&medium()), Laminar { nu0: 0.1 }.term());
+    let (artificial, laminar) = (Artificial { alpha: 0.3 }.term(&medium()), Laminar { nu0: 0.1 }.term(&Units::SI));
     let mut dice = Dice(3);
     for _ in 0..1000 {
         let [ab, _] = pair(&mut dice);
@@ -100,7 +101,7 @@ fn still_water_has_no_dynamic_density_to_diffuse() {
     let term = Fourtakas::default().term(&m);
     let plain = Molteni::default().term(&m);
     let still = |r: Vector<3>| (6.0f64 / 400.0 * m.gravity.dot(&r)).ln_1p() / 6.0;
-    let side = |x: f64| Side { x, p: 0.0, s: 1.0 / (1.0 + x), stress: [[0.0; 3]; 3] };
+    let side = |x: f64| Side { x, low: 0.0, p: 0.0, s: 1.0 / (1.0 + x), mark: 1.0, stress: [[0.0; 3]; 3] };
     let mut dice = Dice(11);
     for _ in 0..100 {
         // Ten metres down (in the units of this c₀: x up to 1 %), at any angle to g.
@@ -118,7 +119,7 @@ fn still_water_has_no_dynamic_density_to_diffuse() {
 #[test]
 fn shifting_stops_at_the_free_surface_and_is_held_to_a_tenth_of_dp() {
     let m = medium();
-    let sums = |div_r| Extra { grad_c: [1e6, -1e6, 0.0], div_r, strain: [[0.0; 3]; 3] };
+    let sums = |div_r| Extra { grad_c: [1e6, -1e6, 0.0], div_r, held: 0.0, strain: [[0.0; 3]; 3] };
     let shift = Shift::default();
     assert_eq!(shift.close(&sums(2.7), 1.0, 1e-4, &m), Vector::<3>::zeros());
     let inside = shift.close(&sums(3.0), 1.0, 1e-4, &m);
@@ -134,6 +135,7 @@ fn the_sweep_agrees_with_a_loop_over_all_pairs() {
     model.viscosity = Viscosity::Artificial(Artificial { alpha: 0.1 });
     model.diffusion = Diffusion::Molteni(Molteni::default());
     model.kernel = Kernel::Wendland;
+    model.sweep = Sweeping::Reference;
     let mut dice = Dice(5);
     let water: Vec<Vector<2>> = rig::lattice([0.0, 0.0], [0.4, 0.3], dp)
         .into_iter()
@@ -181,6 +183,7 @@ fn diffusion_flattens_a_bump() {
     {
         let dp = 0.02;
         let mut model = Model::water(2, dp, 0.3);
+        model.sweep = Sweeping::Reference;
         (model.diffusion, model.gravity) = (diffusion, vec![0.0, 0.0]);
         let mut sim = rig::simulation(model, rig::lattice([0.0, 0.0], [0.6, 0.6], dp), 0.0, vec![]);
         let bump = |r: &Vector<2>| 1000.0 + 0.5 * (-(r - Vector::from([0.3, 0.3])).norm_squared() / 0.002).exp();

@@ -6,6 +6,7 @@ mod coupling;
 mod determinism;
 mod errors;
 mod kernels;
+mod lanes;
 mod laws;
 mod near;
 mod probes;

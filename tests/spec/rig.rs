@@ -1,10 +1,10 @@
 //! What the tests share: models, lattices and tanks.
 
 use pontoon::{
-    model::Model,
+    model::{Dimension, Model},
     shape::Shape,
     simulation::{Setup, Simulation},
-    solid::{Dim, FreeBody, HasEngine, Role, SolidSpec},
+    solid::{Dim, FreeBody, Role, SolidSpec},
     space::{Pose, Vector},
 };
 
@@ -47,7 +47,7 @@ pub fn simulation<const D: usize>(
     solids: Vec<SolidSpec<D>>,
 ) -> Simulation<D>
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     let levels = vec![level; water.len()];
     Simulation::new(Setup { model, water, levels, solids, domain: None }).expect("a sound setup")

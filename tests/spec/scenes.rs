@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use pontoon::{
+    model::Dimension,
     scene::{Built, Scene, shipped},
     simulation::Simulation,
-    solid::{Dim, HasEngine},
+    solid::Dim,
 };
 
 /// Scenes that are run coarser here: their own spacing takes minutes.
@@ -25,7 +26,7 @@ fn names() -> Vec<String> {
 
 fn simulation<const D: usize>(scene: &Scene) -> Simulation<D>
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     let Built { setup, .. } = scene.build().expect("a scene that can be built");
     Simulation::new(setup).expect("a sound setup")
@@ -40,7 +41,7 @@ fn steps<const D: usize>(sim: &mut Simulation<D>, n: usize) {
 /// Runs 50 steps and looks where the water is.
 fn holds_water<const D: usize>(scene: &Scene)
 where
-    Dim<D>: HasEngine<D>,
+    Dim<D>: Dimension<D>,
 {
     let mut sim = simulation::<D>(scene);
     let count = sim.system().fluid().len();

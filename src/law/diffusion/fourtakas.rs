@@ -45,15 +45,15 @@ pub struct FourtakasTerm<const D: usize> {
     stiffening: f64,
 }
 
-impl<N: Num, const D: usize> Term<N, D> for FourtakasTerm<D> {
+impl<const D: usize> Term<D> for FourtakasTerm<D> {
     #[inline(always)]
-    fn rate(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
-        let mut rise = N::of(self.slope[0]) * ab.r_ab[0];
+    fn rate<N: Num>(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
+        let mut rise = ab.of(self.slope[0]) * ab.r_ab[0];
         for i in 1..D {
-            rise = rise + N::of(self.slope[i]) * ab.r_ab[i];
+            rise = ab.of(self.slope[i]).fma(ab.r_ab[i], rise);
         }
-        let still = rise * (N::of(1.0) - N::of(self.stiffening) * (ab.a.x + ab.b.x));
-        let d = N::of(self.strength) * (ab.b.x - ab.a.x + still);
-        (sum.0 - d * ab.b.s, sum.1 + d * ab.a.s)
+        let stiffer = ab.of(-self.stiffening).fma(ab.a.x + ab.b.x, ab.of(1.0));
+        let d = ab.of(self.strength) * rise.fma(stiffer, ab.x_ba);
+        ((-d).fma(ab.b.s, sum.0), d.fma(ab.a.s, sum.1))
     }
 }

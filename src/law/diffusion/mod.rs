@@ -5,4 +5,4 @@ mod fourtakas;
 mod molteni;
 
 pub use fourtakas::{Fourtakas, FourtakasTerm};
-pub use molteni::{Molteni, MolteniTerm};
+pub use molteni::Molteni;

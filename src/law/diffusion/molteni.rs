@@ -5,7 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::{Medium, Num, Pair, Term};
+use super::{Fourtakas, FourtakasTerm};
+use crate::{law::Medium, space::Vector};
 
 /// Molteni & Colagrossi's diffusion [@molteni2009]; eq. (15) of [@pirkhalili2023] with the sign that diffuses.
 /// It lets a deep tank at rest sink slowly: see [`super::Fourtakas`].
@@ -24,22 +25,9 @@ impl Default for Molteni {
 }
 
 impl Molteni {
-    /// The law in water of the given constants.
-    pub fn term<const D: usize>(&self, medium: &Medium<D>) -> MolteniTerm {
-        MolteniTerm { strength: 2.0 * self.delta * medium.h * medium.c0 }
-    }
-}
-
-/// The law of [`Molteni`].
-#[derive(Clone, Copy, Debug)]
-pub struct MolteniTerm {
-    strength: f64,
-}
-
-impl<N: Num, const D: usize> Term<N, D> for MolteniTerm {
-    #[inline(always)]
-    fn rate(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
-        let d = N::of(self.strength) * (ab.b.x - ab.a.x);
-        (sum.0 - d * ab.b.s, sum.1 + d * ab.a.s)
+    /// The law in water of the given constants: that of [`super::Fourtakas`] with no hydrostatic part, so that one
+    /// sweep less is compiled for every other choice of laws.
+    pub fn term<const D: usize>(&self, medium: &Medium<D>) -> FourtakasTerm<D> {
+        Fourtakas { delta: self.delta }.term(&Medium { gravity: Vector::zeros(), ..*medium })
     }
 }

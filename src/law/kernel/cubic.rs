@@ -22,21 +22,25 @@ impl Cubic {
 }
 
 impl Kernel for Cubic {
+    fn weighed(self, volume: f64) -> Self {
+        Self { amplitude: self.amplitude * volume, slope: self.slope * volume, ..self }
+    }
+
     #[inline(always)]
     fn w<N: Num>(&self, r2: N) -> N {
-        let q = r2.sqrt() * N::of(self.inv_h);
-        let rest = (N::of(2.0) - q).max(N::of(0.0));
-        let inner = N::of(1.0) - q * q * (N::of(1.5) - N::of(0.75) * q);
-        let outer = N::of(0.25) * rest * rest * rest;
-        N::of(self.amplitude) * q.if_below(N::of(1.0), inner, outer)
+        let q = r2.sqrt() * r2.of(self.inv_h);
+        let rest = (r2.of(2.0) - q).max(r2.of(0.0));
+        let inner = r2.of(1.0) - q * q * (r2.of(1.5) - r2.of(0.75) * q);
+        let outer = r2.of(0.25) * rest * rest * rest;
+        r2.of(self.amplitude) * q.if_below(r2.of(1.0), inner, outer)
     }
 
     #[inline(always)]
     fn slope<N: Num>(&self, r2: N) -> N {
-        let q = r2.sqrt() * N::of(self.inv_h);
-        let rest = (N::of(2.0) - q).max(N::of(0.0));
-        let inner = N::of(2.25) * q - N::of(3.0);
-        let outer = N::of(-0.75) * rest * rest / q;
-        N::of(self.slope) * q.if_below(N::of(1.0), inner, outer)
+        let q = r2.sqrt() * r2.of(self.inv_h);
+        let rest = (r2.of(2.0) - q).max(r2.of(0.0));
+        let inner = r2.of(2.25) * q - r2.of(3.0);
+        let outer = r2.of(-0.75) * rest * rest / q;
+        r2.of(self.slope) * q.if_below(r2.of(1.0), inner, outer)
     }
 }

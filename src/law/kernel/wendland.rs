@@ -23,22 +23,26 @@ impl Wendland {
     /// max(1 − q/2, 0).
     #[inline(always)]
     fn rest<N: Num>(&self, r2: N) -> N {
-        (N::of(1.0) - r2.sqrt() * N::of(self.half_inv_h)).max(N::of(0.0))
+        r2.sqrt().fma(r2.of(-self.half_inv_h), r2.of(1.0)).max(r2.of(0.0))
     }
 }
 
 impl Kernel for Wendland {
+    fn weighed(self, volume: f64) -> Self {
+        Self { amplitude: self.amplitude * volume, slope: self.slope * volume, ..self }
+    }
+
     #[inline(always)]
     fn w<N: Num>(&self, r2: N) -> N {
         let t = self.rest(r2);
         let t2 = t * t;
         // 2q + 1 = 5 − 4t inside the support.
-        N::of(self.amplitude) * (t2 * t2) * (N::of(5.0) - N::of(4.0) * t)
+        r2.of(self.amplitude) * (t2 * t2) * t.fma(r2.of(-4.0), r2.of(5.0))
     }
 
     #[inline(always)]
     fn slope<N: Num>(&self, r2: N) -> N {
         let t = self.rest(r2);
-        N::of(self.slope) * (t * t) * t
+        r2.of(self.slope) * (t * t) * t
     }
 }

@@ -34,9 +34,9 @@ pub struct ArtificialTerm {
     alpha_c_h: f64,
 }
 
-impl<N: Num, const D: usize> Term<N, D> for ArtificialTerm {
+impl<const D: usize> Term<D> for ArtificialTerm {
     #[inline(always)]
-    fn along_r(&self, ab: &Pair<N, D>, sum: N) -> N {
-        sum + N::of(self.alpha_c_h) * ab.vr.min(N::of(0.0)) * ab.inv_r2 * ab.s_mean
+    fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
+        (ab.of(self.alpha_c_h) * ab.vr.min(ab.of(0.0))).fma(ab.drag, sum)
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::{Num, Pair, Term};
+use crate::law::{Num, Pair, Term, Units};
 
 /// Laminar viscosity [@lo2002]; eqs. (6), (7) of [@pirkhalili2023].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,9 +20,9 @@ impl Default for Laminar {
 }
 
 impl Laminar {
-    /// The law.
-    pub fn term(&self) -> LaminarTerm {
-        LaminarTerm { nu0: self.nu0 }
+    /// The law, in those units.
+    pub fn term(&self, units: &Units) -> LaminarTerm {
+        LaminarTerm { nu0: self.nu0 * units.time / (units.length * units.length) }
     }
 }
 
@@ -32,9 +32,11 @@ pub struct LaminarTerm {
     nu0: f64,
 }
 
-impl<N: Num, const D: usize> Term<N, D> for LaminarTerm {
+impl<const D: usize> Term<D> for LaminarTerm {
+    const DRAG: bool = true;
+
     #[inline(always)]
-    fn along_v(&self, ab: &Pair<N, D>, sum: N) -> N {
-        sum + N::of(2.0 * self.nu0) * ab.r2 * ab.inv_r2 * ab.s_mean
+    fn along_v<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
+        (ab.of(2.0 * self.nu0) * ab.r2).fma(ab.drag, sum)
     }
 }

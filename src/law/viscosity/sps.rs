@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Laminar, LaminarTerm};
-use crate::law::{Extra, Medium, Num, Pair, Term};
+use crate::law::{Extra, Medium, Num, Pair, Term, Units};
 
 /// Laminar viscosity with a Smagorinsky stress [@dalrymple2006]; eqs. (6)–(8) of [@pirkhalili2023]. The
 /// paper's k is the trace S_kk: only so do its units agree with 2 S_ij beside it.
@@ -27,13 +27,15 @@ impl Default for Sps {
 }
 
 impl Sps {
-    /// The laws: laminar part and stress.
-    pub fn terms(&self) -> (LaminarTerm, SpsTerm) {
-        (Laminar { nu0: self.nu0 }.term(), SpsTerm)
+    /// The laws, in those units: laminar part and stress.
+    pub fn terms(&self, units: &Units) -> (LaminarTerm, SpsTerm) {
+        (Laminar { nu0: self.nu0 }.term(units), SpsTerm)
     }
 
-    /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s) and the specific volume `s` = ρ₀/ρ of a particle.
+    /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
+    /// a particle.
     pub fn close<const D: usize>(&self, strain: &[[f64; D]; D], s: f64, medium: &Medium<D>) -> [[f64; D]; D] {
+        let strain: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
         let length2 = medium.dp * medium.dp / D as f64;
         let norm2: f64 = 2.0 * strain.iter().flatten().map(|x| x * x).sum::<f64>();
         let nu_t = self.smagorinsky * self.smagorinsky * length2 * norm2.sqrt();
@@ -50,28 +52,29 @@ impl Sps {
 #[derive(Clone, Copy, Debug)]
 pub struct SpsTerm;
 
-impl<N: Num, const D: usize> Term<N, D> for SpsTerm {
-    const EXTRA: bool = true;
+impl<const D: usize> Term<D> for SpsTerm {
     const STRESS: bool = true;
 
     #[inline(always)]
-    fn vector(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
+    fn vector<N: Num>(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
         for (i, sum) in sum.iter_mut().enumerate() {
             for j in 0..D {
-                *sum = *sum + (ab.a.stress[i][j] + ab.b.stress[i][j]) * ab.r_ab[j];
+                let (row, column) = (i.max(j), i.min(j));
+                *sum = (ab.a.stress[row][column] + ab.b.stress[row][column]).fma(ab.r_ab[j], *sum);
             }
         }
         sum
     }
 
     #[inline(always)]
-    fn extra(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
-        let half = N::of(-0.5) * factor;
+    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
+        let half = ab.of(-0.5) * factor;
+        let (of_b, of_a) = (half * ab.b.s, half * ab.a.s);
         for i in 0..D {
-            for j in 0..D {
-                let s = half * (ab.v_ab[i] * ab.r_ab[j] + ab.v_ab[j] * ab.r_ab[i]);
-                a.strain[i][j] = a.strain[i][j] + ab.b.s * s;
-                b.strain[i][j] = b.strain[i][j] + ab.a.s * s;
+            for j in 0..=i {
+                let s = ab.v_ab[i].fma(ab.r_ab[j], ab.v_ab[j] * ab.r_ab[i]);
+                a.strain[i][j] = of_b.fma(s, a.strain[i][j]);
+                b.strain[i][j] = of_a.fma(s, b.strain[i][j]);
             }
         }
     }

@@ -1,0 +1,180 @@
+//! `pontoon bench`: which works are timed, and the tables.
+
+use clap::Args;
+use pontoon::{
+    Result,
+    bench::{self, Machine, Timing, Work},
+    error::{Error, Kind},
+    model::{Kernel, Sweeping},
+};
+use serde::Serialize;
+
+use super::report::{short, table};
+
+/// What is timed.
+#[derive(Args)]
+pub struct BenchArgs {
+    /// Water particles of each work, separated by commas
+    #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "50000")]
+    size: Vec<usize>,
+    /// Threads besides 1 [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// What each law, a body and dry walls add, instead of the standard works
+    #[arg(long)]
+    terms: bool,
+    /// Time the works in developed flow, after the water has hit the far wall: takes minutes
+    #[arg(long)]
+    developed: bool,
+    /// Fail if the fast sweep is not so many times the oracle's speed
+    #[arg(long, value_name = "RATIO", hide = true)]
+    floor: Option<f64>,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    json: bool,
+    /// Only make so many steps of a small work, for a tool that counts instructions
+    #[arg(long, value_name = "STEPS", hide = true)]
+    fixed: Option<usize>,
+}
+
+/// All that was measured.
+#[derive(Serialize)]
+struct Tables {
+    machine: Machine,
+    standard: Vec<Timing>,
+    oracle: Vec<Timing>,
+    terms: Vec<Timing>,
+    /// Time of the oracle's pairs over that of the fast sweep's, of each work.
+    fast_over_oracle: Vec<f64>,
+}
+
+/// Times and gives the text to print.
+pub fn bench(args: &BenchArgs) -> Result<String> {
+    if let Some(steps) = args.fixed {
+        bench::fixed(steps)?;
+        return Ok(String::new());
+    }
+    if args.size.iter().any(|&n| !(100..=50_000_000).contains(&n)) || args.threads == Some(0) {
+        return Err(Error::new(Kind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
+    }
+    let machine = Machine::here();
+    let threads = args.threads.unwrap_or(machine.threads);
+    let mut tables =
+        Tables { machine, standard: Vec::new(), oracle: Vec::new(), terms: Vec::new(), fast_over_oracle: Vec::new() };
+    for &water in &args.size {
+        if args.terms {
+            for dimension in [3, 2] {
+                tables.terms.extend(bench::time(&bench::terms(dimension, water), Sweeping::Fast, 1, 5)?);
+            }
+            continue;
+        }
+        for dimension in [3, 2] {
+            let mut work = Work::standard(dimension, water);
+            // 2.2 √(depth/g) after its release the water has run up the far wall.
+            work.until = if args.developed { 4.0 } else { 0.0 };
+            let works = [work.clone(), work.with("cubic", |m| m.kernel = Kernel::Cubic { tensile: true })];
+            tables.standard.extend(bench::time(&works, Sweeping::Fast, 1, 3)?);
+            if threads > 1 {
+                tables.standard.extend(bench::time(&works, Sweeping::Fast, threads, 3)?);
+            }
+            if !args.developed {
+                tables.oracle.extend(bench::time(&works, Sweeping::Reference, 1, 2)?);
+            }
+        }
+    }
+    for oracle in &tables.oracle {
+        let same = |t: &&Timing| {
+            (t.threads, t.dimension, t.water, &t.work) == (1, oracle.dimension, oracle.water, &oracle.work)
+        };
+        tables.fast_over_oracle.extend(tables.standard.iter().find(same).map(|t| oracle.pair_ns / t.pair_ns));
+    }
+    if let Some(low) = tables.fast_over_oracle.iter().find(|&&r| r < args.floor.unwrap_or(0.0)) {
+        let help = "something in the sweep has become slower: compare `perf` of both versions";
+        return Err(Error::new(Kind::Usage, format!("the fast sweep is only {low:.1} times the oracle's")).help(help));
+    }
+    if args.json {
+        let text = serde_json::to_string_pretty(&tables);
+        return text.map(|t| t + "\n").map_err(|e| Error::new(Kind::Usage, format!("no JSON: {e}")));
+    }
+    Ok(text(&tables))
+}
+
+fn text(tables: &Tables) -> String {
+    let Machine { processor, threads, instructions, version } = &tables.machine;
+    let mut text = format!("pontoon {version}, {processor}, {threads} threads, {instructions}\n");
+    if !tables.standard.is_empty() {
+        text += "\nA dam break, Verlet, artificial viscosity, diffusion, h = √3 dp:\n";
+        text += &table(&rows(&tables.standard));
+    }
+    if !tables.oracle.is_empty() {
+        text += "\nThe same by the oracle, in double precision, and its time per pair over the fast sweep's:\n";
+        let mut rows = rows(&tables.oracle);
+        rows[0].push("ratio".into());
+        for (row, ratio) in rows[1..].iter_mut().zip(&tables.fast_over_oracle) {
+            row.push(format!("{ratio:.1}"));
+        }
+        text += &table(&rows);
+    }
+    if !tables.terms.is_empty() {
+        text += "\nWhat each adds, processor time per particle and step over that of the standard work:\n";
+        text += &table(&term_rows(&tables.terms));
+    }
+    text
+}
+
+fn rows(timings: &[Timing]) -> Vec<Vec<String>> {
+    let head = [
+        "work",
+        "",
+        "threads",
+        "water",
+        "wet",
+        "M/s",
+        "ms/step",
+        "cpu ns",
+        "pairs",
+        "ns/pair",
+        "lists %",
+        "pairs %",
+        "bodies %",
+        "set-up s",
+        "B/particle",
+    ];
+    let mut rows = vec![head.map(String::from).to_vec()];
+    for t in timings {
+        rows.push(vec![
+            t.work.clone(),
+            format!("{}-D", t.dimension),
+            t.threads.to_string(),
+            short(t.water as f64),
+            short(t.wet as f64),
+            format!("{:.2}", t.particle_steps_per_s * 1e-6),
+            format!("{:.2}", t.step_s * 1e3),
+            format!("{:.0}", t.cpu_ns),
+            format!("{:.0}", t.pairs),
+            format!("{:.2}", t.pair_ns),
+            format!("{:.0}", t.lists_percent),
+            format!("{:.0}", t.pairs_percent),
+            format!("{:.1}", t.bodies_percent),
+            format!("{:.2}", t.setup_s),
+            format!("{:.0}", t.peak_bytes),
+        ]);
+    }
+    rows
+}
+
+fn term_rows(timings: &[Timing]) -> Vec<Vec<String>> {
+    let mut rows = vec![["work", "", "cpu ns", "÷ standard", "pairs ÷ standard", "ms/step"].map(String::from).to_vec()];
+    for t in timings {
+        let Some(base) = timings.iter().find(|b| b.dimension == t.dimension) else { continue };
+        rows.push(vec![
+            t.work.clone(),
+            format!("{}-D", t.dimension),
+            format!("{:.0}", t.cpu_ns),
+            format!("{:.3}", t.cpu_ns / base.cpu_ns),
+            format!("{:.3}", t.pair_ns / base.pair_ns),
+            format!("{:.2}", t.step_s * 1e3),
+        ]);
+    }
+    rows
+}

@@ -1,0 +1,83 @@
+//! Eight numbers at once: which instructions the processor has, and arrays in and out of lanes. No laws.
+//!
+//! The width is eight on every processor, and multiply and add round once, so that no sum depends on the machine.
+
+pub use fearless_simd::{Level, Simd, f32x8, i32x8};
+
+use fearless_simd::{SimdBase, SimdFrom};
+
+/// Lanes in a number.
+pub const LANES: usize = 8;
+
+/// Eight numbers in a row, aligned so that none is split between cache lines.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(32))]
+pub struct Row(pub [f32; LANES]);
+
+/// The instructions for lanes that this processor has: AVX2 on x86-64, whatever there is elsewhere. A processor
+/// of 2012 has none.
+pub fn level() -> Option<Level> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        Level::new().as_avx2().map(Level::Avx2)
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        Some(Level::new())
+    }
+}
+
+/// The name of a level, for people.
+pub fn name(level: Level) -> String {
+    format!("{level:?}").split('(').next().unwrap_or_default().to_lowercase()
+}
+
+/// Work to be done with the instructions of some level; everything below `run` must be `#[inline(always)]`.
+pub trait Work {
+    /// What it gives.
+    type Output;
+    /// Does it.
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
+}
+
+/// Does `work` with the instructions of `level`, one that [`level`] gave.
+pub fn with<W: Work>(level: Level, work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        // One instruction set is compiled and not four: the sweeps are most of the program's compile time.
+        let Some(simd) = level.as_avx2() else { unreachable!("lanes are made where AVX2 is") };
+        simd.vectorize(
+            #[inline(always)]
+            || work.run(simd),
+        )
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        fearless_simd::dispatch!(level, simd => work.run(simd))
+    }
+}
+
+/// The numbers of a row.
+#[inline(always)]
+pub fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> {
+    f32x8::simd_from(simd, *from)
+}
+
+/// The whole numbers of a row.
+#[inline(always)]
+pub fn load_whole<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> {
+    i32x8::simd_from(simd, *from)
+}
+
+/// The sum of all lanes, always in the same order.
+#[inline(always)]
+pub fn total<S: Simd>(x: f32x8<S>) -> f32 {
+    let x = x.as_slice();
+    ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
+}
+
+/// The largest of all lanes.
+#[inline(always)]
+pub fn largest<S: Simd>(x: f32x8<S>) -> f32 {
+    x.as_slice().iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
+}

@@ -1,0 +1,118 @@
+//! Particles packed into lanes, and sums unpacked from them.
+
+use rayon::prelude::*;
+
+use super::{Input, rows::Needs};
+use crate::{
+    lanes::{LANES, Row},
+    law::Units,
+    near::{self, Clusters, PAD},
+    particles::Particles,
+};
+
+/// Clusters that a thread packs at a time.
+const PER_PACK: usize = 512;
+
+/// Eight particles of one kind as a pair needs them, in the sweep's units.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Cluster<const D: usize> {
+    /// Position in whole units.
+    pub(super) x: [[i32; LANES]; D],
+    /// Velocity.
+    pub(super) v: [[f32; LANES]; D],
+    /// Excess density, what single precision cuts off it, pressure over ρ₀, specific volume.
+    pub(super) s: [[f32; LANES]; 4],
+}
+
+impl<const D: usize> Cluster<D> {
+    const EMPTY: Self =
+        Self { x: [[0; LANES]; D], v: [[0.0; LANES]; D], s: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]] };
+}
+
+/// What every cluster needs, and rows more where laws read a mark or a stress.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Packed<const D: usize> {
+    pub(super) clusters: Vec<Cluster<D>>,
+    pub(super) rows: Vec<Row>,
+}
+
+impl<const D: usize> Packed<D> {
+    /// Packs all particles that may meet.
+    pub(super) fn pack(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units) {
+        self.clusters.resize(clusters.len(), Cluster::EMPTY);
+        let inv_unit = 1.0 / units.length;
+        for slab in &clusters.slabs {
+            for (range, particles) in [(slab.first..slab.middle, input.water), (slab.middle..slab.end, input.skin)] {
+                let source = &clusters.source[range.start * LANES..range.end * LANES];
+                self.clusters[range].par_chunks_mut(PER_PACK).zip(source.par_chunks(PER_PACK * LANES)).for_each(
+                    |(clusters, source)| {
+                        for (cluster, source) in clusters.iter_mut().zip(source.chunks(LANES)) {
+                            near::fill(&mut cluster.x, source, &particles.r, inv_unit);
+                            state(cluster, source, particles, input, units);
+                        }
+                    },
+                );
+            }
+        }
+    }
+
+    /// Packs the rows of input that the laws need: marks of the skin, stress of the water.
+    pub(super) fn pack_rows(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units, needs: Needs) {
+        let (mark, stress, count) = (needs.mark, needs.stress, needs.inputs(D));
+        self.rows.clear();
+        self.rows.resize(clusters.len() * count, Row::default());
+        let scale = (units.time / units.length).powi(2);
+        for slab in &clusters.slabs {
+            for c in slab.first..slab.end {
+                let rows = &mut self.rows[c * count..(c + 1) * count];
+                for (l, &i) in clusters.source[c * LANES..(c + 1) * LANES].iter().enumerate().filter(|s| *s.1 != PAD) {
+                    let i = i as usize;
+                    if mark && c >= slab.middle {
+                        rows[0].0[l] = f32::from(u8::from(input.marks[i]));
+                    }
+                    if stress && c < slab.middle {
+                        let mut k = needs.stress_at();
+                        for row in 0..D {
+                            for column in 0..=row {
+                                rows[k].0[l] = (input.stress[i][(row, column)] * scale) as f32;
+                                k += 1;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Velocity, density and pressure of a cluster.
+#[inline(always)]
+fn state<const D: usize>(
+    cluster: &mut Cluster<D>,
+    source: &[u32],
+    particles: &Particles<D>,
+    input: &Input<'_, D>,
+    units: &Units,
+) {
+    let speed = units.time / units.length;
+    let (rho0, inv_rho0) = (input.medium.rho0, 1.0 / input.medium.rho0);
+    for l in 0..LANES {
+        if source[l] == PAD {
+            for v in &mut cluster.v {
+                v[l] = 0.0;
+            }
+            (cluster.s[0][l], cluster.s[1][l], cluster.s[2][l], cluster.s[3][l]) = (0.0, 0.0, 0.0, 1.0);
+            continue;
+        }
+        let i = source[l] as usize;
+        for k in 0..D {
+            cluster.v[k][l] = (particles.v[i][k] * speed) as f32;
+        }
+        let x = (particles.rho[i] - rho0) * inv_rho0;
+        cluster.s[0][l] = x as f32;
+        cluster.s[1][l] = (x - f64::from(x as f32)) as f32;
+        cluster.s[2][l] = (input.state.pressure(x) * (speed * speed)) as f32;
+        cluster.s[3][l] = (1.0 / (1.0 + x)) as f32;
+    }
+}

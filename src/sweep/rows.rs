@@ -1,0 +1,92 @@
+//! Running sums, and in which rows they lie in memory.
+
+use crate::law::{Extra, Num, Term};
+
+/// What a set of laws reads and sums beside acceleration and density rate.
+#[derive(Clone, Copy, Debug)]
+pub struct Needs {
+    /// The sums of shifting.
+    pub shift: bool,
+    /// Marks, and the sum that holds shifting back.
+    pub mark: bool,
+    /// Stress, and the sum of strain.
+    pub stress: bool,
+}
+
+impl Needs {
+    /// Those of the laws `Y`.
+    pub const fn of<Y: Term<D>, const D: usize>() -> Self {
+        Self { shift: Y::SHIFT, mark: Y::MARK, stress: Y::STRESS }
+    }
+
+    /// Whether there is anything.
+    pub const fn any(self) -> bool {
+        self.shift || self.mark || self.stress
+    }
+
+    const fn held_at(self, dimension: usize) -> usize {
+        dimension + 1 + if self.shift { dimension + 1 } else { 0 }
+    }
+
+    const fn strain_at(self, dimension: usize) -> usize {
+        self.held_at(dimension) + if self.mark { 1 } else { 0 }
+    }
+
+    /// Rows of sums: acceleration and density rate, then what the laws ask for.
+    pub(super) const fn sums(self, dimension: usize) -> usize {
+        self.strain_at(dimension) + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+    }
+
+    /// The first row of stress among the inputs beside places, velocities and densities; before it is the mark.
+    pub(super) const fn stress_at(self) -> usize {
+        if self.mark { 1 } else { 0 }
+    }
+
+    /// Rows of such inputs.
+    pub(super) const fn inputs(self, dimension: usize) -> usize {
+        self.stress_at() + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+    }
+}
+
+/// Running sums of a particle, or of eight.
+#[derive(Clone, Copy)]
+pub(super) struct Running<N, const D: usize> {
+    pub(super) dv: [N; D],
+    pub(super) dx: N,
+    pub(super) extra: Extra<N, D>,
+}
+
+impl<N: Num, const D: usize> Running<N, D> {
+    /// All `zero`.
+    #[inline(always)]
+    pub(super) fn all(zero: N) -> Self {
+        Self { dv: [zero; D], dx: zero, extra: Extra::all(zero) }
+    }
+
+    /// Calls `visit` with each sum that laws of needs `own` make and its row, where laws of needs `all` share the rows.
+    #[inline(always)]
+    pub(super) fn each(&mut self, own: Needs, all: Needs, mut visit: impl FnMut(usize, &mut N)) {
+        for (k, dv) in self.dv.iter_mut().enumerate() {
+            visit(k, dv);
+        }
+        visit(D, &mut self.dx);
+        if own.shift {
+            for (k, grad) in self.extra.grad_c.iter_mut().enumerate() {
+                visit(D + 1 + k, grad);
+            }
+            visit(2 * D + 1, &mut self.extra.div_r);
+        }
+        if own.mark {
+            visit(all.held_at(D), &mut self.extra.held);
+        }
+        if own.stress {
+            let mut row = all.strain_at(D);
+            for (i, strain) in self.extra.strain.iter_mut().enumerate() {
+                for strain in &mut strain[..=i] {
+                    visit(row, strain);
+                    row += 1;
+                }
+            }
+        }
+    }
+}
