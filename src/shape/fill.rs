@@ -146,14 +146,18 @@ impl<'a, const D: usize> Lattice<'a, D> {
     }
 
     /// Keeps `x` half a dp inside the sides of a box; its top is free and its bottom a solid's business.
-    pub fn keep_within(&self, x: &mut Vector<D>) {
+    /// Returns how far (m) it may then go without leaving them.
+    pub fn keep_within(&self, x: &mut Vector<D>) -> f64 {
+        let mut room = f64::INFINITY;
         if let (true, Shape::Box { size }) = (self.is_box, &self.region.shape) {
             for i in 0..D - 1 {
                 let half = (0.5 * (size[i] - self.dp)).max(0.0);
                 let middle = self.region.pose.position[i];
                 x[i] = x[i].clamp(middle - half, middle + half);
+                room = room.min(half - (x[i] - middle).abs());
             }
         }
+        room
     }
 }
 
@@ -266,5 +270,16 @@ mod tests {
         let filled = fill(&[pool([2.0, 2.0, 2.0])], &[(&ball, &at)], 0.1).unwrap();
         assert!((filled.overlapped as f64 - 268.1).abs() < 8.0, "{}", filled.overlapped);
         fits(&filled, &ball, &at, 0.1);
+    }
+
+    #[test]
+    fn any_number_of_threads_fills_with_the_same_bits() {
+        let (ball, at) = (Shape::Ball { radius: 0.4 }, Pose::at(Vector::from([1.013, 0.987, 1.03])));
+        let filled = |threads: usize| {
+            let workers = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            workers.install(|| fill(&[pool([2.0, 2.0, 2.0])], &[(&ball, &at)], 0.1).unwrap())
+        };
+        let one = filled(1);
+        assert!([2, 3, 8].into_iter().all(|threads| filled(threads) == one));
     }
 }

@@ -1,8 +1,13 @@
 //! How water and solids fit together: which points lie in a solid, which are too near to its face, and
 //! the packing of the water around the solids that do not fit the lattice.
 
+use rayon::prelude::*;
+
 use super::{Shape, fill::Lattice, pack};
-use crate::space::{Bounds, Pose, Vector};
+use crate::{
+    particles::PER_TASK,
+    space::{Bounds, Pose, Vector},
+};
 
 /// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
 const ZONE: f64 = 6.0;
@@ -92,14 +97,18 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         }
     }
 
-    /// Puts `x` back to half a dp from the face if it is nearer.
-    fn push_out(&self, x: &mut Vector<D>) {
-        if self.close.contains(x) {
-            let lack = 0.5 * self.dp - self.distance(x);
-            if lack > 0.0 {
-                *x += self.outward(x) * lack;
-            }
+    /// Puts `x` back to half a dp from the face if it is nearer. Returns how far (m) it may then go without
+    /// coming nearer than that.
+    fn push_out(&self, x: &mut Vector<D>) -> f64 {
+        if !self.close.contains(x) {
+            return 0.5 * self.dp;
         }
+        let lack = 0.5 * self.dp - self.distance(x);
+        if lack > 0.0 {
+            *x += self.outward(x) * lack;
+        }
+        // Behind a thin wall its distance may jump.
+        if self.lines.is_empty() { -lack } else { 0.0 }
     }
 }
 
@@ -144,8 +153,9 @@ pub(super) fn fit<const D: usize>(
         near.map(|o| o.distance(x)).fold(f64::INFINITY, f64::min) / dp
     };
     let (mut movable, mut held) = (Vec::new(), Vec::new());
-    for (i, x) in water.iter().enumerate() {
-        match to_misfit(x) {
+    let far: Vec<f64> = water.par_iter().with_min_len(PER_TASK).map(to_misfit).collect();
+    for (i, (x, far)) in water.iter().zip(far).enumerate() {
+        match far {
             d if d < ZONE => movable.push(i),
             d if d < ZONE + pack::REACH + 1.0 => held.push(*x),
             _ => (),
@@ -163,11 +173,9 @@ pub(super) fn fit<const D: usize>(
         points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
     }
     pack::relax(&mut points, all_movable, dp, |i, x| {
-        if let Some(&w) = movable.get(i) {
-            lattices[home[w]].keep_within(x);
-        }
+        let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].keep_within(x));
         // Twice: what one face of a corner pushes out, it may push into the other.
-        (0..2).for_each(|_| obstacles.iter().for_each(|o| o.push_out(x)));
+        (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))
     });
     movable.iter().zip(&points).for_each(|(&i, x)| water[i] = *x);
 }
