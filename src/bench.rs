@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use crate::{
     error::{Error, Kind, Result},
-    lanes,
     law::{
         diffusion::Molteni,
         shifting::Shift,
@@ -83,33 +82,6 @@ pub struct Timing {
     pub setup_s: f64,
     /// Largest memory of the program so far over the particles of this work, B.
     pub peak_bytes: f64,
-}
-
-/// The machine and the program that a table is from.
-#[derive(Clone, Debug, Serialize)]
-pub struct Machine {
-    /// Processor.
-    pub processor: String,
-    /// Threads that it runs at a time.
-    pub threads: usize,
-    /// Instructions that the fast sweep uses.
-    pub instructions: String,
-    /// Version of the program.
-    pub version: &'static str,
-}
-
-impl Machine {
-    /// This one.
-    pub fn here() -> Self {
-        let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|m| m.1));
-        Self {
-            processor: model.unwrap_or("unknown").trim().into(),
-            threads: std::thread::available_parallelism().map_or(1, usize::from),
-            instructions: Sweeping::Fast.level().map_or("no lanes".into(), lanes::name),
-            version: env!("CARGO_PKG_VERSION"),
-        }
-    }
 }
 
 impl Work {
@@ -184,10 +156,7 @@ pub fn time(works: &[Work], sweep: Sweeping, threads: usize, rounds: usize) -> R
     pool.install(|| {
         let mut timed: Vec<Box<dyn Timed>> = Vec::new();
         for work in works {
-            timed.push(match work.dimension {
-                2 => ready::<2>(work, sweep, threads)?,
-                _ => ready::<3>(work, sweep, threads)?,
-            });
+            timed.push(ready_in(work, sweep, threads)?);
         }
         let mut best: Vec<Option<Timing>> = vec![None; works.len()];
         for _ in 0..rounds {
@@ -204,7 +173,18 @@ pub fn time(works: &[Work], sweep: Sweeping, threads: usize, rounds: usize) -> R
 
 /// A work made ready, whatever its dimension.
 trait Timed {
+    fn step(&mut self) -> Result<()>;
     fn time(&mut self) -> Result<Timing>;
+}
+
+fn ready_in(work: &Work, sweep: Sweeping, threads: usize) -> Result<Box<dyn Timed>> {
+    match work.dimension {
+        #[cfg(feature = "dim2")]
+        2 => ready::<2>(work, sweep, threads),
+        #[cfg(feature = "dim3")]
+        3 => ready::<3>(work, sweep, threads),
+        n => Err(Error::new(Kind::Usage, format!("this program was built without {n}-D"))),
+    }
 }
 
 struct Ready<const D: usize> {
@@ -241,6 +221,10 @@ where
 }
 
 impl<const D: usize> Timed for Ready<D> {
+    fn step(&mut self) -> Result<()> {
+        self.sim.step()
+    }
+
     fn time(&mut self) -> Result<Timing> {
         let (before, cpu, start) = (self.sim.spent(), cpu_seconds(), Instant::now());
         let mut steps = 0;
@@ -304,16 +288,22 @@ pub fn terms(dimension: usize, water: usize) -> Vec<Work> {
     works
 }
 
-/// A fixed small work for counting instructions: so many steps in 2-D and in 3-D on one thread.
+/// A small work for counting instructions: so many steps of the work `name` of [`terms`] in 2-D and in 3-D on one
+/// thread, of 3,000 water particles each.
 ///
 /// # Errors
-/// Whatever stops a simulation.
-pub fn fixed(steps: usize) -> Result<()> {
+/// `Usage` if there is no such work, and whatever stops a simulation.
+pub fn fixed(steps: usize, name: &str) -> Result<()> {
+    let work = |dimension| terms(dimension, 3000).into_iter().find(|w| w.name == name);
+    let (Some(plane), Some(space)) = (work(2), work(3)) else {
+        let names: Vec<String> = terms(2, 3000).into_iter().map(|w| w.name).collect();
+        return Err(Error::new(Kind::Usage, format!("no work {name:?}; there are {}", names.join("; "))));
+    };
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|why| Error::new(Kind::Usage, format!("no thread can be had: {why}")))?;
     pool.install(|| {
-        let mut plane = Simulation::new(Work::standard(2, 3000).setup::<2>(Sweeping::Fast))?;
-        let mut space = Simulation::new(Work::standard(3, 3000).setup::<3>(Sweeping::Fast))?;
+        let mut plane = ready_in(&plane, Sweeping::Fast, 1)?;
+        let mut space = ready_in(&space, Sweeping::Fast, 1)?;
         (0..steps).try_for_each(|_| {
             plane.step()?;
             space.step()

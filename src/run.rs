@@ -63,7 +63,7 @@ pub struct Progress {
     pub steps: u64,
     /// Wall time so far, s, that before an interruption included.
     pub wall: f64,
-    /// All particles × force passes ÷ wall time of stepping, 1/s.
+    /// Water and boundary particles beside it × force passes ÷ wall time of stepping, 1/s.
     pub rate: f64,
 }
 

@@ -8,6 +8,7 @@ use super::write_whole;
 use crate::{
     check::Verdict,
     error::{Error, Fault, Kind, Result},
+    lanes,
 };
 
 /// The manifest of a run. Its keys are read by other programs: add some, rename none.
@@ -33,7 +34,7 @@ pub struct Manifest {
     pub until_s: f64,
     /// Wall time of the whole run, s.
     pub wall_s: f64,
-    /// All particles × force passes ÷ wall time of stepping, 1/s.
+    /// Water and boundary particles beside it × force passes ÷ wall time of stepping, 1/s.
     pub particle_steps_per_second: f64,
     /// The run against its references.
     pub checks: Vec<Verdict>,
@@ -98,6 +99,12 @@ pub struct Machine {
     pub os: String,
     /// Processor family.
     pub arch: String,
+    /// Processor, where the system tells.
+    #[serde(default)]
+    pub processor: String,
+    /// Instructions that the fast sweep uses; none if the processor has none for it.
+    #[serde(default)]
+    pub instructions: Option<String>,
     /// Processors that this program may use.
     pub cpus: usize,
 }
@@ -105,9 +112,13 @@ pub struct Machine {
 impl Machine {
     /// This computer.
     pub fn this() -> Self {
+        let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|m| m.1));
         Self {
             os: std::env::consts::OS.into(),
             arch: std::env::consts::ARCH.into(),
+            processor: model.unwrap_or_default().trim().into(),
+            instructions: lanes::level().map(lanes::name),
             cpus: std::thread::available_parallelism().map_or(1, |n| n.get()),
         }
     }

@@ -174,8 +174,9 @@ impl<const D: usize> Course<D> {
     }
 
     fn progress(&self) -> Progress {
-        let count = self.manifest.particles;
-        let work = (count.fluid + count.boundary) as f64 * self.sim.passes() as f64;
+        // Dry boundary particles are not moved on and do not count.
+        let moved = self.sim.system().fluid().len() + self.sim.system().wet();
+        let work = moved as f64 * self.sim.passes() as f64;
         let stepping = self.checkpoint.stepping;
         Progress {
             time: self.sim.time(),

@@ -63,9 +63,8 @@ fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
         sum.dv[i] += factor * if L::DRAG { along_r * r_ab[i] + along_v * v_ab[i] } else { along_r * r_ab[i] };
     }
     if L::STRESS {
-        let vector = law.vector(&ab, [0.0; D]);
-        for i in 0..D {
-            sum.dv[i] += factor * vector[i];
+        for (dv, vector) in sum.dv.iter_mut().zip(law.vector(&ab, [0.0; D])) {
+            *dv += factor * vector;
         }
     }
     sum.dx += factor * law.rate(&ab, (0.0, 0.0)).0;

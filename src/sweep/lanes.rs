@@ -311,19 +311,19 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
             let factor = self.kernel.slope(r2);
             let ab = Pair::new(r_ab, v_ab, r2, self.kernel.w(r2), self.eta2, one.side, side);
             let along_r = factor * law.along_r(&ab, zero);
-            for k in 0..D {
-                force[k] = along_r * r_ab[k];
+            for (force, r) in force.iter_mut().zip(&r_ab) {
+                *force = along_r * *r;
             }
             if L::DRAG {
                 let along_v = factor * law.along_v(&ab, zero);
-                for k in 0..D {
-                    force[k] = along_v.mul_add(v_ab[k], force[k]);
+                for (force, v) in force.iter_mut().zip(&v_ab) {
+                    *force = along_v.mul_add(*v, *force);
                 }
             }
             if L::STRESS {
                 let vector = law.vector(&ab, [zero; D]);
-                for k in 0..D {
-                    force[k] = factor.mul_add(vector[k], force[k]);
+                for (force, vector) in force.iter_mut().zip(&vector) {
+                    *force = factor.mul_add(*vector, *force);
                 }
             }
             let (rate_a, rate_b) = law.rate(&ab, (zero, zero));
@@ -334,9 +334,9 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
             let theirs = &mut sums[at..][..rows];
             let mut b = Running::all(zero);
             b.each(own, self.needs, |row, b| *b = load(&theirs[row].0));
-            for k in 0..D {
-                sum.dv[k] += force[k];
-                b.dv[k] -= force[k];
+            for (k, force) in force.into_iter().enumerate() {
+                sum.dv[k] += force;
+                b.dv[k] -= force;
             }
             sum.dx = factor.mul_add(rate_a, sum.dx);
             b.dx = factor.mul_add(rate_b, b.dx);

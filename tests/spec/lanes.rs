@@ -69,12 +69,12 @@ where
     let all_forces: f64 = sizes.iter().map(|s| s.0).sum::<f64>() * of.particle_mass();
     let fast = under(setup, Sweeping::Fast, state);
     let with = fast.system();
-    for i in 0..n {
+    for (i, size) in sizes.iter().enumerate() {
         let dv = (with.fluid_dv(i) - of.fluid_dv(i)).norm();
         let drho = (with.fluid_drho(i) - of.fluid_drho(i)).abs();
         // The bounds of docs/performance.md: a particle's own terms, and the largest for one at the rim.
-        assert!(dv <= 2e-5 * sizes[i].0 + 2e-6 * most.0, "{name}: dv {i} off by {dv}");
-        assert!(drho <= 2e-5 * sizes[i].1 + 2e-6 * most.1, "{name}: drho {i} off by {drho}");
+        assert!(dv <= 2e-5 * size.0 + 2e-6 * most.0, "{name}: dv {i} off by {dv}");
+        assert!(drho <= 2e-5 * size.1 + 2e-6 * most.1, "{name}: drho {i} off by {drho}");
     }
     // What the water loses, walls and bodies get: the rest is rounding of the sums.
     let water: Vector<D> = (0..n).map(|i| with.fluid_dv(i) - with.gravity()).sum::<Vector<D>>();
