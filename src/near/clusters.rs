@@ -133,7 +133,7 @@ impl Clusters {
                 let r = if c < middle { water } else { skin };
                 fill(x, source, r, inv_unit);
                 for (k, x) in x.iter().enumerate() {
-                    let n = source.iter().take_while(|&&i| i != PAD).count();
+                    let n = filled(source);
                     let apart = |i: &i32| i.wrapping_sub(x[0]);
                     let low = x[..n].iter().map(apart).min().unwrap_or(0);
                     let high = x[..n].iter().map(apart).max().unwrap_or(0);
@@ -172,14 +172,22 @@ impl Clusters {
 /// The places of a cluster in whole units, pads far away.
 #[inline(always)]
 pub fn fill<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) {
-    for l in 0..LANES {
-        for k in 0..D {
-            x[k][l] = match source[l] {
-                PAD => x[k][0].wrapping_add(AWAY),
-                i => whole(r[i as usize][k], inv_unit),
-            };
+    let n = filled(source);
+    for (l, &i) in source[..n].iter().enumerate() {
+        for (x, r) in x.iter_mut().zip(r[i as usize].iter()) {
+            x[l] = whole(*r, inv_unit);
         }
     }
+    for x in x {
+        let away = x[0].wrapping_add(AWAY);
+        x[n..].fill(away);
+    }
+}
+
+/// How many lanes of a cluster hold a particle: the first ones.
+#[inline(always)]
+pub fn filled(source: &[u32]) -> usize {
+    if source[LANES - 1] == PAD { source.iter().take_while(|&&i| i != PAD).count() } else { LANES }
 }
 
 /// Cuts a column's particles into clusters.

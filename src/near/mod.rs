@@ -10,7 +10,7 @@ mod grid;
 mod half;
 mod lists;
 
-pub use clusters::{AWAY, Clusters, PAD, Slab, fill};
+pub use clusters::{AWAY, Clusters, PAD, Slab, fill, filled};
 pub use grid::Grid;
 pub use lists::{CHUNK, Chunk, Lists, Span};
 

@@ -22,6 +22,7 @@ use crate::{
     law::{Extra, Pair, Side, Term, Units, kernel::Kernel},
     near::{Clusters, Pairs, Slab},
     particles::PER_TASK,
+    space::Vector,
 };
 
 /// The sweep in lanes with its laws.
@@ -78,13 +79,17 @@ impl<const D: usize> Lanes<D> {
     /// Acceleration and density rate of the particle in `slot`, in SI.
     #[inline(always)]
     fn sums_of(&self, slot: u32) -> Sums<D> {
-        let dv = self.units.length / (self.units.time * self.units.time);
-        let mut sums = Sums::zero();
-        for k in 0..D {
-            sums.dv[k] = self.sum(slot, k) * dv;
+        let rate = 1.0 / self.units.time;
+        let acceleration = self.units.length * rate * rate;
+        let (c, l) = (slot as usize / LANES, slot as usize % LANES);
+        let [own, before] = self.at[c];
+        let (own, before) = (&self.sums[own as usize..][..=D], &self.sums[before as usize..][..=D]);
+        let sum = |row: usize| f64::from(own[row].0[l]) + f64::from(before[row].0[l]);
+        let mut dv = Vector::<D>::zeros();
+        for (k, dv) in dv.iter_mut().enumerate() {
+            *dv = sum(k) * acceleration;
         }
-        sums.dx = self.sum(slot, D) / self.units.time;
-        sums
+        Sums { dv, dx: sum(D) * rate }
     }
 
     /// The extra sums of the particle in `slot`, in SI.

@@ -97,17 +97,14 @@ fn state<const D: usize>(
 ) {
     let speed = units.time / units.length;
     let (rho0, inv_rho0) = (input.medium.rho0, 1.0 / input.medium.rho0);
-    for l in 0..LANES {
-        if source[l] == PAD {
-            for v in &mut cluster.v {
-                v[l] = 0.0;
-            }
-            (cluster.s[0][l], cluster.s[1][l], cluster.s[2][l], cluster.s[3][l]) = (0.0, 0.0, 0.0, 1.0);
-            continue;
-        }
-        let i = source[l] as usize;
-        for k in 0..D {
-            cluster.v[k][l] = (particles.v[i][k] * speed) as f32;
+    let n = near::filled(source);
+    if n < LANES {
+        (cluster.v, cluster.s) = (Cluster::<D>::EMPTY.v, Cluster::<D>::EMPTY.s);
+    }
+    for (l, &i) in source[..n].iter().enumerate() {
+        let i = i as usize;
+        for (out, v) in cluster.v.iter_mut().zip(particles.v[i].iter()) {
+            out[l] = (v * speed) as f32;
         }
         let x = (particles.rho[i] - rho0) * inv_rho0;
         cluster.s[0][l] = x as f32;
