@@ -87,9 +87,11 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
             // 2.2 √(depth/g) after its release the water has run up the far wall.
             work.until = if args.developed { 4.0 } else { 0.0 };
             let works = [work.clone(), work.with("cubic", |m| m.kernel = Kernel::Cubic { tensile: true })];
-            tables.standard.extend(bench::time(&works, Sweeping::Fast, 1, 3)?);
-            if threads > 1 {
-                tables.standard.extend(bench::time(&works, Sweeping::Fast, threads, 3)?);
+            // One after the other, so that the peak of memory is that of one.
+            for threads in if threads > 1 { vec![1, threads] } else { vec![1] } {
+                for work in works.chunks(1) {
+                    tables.standard.extend(bench::time(work, Sweeping::Fast, threads, 3)?);
+                }
             }
             // The oracle takes a minute and more for a larger one, and tells nothing new.
             if !args.developed && water <= LARGEST_FOR_ORACLE {
