@@ -1,32 +1,32 @@
-//! Standard works, timed: what a step costs, where it goes, and what each law adds.
+//! Standard works, timed: what a step costs, where it goes, and what each law, body and probe adds.
 //!
-//! The work is a dam break in a closed box, two long, one across and 1.2 high with water 0.8 long and 0.6 deep, in boxes
-//! of any number of particles. Processor time is counted beside wall time, as a shared machine moves the latter, and what is
-//! compared is measured in turns within one run.
+//! The work is a scene: a dam break in a closed box, two long, one across and 1.2 high with water 0.8 long and 0.6 deep,
+//! in boxes of any number of particles. Processor time is counted beside wall time, as a shared machine moves the latter, and
+//! what is compared is measured in turns within one run.
 
-use std::time::Instant;
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
-use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 
 use crate::{
     error::{Error, Kind, Result},
-    law::{
-        diffusion::Molteni,
-        shifting::Shift,
-        viscosity::{Laminar, Sps},
-    },
-    model::{Diffusion, Dimension, Kernel, Model, Scheme, Shifting, Sweeping, Viscosity},
-    shape::Shape,
-    simulation::{Setup, Simulation, Spent},
-    solid::{Dim, FreeBody, Role, SolidSpec},
-    space::{Pose, Vector},
+    model::Dimension,
+    run::{outputs, with_threads},
+    scene::{Built, Scene},
+    simulation::{Simulation, Spent},
+    solid::Dim,
 };
 
 /// How long one timing lasts at least, s.
 const LASTS: f64 = 0.5;
 
-/// One work: so many particles of water, and what the model is.
+/// Depth of the water, m.
+const DEPTH: f64 = 0.6;
+
+/// One work: so many particles of water, and what else the scene says.
 #[derive(Clone, Debug)]
 pub struct Work {
     /// What it is called.
@@ -35,10 +35,12 @@ pub struct Work {
     pub dimension: usize,
     /// Water particles, about.
     pub water: usize,
-    /// What differs from the standard model.
-    pub change: fn(&mut Model),
+    /// Keys of the scene that differ from the standard model.
+    pub sets: Vec<(&'static str, &'static str)>,
     /// Whether a box floats in it.
     pub body: bool,
+    /// What watches it: entries of a scene.
+    pub watched: String,
     /// How much longer the tank is than the standard one, all of it dry: 1 or more.
     pub dry: f64,
     /// Simulated before the timing, in units of √(depth/g).
@@ -78,158 +80,178 @@ pub struct Timing {
     pub pairs_percent: f64,
     /// See above.
     pub bodies_percent: f64,
-    /// Making the first particles and lists, s.
+    /// Making the first particles and lists, on as many threads as any timing of the work has, s.
     pub setup_s: f64,
-    /// Largest memory of the program so far over the particles of this work, B.
+    /// Largest memory of the program since it began with this work, over the work's particles, B.
     pub peak_bytes: f64,
 }
 
 impl Work {
     /// The standard work with the standard model.
     pub fn standard(dimension: usize, water: usize) -> Self {
-        Self { name: "wendland".into(), dimension, water, change: |_| {}, body: false, dry: 1.0, until: 0.0 }
+        let (sets, watched) = (Vec::new(), String::new());
+        Self { name: "wendland".into(), dimension, water, sets, body: false, watched, dry: 1.0, until: 0.0 }
     }
 
-    /// The same under another name with a change of the model.
-    pub fn with(&self, name: &str, change: fn(&mut Model)) -> Self {
-        Self { name: name.into(), change, ..self.clone() }
+    /// The same under another name with other keys of the scene.
+    pub fn with(&self, name: &str, sets: &[(&'static str, &'static str)]) -> Self {
+        Self { name: name.into(), sets: sets.to_vec(), ..self.clone() }
     }
 
-    fn setup<const D: usize>(&self, sweep: Sweeping) -> Setup<D> {
-        let depth = 0.6;
-        let across = (1.0 / (0.8 * depth / self.water as f64).powf(1.0 / D as f64)).round().max(10.0);
-        let dp = 1.0 / across;
-        let cells = |x: f64| (x / dp).round();
-        let size = |along: f64, up: f64| {
-            Vector::from_fn(|i, _| {
-                cells(if i == 0 {
-                    along
-                } else if i == D - 1 {
-                    up
-                } else {
-                    1.0
-                }) * dp
-            })
+    /// Particle spacing, m: a whole number of them in a metre.
+    fn dp(&self) -> f64 {
+        1.0 / (1.0 / (0.8 * DEPTH / self.water as f64).powf(1.0 / self.dimension as f64)).round().max(10.0)
+    }
+
+    /// The work as a scene.
+    fn scene(&self) -> Result<Scene> {
+        let dp = self.dp();
+        let cells = |x: f64| (x / dp).round() * dp;
+        let size = |along: f64, up: f64| match self.dimension {
+            2 => vec![cells(along), cells(up)],
+            _ => vec![cells(along), 1.0, cells(up)],
         };
-        let (pool, tank): (Vector<D>, Vector<D>) = (size(0.8, depth), size(2.0 * self.dry, 1.2));
-        let count: [usize; D] = std::array::from_fn(|i| (pool[i] / dp).round() as usize);
-        let mut water: Vec<Vector<D>> = (0..count.iter().product())
-            .map(|mut k| {
-                Vector::from_fn(|i, _| {
-                    let at = k % count[i];
-                    k /= count[i];
-                    (at as f64 + 0.5) * dp
-                })
-            })
-            .collect();
-        let mut model = Model::water(D, dp, depth);
-        model.h = 3f64.sqrt() * dp;
-        (model.scheme, model.cfl, model.sweep) = (Scheme::Verlet { euler_every: 50 }, 0.2, sweep);
-        (self.change)(&mut model);
-        let thickness = model.layers() as f64 * dp;
-        let mut solids = vec![solid("tank", Shape::Tank { size: tank, thickness }, Pose::identity(), Role::Fixed)];
+        let (origin, pool, tank) = (vec![0.0; self.dimension], size(0.8, DEPTH), size(2.0 * self.dry, 1.2));
+        let mut text = format!(
+            "dimension = {}\ndp = {dp:?}\nuntil = 1000.0\n{}
+             model = {{ h_over_dp = {:?} }}\ntime = {{ scheme = {{ verlet = {{ euler_every = 50 }} }}, cfl = 0.2 }}
+             water = [{{ fill = {{ box = {{ min = {origin:?}, max = {pool:?} }} }} }}]
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = {tank:?} }} }}\n",
+            self.dimension,
+            if self.watched.contains("[frames]") { "" } else { "frames = \"off\"" },
+            3f64.sqrt(),
+        );
         if self.body {
-            let edge = (0.2 / dp).round() * dp;
-            let shape = Shape::Box { size: Vector::repeat(edge) };
-            let centre = Vector::from_fn(|i, _| if i == D - 1 { cells(depth) * dp } else { cells(0.4) * dp });
-            water.retain(|r| (0..D).any(|i| (r[i] - centre[i]).abs() > 0.5 * edge));
-            let body = FreeBody::from_density(&shape, 500.0);
-            solids.push(solid("float", shape, Pose::at(centre), Role::Free(body)));
+            let axes = ["x = ", "y = ", "z = "];
+            let middle = if self.dimension == 2 { vec![0.4, DEPTH] } else { vec![0.4, 0.5, DEPTH] };
+            let at: Vec<String> = axes.iter().zip(&middle).map(|(axis, x)| format!("{axis}{:?}", cells(*x))).collect();
+            text += &format!(
+                "[[solid]]\nname = \"float\"\nfree = {{ density = 500.0 }}\nshape = {{ box = {{ size = {:?} }} }}\n\
+                 at = {{ {} }}\n",
+                vec![cells(0.2); self.dimension],
+                at.join(", ")
+            );
         }
-        let levels = vec![pool[D - 1]; water.len()];
-        Setup { model, water, levels, solids, domain: None }
+        text += &self.watched;
+        let sets: Vec<_> = self.sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+        Scene::parse(&text, Path::new(""), &sets)
     }
 }
 
-fn solid<const D: usize>(name: &str, shape: Shape<D>, pose: Pose<D>, role: Role<D>) -> SolidSpec<D> {
-    SolidSpec { name: name.into(), shape, pose, role, friction: 0.0, restitution: 0.0 }
-}
-
-/// Makes every work ready and times them in turns, `rounds` times, on `threads` threads; gives for each the round of
-/// least processor time.
+/// Makes every work ready and times them in turns, `rounds` times on each number of `threads`; gives for each number and
+/// each work the round of least processor time.
 ///
 /// # Errors
 /// Whatever stops a simulation, and `Usage` if threads cannot be had.
-pub fn time(works: &[Work], sweep: Sweeping, threads: usize, rounds: usize) -> Result<Vec<Timing>> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|why| Error::new(Kind::Usage, format!("{threads} threads cannot be had: {why}")))?;
-    pool.install(|| {
-        let mut timed: Vec<Box<dyn Timed>> = Vec::new();
-        for work in works {
-            timed.push(ready_in(work, sweep, threads)?);
-        }
-        let mut best: Vec<Option<Timing>> = vec![None; works.len()];
-        for _ in 0..rounds {
-            for (timed, best) in timed.iter_mut().zip(&mut best) {
-                let timing = timed.time()?;
-                if best.as_ref().is_none_or(|b| timing.cpu_ns < b.cpu_ns) {
-                    *best = Some(timing);
+pub fn time(works: &[Work], threads: &[usize], rounds: usize) -> Result<Vec<Timing>> {
+    let most = threads.iter().copied().max();
+    let mut ready = with_threads(most, || works.iter().map(ready_in).collect::<Result<Vec<_>>>())?;
+    let mut timings = Vec::new();
+    for &threads in threads {
+        timings.extend(with_threads(Some(threads), || {
+            let mut best: Vec<Option<Timing>> = vec![None; works.len()];
+            for _ in 0..rounds {
+                for (ready, best) in ready.iter_mut().zip(&mut best) {
+                    let timing = ready.time(threads)?;
+                    if best.as_ref().is_none_or(|b| timing.cpu_ns < b.cpu_ns) {
+                        *best = Some(timing);
+                    }
                 }
             }
-        }
-        Ok(best.into_iter().flatten().collect())
-    })
+            Ok(best.into_iter().flatten().collect::<Vec<_>>())
+        })?);
+    }
+    Ok(timings)
 }
 
 /// A work made ready, whatever its dimension.
-trait Timed {
+trait Timed: Send {
     fn step(&mut self) -> Result<()>;
-    fn time(&mut self) -> Result<Timing>;
+    fn time(&mut self, threads: usize) -> Result<Timing>;
 }
 
-fn ready_in(work: &Work, sweep: Sweeping, threads: usize) -> Result<Box<dyn Timed>> {
+fn ready_in(work: &Work) -> Result<Box<dyn Timed>> {
     match work.dimension {
         #[cfg(feature = "dim2")]
-        2 => ready::<2>(work, sweep, threads),
+        2 => Ok(Box::new(Ready::<2>::new(work)?)),
         #[cfg(feature = "dim3")]
-        3 => ready::<3>(work, sweep, threads),
+        3 => Ok(Box::new(Ready::<3>::new(work)?)),
         n => Err(Error::new(Kind::Usage, format!("this program was built without {n}-D"))),
     }
 }
 
 struct Ready<const D: usize> {
     sim: Simulation<D>,
+    /// What is watched, and the folder for it.
+    outputs: Option<(outputs::Outputs<D>, Folder)>,
     name: String,
-    threads: usize,
     setup_s: f64,
+    peak: f64,
     pairs: f64,
 }
 
-fn ready<const D: usize>(work: &Work, sweep: Sweeping, threads: usize) -> Result<Box<dyn Timed>>
+/// A folder that goes when it is dropped.
+struct Folder(PathBuf);
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What stays lies among temporary files: the system's business.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+impl<const D: usize> Ready<D>
 where
     Dim<D>: Dimension<D>,
 {
-    let start = Instant::now();
-    let mut sim = Simulation::new(work.setup::<D>(sweep))?;
-    let setup_s = start.elapsed().as_secs_f64();
-    let until = work.until * (0.6f64 / 9.81).sqrt();
-    for _ in 0..3 {
-        sim.step()?;
+    fn new(work: &Work) -> Result<Self> {
+        forget_peak();
+        let start = Instant::now();
+        let Built { setup, plan, .. } = work.scene()?.build::<D>()?;
+        let mut sim = Simulation::new(setup)?;
+        let setup_s = start.elapsed().as_secs_f64();
+        let until = work.until * (DEPTH / 9.81).sqrt();
+        for _ in 0..3 {
+            sim.step()?;
+        }
+        while sim.time() < until {
+            sim.step()?;
+        }
+        let peak = peak_memory();
+        let outputs = if work.watched.is_empty() {
+            None
+        } else {
+            let name = work.name.replace([' ', ','], "-");
+            let name = format!("pontoon-bench-{}-{D}d-{name}", std::process::id());
+            let folder = Folder(std::env::temp_dir().join(name));
+            Some((outputs::Outputs::new(&plan, outputs::probes(&plan, sim.system())?, &folder.0, None)?, folder))
+        };
+        let system = sim.system();
+        let mut pairs = 0usize;
+        for (i, r) in system.fluid().r.iter().enumerate() {
+            system.water_near(r, &mut |j, _| pairs += usize::from(j != i));
+            // A pair with a boundary particle is seen from it as well.
+            system.solid_near(r, &mut |_, _| pairs += 2);
+        }
+        let pairs = pairs as f64 / (system.fluid().len() + system.wet()) as f64;
+        Ok(Self { sim, outputs, name: work.name.clone(), setup_s, peak, pairs })
     }
-    while sim.time() < until {
-        sim.step()?;
-    }
-    let system = sim.system();
-    let mut pairs = 0usize;
-    for (i, r) in system.fluid().r.iter().enumerate() {
-        system.water_near(r, &mut |j, _| pairs += usize::from(j != i));
-        // A pair with a boundary particle is seen from it as well.
-        system.solid_near(r, &mut |_, _| pairs += 2);
-    }
-    let pairs = pairs as f64 / (system.fluid().len() + system.wet()) as f64;
-    Ok(Box::new(Ready { sim, name: work.name.clone(), threads, setup_s, pairs }))
 }
 
 impl<const D: usize> Timed for Ready<D> {
     fn step(&mut self) -> Result<()> {
-        self.sim.step()
+        self.sim.step()?;
+        if let Some((outputs, _)) = &mut self.outputs {
+            outputs.look(&self.sim)?;
+        }
+        Ok(())
     }
 
-    fn time(&mut self) -> Result<Timing> {
+    fn time(&mut self, threads: usize) -> Result<Timing> {
         let (before, cpu, start) = (self.sim.spent(), cpu_seconds(), Instant::now());
         let mut steps = 0;
         while start.elapsed().as_secs_f64() < LASTS || steps < 3 {
-            self.sim.step()?;
+            self.step()?;
             steps += 1;
         }
         let wall = start.elapsed().as_secs_f64();
@@ -244,7 +266,7 @@ impl<const D: usize> Timed for Ready<D> {
         Ok(Timing {
             work: self.name.clone(),
             dimension: D,
-            threads: self.threads,
+            threads,
             water,
             wet,
             dry: system.skin().len() - wet,
@@ -253,12 +275,12 @@ impl<const D: usize> Timed for Ready<D> {
             particle_steps_per_s: particle_steps / wall,
             cpu_ns: cpu / particle_steps * 1e9,
             pairs: self.pairs,
-            pair_ns: pairs * self.threads as f64 / (particle_steps * self.pairs) * 1e9,
+            pair_ns: pairs * threads as f64 / (particle_steps * self.pairs) * 1e9,
             lists_percent: lists / all * 100.0,
             pairs_percent: pairs / all * 100.0,
             bodies_percent: bodies / all * 100.0,
             setup_s: self.setup_s,
-            peak_bytes: peak_memory() / (water + wet) as f64,
+            peak_bytes: self.peak / (water + wet) as f64,
         })
     }
 }
@@ -268,23 +290,35 @@ pub fn terms(dimension: usize, water: usize) -> Vec<Work> {
     let base = Work::standard(dimension, water);
     let mut works = vec![
         base.clone(),
-        base.with("without viscosity", |m| m.viscosity = Viscosity::None),
-        base.with("without diffusion", |m| m.diffusion = Diffusion::None),
-        base.with("without both", |m| (m.viscosity, m.diffusion) = (Viscosity::None, Diffusion::None)),
-        base.with("molteni", |m| m.diffusion = Diffusion::Molteni(Molteni::default())),
-        base.with("laminar", |m| m.viscosity = Viscosity::Laminar(Laminar::default())),
-        base.with("sps", |m| m.viscosity = Viscosity::Sps(Sps::default())),
-        base.with("shifting", |m| m.shifting = Shifting::AwayFromSolids(Shift::default())),
-        base.with("sps, shifting", |m| {
-            (m.viscosity, m.shifting) = (Viscosity::Sps(Sps::default()), Shifting::AwayFromSolids(Shift::default()));
-        }),
-        base.with("cubic", |m| m.kernel = Kernel::Cubic { tensile: false }),
-        base.with("cubic, tensile", |m| m.kernel = Kernel::Cubic { tensile: true }),
-        base.with("symplectic", |m| m.scheme = Scheme::Symplectic),
+        base.with("without viscosity", &[("model.viscosity", "none")]),
+        base.with("without diffusion", &[("model.diffusion", "none")]),
+        base.with("without both", &[("model.viscosity", "none"), ("model.diffusion", "none")]),
+        base.with("molteni", &[("model.diffusion", "molteni")]),
+        base.with("laminar", &[("model.viscosity", "laminar")]),
+        base.with("sps", &[("model.viscosity", "sps")]),
+        base.with("shifting", &[("model.shifting", "away_from_solids")]),
+        base.with("sps, shifting", &[("model.viscosity", "sps"), ("model.shifting", "away_from_solids")]),
+        base.with("cubic", &[("model.kernel", "{ cubic = { tensile = false } }")]),
+        base.with("cubic, tensile", &[("model.kernel", "cubic")]),
+        base.with("symplectic", &[("time.scheme", "symplectic")]),
     ];
-    works.push(Work { name: "a floating box".into(), body: true, ..base.clone() });
-    works.push(Work { name: "twice the tank, dry".into(), dry: 2.0, ..base.clone() });
-    works.push(Work { name: "four times the tank, dry".into(), dry: 4.0, ..base });
+    let named = |name: &str| base.with(name, &[]);
+    works.extend([
+        Work { body: true, ..named("a floating box") },
+        Work { dry: 2.0, ..named("twice the tank, dry") },
+        Work { dry: 4.0, ..named("four times the tank, dry") },
+    ]);
+    let place = if dimension == 2 { "[0.4, 0.1]" } else { "[0.4, 0.5, 0.1]" };
+    let surface = if dimension == 2 { "{ x = 0.4 }" } else { "{ x = 0.4, y = 0.5 }" };
+    let probes =
+        [("force", "\"tank\""), ("energy", "true"), ("elevation", surface), ("velocity", place), ("pressure", place)];
+    works.extend(probes.map(|(kind, what)| Work {
+        watched: format!("[[probe]]\n{kind} = {what}\nevery = 1e-9\n"),
+        ..named(&format!("{kind} at every step"))
+    }));
+    // As many steps, if the speed of sound alone limits them.
+    let steps = 20.0 * 0.2 * 3f64.sqrt() * base.dp() / (20.0 * (9.81 * DEPTH).sqrt());
+    works.push(Work { watched: format!("[frames]\nevery = {steps:?}\n"), ..named("a frame every 20 steps") });
     works
 }
 
@@ -299,11 +333,9 @@ pub fn fixed(steps: usize, name: &str) -> Result<()> {
         let names: Vec<String> = terms(2, 3000).into_iter().map(|w| w.name).collect();
         return Err(Error::new(Kind::Usage, format!("no work {name:?}; there are {}", names.join("; "))));
     };
-    let pool = ThreadPoolBuilder::new().num_threads(1).build();
-    let pool = pool.map_err(|why| Error::new(Kind::Usage, format!("no thread can be had: {why}")))?;
-    pool.install(|| {
-        let mut plane = ready_in(&plane, Sweeping::Fast, 1)?;
-        let mut space = ready_in(&space, Sweeping::Fast, 1)?;
+    with_threads(Some(1), || {
+        let mut plane = ready_in(&plane)?;
+        let mut space = ready_in(&space)?;
         (0..steps).try_for_each(|_| {
             plane.step()?;
             space.step()
@@ -321,9 +353,14 @@ fn cpu_seconds() -> Option<f64> {
     Some(total * 1e-9)
 }
 
-/// Largest memory of the program so far, B, where the system tells.
+/// Largest memory of the program since [`forget_peak`], B, where the system tells.
 fn peak_memory() -> f64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     line.and_then(|l| l.split_whitespace().next()?.parse::<f64>().ok()).map_or(f64::NAN, |kib| kib * 1024.0)
+}
+
+/// Lets the largest memory begin anew, where the system can: elsewhere it is that of the whole program.
+fn forget_peak() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
 }

@@ -1,6 +1,7 @@
 //! Eight numbers at once: which instructions the processor has, and arrays in and out of lanes. No laws.
 //!
-//! The width is eight on every processor, and multiply and add round once, so that no sum depends on the machine.
+//! The width is eight on every processor, and with AVX-512, AVX2 and NEON multiply and add round once, so that no sum
+//! depends on which of them it was.
 
 pub use fearless_simd::{Level, Simd, f32x8, i32x8};
 
@@ -14,17 +15,23 @@ pub const LANES: usize = 8;
 #[repr(C, align(32))]
 pub struct Row(pub [f32; LANES]);
 
-/// The instructions for lanes that this processor has: AVX2 on x86-64, whatever there is elsewhere. A processor
-/// of 2012 has none.
-pub fn level() -> Option<Level> {
+/// The instructions for lanes that this processor has, the fastest first: AVX-512 and AVX2 on x86-64, whatever there
+/// is elsewhere. A processor of 2012 has none.
+pub fn levels() -> Vec<Level> {
     #[cfg(target_arch = "x86_64")]
     {
-        Level::new().as_avx2().map(Level::Avx2)
+        let all = Level::new();
+        all.as_avx512().map(Level::Avx512).into_iter().chain(all.as_avx2().map(Level::Avx2)).collect()
     }
     #[cfg(not(target_arch = "x86_64"))]
     {
-        Some(Level::new())
+        vec![Level::new()]
     }
+}
+
+/// The first of [`levels`].
+pub fn level() -> Option<Level> {
+    levels().first().copied()
 }
 
 /// The name of a level, for people.
@@ -40,11 +47,17 @@ pub trait Work {
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Does `work` with the instructions of `level`, one that [`level`] gave.
+/// Does `work` with the instructions of `level`, one that [`levels`] gave.
 pub fn with<W: Work>(level: Level, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
-        // One instruction set is compiled and not four: the sweeps are most of the program's compile time.
+        // Two instruction sets are compiled and not four: the sweeps are most of the program's compile time.
+        if let Level::Avx512(simd) = level {
+            return simd.vectorize(
+                #[inline(always)]
+                || work.run(simd),
+            );
+        }
         let Some(simd) = level.as_avx2() else { unreachable!("lanes are made where AVX2 is") };
         simd.vectorize(
             #[inline(always)]

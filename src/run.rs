@@ -14,7 +14,7 @@ mod course;
 mod folder;
 mod inspect;
 mod lock;
-mod outputs;
+pub(crate) mod outputs;
 
 pub use inspect::{Report, inspect};
 
@@ -183,7 +183,7 @@ fn not_built(dimension: usize) -> Error {
 }
 
 /// Runs `work` in a pool of `threads` threads.
-fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+pub(crate) fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     if threads == Some(0) {
         return Err(
             Error::new(Kind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")

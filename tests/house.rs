@@ -129,7 +129,7 @@ fn engines_threads_and_printing_stay_in_their_rooms() {
     let places: [(&str, &[&str]); 6] = [
         ("rapier", &["solid"]),
         ("parry", &["solid", "shape"]),
-        ("rayon", &["near", "sweep", "system", "time", "simulation", "shape", "run", "bench"]),
+        ("rayon", &["near", "sweep", "system", "time", "simulation", "shape", "run"]),
         ("fearless_simd", &["lanes", "law", "near", "sweep"]),
         ("vtkio", &["record"]),
         ("println!", &[]),

@@ -5,7 +5,6 @@ use pontoon::{
     Result,
     bench::{self, Timing, Work},
     error::{Error, Kind},
-    model::{Kernel, Sweeping},
     record::manifest::Machine,
 };
 use serde::Serialize;
@@ -78,24 +77,28 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
     for &water in &args.size {
         if args.terms {
             for dimension in [3, 2] {
-                tables.terms.extend(bench::time(&bench::terms(dimension, water), Sweeping::Fast, 1, 5)?);
+                tables.terms.extend(bench::time(&bench::terms(dimension, water), &[1], 5)?);
             }
             continue;
         }
         for dimension in [3, 2] {
             let mut work = Work::standard(dimension, water);
-            // 2.2 √(depth/g) after its release the water has run up the far wall.
-            work.until = if args.developed { 4.0 } else { 0.0 };
-            let works = [work.clone(), work.with("cubic", |m| m.kernel = Kernel::Cubic { tensile: true })];
-            // One after the other, so that the peak of memory is that of one.
-            for threads in if threads > 1 { vec![1, threads] } else { vec![1] } {
-                for work in works.chunks(1) {
-                    tables.standard.extend(bench::time(work, Sweeping::Fast, threads, 3)?);
-                }
+            if args.developed {
+                // 2.2 √(depth/g) after its release the water has run up the far wall.
+                work = Work { name: "wendland, developed".into(), until: 4.0, ..work };
             }
-            // The oracle takes a minute and more for a larger one, and tells nothing new.
-            if !args.developed && water <= LARGEST_FOR_ORACLE {
-                tables.oracle.extend(bench::time(&works, Sweeping::Reference, 1, 2)?);
+            let cubic = [("model.kernel", "cubic")];
+            let works =
+                if args.developed { vec![work] } else { vec![work.clone(), work.with("cubic, tensile", &cubic)] };
+            let counts = if threads > 1 { vec![1, threads] } else { vec![1] };
+            for work in works {
+                // One after the other, so that the peak of memory is that of one.
+                tables.standard.extend(bench::time(std::slice::from_ref(&work), &counts, 3)?);
+                // The oracle takes a minute and more for a larger one, and tells nothing new.
+                if !args.developed && water <= LARGEST_FOR_ORACLE {
+                    let sets = [&work.sets[..], &[("model.sweep", "reference")]].concat();
+                    tables.oracle.extend(bench::time(&[work.with(&work.name, &sets)], &[1], 2)?);
+                }
             }
         }
     }

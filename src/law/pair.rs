@@ -62,6 +62,8 @@ pub struct Side<N, const D: usize> {
     pub p: N,
     /// Specific volume ρ₀/ρ, –.
     pub s: N,
+    /// Tensile repulsion, m²/s² (read by laws with [`Term::REPULSION`]).
+    pub repulsion: N,
     /// Whether water beside it is not shifted: 1 or 0 (read by laws with [`Term::MARK`]).
     pub mark: N,
     /// Sub-particle stress ρ₀ τ/ρ², m²/s²; symmetric, of which laws read `[i][j]` with j ≤ i (read by laws with
@@ -145,6 +147,8 @@ impl<N: Num, const D: usize> Extra<N, D> {
 pub trait Term<const D: usize>: Copy + Send + Sync {
     /// Whether `along_v` is used.
     const DRAG: bool = false;
+    /// Whether the sides' `repulsion` is read.
+    const REPULSION: bool = false;
     /// Whether the sides' `stress` is read, in `vector`, and the strain summed.
     const STRESS: bool = false;
     /// Whether the sums of shifting are made.
@@ -186,6 +190,7 @@ macro_rules! tuple_of_terms {
     ($($name:ident $index:tt),+) => {
         impl<const D: usize, $($name: Term<D>),+> Term<D> for ($($name,)+) {
             const DRAG: bool = $($name::DRAG)|+;
+            const REPULSION: bool = $($name::REPULSION)|+;
             const STRESS: bool = $($name::STRESS)|+;
             const SHIFT: bool = $($name::SHIFT)|+;
             const MARK: bool = $($name::MARK)|+;

@@ -14,20 +14,27 @@ impl<const D: usize> Term<D> for Pressure {
 }
 
 /// Tensile correction, which keeps particles under the cubic spline from pairing:
-/// adds (R_a + R_b)(W_ab/W(dp))⁴ to the pressure bracket, R = 0.01 P/ρ² where P > 0 and 0.2 |P|/ρ² where
-/// P < 0 [@monaghan2000].
+/// adds (R_a + R_b)(W_ab/W(dp))⁴ to the pressure bracket, with R the particles' [`repulsion`] [@monaghan2000].
 #[derive(Clone, Copy, Debug)]
 pub struct Tensile {
     /// 1/(V₀ W(dp)), –.
     pub inv_w_dp: f64,
 }
 
+/// R = 0.01 P/ρ² where P > 0 and 0.2 |P|/ρ² where P < 0, of a particle of pressure `p` (P/ρ₀) and specific volume `s`,
+/// as ρ₀ R, m²/s² [@monaghan2000].
+#[inline(always)]
+pub fn repulsion<N: Num>(p: N, s: N) -> N {
+    p.if_below(p.of(0.0), p.of(-0.2), p.of(0.01)) * p * (s * s)
+}
+
 impl<const D: usize> Term<D> for Tensile {
+    const REPULSION: bool = true;
+
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        let repulsion = |p: N, s: N| p.if_below(ab.of(0.0), ab.of(-0.2), ab.of(0.01)) * p * (s * s);
         let f = ab.w * ab.of(self.inv_w_dp);
         let f2 = f * f;
-        (-(repulsion(ab.a.p, ab.a.s) + repulsion(ab.b.p, ab.b.s))).fma(f2 * f2, sum)
+        (-(ab.a.repulsion + ab.b.repulsion)).fma(f2 * f2, sum)
     }
 }

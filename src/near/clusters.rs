@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::{
     columns::{Columns, Sorted},
-    half::{self, Shape},
+    search::{self, Sizes},
     whole,
 };
 use crate::{
@@ -87,7 +87,7 @@ impl Clusters {
         columns: &Columns<D>,
         (water_r, water): (&[Vector<D>], &Sorted),
         (skin_r, skin): (&[Vector<D>], &Sorted),
-        shape: &Shape,
+        sizes: &Sizes,
         level: Level,
     ) -> Vec<u32> {
         self.source.clear();
@@ -100,7 +100,7 @@ impl Clusters {
                 for column in columns.of_slab(s) {
                     let before = extents.len() as u32;
                     let particles = &sorted.order[sorted.start[column] as usize..sorted.start[column + 1] as usize];
-                    cut(particles, r, columns.up, SPAN * shape.width, column as u32, &mut self.source, &mut extents);
+                    cut(particles, r, columns.up, SPAN * sizes.width, column as u32, &mut self.source, &mut extents);
                     ranges[kind][column] = before..extents.len() as u32;
                 }
                 if kind == 0 {
@@ -110,8 +110,8 @@ impl Clusters {
             end = extents.len();
             slab.end = end;
         }
-        let x = self.places(water_r, skin_r, &mut extents, shape.inv_unit);
-        let touched = half::find(columns, &mut self.slabs, &self.source, &x, &extents, &ranges, shape, level);
+        let x = self.places(water_r, skin_r, &mut extents, sizes.inv_unit);
+        let touched = search::find(columns, &mut self.slabs, &self.source, &x, &extents, &ranges, sizes, level);
         self.maps(water_r.len(), &touched)
     }
 
@@ -124,16 +124,13 @@ impl Clusters {
         inv_unit: f64,
     ) -> Vec<[[i32; LANES]; D]> {
         let mut x = vec![[[0; LANES]; D]; self.len()];
-        let mut middles = vec![0; self.len()];
-        for slab in &self.slabs {
-            middles[slab.first..slab.end].fill(slab.middle);
-        }
-        x.par_iter_mut().zip(extents).zip(self.source.par_chunks(LANES)).zip(middles).enumerate().for_each(
-            |(c, (((x, extent), source), middle))| {
-                let r = if c < middle { water } else { skin };
-                fill(x, source, r, inv_unit);
+        let work = self.by_slab(&mut x, 1).into_par_iter().zip(self.by_slab(extents, 1));
+        work.for_each(|((slab, x), (_, extents))| {
+            for ((c, x), extent) in (slab.first..).zip(x).zip(extents) {
+                let source = &self.source[c * LANES..(c + 1) * LANES];
+                fill(x, source, if c < slab.middle { water } else { skin }, inv_unit);
+                let n = filled(source);
                 for (k, x) in x.iter().enumerate() {
-                    let n = filled(source);
                     let apart = |i: &i32| i.wrapping_sub(x[0]);
                     let low = x[..n].iter().map(apart).min().unwrap_or(0);
                     let high = x[..n].iter().map(apart).max().unwrap_or(0);
@@ -141,9 +138,21 @@ impl Clusters {
                     // One more for the half that the division may drop.
                     extent.half[k] = ((high - low) / 2 + 1) as f32;
                 }
-            },
-        );
+            }
+        });
         x
+    }
+
+    /// `items`, of which each cluster has `each`, slab by slab.
+    pub fn by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> {
+        let mut rest = items;
+        let mut parts = Vec::with_capacity(self.slabs.len());
+        for slab in &self.slabs {
+            let (these, others) = rest.split_at_mut((slab.end - slab.first) * each);
+            parts.push((slab, these));
+            rest = others;
+        }
+        parts
     }
 
     /// Notes which slot each particle has; returns the wet boundary particles in ascending order.

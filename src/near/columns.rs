@@ -17,6 +17,8 @@ const COLUMNS_PER_PARTICLE: f64 = 4.0;
 /// The cut.
 #[derive(Clone, Debug)]
 pub(super) struct Columns<const D: usize> {
+    /// Around all places within reach of the water.
+    around: Bounds<D>,
     min: Vector<D>,
     inv_width: f64,
     /// Axis along which slabs follow one another.
@@ -61,6 +63,7 @@ impl<const D: usize> Columns<D> {
             width *= 2.0;
         }
         Self {
+            around: bounds.grown(reach),
             min: bounds.min,
             inv_width: 1.0 / width,
             along,
@@ -95,7 +98,7 @@ impl<const D: usize> Columns<D> {
     }
 
     /// The columns in which a particle of `column` may have neighbours, in order.
-    pub(super) fn around(&self, column: usize) -> impl Iterator<Item = usize> + use<D> {
+    pub(super) fn near(&self, column: usize) -> impl Iterator<Item = usize> + use<D> {
         let [along, across] = self.count;
         let (i, j, ring) = (column / across, column % across, self.ring);
         let rows = i.saturating_sub(ring)..=(i + ring).min(along - 1);
@@ -144,9 +147,19 @@ impl<const D: usize> Columns<D> {
         Sorted { order: keys.into_par_iter().with_min_len(PER_TASK).map(|key| key as u32).collect(), start }
     }
 
+    /// Which of the places `skin` may be within `reach` of the sorted water, in ascending order.
+    pub(super) fn beside(&self, water: &[Vector<D>], sorted: &Sorted, skin: &[Vector<D>], reach: f64) -> Vec<u32> {
+        let heights = self.heights(water, sorted, reach);
+        let may = |x: &Vector<D>| {
+            let within = |(low, high)| low <= x[self.up] && x[self.up] <= high;
+            self.around.contains(x) && heights[self.column(x)].is_some_and(within)
+        };
+        (0..skin.len() as u32).into_par_iter().with_min_len(PER_TASK).filter(|&i| may(&skin[i as usize])).collect()
+    }
+
     /// For each column, between which heights (m) lie the places within `reach` of the sorted water: a box around
     /// it. A column without water near it has none.
-    pub(super) fn wet(&self, r: &[Vector<D>], sorted: &Sorted, reach: f64) -> Vec<Option<(f64, f64)>> {
+    fn heights(&self, r: &[Vector<D>], sorted: &Sorted, reach: f64) -> Vec<Option<(f64, f64)>> {
         let height = |k: u32| r[sorted.order[k as usize] as usize][self.up];
         let own: Vec<Option<(f64, f64)>> = (0..self.len())
             .map(|c| {
@@ -155,7 +168,7 @@ impl<const D: usize> Columns<D> {
             })
             .collect();
         (0..self.len())
-            .map(|c| self.around(c).filter_map(|c| own[c]).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))))
+            .map(|c| self.near(c).filter_map(|c| own[c]).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))))
             .collect()
     }
 }

@@ -7,8 +7,8 @@
 mod clusters;
 mod columns;
 mod grid;
-mod half;
 mod lists;
+mod search;
 
 pub use clusters::{AWAY, Clusters, PAD, Slab, fill, filled};
 pub use grid::Grid;
@@ -16,11 +16,8 @@ pub use lists::{CHUNK, Chunk, Lists, Span};
 
 use std::sync::OnceLock;
 
-use rayon::prelude::*;
-
 use crate::{
     lanes::Level,
-    particles::PER_TASK,
     space::{Bounds, Vector},
 };
 use columns::Columns;
@@ -101,26 +98,17 @@ impl<const D: usize> Near<D> {
         let look = self.look();
         let columns = Columns::new(water, WIDTH * self.dp, look);
         let water_sorted = columns.sort(water, &all(water.len()));
-        let wet = columns.wet(water, &water_sorted, look);
-        let bounds = Bounds::around(water).grown(look);
-        let near: Vec<u32> = (0..skin.len() as u32)
-            .into_par_iter()
-            .with_min_len(PER_TASK)
-            .filter(|&i| {
-                let x = &skin[i as usize];
-                let height = x[columns.up];
-                bounds.contains(x) && wet[columns.column(x)].is_some_and(|(low, high)| low <= height && height <= high)
-            })
-            .collect();
+        let near = columns.beside(water, &water_sorted, skin, look);
         self.wet = match &mut self.pairs {
             Pairs::Lists(lists) => {
                 let (grid, skin_grid) = (Grid::new(water, look), Grid::new(skin, look));
                 lists.build((&grid, water), (&skin_grid, skin), &near, look)
             }
             Pairs::Clusters(clusters, level) => {
-                let shape = half::Shape { reach: look, width: WIDTH * self.dp, inv_unit: 1.0 / Self::unit(self.reach) };
+                let sizes =
+                    search::Sizes { reach: look, width: WIDTH * self.dp, inv_unit: 1.0 / Self::unit(self.reach) };
                 let skin_sorted = columns.sort(skin, &near);
-                clusters.build(&columns, (water, &water_sorted), (skin, &skin_sorted), &shape, *level)
+                clusters.build(&columns, (water, &water_sorted), (skin, &skin_sorted), &sizes, *level)
             }
         };
     }

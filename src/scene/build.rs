@@ -93,6 +93,9 @@ impl Scene {
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
         let level = |x: &Vector<D>| nearest(x).map_or(still_level, |body| body.level);
         let levels = filled.r.iter().map(level).collect();
+        if let Some(part) = scene.scatter {
+            scatter(&mut filled.r, part * scene.dp);
+        }
         let setup = Setup { model, water: filled.r, levels, solids, domain };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, warnings })
     }
@@ -247,6 +250,18 @@ impl Scene {
             checks,
             folder: folder.clone(),
         })
+    }
+}
+
+/// Moves every point by up to `by` (m) in each direction, always to the same place: by its number.
+fn scatter<const D: usize>(points: &mut [Vector<D>], by: f64) {
+    for (n, x) in (1u64..).zip(points.iter_mut().flat_map(|x| x.iter_mut())) {
+        // The mixing of splitmix64 (Steele et al. 2014) makes a number of its place in a row.
+        let mut z = n.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        let part = ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64;
+        *x += by * (2.0 * part - 1.0);
     }
 }
 

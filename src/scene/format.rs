@@ -32,6 +32,9 @@ pub struct Scene {
     /// Acceleration of gravity, m/s².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<Vec<f64>>,
+    /// How far off its place each water particle starts at most, in each direction, over dp.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scatter: Option<f64>,
     /// Box that nothing may leave.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub domain: Option<BoxWords>,
@@ -239,6 +242,7 @@ impl Scene {
             dp,
             until,
             gravity: None,
+            scatter: None,
             domain: None,
             water: Vec::new(),
             solid: Vec::new(),

@@ -249,12 +249,13 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 14] = [
+const ORDER: [&str; 15] = [
     "title",
     "dimension",
     "dp",
     "until",
     "gravity",
+    "scatter",
     "domain",
     "water",
     "solid",

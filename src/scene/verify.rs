@@ -61,6 +61,9 @@ impl Scene {
         if let Some(gravity) = &self.gravity {
             self.vector("gravity", gravity)?;
         }
+        if let Some(scatter) = self.scatter.filter(|s| !(0.0..=0.1).contains(s)) {
+            return Err(self.wrong("scatter", format!("particles start 0 to 0.1 dp off their places, not {scatter}")));
+        }
         if let Some(domain) = &self.domain {
             self.corners("domain", domain)?;
         }

@@ -9,6 +9,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("dp", "dp = 0.01          # particle spacing, m"),
     ("until", "until = 10.0       # s"),
     ("gravity", "gravity = [0.0, -9.81]"),
+    ("scatter", "scatter = 1e-7     # of dp"),
     ("domain", "domain = { min = [0.0, 0.0], max = [2.0, 1.0] }"),
     ("water", "[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
     ("fill", "fill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),

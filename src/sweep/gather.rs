@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use super::{
     Input, Output, Peaks, Sums, Sweep,
     laws::{Compiled, Laws},
-    rows::Running,
+    rows::{Needs, Running},
 };
 use crate::{
-    law::{Extra, Pair, Side, Term, kernel::Kernel},
+    law::{Extra, Pair, Side, Term, kernel::Kernel, pressure::repulsion},
     near::{CHUNK, Chunk, Pairs},
     particles::{PER_TASK, Particles},
     space::{Matrix, Vector},
@@ -126,6 +126,7 @@ fn nodes<const D: usize>(
     particles: &Particles<D>,
     stress: &[Matrix<D>],
     marks: &[bool],
+    needs: Needs,
     nodes: &mut Vec<Node<D>>,
 ) {
     let rho0 = input.medium.rho0;
@@ -134,11 +135,13 @@ fn nodes<const D: usize>(
         .with_min_len(PER_TASK)
         .map(|i| {
             let x = (particles.rho[i] - rho0) / rho0;
+            let (p, s) = (input.state.pressure(x), 1.0 / (1.0 + x));
             let side = Side {
                 x,
                 low: 0.0,
-                p: input.state.pressure(x),
-                s: 1.0 / (1.0 + x),
+                p,
+                s,
+                repulsion: if needs.repulsion { repulsion(p, s) } else { 0.0 },
                 mark: marks.get(i).map_or(0.0, |&m| f64::from(u8::from(m))),
                 stress: stress.get(i).map_or([[0.0; D]; D], rows),
             };
@@ -158,8 +161,9 @@ impl<const D: usize> Sweep<D> for Gather<D> {
 
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
         let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
-        nodes(input, input.water, input.stress, &[], &mut self.nodes[0]);
-        nodes(input, input.skin, &[], input.marks, &mut self.nodes[1]);
+        let needs = self.laws.needs();
+        nodes(input, input.water, input.stress, &[], needs, &mut self.nodes[0]);
+        nodes(input, input.skin, &[], input.marks, needs, &mut self.nodes[1]);
         let start = Instant::now();
         let (laws, nodes) = (&self.laws, [&self.nodes[0][..], &self.nodes[1][..]]);
         let g = input.medium.gravity;

@@ -68,12 +68,13 @@ impl<const D: usize> Lanes<D> {
         lengths
     }
 
-    /// The `row`-th sum of the particle in `slot`, in the sweep's units.
+    /// The sums of the particle in `slot`, in the sweep's units, by their row among the first `rows`.
     #[inline(always)]
-    fn sum(&self, slot: u32, row: usize) -> f64 {
+    fn of_slot(&self, slot: u32, rows: usize) -> impl Fn(usize) -> f64 {
         let (c, l) = (slot as usize / LANES, slot as usize % LANES);
         let [own, before] = self.at[c];
-        f64::from(self.sums[own as usize + row].0[l]) + f64::from(self.sums[before as usize + row].0[l])
+        let (own, before) = (&self.sums[own as usize..][..rows], &self.sums[before as usize..][..rows]);
+        move |row| f64::from(own[row].0[l]) + f64::from(before[row].0[l])
     }
 
     /// Acceleration and density rate of the particle in `slot`, in SI.
@@ -81,10 +82,7 @@ impl<const D: usize> Lanes<D> {
     fn sums_of(&self, slot: u32) -> Sums<D> {
         let rate = 1.0 / self.units.time;
         let acceleration = self.units.length * rate * rate;
-        let (c, l) = (slot as usize / LANES, slot as usize % LANES);
-        let [own, before] = self.at[c];
-        let (own, before) = (&self.sums[own as usize..][..=D], &self.sums[before as usize..][..=D]);
-        let sum = |row: usize| f64::from(own[row].0[l]) + f64::from(before[row].0[l]);
+        let sum = self.of_slot(slot, D + 1);
         let mut dv = Vector::<D>::zeros();
         for (k, dv) in dv.iter_mut().enumerate() {
             *dv = sum(k) * acceleration;
@@ -94,8 +92,8 @@ impl<const D: usize> Lanes<D> {
 
     /// The extra sums of the particle in `slot`, in SI.
     fn extra_of(&self, slot: u32, needs: Needs) -> Extra<f64, D> {
-        let mut sums = Running::all(0.0);
-        sums.each(needs, needs, |row, sum| *sum = self.sum(slot, row));
+        let (sum, mut sums) = (self.of_slot(slot, needs.sums(D)), Running::all(0.0));
+        sums.each(needs, needs, |row, x| *x = sum(row));
         let Units { length, time } = self.units;
         let Extra { grad_c, div_r, held, strain } = sums.extra;
         Extra { grad_c: grad_c.map(|x| x / length), div_r, held, strain: strain.map(|row| row.map(|x| x / time)) }
@@ -264,12 +262,17 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
     /// A side of a pair from densities, pressure and volume `s` and what `read` makes of the rows beside cluster `c`.
     #[inline(always)]
     fn side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> Side<f32x8<S>, D> {
-        let mut side = Side { x: s[0], low: s[1], p: s[2], s: s[3], mark: self.zero, stress: [[self.zero; D]; D] };
+        let [x, low, p, s] = s;
+        let (repulsion, mark, stress) = (self.zero, self.zero, [[self.zero; D]; D]);
+        let mut side = Side { x, low, p, s, repulsion, mark, stress };
         let inputs = self.needs.inputs(D);
         if inputs > 0 {
             let rows = &self.rows[c * inputs..][..inputs];
             if self.needs.mark {
                 side.mark = read(&rows[0].0);
+            }
+            if self.needs.repulsion {
+                side.repulsion = read(&rows[self.needs.repulsion_at()].0);
             }
             if self.needs.stress {
                 let mut row = self.needs.stress_at();

@@ -1,17 +1,14 @@
-//! Particles packed into lanes, and sums unpacked from them.
+//! Particles packed into lanes.
 
 use rayon::prelude::*;
 
 use super::{Input, rows::Needs};
 use crate::{
     lanes::{LANES, Row},
-    law::Units,
-    near::{self, Clusters, PAD},
+    law::{Units, pressure::repulsion},
+    near::{self, Clusters},
     particles::Particles,
 };
-
-/// Clusters that a thread packs at a time.
-const PER_PACK: usize = 512;
 
 /// Eight particles of one kind as a pair needs them, in the sweep's units.
 #[derive(Clone, Copy, Debug)]
@@ -42,31 +39,32 @@ impl<const D: usize> Packed<D> {
     pub(super) fn pack(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units) {
         self.clusters.resize(clusters.len(), Cluster::EMPTY);
         let inv_unit = 1.0 / units.length;
-        for slab in &clusters.slabs {
-            for (range, particles) in [(slab.first..slab.middle, input.water), (slab.middle..slab.end, input.skin)] {
-                let source = &clusters.source[range.start * LANES..range.end * LANES];
-                self.clusters[range].par_chunks_mut(PER_PACK).zip(source.par_chunks(PER_PACK * LANES)).for_each(
-                    |(clusters, source)| {
-                        for (cluster, source) in clusters.iter_mut().zip(source.chunks(LANES)) {
-                            near::fill(&mut cluster.x, source, &particles.r, inv_unit);
-                            state(cluster, source, particles, input, units);
-                        }
-                    },
-                );
+        clusters.by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
+            for (c, cluster) in (slab.first..).zip(packed) {
+                let source = &clusters.source[c * LANES..(c + 1) * LANES];
+                let particles = if c < slab.middle { input.water } else { input.skin };
+                near::fill(&mut cluster.x, source, &particles.r, inv_unit);
+                state(cluster, source, particles, input, units);
             }
-        }
+        });
     }
 
-    /// Packs the rows of input that the laws need: marks of the skin, stress of the water.
+    /// Packs the rows of input that the laws need: marks of the skin, stress of the water, repulsion of both.
     pub(super) fn pack_rows(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units, needs: Needs) {
         let (mark, stress, count) = (needs.mark, needs.stress, needs.inputs(D));
         self.rows.clear();
         self.rows.resize(clusters.len() * count, Row::default());
         let scale = (units.time / units.length).powi(2);
-        for slab in &clusters.slabs {
-            for c in slab.first..slab.end {
-                let rows = &mut self.rows[c * count..(c + 1) * count];
-                for (l, &i) in clusters.source[c * LANES..(c + 1) * LANES].iter().enumerate().filter(|s| *s.1 != PAD) {
+        let packed = &self.clusters;
+        clusters.by_slab(&mut self.rows, count).into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
+            for (c, rows) in (slab.first..).zip(rows.chunks_mut(count)) {
+                if needs.repulsion {
+                    let [_, _, p, s] = packed[c].s;
+                    let of = |l: usize| repulsion(f64::from(p[l]), f64::from(s[l])) as f32;
+                    rows[needs.repulsion_at()] = Row(std::array::from_fn(of));
+                }
+                let source = &clusters.source[c * LANES..(c + 1) * LANES];
+                for (l, &i) in source[..near::filled(source)].iter().enumerate() {
                     let i = i as usize;
                     if mark && c >= slab.middle {
                         rows[0].0[l] = f32::from(u8::from(input.marks[i]));
@@ -82,7 +80,7 @@ impl<const D: usize> Packed<D> {
                     }
                 }
             }
-        }
+        });
     }
 }
 

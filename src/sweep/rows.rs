@@ -7,6 +7,8 @@ use crate::law::{Extra, Num, Term};
 pub struct Needs {
     /// The sums of shifting.
     pub shift: bool,
+    /// Tensile repulsions.
+    pub repulsion: bool,
     /// Marks, and the sum that holds shifting back.
     pub mark: bool,
     /// Stress, and the sum of strain.
@@ -16,10 +18,10 @@ pub struct Needs {
 impl Needs {
     /// Those of the laws `Y`.
     pub const fn of<Y: Term<D>, const D: usize>() -> Self {
-        Self { shift: Y::SHIFT, mark: Y::MARK, stress: Y::STRESS }
+        Self { shift: Y::SHIFT, repulsion: Y::REPULSION, mark: Y::MARK, stress: Y::STRESS }
     }
 
-    /// Whether there is anything.
+    /// Whether there are sums.
     pub const fn any(self) -> bool {
         self.shift || self.mark || self.stress
     }
@@ -37,9 +39,14 @@ impl Needs {
         self.strain_at(dimension) + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
     }
 
-    /// The first row of stress among the inputs beside places, velocities and densities; before it is the mark.
-    pub(super) const fn stress_at(self) -> usize {
+    /// The row of repulsion among the inputs beside places, velocities and densities; before it is the mark.
+    pub(super) const fn repulsion_at(self) -> usize {
         if self.mark { 1 } else { 0 }
+    }
+
+    /// The first row of stress, after the repulsion.
+    pub(super) const fn stress_at(self) -> usize {
+        self.repulsion_at() + if self.repulsion { 1 } else { 0 }
     }
 
     /// Rows of such inputs.

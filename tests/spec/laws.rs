@@ -27,7 +27,7 @@ fn pair(dice: &mut Dice) -> [Pair<f64, 3>; 2] {
         let x = 0.02 * (dice.roll() - 0.5);
         let [xx, yy, zz, xy, xz, yz]: [f64; 6] = std::array::from_fn(|_| dice.roll() - 0.5);
         let stress = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        Side { x, low: 0.0, p: 400.0 * x, s: 1.0 / (1.0 + x), mark: 1.0, stress }
+        Side { x, low: 0.0, p: 400.0 * x, s: 1.0 / (1.0 + x), repulsion: 4.0 * x.abs(), mark: 1.0, stress }
     };
     let (a, b) = (side(), side());
     let r: [f64; 3] = std::array::from_fn(|_| 0.02 * (dice.roll() - 0.5));
@@ -101,7 +101,8 @@ fn still_water_has_no_dynamic_density_to_diffuse() {
     let term = Fourtakas::default().term(&m);
     let plain = Molteni::default().term(&m);
     let still = |r: Vector<3>| (6.0f64 / 400.0 * m.gravity.dot(&r)).ln_1p() / 6.0;
-    let side = |x: f64| Side { x, low: 0.0, p: 0.0, s: 1.0 / (1.0 + x), mark: 1.0, stress: [[0.0; 3]; 3] };
+    let side =
+        |x: f64| Side { x, low: 0.0, p: 0.0, s: 1.0 / (1.0 + x), repulsion: 0.0, mark: 1.0, stress: [[0.0; 3]; 3] };
     let mut dice = Dice(11);
     for _ in 0..100 {
         // Ten metres down (in the units of this c₀: x up to 1 %), at any angle to g.

@@ -115,3 +115,19 @@ fn the_raft_resumed_goes_on_to_the_same_bits() {
     steps(&mut resumed, 25);
     assert!(resumed.save().unwrap() == whole.save().unwrap());
 }
+
+#[test]
+fn scatter_moves_every_particle_by_no_more_than_it_says_and_always_the_same() {
+    let water = |scatter: Option<&str>| {
+        let sets: Vec<_> = scatter.into_iter().map(|s| ("scatter".to_string(), s.to_string())).collect();
+        let scene = Scene::read(&home().join("still-tank"), &sets).unwrap();
+        (scene.build::<2>().unwrap().setup.water, scene.dp)
+    };
+    let ((still, dp), (moved, _)) = (water(None), water(Some("1e-3")));
+    assert!(moved == water(Some("1e-3")).0);
+    let off: Vec<f64> =
+        still.iter().zip(&moved).flat_map(|(a, b)| ((b - a) / dp).iter().copied().collect::<Vec<_>>()).collect();
+    let (most, mean) = (off.iter().fold(0.0, |m: f64, x| m.max(x.abs())), off.iter().sum::<f64>() / off.len() as f64);
+    // Evenly spread between ±1e-3: the mean of n of them is 6e-4/√n, here 1e-5.
+    assert!((0.99e-3..=1e-3 * (1.0 + 1e-9)).contains(&most) && mean.abs() < 5e-5, "{most} {mean}");
+}

@@ -1,5 +1,7 @@
 //! Cubic spline:  W = α_D {1 − 3/2 q² + 3/4 q³ (q ≤ 1); 1/4 (2 − q)³ (q ≤ 2); 0},  q = r/h,
 //! α_D = 10/(7πh²) in 2-D, 1/(πh³) in 3-D.
+//!
+//! Both branches are one: W = α_D (2u³ − t³) with u = max(1 − q/2, 0) and t = max(1 − q, 0).
 
 use std::f64::consts::PI;
 
@@ -8,7 +10,7 @@ use super::{Kernel, Num};
 /// The cubic spline [@monaghan1985]; eq. (3) of [@pirkhalili2023].
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic {
-    inv_h: f64,
+    half_inv_h: f64,
     amplitude: f64,
     slope: f64,
 }
@@ -17,7 +19,17 @@ impl Cubic {
     /// The kernel of smoothing length `h` (m) in `dimension` 2 or 3.
     pub fn new(h: f64, dimension: usize) -> Self {
         let amplitude = if dimension == 2 { 10.0 / (7.0 * PI * h * h) } else { 1.0 / (PI * h * h * h) };
-        Self { inv_h: 1.0 / h, amplitude, slope: amplitude / (h * h) }
+        // dW/dq = −3 α (u² − t²), so (dW/dr)/r = −3/2 α (u² − t²)/(q/2)/h².
+        Self { half_inv_h: 0.5 / h, amplitude, slope: -1.5 * amplitude / (h * h) }
+    }
+
+    /// q/2, u and t; q/2 above zero, so that it can divide.
+    #[inline(always)]
+    fn rests<N: Num>(&self, r2: N) -> (N, N, N) {
+        let half = (r2.sqrt() * r2.of(self.half_inv_h)).max(r2.of(1e-6));
+        let u = (r2.of(1.0) - half).max(r2.of(0.0));
+        let t = half.fma(r2.of(-2.0), r2.of(1.0)).max(r2.of(0.0));
+        (half, u, t)
     }
 }
 
@@ -28,19 +40,13 @@ impl Kernel for Cubic {
 
     #[inline(always)]
     fn w<N: Num>(&self, r2: N) -> N {
-        let q = r2.sqrt() * r2.of(self.inv_h);
-        let rest = (r2.of(2.0) - q).max(r2.of(0.0));
-        let inner = r2.of(1.0) - q * q * (r2.of(1.5) - r2.of(0.75) * q);
-        let outer = r2.of(0.25) * rest * rest * rest;
-        r2.of(self.amplitude) * q.if_below(r2.of(1.0), inner, outer)
+        let (_, u, t) = self.rests(r2);
+        r2.of(self.amplitude) * (r2.of(2.0) * u * (u * u) - t * (t * t))
     }
 
     #[inline(always)]
     fn slope<N: Num>(&self, r2: N) -> N {
-        let q = r2.sqrt() * r2.of(self.inv_h);
-        let rest = (r2.of(2.0) - q).max(r2.of(0.0));
-        let inner = r2.of(2.25) * q - r2.of(3.0);
-        let outer = r2.of(-0.75) * rest * rest / q;
-        r2.of(self.slope) * q.if_below(r2.of(1.0), inner, outer)
+        let (half, u, t) = self.rests(r2);
+        r2.of(self.slope) * u.fma(u, -(t * t)) / half
     }
 }

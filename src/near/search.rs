@@ -11,7 +11,7 @@ use super::{
 use crate::lanes::{self, LANES, Level, Simd, Work, f32x8, i32x8};
 
 /// The sizes that a search needs.
-pub(super) struct Shape {
+pub(super) struct Sizes {
     /// How far the lists look, m.
     pub(super) reach: f64,
     /// Width of a column, m.
@@ -42,12 +42,12 @@ pub(super) fn find<const D: usize>(
     x: &[[[i32; LANES]; D]],
     extents: &[Extent<D>],
     ranges: &[Ranges; 2],
-    shape: &Shape,
+    sizes: &Sizes,
     level: Level,
 ) -> Vec<u8> {
     let bounds: Vec<[usize; 3]> = slabs.iter().map(|s| [s.first, s.middle, s.end]).collect();
-    let reach2 = (shape.reach * shape.inv_unit * (1.0 + 1e-6)).powi(2) as f32;
-    let search = Search { columns, bounds: &bounds, source, x, extents, ranges, reach: shape.reach, reach2 };
+    let reach2 = (sizes.reach * sizes.inv_unit * (1.0 + 1e-6)).powi(2) as f32;
+    let search = Search { columns, bounds: &bounds, source, x, extents, ranges, reach: sizes.reach, reach2 };
     let parts: Vec<Vec<u8>> = slabs
         .par_iter_mut()
         .enumerate()
@@ -121,7 +121,7 @@ impl<const D: usize> Search<'_, D> {
     fn candidates(&self, s: usize, c: usize, later: &mut Vec<u32>) -> usize {
         let own = self.extents[c].column as usize;
         let is_water = c < self.bounds[s][1];
-        for column in self.columns.around(own) {
+        for column in self.columns.near(own) {
             let fits = if is_water { column >= own } else { self.columns.slab(column) > s };
             if fits {
                 self.column(c, &self.ranges[0][column], later);
@@ -129,7 +129,7 @@ impl<const D: usize> Search<'_, D> {
         }
         let middle = later.len();
         if is_water {
-            for column in self.columns.around(own).filter(|&column| self.columns.slab(column) >= s) {
+            for column in self.columns.near(own).filter(|&column| self.columns.slab(column) >= s) {
                 self.column(c, &self.ranges[1][column], later);
             }
         }
