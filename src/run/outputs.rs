@@ -220,8 +220,7 @@ pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Resu
                 Error::scene(format!("a check names the series {:?}, which no probe writes", words.series)).help(help)
             );
         }
-        let reference = plan.folder.join(&words.reference);
-        Check::new(&words.series, &reference, [&words.time, &words.column], words.delay, [words.paper, words.bound])
+        Check::new(words, &plan.folder)
     };
     plan.checks.iter().map(check).collect()
 }

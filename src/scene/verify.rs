@@ -222,19 +222,7 @@ impl Scene {
             }
         }
         self.positive("checkpoint.every", self.checkpoint.as_ref().map(|c| c.every))?;
-        let names = self.probe_names();
-        for (i, check) in self.check.iter().enumerate() {
-            let key = format!("check.{i}.series");
-            let Some((probe, _)) = check.series.rsplit_once('.') else {
-                return Err(self.wrong(&key, "a series is a probe and its column, with a point between"));
-            };
-            if !names.iter().any(|name| name == probe) {
-                let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                let what = format!("no probe is called \"{probe}\"{}", guess(probe, &names));
-                return Err(self.wrong_with(&key, what, format!("known: {}", names.join(", "))));
-            }
-        }
-        Ok(())
+        self.verify_checks()
     }
 
     /// Stem of each probe's file: its name, or else the solid's name for a motion, `solid_force` for a
