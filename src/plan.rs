@@ -63,6 +63,8 @@ pub enum ProbeKind {
         /// The point, m.
         at: Vec<f64>,
     },
+    /// The leading edge of the water along x.
+    Front,
     /// Energies of water and bodies.
     Energy,
 }

@@ -41,6 +41,8 @@ pub struct Curves {
     pub meaned: Option<Series>,
     /// The reference, where both the window and the run cover it.
     pub reference: Series,
+    /// Whether the reference is a formula.
+    pub exact: bool,
     /// Share of the reference in the window that the run covers, –.
     pub covered: f64,
 }
@@ -130,7 +132,8 @@ impl Check {
     pub fn curves(&self, folder: &Path) -> Result<Curves> {
         let (sim, meaned) = self.run(folder)?;
         let (reference, covered) = self.common(&sim)?;
-        Ok(Curves { sim, meaned, reference, covered })
+        let exact = matches!(self.reference, Known::Formula(_));
+        Ok(Curves { sim, meaned, reference, exact, covered })
     }
 
     /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a

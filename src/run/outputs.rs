@@ -198,6 +198,7 @@ fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dy
         ProbeKind::Elevation { at } => Box::new(probe::Elevation::new(system, at)?),
         ProbeKind::Velocity { at } => Box::new(probe::Velocity::new(at)?),
         ProbeKind::Pressure { at } => Box::new(probe::Pressure::new(at)?),
+        ProbeKind::Front => Box::new(probe::Front),
         ProbeKind::Energy => Box::new(probe::Energy::new(system)),
     })
 }

@@ -273,6 +273,7 @@ fn kind(probe: &ProbeEntry) -> ProbeKind {
         }
         ProbeEntry { velocity: Some(at), .. } => ProbeKind::Velocity { at: at.clone() },
         ProbeEntry { pressure: Some(at), .. } => ProbeKind::Pressure { at: at.clone() },
+        ProbeEntry { front: Some(_), .. } => ProbeKind::Front,
         _ => ProbeKind::Energy,
     }
 }

@@ -185,6 +185,9 @@ pub struct ProbeEntry {
     /// Pressure at a point, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure: Option<Vec<f64>>,
+    /// The leading edge of the water along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub front: Option<bool>,
     /// Energies of water and bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<bool>,

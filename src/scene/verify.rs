@@ -151,7 +151,8 @@ impl Scene {
             self.positive(&format!("{key}.every"), probe.every)?;
             if kinds(probe).len() != 1 {
                 let what = format!("a probe looks at one thing; this one at {}", said(&kinds(probe)));
-                let help = "one of motion, force, elevation, velocity, pressure, energy; a [[probe]] section for each";
+                let help =
+                    "one of motion, force, elevation, velocity, pressure, front, energy; a [[probe]] section for each";
                 return Err(self.wrong_with(&key, what, help));
             }
             for (word, solid) in [("motion", &probe.motion), ("force", &probe.force)] {
@@ -175,8 +176,11 @@ impl Scene {
                 }
                 _ => {}
             }
-            if probe.energy == Some(false) {
-                return Err(self.wrong_with(&format!("{key}.energy"), "energy = false watches nothing", "remove it"));
+            for (word, given) in [("front", probe.front), ("energy", probe.energy)] {
+                if given == Some(false) {
+                    let what = format!("{word} = false watches nothing");
+                    return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
+                }
             }
             if let Some(name) = &probe.name {
                 self.good_name(&format!("{key}.name"), name)?;
@@ -253,6 +257,7 @@ fn kinds(probe: &ProbeEntry) -> Vec<&'static str> {
         ("elevation", probe.elevation.is_some()),
         ("velocity", probe.velocity.is_some()),
         ("pressure", probe.pressure.is_some()),
+        ("front", probe.front.is_some()),
         ("energy", probe.energy.is_some()),
     ];
     given.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()

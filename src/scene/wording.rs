@@ -56,6 +56,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("force", "force = \"box\""),
     ("elevation", "elevation = { x = 1.16 }"),
     ("velocity", "velocity = [0.75, 0.03]"),
+    ("front", "front = true"),
     ("pressure", "pressure = [0.75, 0.03]"),
     ("frames", "frames = { every = 0.05, fields = [\"velocity\", \"pressure\"] }"),
     ("fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
