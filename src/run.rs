@@ -16,6 +16,7 @@ mod inspect;
 mod lock;
 pub(crate) mod outputs;
 
+pub(crate) use folder::{same_tables, scene_file};
 pub use inspect::{Report, inspect};
 pub(crate) use lock::Lock;
 pub(crate) use outputs::series_folder;

@@ -283,6 +283,30 @@ fn a_study_runs_every_spacing_with_every_value_and_nothing_twice() {
 }
 
 #[test]
+fn a_study_runs_anew_when_a_table_that_drives_a_body_changes_but_not_for_a_reference() {
+    let desk = Desk::new("study-tables");
+    fs::create_dir(desk.path("bay")).unwrap();
+    let scene = "dimension = 2\ndp = 0.1\nuntil = 0.05\n[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }\n\
+        [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [1.0, 0.8] } }\n\
+        [[solid]]\nname = \"lid\"\nshape = { box = { size = [0.2, 0.2] } }\nat = { x = 0.5, bottom = 0.9 }\n\
+        driven = { along = [1.0, 0.0], distance = { file = \"lid.csv\", column = \"x_m\" } }\n\
+        [[probe]]\nmotion = \"lid\"\n[[check]]\nseries = \"lid.surge_m\"\nreference = \"known.csv\"\ncolumn = \"x_m\"\n";
+    let write = |name: &str, x: &str| fs::write(desk.path("bay").join(name), format!("t_s,x_m\n0.0,0.0\n0.05,{x}\n"));
+    fs::write(desk.path("bay/scene.toml"), scene).unwrap();
+    write("lid.csv", "0.1").and(write("known.csv", "0.1")).unwrap();
+    let words = ["study", "bay", "--dp", "0.1", "--out", "s", "--quiet"];
+    assert_eq!(desk.pontoon(&words).code, Some(0));
+    let first = desk.manifest("s/runs/dp-0.1");
+    write("known.csv", "0.2").unwrap();
+    let said = desk.pontoon(&words);
+    assert!(said.out.contains("0.500"), "judged anew, half as far as the reference:\n{}", said.out);
+    assert_eq!(desk.manifest("s/runs/dp-0.1"), first);
+    write("lid.csv", "0.2").unwrap();
+    assert_eq!(desk.pontoon(&words).code, Some(0));
+    assert_eq!(desk.manifest("s/runs/dp-0.1.old"), first);
+}
+
+#[test]
 fn a_study_goes_on_when_a_run_fails_and_says_why() {
     let desk = Desk::new("study-fails");
     let said = desk.pontoon(&study(&["--vary", "time.cfl=6,0.4", "--set", "check.4.bound={}"]));

@@ -149,8 +149,15 @@ impl Job {
 
     /// Whether `manifest` is of a run of this scene by this program.
     fn is_of(&self, manifest: &Manifest) -> Result<bool> {
-        let own = bare(&self.read()?.to_toml()?);
-        Ok(manifest.version == env!("CARGO_PKG_VERSION") && own.is_some() && own == bare(&manifest.scene))
+        let scene = self.read()?;
+        let words = scene.to_toml()?;
+        let own = bare(&words);
+        // References are read anew whenever they are needed.
+        let references: Vec<&str> = scene.check.iter().filter_map(|check| check.reference.as_deref()).collect();
+        Ok(manifest.version == env!("CARGO_PKG_VERSION")
+            && own.is_some()
+            && own == bare(&manifest.scene)
+            && run::same_tables(&run::scene_file(&self.scene), &words, &self.folder, &references))
     }
 
     fn judged(&self, manifest: Manifest) -> Result<Ran> {

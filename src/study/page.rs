@@ -6,7 +6,7 @@ use super::plot;
 use crate::record::manifest::Machine;
 
 const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}\
-h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{max-width:100%;height:auto}\
+h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\
 table{border-collapse:collapse;margin:.6em 0;font-size:.87em}td,th{padding:.2em .7em;text-align:left;\
 border-bottom:1px solid #ddd;font-variant-numeric:tabular-nums}th{border-bottom:2px solid #888}\
 code{font-size:.92em}.key{display:inline-block;width:1.6em;height:.5em;margin-right:.5em;vertical-align:middle}\
@@ -51,14 +51,16 @@ pub fn figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
 }
 
 /// What ran when and where, as a table.
-pub fn origin(command: &str, machine: &Machine) -> String {
+pub fn origin(command: &str, machine: &Machine, threads: Option<usize>) -> String {
     let Machine { processor, cpus, instructions, os, .. } = machine;
     let instructions = instructions.as_deref().unwrap_or("no lanes");
+    let threads = threads.map_or("–".into(), |n| n.to_string());
     let rows = [
         ("command", command.to_string()),
         ("date", now()),
         ("version", format!("pontoon {}", env!("CARGO_PKG_VERSION"))),
         ("machine", format!("{processor}, {cpus} processors, {instructions}, {os}")),
+        ("threads", threads),
     ];
     let rows: String =
         rows.iter().map(|(key, x)| format!("<tr><td>{key}</td><td><code>{}</code></td></tr>\n", escape(x))).collect();

@@ -20,7 +20,8 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
 ];
 
-const SIZE: (u32, u32) = (760, 420);
+/// Twice the size at which a page shows it: the drawing knows whole pixels only.
+const SIZE: (u32, u32) = (1520, 840);
 const INK: RGBColor = RGBColor(60, 60, 60);
 
 /// How a line is drawn.
@@ -104,36 +105,36 @@ fn draw(titles: [&str; 2], lines: &[Line], x: Axis, y: Axis) -> Result<String> {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         area.fill(&WHITE).map_err(|e| failed(e.to_string()))?;
         let mut chart = ChartBuilder::on(&area)
-            .margin(12)
-            .x_label_area_size(46)
-            .y_label_area_size(70)
+            .margin(24)
+            .x_label_area_size(92)
+            .y_label_area_size(140)
             .build_cartesian_2d(x, y)
             .map_err(|e| failed(e.to_string()))?;
         chart
             .configure_mesh()
             .x_desc(titles[0])
             .y_desc(titles[1])
-            .axis_style(INK)
-            .bold_line_style(RGBColor(225, 225, 225))
+            .axis_style(INK.stroke_width(2))
+            .bold_line_style(RGBColor(225, 225, 225).stroke_width(2))
             .light_line_style(TRANSPARENT)
-            .label_style(("sans-serif", 14, &INK))
-            .axis_desc_style(("sans-serif", 15, &INK))
+            .label_style(("sans-serif", 28, &INK))
+            .axis_desc_style(("sans-serif", 30, &INK))
             .draw()
             .map_err(|e| failed(e.to_string()))?;
         for line in lines {
             let colour = COLOURS[line.colour % COLOURS.len()];
             if line.style != Style::Dots {
-                let path = LineSeries::new(line.points.iter().copied(), colour.stroke_width(2));
+                let path = LineSeries::new(line.points.iter().copied(), colour.stroke_width(3));
                 chart.draw_series(path).map_err(|e| failed(e.to_string()))?;
             }
             if line.style != Style::Plain {
-                let dots = line.points.iter().map(|&p| Circle::new(p, 4, colour.filled()));
+                let dots = line.points.iter().map(|&p| Circle::new(p, 8, colour.filled()));
                 chart.draw_series(dots).map_err(|e| failed(e.to_string()))?;
             }
             // Lines that lie on one another label their points above and below.
-            let place = (7, if line.colour % 2 == 0 { -15 } else { 5 });
+            let place = (14, if line.colour % 2 == 0 { -30 } else { 10 });
             let labels = line.points.iter().zip(&line.labels).map(|(&p, label)| {
-                EmptyElement::at(p) + Text::new(label.clone(), place, ("sans-serif", 13).into_font().color(&colour))
+                EmptyElement::at(p) + Text::new(label.clone(), place, ("sans-serif", 26).into_font().color(&colour))
             });
             chart.draw_series(labels).map_err(|e| failed(e.to_string()))?;
         }

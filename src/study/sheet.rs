@@ -52,6 +52,7 @@ struct Whole<'a> {
     date: String,
     version: &'static str,
     machine: Machine,
+    threads: Option<usize>,
     rows: &'a [Row],
     orders: &'a [Order],
 }
@@ -89,13 +90,15 @@ impl Sheet {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         let rows = self.rows(ran);
         let orders = self.orders(&rows);
-        let machine = ran.iter().find_map(|r| r.manifest.as_ref()).map_or_else(Machine::this, |m| m.machine.clone());
+        let first = ran.iter().find_map(|r| r.manifest.as_ref());
+        let (machine, threads) = (first.map_or_else(Machine::this, |m| m.machine.clone()), first.map(|m| m.threads));
         let whole = Whole {
             title: &self.title,
             command: &self.command,
             date: page::now(),
             version: env!("CARGO_PKG_VERSION"),
             machine: machine.clone(),
+            threads,
             rows: &rows,
             orders: &orders,
         };
@@ -103,7 +106,7 @@ impl Sheet {
         write_whole(&table, &csv(&rows, &self.keys)?)?;
         let text = serde_json::to_string_pretty(&whole).map_err(|e| Error::file(&json, e))?;
         write_whole(&json, (text + "\n").as_bytes())?;
-        write_whole(&html, &page::page(&self.title, &self.body(&rows, &orders, &machine)?))
+        write_whole(&html, &page::page(&self.title, &self.body(&rows, &orders, &machine, threads)?))
     }
 
     /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
@@ -155,8 +158,8 @@ impl Sheet {
         orders
     }
 
-    fn body(&self, rows: &[Row], orders: &[Order], machine: &Machine) -> Result<String> {
-        let mut body = page::origin(&self.command, machine);
+    fn body(&self, rows: &[Row], orders: &[Order], machine: &Machine, threads: Option<usize>) -> Result<String> {
+        let mut body = page::origin(&self.command, machine, threads);
         for check in &self.checks {
             body += &format!("<h2>{}</h2>\n", page::escape(check));
             for (error, figure) in Self::metrics(rows, check) {

@@ -64,8 +64,9 @@ impl Validation {
     /// `File` if one cannot be written; each is replaced as a whole.
     pub fn write(&self, ran: &[Ran]) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
-        let machine = ran.iter().find_map(|r| r.manifest.as_ref()).map_or_else(Machine::this, |m| m.machine.clone());
-        let mut body = page::origin(&self.command, &machine);
+        let first = ran.iter().find_map(|r| r.manifest.as_ref());
+        let (machine, threads) = (first.map_or_else(Machine::this, |m| m.machine.clone()), first.map(|m| m.threads));
+        let mut body = page::origin(&self.command, &machine, threads);
         body += &page::table(&self.table(ran));
         for ((case, job), ran) in self.cases.iter().zip(&self.jobs).zip(ran) {
             body += &section(case, job, ran)?;

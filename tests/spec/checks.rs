@@ -235,7 +235,7 @@ fn the_table_of_checks_has_only_columns_that_one_of_them_uses() -> std::io::Resu
     let limit = Some(Score { off: Some(0.1), ..Score::default() });
     let rich = CheckWords { align: Some(Align::Best), mean: Some(0.1), ..by_formula("box.heave_m", "t", limit) };
     let rich = judge(&rich, &folder);
-    assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean|N|M|aligned N|M|delay|off|bound|");
+    assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean over|mean N|mean M|aligned N|aligned M|delay|off|bound|");
     fs::remove_dir_all(folder)
 }
 
