@@ -235,6 +235,7 @@ fn an_interrupted_run_ends_as_an_unbroken_one_to_the_byte() {
     assert_eq!(desk.pontoon(&[&run[..], &["--out", "unbroken"]].concat()).code, Some(0));
     let (broken, unbroken) = (desk.manifest("broken"), desk.manifest("unbroken"));
     assert_eq!(broken["steps"], unbroken["steps"]);
+    assert_eq!(broken["particle_steps"], unbroken["particle_steps"]);
     assert!(desk.series("broken") == desk.series("unbroken"), "the tables differ");
     assert_eq!(desk.read("broken/frames.pvd"), desk.read("unbroken/frames.pvd"));
     desk.pontoon(&["resume", "broken"]).refused(2, &["has finished: there is nothing to go on with"]);
@@ -253,6 +254,9 @@ fn a_study_runs_every_spacing_with_every_value_and_nothing_twice() {
     let dry = desk.pontoon(&study(&[&vary[..], &["--dry-run"]].concat()));
     assert_eq!(dry.code, Some(0), "{}", dry.err);
     assert!(!desk.path("s").exists(), "a dry run writes nothing");
+    for word in ["dp-0.025_viscosity-none", "at the usual speed", "in all about"] {
+        assert!(dry.out.contains(word), "\"{word}\" is not in:\n{}", dry.out);
+    }
     let said = desk.pontoon(&study(&vary));
     assert_eq!(said.code, Some(0), "{}", said.err);
     assert!(said.out.contains("{ artificial = { alpha = 0.02 } }") && said.out.contains("elevation.level_m"));
@@ -271,6 +275,8 @@ fn a_study_runs_every_spacing_with_every_value_and_nothing_twice() {
     let manifest = desk.manifest("s/runs/dp-0.05_viscosity-none");
     assert!(manifest["cpu_s"].as_f64().is_some_and(|x| x > 0.0) && manifest["particle_steps"].as_u64() > Some(0));
     // Nothing has changed, so nothing is run, and the times stay to the last digit.
+    let again = desk.pontoon(&study(&[&vary[..], &["--dry-run"]].concat()));
+    assert_eq!(again.out.matches("has been run").count(), 6, "{}", again.out);
     assert_eq!(desk.pontoon(&study(&vary)).code, Some(0));
     assert_eq!(desk.read("s/study.csv"), table);
     // A check that changes is judged anew without a run; a law that changes is run anew, the old run set aside.

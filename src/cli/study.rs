@@ -70,14 +70,14 @@ pub struct List<'a> {
 }
 
 impl List<'_> {
-    /// Says what is to come. Nothing is written.
-    pub fn announce(&self) -> Result<f64> {
+    /// Says what is to come, even to who wants quiet if nothing else will be said. Nothing is written.
+    pub fn announce(&self, alone: bool) -> Result<()> {
         let ran = self.jobs.iter().map(Job::look).collect::<Result<Vec<Ran>>>()?;
         let planned = plan(self.jobs, &ran, self.count())?;
-        if !self.quiet {
+        if alone || !self.quiet {
             say(&announced(self.jobs, &ran, &planned));
         }
-        Ok(planned.iter().map(|p| p.seconds).sum())
+        Ok(())
     }
 
     /// Runs what is to be run; `after` is told after every run.
@@ -167,7 +167,7 @@ pub fn study(args: StudyArgs) -> Result<u8> {
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
     let sheet = Sheet::new(&grid, out, super::command_line())?;
     let list = List { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
-    list.announce()?;
+    list.announce(args.dry_run)?;
     if args.dry_run {
         return Ok(0);
     }

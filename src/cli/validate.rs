@@ -58,7 +58,7 @@ pub fn validate(args: ValidateArgs) -> Result<u8> {
     let placed = cases.into_iter().zip(scenes.iter().map(shelf::Found::path)).collect();
     let validation = Validation::new(placed, args.full, args.out.clone(), super::command_line())?;
     let list = List { jobs: &validation.jobs, threads: args.threads, quiet: args.quiet };
-    list.announce()?;
+    list.announce(args.dry_run)?;
     if args.dry_run {
         return Ok(0);
     }
