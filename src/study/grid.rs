@@ -48,6 +48,11 @@ impl Grid {
             return Err(Error::new(Kind::Usage, "a list of values has nothing in it")
                 .help("write  --dp 0.02,0.01 --vary model.viscosity=none,laminar"));
         }
+        if self.vary.iter().any(|vary| vary.key == "dp") {
+            return Err(
+                Error::new(Kind::Usage, "the spacing is varied apart from other keys").help("write  --dp 0.02,0.01")
+            );
+        }
         let mut jobs: Vec<Job> = Vec::new();
         for &dp in &dp {
             for varied in self.combinations() {
@@ -158,6 +163,7 @@ mod tests {
         let refused = |grid: Grid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
         assert_eq!(refused(grid(&[0.01, 0.01], &[])), Some(Kind::Usage));
         assert_eq!(refused(grid(&[], &[])), Some(Kind::Usage));
+        assert_eq!(refused(grid(&[0.01], &[("dp", &["0.01", "0.02"])])), Some(Kind::Usage));
         assert_eq!(refused(grid(&[0.01], &[("a", &["1", ""])])), Some(Kind::Usage));
     }
 
