@@ -7,6 +7,8 @@ mod bench;
 mod progress;
 mod report;
 mod shelf;
+mod study;
+mod validate;
 
 use std::{
     io::Write,
@@ -79,6 +81,30 @@ or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
         #[command(flatten)]
         scene: SceneArgs,
     },
+    /// Run a scene at several spacings, with several laws: errors against processor time, orders
+    #[command(after_help = "\
+Examples:
+  pontoon study still-tank --dp 0.04,0.02,0.01 --dry-run
+  pontoon study column --dp 0.03,0.02 --vary model.kernel=wendland,cubic --until 1
+  pontoon study flume-box --vary \"model.viscosity={ artificial = { alpha = 0.02 } },none\"
+Every spacing is run with every combination of values, one run after the other, each with all
+threads, without frames. Results are in DIR/study.html, .csv and .json, whole after every run; the
+runs in DIR/runs. A run that has finished is not run again; after Ctrl-C the same command goes on.
+Exit codes: 0 all well; 1 a run failed; 2 something in the command, the scene or a file is wrong;
+3 a check misses its bound; 130 interrupted.")]
+    Study(study::StudyArgs),
+    /// Run cases with references and judge them: errors, the paper's errors, bounds
+    #[command(after_help = "\
+Examples:
+  pontoon validate                    the usual cases, coarse: some minutes
+  pontoon validate --list             what there is
+  pontoon validate column-3 column-9  two of them, coarse
+  pontoon validate column --full      as fine as the paper: about an hour
+Results are in DIR/validation.html and .csv, whole after every run; the runs in DIR/runs. A run that
+has finished is not run again; after Ctrl-C the same command goes on.
+Exit codes: 0 all bounds are kept; 1 a run failed; 2 something in the command or a file is wrong;
+3 a bound is missed; 130 interrupted.")]
+    Validate(validate::ValidateArgs),
     /// List the scenes that come with the program
     Scenes,
     /// Time standard works on this machine: particle-steps per second, where a step goes, memory
@@ -171,6 +197,8 @@ fn obey(command: Command) -> Result<u8> {
             say(&report::inspected(&run::inspect(found.path(), &scene.sets())?));
             Ok(0)
         }
+        Command::Validate(args) => validate::validate(args),
+        Command::Study(args) => study::study(args),
         Command::Bench(args) => {
             say(&bench::bench(&args)?);
             Ok(0)
@@ -194,6 +222,13 @@ fn end(outcome: Result<Outcome>, follow: Follow, quiet: bool) -> Result<u8> {
         _ if outcome.failed_checks() => 3,
         _ => 0,
     })
+}
+
+/// What the user typed, for records.
+fn command_line() -> String {
+    let quoted = |word: String| if word.contains([' ', '{', '"', '*']) { format!("'{word}'") } else { word };
+    let words: Vec<String> = std::env::args().skip(1).map(quoted).collect();
+    format!("pontoon {}", words.join(" "))
 }
 
 /// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.

@@ -31,6 +31,7 @@ pub mod record;
 // entrance
 pub mod scene;
 pub mod run;
+pub mod study;
 pub mod bench;
 
 pub use error::{Error, Result};

@@ -63,6 +63,8 @@ pub enum ProbeKind {
         /// The point, m.
         at: Vec<f64>,
     },
+    /// The leading edge of the water along x.
+    Front,
     /// Energies of water and bodies.
     Energy,
 }
@@ -81,28 +83,71 @@ pub struct FrameWords {
 pub struct CheckWords {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
-    /// The reference table, beside the scene.
-    pub reference: PathBuf,
-    /// The reference's column of times, s.
-    pub time: String,
-    /// The reference's column of values.
-    pub column: String,
-    /// Time added to the reference's, s: what the reference calls 0 happens `delay` into the run.
-    pub delay: f64,
+    /// What it is held against.
+    pub reference: Reference,
+    /// First time of the run that counts, s.
+    pub from: Option<f64>,
+    /// Last time of the run that counts, s.
+    pub until: Option<f64>,
+    /// Time over which the instrument takes its mean, s.
+    pub mean: Option<f64>,
+    /// How the run is moved in time to lie on the reference.
+    pub align: Option<Align>,
     /// What the paper reached.
     pub paper: Option<Score>,
     /// What the run must reach.
     pub bound: Option<Score>,
 }
 
-/// Figures of a comparison; one that is not given is not judged.
+/// What a series is held against.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// A column of a table beside the scene.
+    Table {
+        /// The table.
+        file: PathBuf,
+        /// Its column of times, s.
+        time: String,
+        /// Its column of values.
+        column: String,
+        /// Time added to the table's, s: what it calls 0 happens `delay` into the run.
+        delay: f64,
+    },
+    /// A formula in the run's time t (s).
+    Formula(String),
+}
+
+/// How a run is moved in time, as a whole, to lie on its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename_all = "snake_case")]
+pub enum Align {
+    /// So that |x| of both first passes this threshold at one time. In the unit of the series.
+    Crossing(f64),
+    /// By the delay of least N.
+    Best,
+}
+
+/// Figures of a comparison; one that is not given is not judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct Score {
     /// Relative deviation N, –: 0 is perfect. As a bound: the largest that passes.
-    #[serde(rename = "N")]
+    #[serde(rename = "N", skip_serializing_if = "Option::is_none")]
     pub n: Option<f64>,
     /// Amplitude ratio M, –: 1 is perfect. As a bound: the largest |M − 1| that passes.
-    #[serde(rename = "M")]
+    #[serde(rename = "M", skip_serializing_if = "Option::is_none")]
     pub m: Option<f64>,
+    /// Relative error of the first peak, –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak: Option<f64>,
+    /// Largest |run − reference|, in the unit of the series.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub off: Option<f64>,
+    /// Relative deviation N once the delay is taken out, –.
+    #[serde(rename = "aligned_N", skip_serializing_if = "Option::is_none")]
+    pub aligned_n: Option<f64>,
+    /// The largest delay of either sign that passes, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delay: Option<f64>,
 }

@@ -16,11 +16,12 @@ mod inspect;
 mod lock;
 pub(crate) mod outputs;
 
+pub(crate) use folder::{same_tables, scene_file};
 pub use inspect::{Report, inspect};
+pub(crate) use lock::Lock;
+pub(crate) use outputs::series_folder;
 
 use std::path::{Path, PathBuf};
-
-use lock::Lock;
 
 use crate::{
     error::{Error, Kind, Result},
@@ -140,7 +141,7 @@ pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> R
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
     }
-    let checkpoint = Checkpoint::read(&folder.join(course::CHECKPOINT))?;
+    let checkpoint = Checkpoint::read(&checkpoint(folder))?;
     let scene = Scene::read(&folder.join(folder::SCENE), &checkpoint.sets)?;
     if restart::hash(scene.to_toml()?.as_bytes()) != checkpoint.scene {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
@@ -148,6 +149,11 @@ pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> R
     }
     let origin = Origin::Resumed { folder, checkpoint: Box::new(checkpoint), lock };
     with_threads(threads, || by_dimension(&scene, origin, watch))
+}
+
+/// Where the run in `folder` keeps its checkpoint.
+pub(crate) fn checkpoint(folder: &Path) -> PathBuf {
+    folder.join(course::CHECKPOINT)
 }
 
 /// Where a run comes from.

@@ -77,6 +77,59 @@ impl Series {
         (value, rate)
     }
 
+    /// The part from `from` to `until` (s).
+    ///
+    /// # Errors
+    /// `Scene` if fewer than two samples lie there.
+    pub fn within(&self, from: f64, until: f64) -> Result<Self> {
+        let range = self.t.partition_point(|&t| t < from)..self.t.partition_point(|&t| t <= until);
+        if range.len() < 2 {
+            let (first, last) = self.span();
+            return Err(Error::scene(format!(
+                "fewer than two samples lie between {from} and {until} s; the series goes from {first} to {last} s"
+            )));
+        }
+        Ok(Self { t: self.t[range.clone()].to_vec(), x: self.x[range].to_vec() })
+    }
+
+    /// The same `by` seconds later.
+    pub fn moved(&self, by: f64) -> Self {
+        Self { t: self.t.iter().map(|t| t + by).collect(), x: self.x.clone() }
+    }
+
+    /// What an instrument shows that takes the mean over `seconds`:
+    ///
+    ///   x̄(t) = 1/s ∫ x dt over t − s/2 … t + s/2
+    ///
+    /// by the trapezoid over the samples, at the same times; near an end over what there is.
+    pub fn running_mean(&self, seconds: f64) -> Self {
+        let mut total = vec![0.0];
+        for i in 1..self.t.len() {
+            total.push(total[i - 1] + 0.5 * (self.t[i] - self.t[i - 1]) * (self.x[i] + self.x[i - 1]));
+        }
+        let integral = |t: f64| {
+            let (i, s) = self.locate(t);
+            let step = s * (self.t[i + 1] - self.t[i]);
+            total[i] + step * (self.x[i] + 0.5 * s * (self.x[i + 1] - self.x[i]))
+        };
+        let (first, last) = self.span();
+        let mean = |&t: &f64| {
+            let (a, b) = ((t - 0.5 * seconds).max(first), (t + 0.5 * seconds).min(last));
+            (integral(b) - integral(a)) / (b - a)
+        };
+        Self { x: self.t.iter().map(mean).collect(), t: self.t.clone() }
+    }
+
+    /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does.
+    pub fn crossing(&self, threshold: f64) -> Option<f64> {
+        let i = self.x.iter().position(|x| x.abs() >= threshold)?;
+        let Some(before) = i.checked_sub(1) else { return Some(self.t[0]) };
+        let (x0, x1) = (self.x[before], self.x[i]);
+        // |x| = threshold on the way from x0 to x1, on the side on which x1 lies.
+        let s = (threshold.copysign(x1) - x0) / (x1 - x0);
+        Some(self.t[before] + s * (self.t[i] - self.t[before]))
+    }
+
     /// Interval index and the place in it (0…1) of time `t`, clamped to the span.
     fn locate(&self, t: f64) -> (usize, f64) {
         let i = self.t.partition_point(|&x| x <= t).clamp(1, self.t.len() - 1) - 1;

@@ -195,6 +195,8 @@ fn help_and_lists_teach() {
     shows(&["--help"], &["pontoon run raft", "pontoon scenes", "resume", "inspect", "frames.pvd"]);
     shows(&["run", "--help"], &["--dp", "--until", "--out", "--threads", "--set", "Examples:", "Ctrl-C", "Exit codes"]);
     shows(&["resume", "--help"], &["pontoon resume runs/raft"]);
+    shows(&["study", "--help"], &["--dp", "--vary", "--dry-run", "Examples:", "study.html"]);
+    shows(&["validate", "--help"], &["--quick", "--full", "--list", "Examples:", "validation.html"]);
     shows(&["scenes"], &["raft", "still-tank", "flume-box", "column", "dam-break", "buoyancy-3d", "pontoon run NAME"]);
     shows(&["inspect", "raft", "--dp", "0.02"], &["particles", "paddle", "driven", "scene line", "--set", "default: "]);
     assert_eq!(fs::read_dir(&desk.0).unwrap().count(), 0, "none of these writes anything");
@@ -233,9 +235,134 @@ fn an_interrupted_run_ends_as_an_unbroken_one_to_the_byte() {
     assert_eq!(desk.pontoon(&[&run[..], &["--out", "unbroken"]].concat()).code, Some(0));
     let (broken, unbroken) = (desk.manifest("broken"), desk.manifest("unbroken"));
     assert_eq!(broken["steps"], unbroken["steps"]);
+    assert_eq!(broken["particle_steps"], unbroken["particle_steps"]);
     assert!(desk.series("broken") == desk.series("unbroken"), "the tables differ");
     assert_eq!(desk.read("broken/frames.pvd"), desk.read("unbroken/frames.pvd"));
     desk.pontoon(&["resume", "broken"]).refused(2, &["has finished: there is nothing to go on with"]);
+}
+
+/// A study of small still tanks, with these words besides.
+fn study<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    let words = ["study", "still-tank", "--dp", "0.1,0.05,0.025", "--until", "0.06", "--out", "s", "--quiet"];
+    [&words[..], more].concat()
+}
+
+#[test]
+fn a_study_runs_every_spacing_with_every_value_and_nothing_twice() {
+    let desk = Desk::new("study");
+    let vary = ["--vary", "model.viscosity={ artificial = { alpha = 0.02 } },none", "--set", "check.4.bound={}"];
+    let dry = desk.pontoon(&study(&[&vary[..], &["--dry-run"]].concat()));
+    assert_eq!(dry.code, Some(0), "{}", dry.err);
+    assert!(!desk.path("s").exists(), "a dry run writes nothing");
+    for word in ["dp-0.025_viscosity-none", "at the usual speed", "in all about"] {
+        assert!(dry.out.contains(word), "\"{word}\" is not in:\n{}", dry.out);
+    }
+    let said = desk.pontoon(&study(&vary));
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.out.contains("{ artificial = { alpha = 0.02 } }") && said.out.contains("elevation.level_m"));
+    let table = desk.read("s/study.csv");
+    // Five checks of six runs, and the head.
+    assert_eq!(table.lines().count(), 31, "{table}");
+    let rows: Vec<&str> = table.lines().filter(|line| line.contains("elevation.level_m")).collect();
+    assert!(rows.iter().all(|row| row.contains(",finished,")), "{table}");
+    let json: serde_json::Value = serde_json::from_str(&desk.read("s/study.json")).unwrap();
+    assert_eq!(json["rows"].as_array().map(Vec::len), Some(30));
+    assert!(json["command"].as_str().is_some_and(|c| c.starts_with("pontoon study still-tank --dp 0.1,0.05,0.025")));
+    let page = desk.read("s/study.html");
+    for word in ["<svg", "processor time, s", "order, least squares", "Roache", "25 mm", "model.viscosity = none"] {
+        assert!(page.contains(word), "\"{word}\" is not on the page");
+    }
+    let manifest = desk.manifest("s/runs/dp-0.05_viscosity-none");
+    assert!(manifest["cpu_s"].as_f64().is_some_and(|x| x > 0.0) && manifest["particle_steps"].as_u64() > Some(0));
+    // Nothing has changed, so nothing is run, and the times stay to the last digit.
+    let again = desk.pontoon(&study(&[&vary[..], &["--dry-run"]].concat()));
+    assert_eq!(again.out.matches("has been run").count(), 6, "{}", again.out);
+    assert_eq!(desk.pontoon(&study(&vary)).code, Some(0));
+    assert_eq!(desk.read("s/study.csv"), table);
+    // A check that changes is judged anew without a run; a law that changes is run anew, the old run set aside.
+    let strict = study(&[&vary[..], &["--set", "check.4.bound.off=0.0"]].concat());
+    assert_eq!(desk.pontoon(&strict).code, Some(3));
+    assert_eq!(desk.manifest("s/runs/dp-0.05_viscosity-none"), manifest);
+    let other = study(&[&vary[..], &["--set", "time.cfl=0.3"]].concat());
+    assert_eq!(desk.pontoon(&other).code, Some(0));
+    assert_eq!(desk.manifest("s/runs/dp-0.05_viscosity-none.old"), manifest);
+}
+
+#[test]
+fn a_study_runs_anew_when_a_table_that_drives_a_body_changes_but_not_for_a_reference() {
+    let desk = Desk::new("study-tables");
+    fs::create_dir(desk.path("bay")).unwrap();
+    let scene = "dimension = 2\ndp = 0.1\nuntil = 0.05\n[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }\n\
+        [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [1.0, 0.8] } }\n\
+        [[solid]]\nname = \"lid\"\nshape = { box = { size = [0.2, 0.2] } }\nat = { x = 0.5, bottom = 0.9 }\n\
+        driven = { along = [1.0, 0.0], distance = { file = \"lid.csv\", column = \"x_m\" } }\n\
+        [[probe]]\nmotion = \"lid\"\n[[check]]\nseries = \"lid.surge_m\"\nreference = \"known.csv\"\ncolumn = \"x_m\"\n";
+    let write = |name: &str, x: &str| fs::write(desk.path("bay").join(name), format!("t_s,x_m\n0.0,0.0\n0.05,{x}\n"));
+    fs::write(desk.path("bay/scene.toml"), scene).unwrap();
+    write("lid.csv", "0.1").and(write("known.csv", "0.1")).unwrap();
+    let words = ["study", "bay", "--dp", "0.1", "--out", "s", "--quiet"];
+    assert_eq!(desk.pontoon(&words).code, Some(0));
+    let first = desk.manifest("s/runs/dp-0.1");
+    write("known.csv", "0.2").unwrap();
+    let said = desk.pontoon(&words);
+    assert!(said.out.contains("0.500"), "judged anew, half as far as the reference:\n{}", said.out);
+    assert_eq!(desk.manifest("s/runs/dp-0.1"), first);
+    write("lid.csv", "0.2").unwrap();
+    assert_eq!(desk.pontoon(&words).code, Some(0));
+    assert_eq!(desk.manifest("s/runs/dp-0.1.old"), first);
+}
+
+#[test]
+fn a_study_goes_on_when_a_run_fails_and_says_why() {
+    let desk = Desk::new("study-fails");
+    let said = desk.pontoon(&study(&["--vary", "time.cfl=6,0.4", "--set", "check.4.bound={}"]));
+    said.refused(1, &["dp-0.025_cfl-6 failed: ", "of water particle "]);
+    let table = desk.read("s/study.csv");
+    let count = |word: &str| table.lines().filter(|line| line.contains(word)).count();
+    assert!(count(",failed,") >= 5 && count(",finished,") >= 15, "{table}");
+    desk.pontoon(&study(&["--vary", "time.clf=6,0.4"])).refused(2, &["did you mean \"cfl\"?"]);
+    desk.pontoon(&study(&["--vary", "time.cfl=0.4,"])).refused(2, &["a list of values has nothing in it"]);
+    desk.pontoon(&study(&["--vary", "time.cfl=0.4,0.4"])).refused(2, &["two runs would be called"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_goes_on_by_the_same_command() {
+    let desk = Desk::new("study-stops");
+    let words = ["study", "raft", "--dp", "0.02,0.01", "--until", "0.15", "--out", "s", "--quiet"];
+    let mut running = desk.command(&words).spawn().unwrap();
+    let (begun, table) = (Instant::now(), desk.path("s/runs/dp-0.01/series/energy.csv"));
+    while fs::read_to_string(&table).map_or(0, |text| text.lines().count()) < 20 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the study does not come to its second run");
+        sleep(Duration::from_millis(5));
+    }
+    Command::new("kill").args(["-INT", &running.id().to_string()]).status().unwrap();
+    assert_eq!(running.wait().unwrap().code(), Some(130));
+    assert!(desk.read("s/study.csv").contains(",interrupted,"));
+    let first = desk.manifest("s/runs/dp-0.02");
+    assert_eq!(desk.pontoon(&words).code, Some(0));
+    assert_eq!(desk.manifest("s/runs/dp-0.02"), first, "what has finished is not run again");
+    assert_eq!(desk.manifest("s/runs/dp-0.01")["status"], "finished");
+    assert!(!desk.path("s/runs/dp-0.01.old").exists());
+}
+
+#[test]
+fn validate_judges_cases_and_keeps_a_page() {
+    let desk = Desk::new("validate");
+    let said = desk.pontoon(&["validate", "dam-break", "--quiet"]);
+    assert!(matches!(said.code, Some(0 | 3)), "{}", said.err);
+    for word in ["case", "dam-break", "front.front_m", "N ≤ 0.14", "particle-steps", "validation/validation.html"] {
+        assert!(said.out.contains(word), "\"{word}\" is not in:\n{}", said.out);
+    }
+    assert_eq!(said.code == Some(3), said.out.contains("MISSED"), "{}", said.out);
+    let page = desk.read("validation/validation.html");
+    assert_eq!(page.matches("<svg").count(), 2, "a plot for each check");
+    let list = desk.pontoon(&["validate", "--list"]);
+    assert!(list.out.contains("column-18") && list.out.contains("flume-box-c"), "{}", list.out);
+    desk.pontoon(&["validate", "colum-18"]).refused(2, &["did you mean \"column-18\"?", "--list"]);
+    desk.pontoon(&["validate", "--quick", "--full"]).refused(2, &["cannot be used with"]);
+    let plan = desk.pontoon(&["validate", "--full", "--dry-run"]);
+    assert!(plan.code == Some(0) && plan.out.contains("flume-box-a") && plan.out.contains("in all about"));
 }
 
 /// A full disk, as far as a test can make one: files longer than 20 kB cannot be written.

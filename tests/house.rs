@@ -6,7 +6,7 @@ use std::{
 };
 
 /// The rooms in the order in which they depend on one another.
-const ROOMS: [&str; 21] = [
+const ROOMS: [&str; 22] = [
     "error",
     "series",
     "space",
@@ -27,6 +27,7 @@ const ROOMS: [&str; 21] = [
     "record",
     "scene",
     "run",
+    "study",
     "bench",
 ];
 

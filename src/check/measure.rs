@@ -1,4 +1,4 @@
-//! Measures of the difference between two series: deviation N, amplitude M, first peak.
+//! Measures of the difference between two series: deviation N, amplitude M, first peak, largest distance.
 
 use crate::{
     error::{Error, Result},
@@ -72,6 +72,28 @@ pub fn peak(sim: &Series, reference: &Series) -> Result<f64> {
     Ok((first_peak(sim.values()) - expected).abs() / expected.abs())
 }
 
+/// Largest distance of a simulated series from its reference: 0 is perfect. It says something where the
+/// reference is zero too.
+///
+///   max |sim_i − ref_i|
+///
+/// Arguments as for [`deviation`]. Returns the distance, in the unit of the series.
+///
+/// # Errors
+/// `Scene` if the reference leaves the simulated span.
+/// ```
+/// # use pontoon::{check::off, series::Series};
+/// let still = Series::new([0.0, 1.0, 2.0], [0.0, 0.0, 0.0])?;
+/// let sim = Series::new([0.0, 2.0], [0.0, -0.5])?;
+/// assert_eq!(off(&sim, &still)?, 0.5);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+pub fn off(sim: &Series, reference: &Series) -> Result<f64> {
+    covers(sim, reference)?;
+    let pairs = reference.times().iter().zip(reference.values());
+    Ok(pairs.map(|(&t, &r)| (sim.at(t) - r).abs()).fold(0.0, f64::max))
+}
+
 /// The value of the first peak, with its sign.
 fn first_peak(x: &[f64]) -> f64 {
     let half = 0.5 * x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -81,6 +103,18 @@ fn first_peak(x: &[f64]) -> f64 {
 
 /// √( Σ term(sim_i, ref_i) / Σ ref_i² ) over the reference's times.
 fn ratio(sim: &Series, reference: &Series, term: impl Fn(f64, f64) -> f64) -> Result<f64> {
+    covers(sim, reference)?;
+    let size: f64 = reference.values().iter().map(|r| r * r).sum();
+    if size == 0.0 {
+        return Err(all_zero());
+    }
+    let pairs = reference.times().iter().zip(reference.values());
+    let sum: f64 = pairs.map(|(&t, &r)| term(sim.at(t), r)).sum();
+    Ok((sum / size).sqrt())
+}
+
+/// Refuses a reference that leaves the simulated span.
+fn covers(sim: &Series, reference: &Series) -> Result<()> {
     let (inner, outer) = (reference.span(), sim.span());
     if inner.0 < outer.0 || inner.1 > outer.1 {
         let what = format!(
@@ -89,13 +123,7 @@ fn ratio(sim: &Series, reference: &Series, term: impl Fn(f64, f64) -> f64) -> Re
         );
         return Err(Error::scene(what).help("lengthen the run (`until`), or shorten the reference"));
     }
-    let size: f64 = reference.values().iter().map(|r| r * r).sum();
-    if size == 0.0 {
-        return Err(all_zero());
-    }
-    let pairs = reference.times().iter().zip(reference.values());
-    let sum: f64 = pairs.map(|(&t, &r)| term(sim.at(t), r)).sum();
-    Ok((sum / size).sqrt())
+    Ok(())
 }
 
 fn all_zero() -> Error {

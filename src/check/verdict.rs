@@ -1,33 +1,55 @@
-//! Verdicts: a column of the run's own CSV against a column of a reference CSV.
-//!
-//! Lines that open with `#` are comments. Empty fields are gaps. Several references at one instant, as
-//! digitised figures have them, count as their mean.
+//! Verdicts: a column of the run's own CSV against a column of a reference CSV, or against a formula.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::measure::{amplitude, deviation, peak};
+use super::{
+    align::{Aligned, Arrival, align},
+    measure::{amplitude, deviation, off, peak},
+    table,
+};
 use crate::{
-    error::{Error, Result, nearest},
-    plan::Score,
+    error::{Error, Result},
+    plan::{CheckWords, Reference, Score},
     series::Series,
+    solid::Formula,
 };
 
 /// A reference that a run is to be held against.
 #[derive(Clone, Debug)]
 pub struct Check {
-    series: String,
-    reference: Series,
-    paper: Option<Score>,
-    bound: Option<Score>,
+    words: CheckWords,
+    reference: Known,
 }
 
-/// How a run did against a reference.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
-    /// Which series, as `probe.column`.
-    pub series: String,
+/// What is known of a series.
+#[derive(Clone, Debug)]
+enum Known {
+    /// Samples, their delay added, in the window.
+    Table(Series),
+    /// A value at any time.
+    Formula(Formula),
+}
+
+/// A run and what it is held against, as lines.
+#[derive(Clone, Debug)]
+pub struct Curves {
+    /// The run, from its start to its end.
+    pub sim: Series,
+    /// The same as the check's instrument shows it, if it has one.
+    pub meaned: Option<Series>,
+    /// The reference, where both the window and the run cover it.
+    pub reference: Series,
+    /// Whether the reference is a formula.
+    pub exact: bool,
+    /// Share of the reference in the window that the run covers, –.
+    pub covered: f64,
+}
+
+/// Figures of a comparison; one is none where it cannot be formed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
     /// Relative deviation, –.
     #[serde(rename = "N")]
     pub n: Option<f64>,
@@ -36,11 +58,39 @@ pub struct Verdict {
     pub m: Option<f64>,
     /// Relative error of the first peak, –.
     pub peak: Option<f64>,
+    /// Largest |run − reference|, in the unit of the series.
+    pub off: Option<f64>,
+}
+
+/// The figures of the run as an instrument shows it that takes a running mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meaned {
+    /// Over how long, s.
+    pub seconds: f64,
+    /// The figures.
+    #[serde(flatten)]
+    pub figures: Figures,
+}
+
+/// How a run did against a reference.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Which series, as `probe.column`.
+    pub series: String,
+    /// The figures of the run as it is.
+    #[serde(flatten)]
+    pub figures: Figures,
+    /// The figures of its running mean, if the check asks for one.
+    pub meaned: Option<Meaned>,
+    /// N and M with one delay taken out, of the running mean if there is one.
+    pub aligned: Option<Aligned>,
+    /// When run and reference first pass the threshold of the check, if it has one.
+    pub arrival: Option<Arrival>,
     /// What the paper reached.
     pub paper: Option<Score>,
     /// What the run must reach.
     pub bound: Option<Score>,
-    /// Share of the reference's samples that lie within the simulated time, –.
+    /// Share of the reference that lies within the simulated time, –.
     pub covered: f64,
     /// Whether the bound is kept; none if there is no bound or too little to judge by.
     pub passed: Option<bool>,
@@ -49,128 +99,167 @@ pub struct Verdict {
 }
 
 impl Check {
-    /// The check of `series` (as in `box.heave_m`) against `column` over `time` (s) of the table at
-    /// `reference`, whose times are moved by `delay` (s): what it calls t happens at t + delay of the run.
+    /// The check of a run that `words` mean; the tables that they name lie in `folder`.
     ///
     /// # Errors
-    /// `File` if the table cannot be read; `Scene` if it lacks a column or has fewer than two samples.
-    pub fn new(
-        series: &str,
-        reference: &Path,
-        [time, column]: [&str; 2],
-        delay: f64,
-        [paper, bound]: [Option<Score>; 2],
-    ) -> Result<Self> {
-        let mut rows = read_columns(reference, time, column)?;
-        rows.iter_mut().for_each(|row| row.0 += delay);
-        let reference = series_of(rows).map_err(|e| e.at(reference.display().to_string(), None, column))?;
-        Ok(Self { series: series.into(), reference, paper, bound })
-    }
-
-    /// Probe and column of the run that it looks at.
-    pub fn series(&self) -> (&str, &str) {
-        self.series.rsplit_once('.').unwrap_or((&self.series, ""))
-    }
-
-    /// The verdict on the table of the probe in `folder`, over the times that both cover. Never fails: a
-    /// comparison that cannot be made says so in its note.
-    pub fn judge(&self, folder: &Path) -> Verdict {
-        let mut verdict = Verdict {
-            series: self.series.clone(),
-            n: None,
-            m: None,
-            peak: None,
-            paper: self.paper,
-            bound: self.bound,
-            covered: 0.0,
-            passed: None,
-            note: None,
+    /// `File` if the table cannot be read; `Scene` if it lacks a column, has fewer than two samples in the
+    /// window, or the formula is none.
+    pub fn new(words: &CheckWords, folder: &Path) -> Result<Self> {
+        let reference = match &words.reference {
+            Reference::Formula(text) => Known::Formula(Formula::parse(text)?),
+            Reference::Table { file, time, column, delay } => {
+                let path = folder.join(file);
+                let (from, until) = window(words);
+                let whole = table::read(&path, time, column, *delay)?;
+                Known::Table(
+                    whole.within(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
+                )
+            }
         };
-        if let Err(why) = self.measure(folder, &mut verdict) {
-            verdict.note = Some(why.to_string());
+        Ok(Self { words: words.clone(), reference })
+    }
+
+    /// What it looks at and what for.
+    pub fn words(&self) -> &CheckWords {
+        &self.words
+    }
+
+    /// The run whose tables lie in `folder`, and its reference.
+    ///
+    /// # Errors
+    /// `File` if the run's table cannot be read; `Scene` if it has no such column, or the run and the
+    /// reference have no time in common.
+    pub fn curves(&self, folder: &Path) -> Result<Curves> {
+        let (sim, meaned) = self.run(folder)?;
+        let (reference, covered) = self.common(&sim)?;
+        let exact = matches!(self.reference, Known::Formula(_));
+        Ok(Curves { sim, meaned, reference, exact, covered })
+    }
+
+    /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
+    /// comparison that cannot be made says so in its note, and misses its bound unless the run is too short.
+    pub fn judge(&self, folder: &Path) -> Verdict {
+        let mut verdict = self.blank();
+        let (sim, meaned) = match self.run(folder) {
+            Ok(run) => run,
+            Err(why) => {
+                verdict.passed = self.words.bound.map(|_| false);
+                return Verdict { note: Some(why.to_string()), ..verdict };
+            }
+        };
+        let (reference, covered) = match self.common(&sim) {
+            Ok(common) => common,
+            Err(why) => {
+                // A run that ends before its reference begins is too short, no failure.
+                let (from, until) = window(&self.words);
+                let reaches = matches!(self.reference, Known::Formula(_)) && sim.within(from, until).is_ok();
+                verdict.passed = self.words.bound.filter(|_| reaches).map(|_| false);
+                return Verdict { note: Some(why.to_string()), ..verdict };
+            }
+        };
+        verdict.covered = covered;
+        verdict.note = deviation(&sim, &reference).err().map(|why| why.to_string());
+        verdict.figures = self.figures(&sim, &reference);
+        verdict.meaned = self
+            .words
+            .mean
+            .zip(meaned.as_ref())
+            .map(|(seconds, meaned)| Meaned { seconds, figures: self.figures(meaned, &reference) });
+        if let Some(how) = self.words.align {
+            let shown = meaned.as_ref().unwrap_or(&sim);
+            (verdict.aligned, verdict.arrival) = align(shown, &reference, how, window(&self.words));
+        }
+        match self.words.bound {
+            Some(_) if covered < 0.5 => {
+                verdict.note = Some("the run covers less than half of the reference: not judged".into());
+            }
+            bound => verdict.passed = bound.map(|bound| verdict.keeps(&bound)),
         }
         verdict
     }
 
-    fn measure(&self, folder: &Path, verdict: &mut Verdict) -> Result<()> {
-        let (probe, column) = self.series();
+    fn blank(&self) -> Verdict {
+        Verdict {
+            series: self.words.series.clone(),
+            figures: Figures::default(),
+            meaned: None,
+            aligned: None,
+            arrival: None,
+            paper: self.words.paper,
+            bound: self.words.bound,
+            covered: 0.0,
+            passed: None,
+            note: None,
+        }
+    }
+
+    /// The run's series, and what the instrument shows of it.
+    fn run(&self, folder: &Path) -> Result<(Series, Option<Series>)> {
+        let (probe, column) = self.words.series.rsplit_once('.').unwrap_or((&self.words.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
-        let sim = series_of(read_columns(&path, "t_s", column)?)?;
+        let sim = table::read(&path, "t_s", column, 0.0)?;
+        let meaned = self.words.mean.map(|seconds| sim.running_mean(seconds));
+        Ok((sim, meaned))
+    }
+
+    /// The reference where the run covers it, and which share of it that is.
+    fn common(&self, sim: &Series) -> Result<(Series, f64)> {
         let (first, last) = sim.span();
-        let all = self.reference.times().iter().copied().zip(self.reference.values().iter().copied());
-        let common: Vec<(f64, f64)> = all.filter(|(t, _)| (first..=last).contains(t)).collect();
-        verdict.covered = common.len() as f64 / self.reference.times().len() as f64;
-        let reference = series_of(common).map_err(|_| {
-            let (from, to) = self.reference.span();
-            Error::scene(format!(
-                "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
-            ))
-        })?;
-        verdict.n = Some(deviation(&sim, &reference)?);
-        verdict.m = Some(amplitude(&sim, &reference)?);
-        verdict.peak = peak(&sim, &reference).ok();
-        match self.bound {
-            Some(_) if verdict.covered < 0.5 => {
-                verdict.note = Some("the run covers less than half of the reference: not judged".into());
+        let (from, until) = window(&self.words);
+        match &self.reference {
+            Known::Table(whole) => {
+                let common = whole.within(first, last).map_err(|_| {
+                    let (from, to) = whole.span();
+                    Error::scene(format!(
+                        "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
+                    ))
+                })?;
+                let covered = common.times().len() as f64 / whole.times().len() as f64;
+                Ok((common, covered))
             }
-            Some(bound) => verdict.passed = Some(within(bound, verdict.n, verdict.m)),
-            None => {}
+            Known::Formula(formula) => {
+                let times = sim.within(from, until)?.times().to_vec();
+                let values: Vec<f64> = times.iter().map(|&t| formula.at(t).0).collect();
+                if let Some(i) = values.iter().position(|x| !x.is_finite()) {
+                    return Err(Error::scene(format!("the formula gives {} at t = {} s", values[i], times[i])));
+                }
+                let covered = if until.is_finite() {
+                    let from = from.max(first);
+                    ((last.min(until) - from) / (until - from)).clamp(0.0, 1.0)
+                } else {
+                    1.0
+                };
+                Ok((Series::new(times, values)?, covered))
+            }
         }
-        Ok(())
+    }
+
+    fn figures(&self, sim: &Series, reference: &Series) -> Figures {
+        let (from, until) = window(&self.words);
+        Figures {
+            n: deviation(sim, reference).ok(),
+            m: amplitude(sim, reference).ok(),
+            peak: sim.within(from, until).and_then(|sim| peak(&sim, reference)).ok(),
+            off: off(sim, reference).ok(),
+        }
+    }
+}
+
+impl Verdict {
+    /// Whether every figure that `bound` names is there and within it.
+    pub fn keeps(&self, bound: &Score) -> bool {
+        let within =
+            |limit: Option<f64>, figure: Option<f64>| limit.is_none_or(|most| figure.is_some_and(|x| x <= most));
+        within(bound.n, self.figures.n)
+            && within(bound.m, self.figures.m.map(|m| (m - 1.0).abs()))
+            && within(bound.peak, self.figures.peak)
+            && within(bound.off, self.figures.off)
+            && within(bound.aligned_n, self.aligned.map(|a| a.n))
+            && within(bound.delay, self.aligned.map(|a| a.delay.abs()))
     }
 }
 
-/// Whether the figures keep the bound; a figure that is not a number does not.
-fn within(bound: Score, n: Option<f64>, m: Option<f64>) -> bool {
-    let kept = |limit: Option<f64>, off: Option<f64>| limit.is_none_or(|limit| off.is_some_and(|off| off <= limit));
-    kept(bound.n, n) && kept(bound.m, m.map(|m| (m - 1.0).abs()))
-}
-
-/// The rows (time, value) of a CSV table in which both columns hold a number.
-///
-/// # Errors
-/// `File` if it cannot be read; `Scene` if a column is missing (names the nearest) or a field is no number.
-fn read_columns(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>> {
-    let broken = |why: csv::Error| Error::file(path, why);
-    let mut reader =
-        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(broken)?;
-    let header = reader.headers().map_err(broken)?.clone();
-    let place = |name: &str| {
-        header.iter().position(|h| h == name).ok_or_else(|| {
-            let help = match nearest(name, &header) {
-                Some(near) => format!("did you mean {near:?}?"),
-                None => format!("its columns are: {}", header.iter().collect::<Vec<_>>().join(", ")),
-            };
-            Error::scene(format!("{} has no column {name:?}", path.display())).help(help)
-        })
-    };
-    let (t, x) = (place(time)?, place(column)?);
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(broken)?;
-        let line = record.position().map_or(0, |p| p.line() as usize);
-        let field = |i: usize| match record.get(i).unwrap_or("") {
-            "" => Ok(None),
-            word => word.parse::<f64>().map(Some).map_err(|_| {
-                Error::scene(format!("{word:?} is not a number")).at(
-                    path.display().to_string(),
-                    Some((line, 1)),
-                    &header[i],
-                )
-            }),
-        };
-        if let (Some(t), Some(x)) = (field(t)?, field(x)?) {
-            rows.push((t, x));
-        }
-    }
-    Ok(rows)
-}
-
-/// The series of `rows`, in the order of time, several at an instant as their mean.
-fn series_of(mut rows: Vec<(f64, f64)>) -> Result<Series> {
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let groups = rows.chunk_by(|a, b| a.0 == b.0);
-    let (t, x): (Vec<f64>, Vec<f64>) =
-        groups.map(|g| (g[0].0, g.iter().map(|row| row.1).sum::<f64>() / g.len() as f64)).unzip();
-    Series::new(t, x)
+/// First and last time of the run that count, s.
+fn window(words: &CheckWords) -> (f64, f64) {
+    (words.from.unwrap_or(f64::NEG_INFINITY), words.until.unwrap_or(f64::INFINITY))
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use pontoon::{
-    check::Verdict,
+    check::{Verdict, said},
     record::manifest::Status,
     run::{Body, Outcome, Report, Start},
 };
@@ -82,7 +82,15 @@ pub fn ended(outcome: &Outcome) -> String {
             "simulated".into(),
             format!("{:.6} of {} s in {} steps", manifest.simulated_s, manifest.until_s, manifest.steps),
         ],
-        vec!["wall time".into(), format!("{} with {}", duration(manifest.wall_s), threads(manifest.threads))],
+        vec![
+            "wall time".into(),
+            format!(
+                "{} with {}, {} of processors",
+                duration(manifest.wall_s),
+                threads(manifest.threads),
+                duration(manifest.cpu_s)
+            ),
+        ],
         vec!["speed".into(), format!("{} particle-steps/s", short(manifest.particle_steps_per_second))],
     ]);
     if !outcome.bodies.is_empty() {
@@ -116,30 +124,8 @@ fn bodies(bodies: &[Body]) -> String {
 }
 
 fn checks(checks: &[Verdict]) -> String {
-    let figure = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.3}"));
-    let mut rows = vec![["check", "N", "M", "paper N", "paper M", "bound", ""].map(String::from).to_vec()];
-    for verdict in checks {
-        let bounds = verdict.bound.map_or(vec![], |b| {
-            let n = b.n.map(|n| format!("N ≤ {n}"));
-            n.into_iter().chain(b.m.map(|m| format!("|M − 1| ≤ {m}"))).collect()
-        });
-        let remark = match (verdict.passed, &verdict.note) {
-            (Some(true), _) => "kept".into(),
-            (Some(false), _) => "MISSED".into(),
-            (None, Some(note)) => note.lines().next().unwrap_or("").to_string(),
-            (None, None) => String::new(),
-        };
-        rows.push(vec![
-            verdict.series.clone(),
-            figure(verdict.n),
-            figure(verdict.m),
-            figure(verdict.paper.and_then(|p| p.n)),
-            figure(verdict.paper.and_then(|p| p.m)),
-            bounds.join(", "),
-            remark,
-        ]);
-    }
-    table(&rows)
+    let all: Vec<(&[String], &Verdict)> = checks.iter().map(|v| (&[][..], v)).collect();
+    table(&said::rows(&all, &[]))
 }
 
 /// What `inspect` prints.

@@ -6,6 +6,7 @@
 mod elevation;
 mod energy;
 mod force;
+mod front;
 mod motion;
 mod pressure;
 mod velocity;
@@ -13,6 +14,7 @@ mod velocity;
 pub use elevation::Elevation;
 pub use energy::Energy;
 pub use force::Force;
+pub use front::Front;
 pub use motion::Motion;
 pub use pressure::Pressure;
 pub use velocity::Velocity;

@@ -34,6 +34,12 @@ pub struct Manifest {
     pub until_s: f64,
     /// Wall time of the whole run, s.
     pub wall_s: f64,
+    /// Processor time of the whole run, all threads together, s.
+    #[serde(default)]
+    pub cpu_s: f64,
+    /// Water and boundary particles beside it × force passes, summed over the steps.
+    #[serde(default)]
+    pub particle_steps: u64,
     /// Water and boundary particles beside it × force passes ÷ wall time of stepping, 1/s.
     pub particle_steps_per_second: f64,
     /// The run against its references.

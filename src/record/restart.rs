@@ -11,7 +11,7 @@ use super::write_lasting;
 use crate::error::{Error, Kind, Result};
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 const HEADER: usize = 8 + 4 + 8 + 8;
 
 /// What a checkpoint holds.
@@ -31,6 +31,10 @@ pub struct Checkpoint {
     pub due: Vec<u64>,
     /// Wall time of the run so far, s.
     pub wall: f64,
+    /// Processor time of the run so far, s.
+    pub cpu: f64,
+    /// Water and wet boundary particles × force passes so far.
+    pub particle_steps: u64,
     /// Wall time of stepping alone, s.
     pub stepping: f64,
     /// The simulation's own bytes.
@@ -131,6 +135,8 @@ mod tests {
             frames: vec![0.0, 0.1],
             due: vec![3, 1],
             wall: 1.5,
+            cpu: 2.5,
+            particle_steps: 1200,
             stepping: 1.25,
             state: vec![1, 2, 3, 250],
         }

@@ -2,6 +2,8 @@
 
 use std::{path::PathBuf, time::Instant};
 
+use cpu_time::ProcessTime;
+
 use super::{
     Body, Origin, Outcome, Progress, Start, Watch, folder,
     lock::Lock,
@@ -35,6 +37,8 @@ pub struct Course<const D: usize> {
     checkpoint: Checkpoint,
     resumed: bool,
     begun: Instant,
+    /// Processor time of the program when the run began, where the system tells.
+    begun_cpu: Option<ProcessTime>,
     _lock: Lock,
 }
 
@@ -44,7 +48,7 @@ where
 {
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub fn new(scene: &Scene, origin: Origin) -> Result<Self> {
-        let begun = Instant::now();
+        let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
         let Built { setup, plan, warnings, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup)?;
         let probes = outputs::probes(&plan, sim.system())?;
@@ -68,7 +72,7 @@ where
         let (name, version) = Dim::<D>::VERSION;
         let engine = format!("{name} {version}");
         let manifest = Manifest { engine, warnings, values, scene: text, ..first_manifest(&sim, &plan, &checkpoint) };
-        Ok(Self { sim, outputs, checks, manifest, folder, checkpoint, resumed, begun, _lock: lock })
+        Ok(Self { sim, outputs, checks, manifest, folder, checkpoint, resumed, begun, begun_cpu, _lock: lock })
     }
 }
 
@@ -101,9 +105,12 @@ impl<const D: usize> Course<D> {
         let until = self.manifest.until_s;
         let mut going = watch.step(&self.progress());
         while going && self.sim.time() < until {
-            let clock = Instant::now();
+            let (clock, passes) = (Instant::now(), self.sim.passes());
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping += clock.elapsed().as_secs_f64();
+            // Dry boundary particles are not moved on and do not count.
+            let moved = self.sim.system().fluid().len() + self.sim.system().wet();
+            self.checkpoint.particle_steps += moved as u64 * (self.sim.passes() - passes);
             stepped?;
             let written = self.outputs.look(&self.sim)?;
             if written.checkpoint {
@@ -126,7 +133,7 @@ impl<const D: usize> Course<D> {
     /// Writes the checkpoint.
     fn save(&mut self) -> Result<()> {
         let state = self.sim.save()?;
-        let mut now = Checkpoint { state, wall: self.wall(), ..self.checkpoint.clone() };
+        let mut now = Checkpoint { state, wall: self.wall(), cpu: self.cpu(), ..self.checkpoint.clone() };
         self.outputs.note(&mut now)?;
         now.write(&self.folder.join(CHECKPOINT))
     }
@@ -159,6 +166,8 @@ impl<const D: usize> Course<D> {
         self.manifest.steps = now.steps;
         self.manifest.simulated_s = now.time;
         self.manifest.wall_s = now.wall;
+        self.manifest.cpu_s = self.cpu();
+        self.manifest.particle_steps = self.checkpoint.particle_steps;
         self.manifest.particle_steps_per_second = now.rate;
         let there = |name: &&str| self.folder.join(name).exists();
         let fixed = ["frames.pvd", CHECKPOINT, folder::FAILURE, folder::SCENE];
@@ -173,10 +182,16 @@ impl<const D: usize> Course<D> {
         self.checkpoint.wall + self.begun.elapsed().as_secs_f64()
     }
 
+    /// Processor time so far, s; where the system does not tell, what all threads together could have used.
+    fn cpu(&self) -> f64 {
+        let spent = self.begun_cpu.and_then(|begun| begun.try_elapsed().ok());
+        let threads = rayon::current_num_threads() as f64;
+        self.checkpoint.cpu
+            + spent.map_or_else(|| threads * self.begun.elapsed().as_secs_f64(), |spent| spent.as_secs_f64())
+    }
+
     fn progress(&self) -> Progress {
-        // Dry boundary particles are not moved on and do not count.
-        let moved = self.sim.system().fluid().len() + self.sim.system().wet();
-        let work = moved as f64 * self.sim.passes() as f64;
+        let work = self.checkpoint.particle_steps as f64;
         let stepping = self.checkpoint.stepping;
         Progress {
             time: self.sim.time(),
@@ -199,6 +214,8 @@ fn first_checkpoint(scene: &str, sets: &[(String, String)]) -> Checkpoint {
         frames: vec![],
         due: vec![],
         wall: 0.0,
+        cpu: 0.0,
+        particle_steps: 0,
         stepping: 0.0,
         state: vec![],
     }
@@ -217,6 +234,8 @@ fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: 
         simulated_s: 0.0,
         until_s: plan.until,
         wall_s: 0.0,
+        cpu_s: 0.0,
+        particle_steps: 0,
         particle_steps_per_second: 0.0,
         checks: vec![],
         files: vec![],

@@ -80,10 +80,6 @@ pub fn forget_failure(folder: &Path) -> Result<()> {
 /// # Errors
 /// `File` if something cannot be read or written.
 pub fn keep_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
-    let mut names = Vec::new();
-    if let Ok(table) = words.parse::<toml::Table>() {
-        table.values().for_each(|value| strings(value, &mut names));
-    }
     let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let copy = |source: &Path, target: &Path| -> Result<()> {
         let parent = target.parent().unwrap_or(&to);
@@ -91,14 +87,29 @@ pub fn keep_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
         fs::copy(source, target).map(|_| ()).map_err(|why| Error::file(target, format!("cannot be written: {why}")))
     };
     copy(file, &folder.join(SCENE))?;
-    for name in names {
-        let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
-        let source = from.join(&name);
-        if !name.is_empty() && Path::new(&name).components().all(inside) && source.is_file() {
-            copy(&source, &to.join(&name))?;
-        }
+    named(words)
+        .iter()
+        .filter(|name| from.join(name).is_file())
+        .try_for_each(|name| copy(&from.join(name), &to.join(name)))
+}
+
+/// Whether the tables that `words` names, but for those of `apart`, are in the run's `folder` as they are beside
+/// the scene in `file`.
+pub fn same_tables(file: &Path, words: &str, folder: &Path, apart: &[&str]) -> bool {
+    let (beside, kept) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
+    let same = |name: &String| fs::read(beside.join(name)).ok() == fs::read(kept.join(name)).ok();
+    named(words).iter().filter(|name| !apart.contains(&name.as_str())).all(same)
+}
+
+/// All words in the TOML `words` that could name a file beside it.
+fn named(words: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    if let Ok(table) = words.parse::<toml::Table>() {
+        table.values().for_each(|value| strings(value, &mut names));
     }
-    Ok(())
+    let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
+    names.retain(|name| !name.is_empty() && Path::new(name).components().all(inside));
+    names
 }
 
 /// All strings in a TOML value.

@@ -198,6 +198,7 @@ fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dy
         ProbeKind::Elevation { at } => Box::new(probe::Elevation::new(system, at)?),
         ProbeKind::Velocity { at } => Box::new(probe::Velocity::new(at)?),
         ProbeKind::Pressure { at } => Box::new(probe::Pressure::new(at)?),
+        ProbeKind::Front => Box::new(probe::Front),
         ProbeKind::Energy => Box::new(probe::Energy::new(system)),
     })
 }
@@ -220,8 +221,7 @@ pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Resu
                 Error::scene(format!("a check names the series {:?}, which no probe writes", words.series)).help(help)
             );
         }
-        let reference = plan.folder.join(&words.reference);
-        Check::new(&words.series, &reference, [&words.time, &words.column], words.delay, [words.paper, words.bound])
+        Check::new(words, &plan.folder)
     };
     plan.checks.iter().map(check).collect()
 }

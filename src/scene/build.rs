@@ -1,12 +1,9 @@
 //! From words to a simulation's start: opens the files that the scene names, makes shapes and poses, fills
 //! the water.
 
-use std::path::Path;
-
 use super::{
-    CheckWords, FillWords, FrameWords, Frames, Plan, ProbeEntry, ProbeKind, ProbeWords, Scene,
+    FillWords, FrameWords, Frames, Plan, ProbeEntry, ProbeKind, ProbeWords, Scene,
     geometry::{pose, shape, vector, world_bounds},
-    table,
 };
 use crate::{
     error::{Error, Kind, Result},
@@ -41,7 +38,7 @@ pub struct Built<const D: usize> {
 pub(super) struct Body<const D: usize> {
     region: Region<D>,
     bottom: f64,
-    level: f64,
+    pub(super) level: f64,
 }
 
 impl<const D: usize> Body<D> {
@@ -87,7 +84,7 @@ impl Scene {
         if filled.r.is_empty() {
             return Err(scene.wrong("water", "no water is left: it is thinner than dp, or solids fill it"));
         }
-        let plan = scene.plan()?;
+        let plan = scene.planned()?;
         let warnings = warnings(&plan, &solids);
         // Packing may have moved a particle a little way out of its water.
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
@@ -100,12 +97,20 @@ impl Scene {
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, warnings })
     }
 
+    /// What a run watches, keeps and judges; makes no particles.
+    ///
+    /// # Errors
+    /// `Scene` if the words contradict one another, or a table that a check names is missing or wrong.
+    pub fn plan(&self) -> Result<Plan> {
+        self.filled()?.0.planned()
+    }
+
     /// Speed of sound, m/s: given, or from the depth.
     pub(super) fn sound_speed<const D: usize>(&self) -> Result<f64> {
         Ok(self.laws(&self.bodies_of_water::<D>()?)?.c0)
     }
 
-    fn bodies_of_water<const D: usize>(&self) -> Result<Vec<Body<D>>> {
+    pub(super) fn bodies_of_water<const D: usize>(&self) -> Result<Vec<Body<D>>> {
         let mut bodies = Vec::new();
         for (i, words) in self.water.iter().enumerate() {
             let key = format!("water.{i}");
@@ -135,7 +140,7 @@ impl Scene {
         Ok(bodies)
     }
 
-    fn laws<const D: usize>(&self, water: &[Body<D>]) -> Result<Model> {
+    pub(super) fn laws<const D: usize>(&self, water: &[Body<D>]) -> Result<Model> {
         let (words, time) = (&self.model, &self.time);
         let gravity = self.gravity.clone().unwrap_or_else(|| vec![0.0; D]);
         let top = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
@@ -187,17 +192,21 @@ impl Scene {
         }
     }
 
-    /// Refuses a scene that asks for more particles than a machine holds, before any is made.
-    fn affordable<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+    /// About how many particles of water and of skins there will be.
+    pub(super) fn counts<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
+        let (volume, surface) = measures(water, solids);
         let dimension = D as i32;
-        let volume: f64 = water.iter().map(|body| body.region.shape.volume().volume).sum();
-        let surface: f64 = solids.iter().map(|solid| solid.shape.surface()).sum();
-        let fluid = volume / self.dp.powi(dimension);
-        let boundary = surface * self.layers() as f64 / self.dp.powi(dimension - 1);
+        (volume / self.dp.powi(dimension), surface * self.layers() as f64 / self.dp.powi(dimension - 1))
+    }
+
+    /// Refuses a scene that asks for more particles than a machine holds, before any is made.
+    pub(super) fn affordable<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+        let (fluid, boundary) = self.counts(water, solids);
         let all = fluid + boundary;
         if all.is_finite() && all <= MOST_PARTICLES {
             return Ok(());
         }
+        let (volume, surface) = measures(water, solids);
         let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
         let what = format!(
             "the scene asks for {all:.1e} particles: {volume} {space} of water / dp{} + {surface:.3} {face} of solids × \
@@ -211,29 +220,13 @@ impl Scene {
         Err(self.wrong_with("dp", what, help))
     }
 
-    fn plan(&self) -> Result<Plan> {
-        let folder = &self.origin.folder;
+    /// What the run watches, keeps and judges, from a scene with its defaults filled in.
+    fn planned(&self) -> Result<Plan> {
         let probe = |probe: &ProbeEntry| ProbeWords {
             name: probe.name.clone().unwrap_or_default(),
             what: kind(probe),
             every: probe.every.unwrap_or(self.until),
         };
-        let mut checks = Vec::new();
-        for (i, words) in self.check.iter().enumerate() {
-            let place = |e: Error| self.origin.place(e, &format!("check.{i}.reference"));
-            let time = words.time.clone().unwrap_or_default();
-            let path = table::beside(folder, &words.reference).map_err(place)?;
-            table::series(&path, &time, &words.column).map_err(place)?;
-            checks.push(CheckWords {
-                series: words.series.clone(),
-                reference: Path::new(&words.reference).to_path_buf(),
-                time,
-                column: words.column.clone(),
-                delay: words.delay.unwrap_or_default(),
-                paper: words.paper,
-                bound: words.bound,
-            });
-        }
         let frames = match &self.frames {
             Some(Frames::On(words)) => Some(FrameWords {
                 every: words.every.unwrap_or(self.until),
@@ -247,10 +240,16 @@ impl Scene {
             probes: self.probe.iter().map(probe).collect(),
             frames,
             checkpoint_every: self.checkpoint.as_ref().map(|c| c.every),
-            checks,
-            folder: folder.clone(),
+            checks: self.check_words()?,
+            folder: self.origin.folder.clone(),
         })
     }
+}
+
+/// Volume of the water (m³; m² in 2-D) and surface of the solids (m²; m).
+fn measures<const D: usize>(water: &[Body<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
+    let volume = water.iter().map(|body| body.region.shape.volume().volume).sum();
+    (volume, solids.iter().map(|solid| solid.shape.surface()).sum())
 }
 
 /// Moves every point by up to `by` (m) in each direction, always to the same place: by its number.
@@ -274,6 +273,7 @@ fn kind(probe: &ProbeEntry) -> ProbeKind {
         }
         ProbeEntry { velocity: Some(at), .. } => ProbeKind::Velocity { at: at.clone() },
         ProbeEntry { pressure: Some(at), .. } => ProbeKind::Pressure { at: at.clone() },
+        ProbeEntry { front: Some(_), .. } => ProbeKind::Front,
         _ => ProbeKind::Energy,
     }
 }

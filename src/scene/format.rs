@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     model::{Diffusion, Kernel, Scheme, Shifting, Sweeping, Viscosity, Walls},
-    plan::Score,
+    plan::{Align, Score},
 };
 
 /// A scene: the caption of an experiment.
@@ -185,6 +185,9 @@ pub struct ProbeEntry {
     /// Pressure at a point, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure: Option<Vec<f64>>,
+    /// The leading edge of the water along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub front: Option<bool>,
     /// Energies of water and bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<bool>,
@@ -209,22 +212,39 @@ pub struct CheckpointWords {
     pub every: f64,
 }
 
-/// One `[[check]]`: a column of a probe held against a column of a reference table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// One `[[check]]`: a column of a probe held against a column of a reference table, or against a formula.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckEntry {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
     /// The reference table, beside the scene.
-    pub reference: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<String>,
     /// Its column of values.
-    pub column: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<String>,
     /// Its column of times, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
     /// Time added to the reference's, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delay: Option<f64>,
+    /// The reference as a formula in the run's time t (s), in place of a table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
+    /// First time of the run that counts, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<f64>,
+    /// Last time of the run that counts, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<f64>,
+    /// Time over which the instrument takes its mean, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean: Option<f64>,
+    /// How the run is moved in time to lie on its reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub align: Option<Align>,
     /// What the paper reached.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub paper: Option<Score>,

@@ -1,11 +1,12 @@
 //! What the user says: the words of a scene, read, checked and made into a simulation.
 //!
-//! [`format`] and [`bodies`] are the words, [`document`] reads them from TOML, `verify` holds them
-//! against one another, [`resolve`] fills in the defaults, [`build`] opens the files that they name.
+//! [`format`] and [`bodies`] are the words, [`document`] reads them from TOML, `verify`, `solids` and `checks`
+//! hold them against one another, [`resolve`] fills in the defaults, [`build`] opens the files that they name.
 
 pub mod bodies;
 pub mod build;
 mod build_solids;
+mod checks;
 mod document;
 pub mod flexible;
 pub mod format;
@@ -13,12 +14,13 @@ mod geometry;
 pub mod resolve;
 mod sets;
 pub mod shipped;
+mod size;
 mod solids;
 pub mod table;
 mod verify;
 mod wording;
 
-pub use crate::plan::{CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Score};
+pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, PartWords, ShapeWords, SolidWords};
 pub use build::Built;
 pub use document::Source;
@@ -28,6 +30,7 @@ pub use format::{
 };
 pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
+pub use size::Size;
 
 use std::path::{Path, PathBuf};
 

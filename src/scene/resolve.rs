@@ -162,7 +162,7 @@ impl Scene {
             let fields = FIELDS.map(String::from).to_vec();
             filler.fill("frames.fields", &mut words.fields, fields, "all that there are");
         }
-        for (i, check) in self.check.iter_mut().enumerate() {
+        for (i, check) in self.check.iter_mut().enumerate().filter(|(_, check)| check.formula.is_none()) {
             filler.fill(format!("check.{i}.time"), &mut check.time, "t_s".into(), "the name our own tables have");
             filler.fill(format!("check.{i}.delay"), &mut check.delay, 0.0, "the clocks agree");
         }

@@ -151,7 +151,8 @@ impl Scene {
             self.positive(&format!("{key}.every"), probe.every)?;
             if kinds(probe).len() != 1 {
                 let what = format!("a probe looks at one thing; this one at {}", said(&kinds(probe)));
-                let help = "one of motion, force, elevation, velocity, pressure, energy; a [[probe]] section for each";
+                let help =
+                    "one of motion, force, elevation, velocity, pressure, front, energy; a [[probe]] section for each";
                 return Err(self.wrong_with(&key, what, help));
             }
             for (word, solid) in [("motion", &probe.motion), ("force", &probe.force)] {
@@ -175,8 +176,11 @@ impl Scene {
                 }
                 _ => {}
             }
-            if probe.energy == Some(false) {
-                return Err(self.wrong_with(&format!("{key}.energy"), "energy = false watches nothing", "remove it"));
+            for (word, given) in [("front", probe.front), ("energy", probe.energy)] {
+                if given == Some(false) {
+                    let what = format!("{word} = false watches nothing");
+                    return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
+                }
             }
             if let Some(name) = &probe.name {
                 self.good_name(&format!("{key}.name"), name)?;
@@ -222,19 +226,7 @@ impl Scene {
             }
         }
         self.positive("checkpoint.every", self.checkpoint.as_ref().map(|c| c.every))?;
-        let names = self.probe_names();
-        for (i, check) in self.check.iter().enumerate() {
-            let key = format!("check.{i}.series");
-            let Some((probe, _)) = check.series.rsplit_once('.') else {
-                return Err(self.wrong(&key, "a series is a probe and its column, with a point between"));
-            };
-            if !names.iter().any(|name| name == probe) {
-                let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                let what = format!("no probe is called \"{probe}\"{}", guess(probe, &names));
-                return Err(self.wrong_with(&key, what, format!("known: {}", names.join(", "))));
-            }
-        }
-        Ok(())
+        self.verify_checks()
     }
 
     /// Stem of each probe's file: its name, or else the solid's name for a motion, `solid_force` for a
@@ -265,6 +257,7 @@ fn kinds(probe: &ProbeEntry) -> Vec<&'static str> {
         ("elevation", probe.elevation.is_some()),
         ("velocity", probe.velocity.is_some()),
         ("pressure", probe.pressure.is_some()),
+        ("front", probe.front.is_some()),
         ("energy", probe.energy.is_some()),
     ];
     given.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()

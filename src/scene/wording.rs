@@ -56,6 +56,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("force", "force = \"box\""),
     ("elevation", "elevation = { x = 1.16 }"),
     ("velocity", "velocity = [0.75, 0.03]"),
+    ("front", "front = true"),
     ("pressure", "pressure = [0.75, 0.03]"),
     ("frames", "frames = { every = 0.05, fields = [\"velocity\", \"pressure\"] }"),
     ("fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
@@ -63,7 +64,14 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("check", "[[check]]\nseries = \"box.heave_m\"\nreference = \"body.csv\"\ncolumn = \"heave_m\""),
     ("series", "series = \"box.heave_m\""),
     ("reference", "reference = \"body.csv\""),
-    ("bound", "bound = { N = 0.3 }"),
+    ("check.column", "column = \"heave_m\""),
+    ("check.formula", "formula = \"0.05*cos(2*pi*t/1.2)\""),
+    ("check.from", "from = 1.0         # s, of the run"),
+    ("check.until", "until = 2.0        # s, of the run"),
+    ("check.mean", "mean = 0.005       # s"),
+    ("align", "align = \"best\", or  align = { crossing = 5.0 }"),
+    ("align.crossing", "align = { crossing = 5.0 }        # in the unit of the series"),
+    ("bound", "bound = { N = 0.3, M = 0.2, peak = 0.2, off = 0.01, aligned_N = 0.2, delay = 0.05 }"),
     ("paper", "paper = { N = 0.355, M = 1.115 }"),
 ];
 

@@ -1,10 +1,14 @@
 //! Checks: figures by hand, and verdicts that fail when they must.
 
-use std::{fs, path::PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use pontoon::{
-    check::{Check, Score, amplitude, deviation, peak},
+    check::{Align, Check, CheckWords, Reference, Score, Verdict, amplitude, deviation, off, peak, said},
     error::{Kind, Result},
+    scene::Scene,
     series::Series,
 };
 
@@ -17,8 +21,40 @@ fn folder(name: &str, sim: &str, reference: &str) -> std::io::Result<PathBuf> {
     Ok(folder)
 }
 
-fn bound(n: f64) -> [Option<Score>; 2] {
-    [None, Some(Score { n: Some(n), m: None })]
+/// Largest N that passes.
+fn bound(n: f64) -> Option<Score> {
+    Some(Score { n: Some(n), ..Score::default() })
+}
+
+/// A check of `series` against `column` over `time` of `reference.csv`.
+fn by_table(series: &str, [time, column]: [&str; 2], delay: f64, bound: Option<Score>) -> CheckWords {
+    let (time, column) = (time.to_string(), column.to_string());
+    let words = by_formula(series, "", bound);
+    CheckWords { reference: Reference::Table { file: "reference.csv".into(), time, column, delay }, ..words }
+}
+
+/// A check of `series` against a formula.
+fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckWords {
+    CheckWords {
+        series: series.into(),
+        reference: Reference::Formula(formula.into()),
+        from: None,
+        until: None,
+        mean: None,
+        align: None,
+        paper: None,
+        bound,
+    }
+}
+
+fn judge(words: &CheckWords, folder: &Path) -> Verdict {
+    Check::new(words, folder).unwrap_or_else(|e| panic!("{e}")).judge(folder)
+}
+
+/// A table of x(t) at every hundredth of a second for 3 s.
+fn table(x: impl Fn(f64) -> f64) -> String {
+    let row = |i: usize| format!("{:?},{:?}\n", 0.01 * i as f64, x(0.01 * i as f64));
+    std::iter::once("t_s,heave_m\n".to_string()).chain((0..=300).map(row)).collect()
 }
 
 const SIM: &str = "t_s,heave_m,gap_m\n0.0,0.0,\n1.0,2.0,5.0\n2.0,4.0,\n3.0,6.0,7.0\n";
@@ -40,6 +76,7 @@ fn a_reference_outside_the_run_or_zero_is_refused() -> Result<()> {
     let zero = Series::new([0.0, 1.0], [0.0, 0.0])?;
     assert!(deviation(&sim, &late).is_err_and(|e| e.what.contains("0.5 to 1.5 s")));
     assert!(amplitude(&sim, &zero).is_err() && peak(&sim, &zero).is_err());
+    assert_eq!(off(&sim, &zero)?, 1.0);
     Ok(())
 }
 
@@ -47,37 +84,32 @@ fn a_reference_outside_the_run_or_zero_is_refused() -> Result<()> {
 fn a_verdict_fails_when_the_bound_is_missed_and_only_then() -> std::io::Result<()> {
     // Off by −0.5 at each of two instants: N = √(0.5/(1.5² + 3.5²)) = 0.1857…
     let folder = folder("bound", SIM, "# a comment\nt,z\n1.0,1.5\n2.0,3.5\n")?;
-    let reference = folder.join("reference.csv");
-    let judge =
-        |limit: f64| Check::new("box.heave_m", &reference, ["t", "z"], 0.0, bound(limit)).map(|c| c.judge(&folder));
-    let kept = judge(0.186).map_err(std::io::Error::other)?;
-    let missed = judge(0.185).map_err(std::io::Error::other)?;
+    let verdict = |limit: f64| judge(&by_table("box.heave_m", ["t", "z"], 0.0, bound(limit)), &folder);
+    let (kept, missed) = (verdict(0.186), verdict(0.185));
     assert_eq!((kept.passed, missed.passed), (Some(true), Some(false)));
     let by_hand = (0.5_f64 / 14.5).sqrt();
-    assert!(kept.n.is_some_and(|n| (n - by_hand).abs() < 1e-15), "round-off; got {:?}", kept.n);
+    let n = kept.figures.n;
+    assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-15), "round-off; got {n:?}");
     fs::remove_dir_all(folder)
 }
 
 #[test]
 fn several_readings_at_an_instant_count_as_their_mean_and_delay_moves_them() -> std::io::Result<()> {
     let folder = folder("mean", SIM, "t,z\n1.5,4.5\n0.5,2.0\n1.5,3.5\n0.5,2.0\n")?;
-    let reference = folder.join("reference.csv");
-    let check = Check::new("box.heave_m", &reference, ["t", "z"], 0.5, bound(0.0)).map_err(std::io::Error::other)?;
-    let verdict = check.judge(&folder);
-    assert_eq!((verdict.n, verdict.m, verdict.passed), (Some(0.0), Some(1.0), Some(true)));
+    let verdict = judge(&by_table("box.heave_m", ["t", "z"], 0.5, bound(0.0)), &folder);
+    assert_eq!((verdict.figures.n, verdict.figures.m, verdict.passed), (Some(0.0), Some(1.0), Some(true)));
     fs::remove_dir_all(folder)
 }
 
 #[test]
 fn a_run_shorter_than_its_reference_is_compared_where_it_can_be_but_not_judged() -> std::io::Result<()> {
     let folder = folder("short", SIM, "t,z\n0,1\n1,2\n5,0\n6,0\n7,0\n")?;
-    let reference = folder.join("reference.csv");
-    let check = Check::new("box.heave_m", &reference, ["t", "z"], 0.0, bound(9.0)).map_err(std::io::Error::other)?;
-    let verdict = check.judge(&folder);
+    let verdict = judge(&by_table("box.heave_m", ["t", "z"], 0.0, bound(9.0)), &folder);
     assert_eq!((verdict.covered, verdict.passed), (0.4, None));
-    assert!(verdict.n.is_some() && verdict.note.is_some());
-    let far = Check::new("box.heave_m", &reference, ["t", "z"], 100.0, bound(9.0)).map_err(std::io::Error::other)?;
-    assert!(far.judge(&folder).note.is_some_and(|note| note.contains("the run at 0 and 3 s")));
+    assert!(verdict.figures.n.is_some() && verdict.note.is_some());
+    let far = judge(&by_table("box.heave_m", ["t", "z"], 100.0, bound(9.0)), &folder);
+    assert_eq!(far.passed, None);
+    assert!(far.note.is_some_and(|note| note.contains("the run at 0 and 3 s")));
     fs::remove_dir_all(folder)
 }
 
@@ -85,14 +117,166 @@ fn a_run_shorter_than_its_reference_is_compared_where_it_can_be_but_not_judged()
 fn empty_fields_are_gaps_and_wrong_tables_say_what_is_wrong() -> std::io::Result<()> {
     let folder = folder("gaps", SIM, "t,z\n1,5\n3,7\n2,\n")?;
     let reference = folder.join("reference.csv");
-    let check = Check::new("box.gap_m", &reference, ["t", "z"], 0.0, bound(0.0)).map_err(std::io::Error::other)?;
-    assert_eq!(check.judge(&folder).passed, Some(true));
-    let missing = Check::new("box.gap_m", &reference, ["t_s", "z"], 0.0, bound(0.0)).err();
+    let words = |names: [&str; 2]| by_table("box.gap_m", names, 0.0, bound(0.0));
+    assert_eq!(judge(&words(["t", "z"]), &folder).passed, Some(true));
+    let missing = Check::new(&words(["t_s", "z"]), &folder).err();
     assert_eq!(missing.map(|e| e.kind), Some(Kind::Scene));
     fs::write(&reference, "t,z\n1,5\n2,six\n")?;
-    let word = Check::new("box.gap_m", &reference, ["t", "z"], 0.0, bound(0.0)).err();
+    let word = Check::new(&words(["t", "z"]), &folder).err();
     assert_eq!(word.and_then(|e| e.place).and_then(|p| p.line_column), Some((3, 1)));
-    let absent = Check::new("box.gap_m", &folder.join("no.csv"), ["t", "z"], 0.0, bound(0.0)).err();
+    let absent = Check::new(&words(["t", "z"]), &folder.join("nowhere")).err();
     assert_eq!(absent.map(|e| e.kind), Some(Kind::File));
     fs::remove_dir_all(folder)
+}
+
+#[test]
+fn a_formula_is_a_reference_at_the_runs_own_times_and_only_the_window_counts() -> std::io::Result<()> {
+    // 2 t, but 0.1 too high before 1 s.
+    let folder = folder("formula", &table(|t| 2.0 * t + if t < 0.995 { 0.1 } else { 0.0 }), "")?;
+    let limit = |off: f64| Some(Score { off: Some(off), ..Score::default() });
+    let whole = judge(&by_formula("box.heave_m", "2*t", limit(0.05)), &folder);
+    assert!(whole.figures.off.is_some_and(|off| (off - 0.1).abs() < 1e-12) && whole.passed == Some(false));
+    let late = CheckWords { from: Some(1.0), ..by_formula("box.heave_m", "2*t", limit(0.05)) };
+    let late = judge(&late, &folder);
+    assert!(late.figures.n.is_some_and(|n| n < 1e-12) && late.passed == Some(true) && late.covered == 1.0);
+    let early = CheckWords { until: Some(0.9), ..by_formula("box.heave_m", "2*t", None) };
+    let n = judge(&early, &folder).figures.n;
+    let by_hand = {
+        let t: Vec<f64> = (0..=90).map(|i| 0.01 * i as f64).collect();
+        (0.01 * t.len() as f64 / t.iter().map(|t| 4.0 * t * t).sum::<f64>()).sqrt()
+    };
+    assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-12), "{n:?} against {by_hand}");
+    // The run of 3 s covers a third of this window.
+    let beyond = CheckWords { from: Some(2.0), until: Some(5.0), ..by_formula("box.heave_m", "2*t", limit(1.0)) };
+    let beyond = judge(&beyond, &folder);
+    assert!((beyond.covered - 1.0 / 3.0).abs() < 1e-12 && beyond.passed.is_none());
+    fs::remove_dir_all(folder)
+}
+
+#[test]
+fn a_reference_of_zero_has_a_largest_distance_but_no_n() -> std::io::Result<()> {
+    let folder = folder("zero", &table(|t| 0.002 * (9.0 * t).sin()), "")?;
+    let both = Score { n: Some(0.5), off: Some(0.003), ..Score::default() };
+    let kept = judge(&by_formula("box.heave_m", "0", Some(Score { n: None, ..both })), &folder);
+    assert!(kept.passed == Some(true) && kept.figures.n.is_none() && kept.figures.off.is_some_and(|x| x > 0.0019));
+    assert!(kept.note.is_some_and(|note| note.contains("zero throughout")));
+    let missed = judge(&by_formula("box.heave_m", "0", Some(both)), &folder);
+    assert_eq!(missed.passed, Some(false), "a bound on N fails where there is no N");
+    let infinite = judge(&by_formula("box.heave_m", "1/t", Some(both)), &folder);
+    assert!(infinite.passed == Some(false) && infinite.note.is_some_and(|note| note.contains("at t = 0 s")));
+    let absent = judge(&by_formula("box.surge_m", "0", Some(both)), &folder);
+    assert!(absent.passed == Some(false) && absent.note.is_some_and(|note| note.contains("no column")));
+    fs::remove_dir_all(folder)
+}
+
+#[test]
+fn the_running_mean_of_a_line_is_the_line_and_of_a_spike_its_share() -> Result<()> {
+    let t: Vec<f64> = (0..=10).map(|i| 0.1 * i as f64).collect();
+    let line = Series::new(t.clone(), t.clone())?.running_mean(0.3);
+    // Away from the ends, where the window is cut.
+    assert!((2..=8).all(|i| (line.values()[i] - t[i]).abs() < 1e-12));
+    assert!((line.values()[0] - 0.075).abs() < 1e-12, "half the window is left at the end");
+    // A triangle of height 1 and width 0.2 has the area 0.1: over 0.4 s it is 0.25.
+    let spike: Vec<f64> = (0..=10).map(|i| f64::from(i == 5)).collect();
+    let spike = Series::new(t, spike)?.running_mean(0.4);
+    assert!((spike.values()[5] - 0.25).abs() < 1e-12 && spike.values()[1] == 0.0);
+    Ok(())
+}
+
+#[test]
+fn a_running_mean_has_figures_of_its_own_beside_the_raw_ones() -> std::io::Result<()> {
+    // Noise of one sample's period, which any mean over some samples takes out.
+    let noisy = |t: f64| t + if (t * 100.0).round() as i64 % 2 == 0 { 0.1 } else { -0.1 };
+    let folder = folder("noise", &table(noisy), "")?;
+    let words = CheckWords { mean: Some(0.2), ..by_formula("box.heave_m", "t", bound(0.01)) };
+    let verdict = judge(&words, &folder);
+    let meaned = verdict.meaned.and_then(|m| m.figures.n);
+    assert!(verdict.figures.n.is_some_and(|n| n > 0.05) && meaned.is_some_and(|n| n < 0.01));
+    assert_eq!(verdict.passed, Some(false), "the bound is on the raw run");
+    fs::remove_dir_all(folder)
+}
+
+#[test]
+fn a_late_run_is_told_by_how_much_by_its_crossing_and_by_the_best_delay() -> std::io::Result<()> {
+    let pulse = |t: f64| 10.0 * (-((t - 1.0) / 0.15).powi(2)).exp();
+    let folder = folder("late", &table(|t| pulse(t - 0.05)), &table(pulse))?;
+    let words = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None);
+    for align in [Align::Crossing(5.0), Align::Best] {
+        let limits = Score { aligned_n: Some(0.01), delay: Some(0.06), ..Score::default() };
+        let words = CheckWords { align: Some(align), bound: Some(limits), ..words.clone() };
+        let verdict = judge(&words, &folder);
+        // Crossings are linear between samples, where the pulse bends by 8e-4 of its height.
+        let aligned = verdict.aligned.unwrap_or_else(|| panic!("{align:?} is formed"));
+        assert!((aligned.delay - 0.05).abs() < 2e-4 && aligned.n < 0.003, "{align:?}: {aligned:?}");
+        assert!(verdict.figures.n.is_some_and(|n| n > 0.3), "the raw figure is left as it is");
+        assert_eq!(verdict.passed, Some(true));
+        assert_eq!(verdict.arrival.is_some(), align != Align::Best);
+        let strict = CheckWords { bound: Some(Score { delay: Some(0.04), ..Score::default() }), ..words.clone() };
+        assert_eq!(judge(&strict, &folder).passed, Some(false));
+    }
+    let high = CheckWords { align: Some(Align::Crossing(50.0)), bound: bound(9.0), ..words.clone() };
+    let never = judge(&high, &folder);
+    assert!(never.aligned.is_none() && never.arrival.is_some_and(|a| a.run.is_none()));
+    assert_eq!(never.passed, Some(true), "nothing aligned is asked for");
+    let limit = Some(Score { aligned_n: Some(9.0), ..Score::default() });
+    assert_eq!(judge(&CheckWords { bound: limit, ..high }, &folder).passed, Some(false));
+    fs::remove_dir_all(folder)
+}
+
+#[test]
+fn the_table_of_checks_has_only_columns_that_one_of_them_uses() -> std::io::Result<()> {
+    let folder = folder("table", &table(|t| t), "")?;
+    let plain = judge(&by_formula("box.heave_m", "t", bound(0.1)), &folder);
+    let heads = |verdicts: &[&Verdict]| {
+        let all: Vec<(&[String], &Verdict)> = verdicts.iter().map(|v| (&[][..], *v)).collect();
+        said::rows(&all, &[])[0].join("|")
+    };
+    assert_eq!(heads(&[&plain]), "check|N|M|bound|");
+    let limit = Some(Score { off: Some(0.1), ..Score::default() });
+    let rich = CheckWords { align: Some(Align::Best), mean: Some(0.1), ..by_formula("box.heave_m", "t", limit) };
+    let rich = judge(&rich, &folder);
+    assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean over|mean N|mean M|aligned N|aligned M|delay|off|bound|");
+    fs::remove_dir_all(folder)
+}
+
+/// What the user reads of a scene with these words in its check.
+fn refused(words: &str) -> String {
+    let text = format!(
+        "dimension = 2\ndp = 0.1\nuntil = 1.0\nwater = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.5] }} }} }}]\n\
+         probe = [{{ energy = true }}]\n[[check]]\nseries = \"energy.total_J_per_m\"\n{words}"
+    );
+    Scene::parse(&text, Path::new("."), &[]).and_then(|s| s.plan()).expect_err("this check is wrong").to_string()
+}
+
+#[test]
+fn words_of_a_check_that_cannot_be_meant_are_refused_with_advice() {
+    for (words, said) in [
+        ("", ["\"reference\" is missing", "write  reference = \"body.csv\""]),
+        ("reference = \"a.csv\"", ["\"column\" is missing", "check.0.column"]),
+        ("formula = \"0\"\ncolumn = \"x\"", ["a check by a formula has no column", "give either formula"]),
+        ("formula = \"2*sinus(t)\"", ["did you mean \"sin", "check.0.formula"]),
+        ("formula = \"0\"\nfrom = 2.0\nuntil = 1.0", ["nothing lies between from = 2 and until = 1", "later time"]),
+        ("formula = \"0\"\nmean = 0.0", ["mean must be a positive number", "write  mean = 0.005"]),
+        ("formula = \"0\"\nalign = \"bset\"", ["unknown align \"bset\"; did you mean \"best\"?", "crossing"]),
+        ("formula = \"0\"\nalign = { crossing = -5.0 }", ["crossing must be a positive number", "align = {"]),
+        ("formula = \"0\"\nbound = { aligned_N = 0.1 }", ["nothing is aligned", "align = \"best\""]),
+        ("formula = \"0\"\nbound = { of = 0.1 }", ["unknown key \"of\"; did you mean \"off\"?", "bound = {"]),
+        ("formula = \"0\"\nbound = { off = -0.1 }", ["the largest that passes", "check.0.bound.off"]),
+    ] {
+        let message = refused(words);
+        assert!(said.iter().all(|part| message.contains(part)), "{words}: {message}");
+    }
+}
+
+#[test]
+fn a_check_that_is_printed_reads_the_same() -> Result<()> {
+    let text = "dimension = 2\ndp = 0.1\nuntil = 1.0\nwater = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]\n\
+        probe = [{ energy = true }]\n[[check]]\nseries = \"energy.total_J_per_m\"\nformula = \"t\"\nfrom = 0.1\nuntil = 0.9\n\
+        mean = 0.01\nalign = { crossing = 5.0 }\nbound = { off = 0.1, peak = 0.2, aligned_N = 0.3, delay = 0.4 }\n\
+        [[check]]\nseries = \"energy.total_J_per_m\"\nformula = \"t\"\nalign = \"best\"\n";
+    let scene = Scene::parse(text, Path::new("."), &[])?;
+    assert_eq!(Scene::parse(&scene.to_toml()?, Path::new("."), &[])?, scene);
+    let lines: Vec<String> = scene.resolve()?.iter().map(|v| v.to_string()).collect();
+    assert!(lines.contains(&"check.0.align.crossing = 5.0  (scene line 12)".into()), "{}", lines.join("\n"));
+    Ok(())
 }

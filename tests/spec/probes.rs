@@ -3,7 +3,7 @@
 use pontoon::{
     Result,
     model::Model,
-    probe::{Elevation, Energy, Force, Motion, Pressure, Probe, Velocity},
+    probe::{Elevation, Energy, Force, Front, Motion, Pressure, Probe, Velocity},
     shape::Shape,
     simulation::Simulation,
     space::{Vector, Wedge},
@@ -49,6 +49,13 @@ fn still_water_has_its_level_and_its_pressure() -> Result<()> {
     let p = Pressure::<2>::new(&[0.2, 0.1])?.look(&sim)[0];
     assert!((p / (1000.0 * 9.81 * 0.1) - 1.0).abs() < 0.02, "hydrostatic within 2 %; got {p}");
     Ok(())
+}
+
+#[test]
+fn the_front_is_the_end_of_the_farthest_particle() {
+    let front = Front.look(&pool())[0];
+    assert!((front - 0.4).abs() < 1e-12, "the last particle is half a dp before it; got {front}");
+    assert_eq!(Probe::<3>::columns(&Front), ["front_m"]);
 }
 
 #[test]

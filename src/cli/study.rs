@@ -1,0 +1,201 @@
+//! `pontoon study` and what it shares with `validate`: a list of runs, one after the other.
+
+use std::{
+    path::PathBuf,
+    sync::{Arc, atomic::AtomicBool},
+};
+
+use clap::Args;
+use pontoon::{
+    error::{Error, Kind, Result},
+    scene::Scene,
+    study::{Grid, Job, Planned, Ran, Sheet, State, USUAL, Vary, plan, split},
+};
+
+use super::{
+    complain, pair,
+    progress::Follow,
+    report::{duration, short, table},
+    say, shelf, stopper,
+};
+
+/// A grid of runs.
+#[derive(Args)]
+pub struct StudyArgs {
+    /// A folder with a scene.toml, a scene file, or the name of a scene of `pontoon scenes`
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Particle spacings, m, separated by commas [default: the scene's]
+    #[arg(long, value_name = "METRES,..", value_delimiter = ',')]
+    dp: Vec<f64>,
+    /// A key of the scene and its values, separated by commas; may be given several times
+    #[arg(long, value_name = "KEY=VALUE,..", value_parser = pair)]
+    vary: Vec<(String, String)>,
+    /// Change a key of the scene in all runs; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
+    set: Vec<(String, String)>,
+    /// Simulated time at the end, s
+    #[arg(long, value_name = "SECONDS")]
+    until: Option<f64>,
+    /// Threads of each run [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Folder for runs and results [default: studies/<scene>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Say what would be run and how long it would take; run nothing
+    #[arg(long)]
+    dry_run: bool,
+    /// Say nothing but errors and the table
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// How a list of runs ended.
+pub struct Done {
+    /// What came out, of the first runs if it was interrupted.
+    pub ran: Vec<Ran>,
+    /// Whether Ctrl-C ended it.
+    pub interrupted: bool,
+}
+
+/// A list of runs and how it is to be worked off.
+pub struct List<'a> {
+    /// The runs.
+    pub jobs: &'a [Job],
+    /// Threads of each.
+    pub threads: Option<usize>,
+    /// Whether to say nothing.
+    pub quiet: bool,
+}
+
+impl List<'_> {
+    /// Says what is to come, even to who wants quiet if nothing else will be said. Nothing is written.
+    pub fn announce(&self, alone: bool) -> Result<()> {
+        let ran = self.jobs.iter().map(Job::look).collect::<Result<Vec<Ran>>>()?;
+        let planned = plan(self.jobs, &ran, self.count())?;
+        if alone || !self.quiet {
+            say(&announced(self.jobs, &ran, &planned));
+        }
+        Ok(())
+    }
+
+    /// Runs what is to be run; `after` is told after every run.
+    pub fn work(&self, stop: &Arc<AtomicBool>, mut after: impl FnMut(&[Ran]) -> Result<()>) -> Result<Done> {
+        let mut ran: Vec<Ran> = Vec::new();
+        for (i, job) in self.jobs.iter().enumerate() {
+            let known = job.look()?;
+            if known.state == State::Finished {
+                ran.push(known);
+                continue;
+            }
+            if !self.quiet {
+                complain(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.name));
+            }
+            let mut follow = Follow::new(self.quiet, stop.clone());
+            let outcome = job.attempt(self.threads, &mut follow);
+            follow.close();
+            let outcome = outcome?;
+            if let State::Failed(why) = &outcome.state {
+                complain(&format!("{} failed: {why}\n", job.name));
+            }
+            let interrupted = outcome.state == State::Interrupted;
+            ran.push(outcome);
+            after(&ran)?;
+            if interrupted {
+                return Ok(Done { ran, interrupted });
+            }
+        }
+        after(&ran)?;
+        Ok(Done { ran, interrupted: false })
+    }
+
+    fn count(&self) -> usize {
+        self.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, |n| n.get()))
+    }
+}
+
+/// The table of runs to come.
+fn announced(jobs: &[Job], ran: &[Ran], planned: &[Planned]) -> String {
+    let mut rows =
+        vec![["run", "water", "boundary, at most", "steps, at least", "time", ""].map(String::from).to_vec()];
+    for ((job, ran), planned) in jobs.iter().zip(ran).zip(planned) {
+        let standing = match &ran.state {
+            State::Finished => "has been run",
+            State::Failed(_) => "failed before",
+            State::Interrupted => "goes on",
+            State::Planned if planned.told => "",
+            State::Planned => "at the usual speed",
+        };
+        rows.push(vec![
+            job.name.clone(),
+            short(planned.size.fluid),
+            short(planned.size.boundary),
+            short(planned.size.steps),
+            if ran.state == State::Finished { String::new() } else { format!("about {}", duration(planned.seconds)) },
+            standing.into(),
+        ]);
+    }
+    let total: f64 = planned.iter().map(|p| p.seconds).sum();
+    let mut text = format!("{}in all about {}\n", table(&rows), duration(total));
+    if planned.iter().any(|p| !p.told && p.seconds > 0.0) {
+        let [plane, space] = USUAL.map(short);
+        text += &format!(
+            "the usual speed: {plane} water particles × force passes a second and thread in 2-D, {space} in 3-D\n"
+        );
+    }
+    text
+}
+
+/// Runs the grid, or says what it would run.
+pub fn study(args: StudyArgs) -> Result<u8> {
+    let found = shelf::find(&args.scene)?;
+    let mut sets = args.set.clone();
+    sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
+    let scene = Scene::read(found.path(), &sets)?;
+    if args.threads == Some(0) {
+        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+    }
+    let name = name(&args.scene);
+    let grid = Grid {
+        dp: if args.dp.is_empty() { vec![scene.dp] } else { args.dp.clone() },
+        vary: args.vary.iter().map(|(key, values)| Vary { key: key.clone(), values: split(values) }).collect(),
+        scene: found.path().to_owned(),
+        sets,
+        name: name.clone(),
+    };
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
+    let sheet = Sheet::new(&grid, out, super::command_line())?;
+    let list = List { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
+    list.announce(args.dry_run)?;
+    if args.dry_run {
+        return Ok(0);
+    }
+    let done = list.work(&stopper()?, |ran| sheet.write(ran))?;
+    say(&format!("\n{}", table(&sheet.run_rows(&sheet.rows(&done.ran)))));
+    for file in sheet.files() {
+        say(&format!("{}\n", file.display()));
+    }
+    Ok(code(&done))
+}
+
+/// The exit code of a list of runs.
+pub fn code(done: &Done) -> u8 {
+    if done.interrupted {
+        complain("interrupted: the same command goes on\n");
+        130
+    } else if done.ran.iter().any(|r| matches!(r.state, State::Failed(_))) {
+        1
+    } else if done.ran.iter().flat_map(|r| &r.verdicts).any(|v| v.passed == Some(false)) {
+        3
+    } else {
+        0
+    }
+}
+
+/// A short name for what the user called a scene.
+fn name(scene: &std::path::Path) -> String {
+    let whole = std::fs::canonicalize(scene).unwrap_or_else(|_| scene.to_owned());
+    let own = if whole.ends_with("scene.toml") { whole.parent().unwrap_or(&whole).to_owned() } else { whole };
+    own.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())
+}

@@ -1,0 +1,84 @@
+//! `pontoon validate`: cases with references, run and judged.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use pontoon::{
+    error::{Error, Kind, Result},
+    study::{Case, State, Validation, cases, find},
+};
+
+use super::{
+    complain,
+    report::table,
+    say, shelf, stopper,
+    study::{List, code},
+};
+
+/// Cases and how they are run.
+#[derive(Args)]
+pub struct ValidateArgs {
+    /// Cases of `--list` [default: the usual ones if quick, all if full]
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+    /// Coarse and short: minutes (default)
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// As fine and as long as the paper: hours to days
+    #[arg(long)]
+    full: bool,
+    /// Threads of each run [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Folder for runs and results
+    #[arg(long, value_name = "DIR", default_value = "validation")]
+    out: PathBuf,
+    /// List the cases; run nothing
+    #[arg(long)]
+    list: bool,
+    /// Say what would be run and how long it would take; run nothing
+    #[arg(long)]
+    dry_run: bool,
+    /// Say nothing but errors and the table
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Runs the cases, or lists them.
+pub fn validate(args: ValidateArgs) -> Result<u8> {
+    if args.list {
+        say(&listed(&cases()?));
+        return Ok(0);
+    }
+    if args.threads == Some(0) {
+        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+    }
+    let cases = find(&args.names, args.full)?;
+    let scenes = cases.iter().map(|case| shelf::find(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
+    let placed = cases.into_iter().zip(scenes.iter().map(shelf::Found::path)).collect();
+    let validation = Validation::new(placed, args.full, args.out.clone(), super::command_line())?;
+    let list = List { jobs: &validation.jobs, threads: args.threads, quiet: args.quiet };
+    list.announce(args.dry_run)?;
+    if args.dry_run {
+        return Ok(0);
+    }
+    let done = list.work(&stopper()?, |ran| validation.write(ran))?;
+    say(&format!("\n{}", table(&validation.table(&done.ran))));
+    for file in validation.files() {
+        say(&format!("{}\n", file.display()));
+    }
+    if done.ran.iter().any(|r| matches!(r.state, State::Failed(_))) {
+        complain("a case could not be run to its end\n");
+    }
+    Ok(code(&done))
+}
+
+/// The list of cases.
+fn listed(cases: &[Case]) -> String {
+    let mut rows = vec![["case", "quick", "scene", "about"].map(String::from).to_vec()];
+    rows.extend(cases.iter().map(|case| {
+        let usual = if case.quick.usual { "usual" } else { "" };
+        vec![case.name.clone(), usual.into(), case.scene.clone(), case.about.clone()]
+    }));
+    table(&rows) + "\nrun one with: pontoon validate NAME; without a name the usual ones are run\n"
+}

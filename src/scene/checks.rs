@@ -1,0 +1,133 @@
+//! The words of `[[check]]`: held against one another, then made into what a run judges itself by.
+
+use std::path::Path;
+
+use super::{CheckEntry, CheckWords, Reference, Scene, table, verify::guess};
+use crate::{
+    error::{Error, Result},
+    plan::Align,
+    solid::Formula,
+};
+
+impl Scene {
+    /// Refuses checks that cannot be meant, before any table is opened.
+    pub(super) fn verify_checks(&self) -> Result<()> {
+        let names = self.probe_names();
+        for (i, check) in self.check.iter().enumerate() {
+            let key = format!("check.{i}");
+            let Some((probe, _)) = check.series.rsplit_once('.') else {
+                let what = "a series is a probe and its column, with a point between";
+                return Err(self.wrong(&format!("{key}.series"), what));
+            };
+            if !names.iter().any(|name| name == probe) {
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                let what = format!("no probe is called \"{probe}\"{}", guess(probe, &names));
+                return Err(self.wrong_with(&format!("{key}.series"), what, format!("known: {}", names.join(", "))));
+            }
+            self.verify_reference(&key, check)?;
+            self.verify_times(&key, check)?;
+            self.verify_figures(&key, check)?;
+        }
+        Ok(())
+    }
+
+    /// A table or a formula, and one of them.
+    fn verify_reference(&self, key: &str, check: &CheckEntry) -> Result<()> {
+        let of_table = [
+            ("reference", check.reference.is_some()),
+            ("column", check.column.is_some()),
+            ("time", check.time.is_some()),
+            ("delay", check.delay.is_some()),
+        ];
+        match &check.formula {
+            Some(text) => {
+                if let Some((word, _)) = of_table.iter().find(|(_, given)| *given) {
+                    let what = format!("a check by a formula has no {word}: that is of a table");
+                    let help = "give either formula, or reference and column";
+                    return Err(self.wrong_with(&format!("{key}.{word}"), what, help));
+                }
+                let place = |e: Error| self.origin.place(e, &format!("{key}.formula"));
+                Formula::parse(text).map(|_| ()).map_err(place)
+            }
+            None => match of_table[..2].iter().find(|(_, given)| !given) {
+                Some((word, _)) => {
+                    let what = format!("\"{word}\" is missing: a check needs something to be held against");
+                    Err(self.wrong(&format!("{key}.{word}"), what))
+                }
+                None => Ok(()),
+            },
+        }
+    }
+
+    fn verify_times(&self, key: &str, check: &CheckEntry) -> Result<()> {
+        self.positive(&format!("{key}.mean"), check.mean)?;
+        if let Some(Align::Crossing(threshold)) = check.align {
+            self.positive(&format!("{key}.align.crossing"), Some(threshold))?;
+        }
+        match (check.from, check.until) {
+            (Some(from), Some(until)) if from >= until => {
+                let what = format!("nothing lies between from = {from} and until = {until}");
+                Err(self.wrong_with(&format!("{key}.until"), what, "until is the later time, in the run's own time"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A bound may only name figures that the check forms.
+    fn verify_figures(&self, key: &str, check: &CheckEntry) -> Result<()> {
+        let Some(bound) = check.bound else { return Ok(()) };
+        let figures = [
+            ("N", bound.n),
+            ("M", bound.m),
+            ("peak", bound.peak),
+            ("off", bound.off),
+            ("aligned_N", bound.aligned_n),
+            ("delay", bound.delay),
+        ];
+        if let Some((word, figure)) = figures.iter().find(|(_, figure)| figure.is_some_and(|x| x < 0.0)) {
+            let what = format!("{word} is the largest that passes, and {} is below 0", figure.unwrap_or_default());
+            return Err(self.wrong(&format!("{key}.bound.{word}"), what));
+        }
+        if check.align.is_none()
+            && let Some((word, _)) = figures[4..].iter().find(|(_, figure)| figure.is_some())
+        {
+            let what = format!("the bound names {word}, but nothing is aligned");
+            return Err(self.wrong_with(
+                &format!("{key}.bound.{word}"),
+                what,
+                "write  align = \"best\"  in this check",
+            ));
+        }
+        Ok(())
+    }
+
+    /// What the run is held against; the tables are there and have the columns.
+    pub(super) fn check_words(&self) -> Result<Vec<CheckWords>> {
+        let words = |(i, check): (usize, &CheckEntry)| {
+            let place = |e: Error| self.origin.place(e, &format!("check.{i}.reference"));
+            let reference = match &check.formula {
+                Some(text) => Reference::Formula(text.clone()),
+                None => {
+                    let file = check.reference.clone().unwrap_or_default();
+                    let (time, column) =
+                        (check.time.clone().unwrap_or_default(), check.column.clone().unwrap_or_default());
+                    let path = table::beside(&self.origin.folder, &file).map_err(place)?;
+                    table::series(&path, &time, &column).map_err(place)?;
+                    let delay = check.delay.unwrap_or_default();
+                    Reference::Table { file: Path::new(&file).to_path_buf(), time, column, delay }
+                }
+            };
+            Ok(CheckWords {
+                series: check.series.clone(),
+                reference,
+                from: check.from,
+                until: check.until,
+                mean: check.mean,
+                align: check.align,
+                paper: check.paper,
+                bound: check.bound,
+            })
+        };
+        self.check.iter().enumerate().map(words).collect()
+    }
+}

@@ -1,0 +1,54 @@
+//! What a run of a scene will take, told from its words: no particle is made.
+
+use super::Scene;
+use crate::{error::Result, model::Scheme};
+
+/// About how large a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particles of water.
+    pub fluid: f64,
+    /// Particles of all skins.
+    pub boundary: f64,
+    /// The largest time step that sound and the Courant number allow, s.
+    pub dt: f64,
+    /// Steps to the end at that step: there will be some more.
+    pub steps: f64,
+    /// Force passes a step.
+    pub passes: f64,
+}
+
+impl Size {
+    /// Water particles × force passes: what a run's time is about proportional to.
+    pub fn work(&self) -> f64 {
+        self.fluid * self.steps * self.passes
+    }
+}
+
+impl Scene {
+    /// About how large a run of this scene is.
+    ///
+    /// # Errors
+    /// `Scene` if the words contradict one another, a shape is none, or the particles are too many.
+    pub fn size(&self) -> Result<Size> {
+        let (scene, _) = self.filled()?;
+        match scene.dimension {
+            2 => scene.sized::<2>(),
+            _ => scene.sized::<3>(),
+        }
+    }
+
+    fn sized<const D: usize>(&self) -> Result<Size> {
+        let water = self.bodies_of_water::<D>()?;
+        let model = self.laws(&water)?;
+        let still_level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let solids = self.solids::<D>(still_level)?;
+        self.affordable(&water, &solids)?;
+        let (fluid, boundary) = self.counts(&water, &solids);
+        let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
+        let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1.0 } else { 2.0 };
+        Ok(Size { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
+    }
+}

@@ -1,0 +1,180 @@
+//! The grid of a study: every spacing with every combination of values.
+
+use std::path::{Path, PathBuf};
+
+use super::Job;
+use crate::{
+    error::{Error, Kind, Result},
+    record::restart::hash,
+};
+
+/// Longest name of a folder that is made of the values themselves.
+const LONGEST: usize = 80;
+
+/// A key of the scene and the values that it takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Vary {
+    /// The key.
+    pub key: String,
+    /// Its values, as TOML.
+    pub values: Vec<String>,
+}
+
+/// A grid of runs of one scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// The scene's name.
+    pub name: String,
+    /// The scene, a folder or a file.
+    pub scene: PathBuf,
+    /// Spacings, m, the coarsest first.
+    pub dp: Vec<f64>,
+    /// What else is varied.
+    pub vary: Vec<Vary>,
+    /// Keys that are changed in all runs.
+    pub sets: Vec<(String, String)>,
+}
+
+impl Grid {
+    /// The jobs, in folders of `out`, with the values of each: cheap ones first, so that a mistake shows
+    /// early.
+    ///
+    /// # Errors
+    /// `Usage` if a spacing or a list of values is empty or given twice.
+    pub fn jobs(&self, out: &Path) -> Result<Vec<Job>> {
+        let mut dp = self.dp.clone();
+        dp.sort_by(|a, b| b.total_cmp(a));
+        if dp.is_empty() || self.vary.iter().any(|vary| vary.values.iter().any(String::is_empty)) {
+            return Err(Error::new(Kind::Usage, "a list of values has nothing in it")
+                .help("write  --dp 0.02,0.01 --vary model.viscosity=none,laminar"));
+        }
+        if self.vary.iter().any(|vary| vary.key == "dp") {
+            return Err(
+                Error::new(Kind::Usage, "the spacing is varied apart from other keys").help("write  --dp 0.02,0.01")
+            );
+        }
+        let mut jobs: Vec<Job> = Vec::new();
+        for &dp in &dp {
+            for varied in self.combinations() {
+                let mut sets = vec![("frames".to_string(), "off".to_string())];
+                sets.extend(self.sets.iter().chain(&varied).cloned());
+                sets.push(("dp".into(), format!("{dp:?}")));
+                let name = slug(dp, &varied);
+                let group = label(&varied);
+                let (folder, scene) = (out.join("runs").join(&name), self.scene.clone());
+                jobs.push(Job { folder, name, scene, sets, group, dp, varied });
+            }
+        }
+        match (0..jobs.len()).find(|&i| jobs[..i].iter().any(|job| job.name == jobs[i].name)) {
+            Some(i) => Err(Error::new(Kind::Usage, format!("two runs would be called {:?}", jobs[i].name))
+                .help("give each spacing and each value once")),
+            None => Ok(jobs),
+        }
+    }
+
+    /// Every combination of the varied values; one that is empty if nothing is varied.
+    pub fn combinations(&self) -> Vec<Vec<(String, String)>> {
+        self.vary.iter().fold(vec![vec![]], |all, vary| {
+            let with = |before: &Vec<(String, String)>, value: &String| {
+                before.iter().cloned().chain([(vary.key.clone(), value.clone())]).collect()
+            };
+            all.iter().flat_map(|before| vary.values.iter().map(move |value| with(before, value))).collect()
+        })
+    }
+}
+
+/// A combination in words.
+pub fn label(varied: &[(String, String)]) -> String {
+    varied.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
+}
+
+/// `text` at its commas, but for those within brackets, braces and quotes.
+///
+/// ```
+/// # use pontoon::study::split;
+/// assert_eq!(split("none,{ artificial = { alpha = 0.02, x = [1,2] } }, \"a,b\""),
+///     ["none", "{ artificial = { alpha = 0.02, x = [1,2] } }", "\"a,b\""]);
+/// ```
+pub fn split(text: &str) -> Vec<String> {
+    let (mut parts, mut part, mut depth, mut quote) = (Vec::new(), String::new(), 0, None);
+    for c in text.chars() {
+        match (quote, c) {
+            (Some(open), _) if c == open => quote = None,
+            (None, '"' | '\'') => quote = Some(c),
+            (None, '[' | '{' | '(') => depth += 1,
+            (None, ']' | '}' | ')') => depth -= 1,
+            (None, ',') if depth <= 0 => {
+                parts.push(std::mem::take(&mut part).trim().to_string());
+                continue;
+            }
+            _ => {}
+        }
+        part.push(c);
+    }
+    parts.push(part.trim().to_string());
+    parts
+}
+
+/// The name of a run's folder: its spacing and its values, as far as a file can be called so.
+fn slug(dp: f64, varied: &[(String, String)]) -> String {
+    let mut name = format!("dp-{dp}");
+    for (key, value) in varied {
+        let key = key.rsplit('.').next().unwrap_or(key);
+        let words: Vec<String> = value
+            .split(|c: char| !c.is_alphanumeric() && c != '.' && c != '-')
+            .filter(|word| !word.is_empty())
+            .map(String::from)
+            .collect();
+        name += &format!("_{key}-{}", words.join("-"));
+    }
+    if name.chars().count() <= LONGEST {
+        return name;
+    }
+    let short: String = name.chars().take(LONGEST - 9).collect();
+    format!("{short}-{:08x}", hash(name.as_bytes()) as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(dp: &[f64], vary: &[(&str, &[&str])]) -> Grid {
+        let vary = vary
+            .iter()
+            .map(|(key, values)| Vary { key: key.to_string(), values: values.iter().map(|v| v.to_string()).collect() });
+        Grid { name: "x".into(), scene: "x".into(), dp: dp.into(), vary: vary.collect(), sets: vec![] }
+    }
+
+    #[test]
+    fn every_spacing_meets_every_combination_and_the_coarsest_comes_first() -> Result<()> {
+        let values: [(&str, &[&str]); 2] = [("model.kernel", &["cubic", "wendland"]), ("time.cfl", &["0.1", "0.2"])];
+        let jobs = grid(&[0.01, 0.02, 0.005], &values).jobs(Path::new("out"))?;
+        assert_eq!(jobs.len(), 12);
+        assert_eq!(jobs[0].folder, Path::new("out/runs/dp-0.02_kernel-cubic_cfl-0.1"));
+        assert_eq!(jobs[11].name, "dp-0.005_kernel-wendland_cfl-0.2");
+        assert_eq!(jobs[11].group, "model.kernel = wendland, time.cfl = 0.2");
+        assert_eq!(jobs[11].sets.last(), Some(&("dp".to_string(), "0.005".to_string())));
+        assert_eq!(grid(&[0.01], &[]).jobs(Path::new("out"))?[0].name, "dp-0.01");
+        Ok(())
+    }
+
+    #[test]
+    fn what_is_given_twice_or_not_at_all_is_refused() {
+        let refused = |grid: Grid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
+        assert_eq!(refused(grid(&[0.01, 0.01], &[])), Some(Kind::Usage));
+        assert_eq!(refused(grid(&[], &[])), Some(Kind::Usage));
+        assert_eq!(refused(grid(&[0.01], &[("dp", &["0.01", "0.02"])])), Some(Kind::Usage));
+        assert_eq!(refused(grid(&[0.01], &[("a", &["1", ""])])), Some(Kind::Usage));
+    }
+
+    #[test]
+    fn a_long_name_is_cut_but_stays_its_own() -> Result<()> {
+        let long =
+            "{ artificial = { alpha = 0.0200000000000000000000000000000000000000000000000000000000000000000001 } }";
+        let jobs =
+            grid(&[0.01], &[("model.viscosity", &[long, &long.replace("1 }", "2 }")])]).jobs(Path::new("out"))?;
+        assert!(jobs.iter().all(|job| job.name.len() <= LONGEST));
+        assert!(jobs[0].name.starts_with("dp-0.01_viscosity-artificial-alpha-0.02"));
+        Ok(())
+    }
+}

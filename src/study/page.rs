@@ -1,0 +1,111 @@
+//! Pages of HTML that stand alone: no script, no file beside them.
+
+use std::time::SystemTime;
+
+use super::plot;
+use crate::record::manifest::Machine;
+
+const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}\
+h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\
+table{border-collapse:collapse;margin:.6em 0;font-size:.87em}td,th{padding:.2em .7em;text-align:left;\
+border-bottom:1px solid #ddd;font-variant-numeric:tabular-nums}th{border-bottom:2px solid #888}\
+code{font-size:.92em}.key{display:inline-block;width:1.6em;height:.5em;margin-right:.5em;vertical-align:middle}\
+.missed{color:#b00020;font-weight:bold}figure{margin:.5em 0}figcaption{font-size:.9em;color:#444}";
+
+/// `text` with the signs that HTML means otherwise written out.
+pub fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// The page called `title` with what `body` says.
+pub fn page(title: &str, body: &str) -> Vec<u8> {
+    let title = escape(title);
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\
+         <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n{body}</body></html>\n"
+    )
+    .into_bytes()
+}
+
+/// A table; the first row is its head.
+pub fn table(rows: &[Vec<String>]) -> String {
+    let row = |cells: &Vec<String>, tag: &str| {
+        let cells = cells.iter().map(|cell| {
+            let class = if cell == "MISSED" || cell == "failed" { " class=\"missed\"" } else { "" };
+            format!("<{tag}{class}>{}</{tag}>", escape(cell))
+        });
+        format!("<tr>{}</tr>\n", cells.collect::<String>())
+    };
+    let mut rows = rows.iter();
+    let head = rows.next().map(|cells| row(cells, "th")).unwrap_or_default();
+    format!("<table>\n{head}{}</table>\n", rows.map(|cells| row(cells, "td")).collect::<String>())
+}
+
+/// A plot with its caption; `keys` name its colours.
+pub fn figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
+    let key = |(i, text): &(usize, String)| {
+        format!("<span class=\"key\" style=\"background:{}\"></span>{}<br>\n", plot::colour(*i), escape(text))
+    };
+    let keys: String = keys.iter().map(key).collect();
+    format!("<figure>{svg}\n<figcaption>{keys}{}</figcaption></figure>\n", escape(caption))
+}
+
+/// What ran when and where, as a table.
+pub fn origin(command: &str, machine: &Machine, threads: Option<usize>) -> String {
+    let Machine { processor, cpus, instructions, os, .. } = machine;
+    let instructions = instructions.as_deref().unwrap_or("no lanes");
+    let threads = threads.map_or("–".into(), |n| n.to_string());
+    let rows = [
+        ("command", command.to_string()),
+        ("date", now()),
+        ("version", format!("pontoon {}", env!("CARGO_PKG_VERSION"))),
+        ("machine", format!("{processor}, {cpus} processors, {instructions}, {os}")),
+        ("threads", threads),
+    ];
+    let rows: String =
+        rows.iter().map(|(key, x)| format!("<tr><td>{key}</td><td><code>{}</code></td></tr>\n", escape(x))).collect();
+    format!("<table>\n{rows}</table>\n")
+}
+
+/// Date and time, UTC.
+pub fn now() -> String {
+    humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
+}
+
+/// The unit of a column by the end of its name, as in `fx_N_per_m`.
+pub fn unit(column: &str) -> &'static str {
+    const UNITS: [(&str, &str); 15] = [
+        ("_Nm_per_m", "N m/m"),
+        ("_N_per_m", "N/m"),
+        ("_J_per_m", "J/m"),
+        ("_radps", "rad/s"),
+        ("_mps", "m/s"),
+        ("_deg", "°"),
+        ("_rad", "rad"),
+        ("_kg", "kg"),
+        ("_Pa", "Pa"),
+        ("_Nm", "N m"),
+        ("_N", "N"),
+        ("_J", "J"),
+        ("_m3", "m³"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ];
+    UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("–", |(_, unit)| unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_user_writes_cannot_break_the_page() {
+        let text = String::from_utf8_lossy(&page("<script>", &table(&[vec!["a&b".into()]]))).into_owned();
+        assert!(text.contains("&lt;script&gt;") && text.contains("a&amp;b") && !text.contains("<script>"));
+    }
+
+    #[test]
+    fn columns_tell_their_units() {
+        assert_eq!(["fx_N_per_m", "fx_N", "heave_m", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
+    }
+}

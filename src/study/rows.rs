@@ -1,0 +1,201 @@
+//! A study as a table: one row for each run and check.
+
+use serde::Serialize;
+
+use super::{Job, Ran, State};
+use crate::{
+    check::Verdict,
+    error::{Error, Kind, Result},
+};
+
+/// A run under one of its checks; a figure is none where it is not known.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the run.
+    pub run: String,
+    /// Particle spacing, m.
+    pub dp: f64,
+    /// Keys and values that make this run another than the rest.
+    pub varied: Vec<(String, String)>,
+    /// What was compared, as `probe.column`; empty for a run without checks.
+    pub check: String,
+    /// Relative deviation, –.
+    #[serde(rename = "N")]
+    pub n: Option<f64>,
+    /// Amplitude ratio, –.
+    #[serde(rename = "M")]
+    pub m: Option<f64>,
+    /// Relative error of the first peak, –.
+    pub peak: Option<f64>,
+    /// Largest distance, in the unit of the series.
+    pub off: Option<f64>,
+    /// N of the running mean, –.
+    #[serde(rename = "mean_N")]
+    pub mean_n: Option<f64>,
+    /// N with the delay taken out, –.
+    #[serde(rename = "aligned_N")]
+    pub aligned_n: Option<f64>,
+    /// That delay, s.
+    pub delay_s: Option<f64>,
+    /// Whether the bound is kept, where there is one.
+    pub passed: Option<bool>,
+    /// Particles of water.
+    pub water: Option<usize>,
+    /// Wall time, s.
+    pub wall_s: Option<f64>,
+    /// Processor time, s.
+    pub cpu_s: Option<f64>,
+    /// Particles × force passes.
+    pub particle_steps: Option<u64>,
+    /// `planned`, `interrupted`, `finished` or `failed`.
+    pub status: &'static str,
+    /// Why it failed.
+    pub reason: Option<String>,
+}
+
+impl Row {
+    /// The error that is plotted: N, or else the largest distance.
+    pub fn error(&self) -> Option<f64> {
+        self.n.or(self.off)
+    }
+}
+
+/// The rows of `jobs`, of which the first have `ran`. A run that has not finished has a row for each of
+/// `checks` too.
+pub fn rows(jobs: &[Job], ran: &[Ran], checks: &[String]) -> Vec<Row> {
+    let of = |(i, job): (usize, &Job)| {
+        let first =
+            Row { run: job.name.clone(), dp: job.dp, varied: job.varied.clone(), status: "planned", ..Row::default() };
+        let ran = ran.get(i);
+        let first = ran.map_or(first.clone(), |ran| costs(first, ran));
+        let verdicts = ran.map_or(&[][..], |ran| &ran.verdicts[..]);
+        match (verdicts, checks) {
+            ([], []) => vec![first],
+            ([], checks) => checks.iter().map(|check| Row { check: check.clone(), ..first.clone() }).collect(),
+            (verdicts, _) => labels(verdicts.iter().map(|v| v.series.as_str()))
+                .into_iter()
+                .zip(verdicts)
+                .map(|(check, verdict)| judged(Row { check, ..first.clone() }, verdict))
+                .collect(),
+        }
+    };
+    jobs.iter().enumerate().flat_map(of).collect()
+}
+
+/// Names of checks: their series, with a number from the second of a series on.
+pub fn labels<'a>(series: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+    let all: Vec<&str> = series.into_iter().collect();
+    let label = |i: usize| match all[..i].iter().filter(|other| **other == all[i]).count() {
+        0 => all[i].to_string(),
+        before => format!("{} ({})", all[i], before + 1),
+    };
+    (0..all.len()).map(label).collect()
+}
+
+fn costs(row: Row, ran: &Ran) -> Row {
+    let (status, reason) = match &ran.state {
+        State::Planned => ("planned", None),
+        State::Interrupted => ("interrupted", None),
+        State::Finished => ("finished", None),
+        State::Failed(why) => ("failed", Some(why.clone())),
+    };
+    let Some(manifest) = &ran.manifest else { return Row { status, reason, ..row } };
+    Row {
+        water: Some(manifest.particles.fluid),
+        wall_s: Some(manifest.wall_s),
+        cpu_s: Some(manifest.cpu_s),
+        particle_steps: Some(manifest.particle_steps),
+        status,
+        reason,
+        ..row
+    }
+}
+
+fn judged(row: Row, verdict: &Verdict) -> Row {
+    let figures = verdict.figures;
+    Row {
+        n: figures.n,
+        m: figures.m,
+        peak: figures.peak,
+        off: figures.off,
+        mean_n: verdict.meaned.and_then(|m| m.figures.n),
+        aligned_n: verdict.aligned.map(|a| a.n),
+        delay_s: verdict.aligned.map(|a| a.delay),
+        passed: verdict.passed,
+        ..row
+    }
+}
+
+/// The rows as CSV: `keys` are the varied ones, a column each.
+///
+/// # Errors
+/// `File` if the text cannot be made.
+pub fn csv(rows: &[Row], keys: &[String]) -> Result<Vec<u8>> {
+    let broken = |why: csv::Error| Error::new(Kind::File, format!("the table cannot be made: {why}"));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut head = vec!["run".to_string(), "dp_m".into()];
+    head.extend(keys.iter().cloned());
+    let rest = [
+        "check",
+        "N",
+        "M",
+        "peak",
+        "off",
+        "mean_N",
+        "aligned_N",
+        "delay_s",
+        "passed",
+        "water",
+        "wall_s",
+        "cpu_s",
+        "particle_steps",
+        "status",
+        "reason",
+    ];
+    head.extend(rest.map(String::from));
+    writer.write_record(&head).map_err(broken)?;
+    for row in rows {
+        let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
+        let mut cells = vec![row.run.clone(), format!("{:?}", row.dp)];
+        let value = |key: &String| row.varied.iter().find(|(k, _)| k == key).map_or(String::new(), |(_, v)| v.clone());
+        cells.extend(keys.iter().map(value));
+        cells.push(row.check.clone());
+        cells.extend([row.n, row.m, row.peak, row.off, row.mean_n, row.aligned_n, row.delay_s].map(number));
+        cells.push(row.passed.map_or(String::new(), |kept| kept.to_string()));
+        cells.push(row.water.map_or(String::new(), |n| n.to_string()));
+        cells.extend([row.wall_s, row.cpu_s].map(number));
+        cells.push(row.particle_steps.map_or(String::new(), |n| n.to_string()));
+        cells.extend([row.status.to_string(), row.reason.clone().unwrap_or_default().replace('\n', " ")]);
+        writer.write_record(&cells).map_err(broken)?;
+    }
+    writer.into_inner().map_err(|why| Error::new(Kind::File, format!("the table cannot be made: {why}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checks_of_one_series_are_told_apart() {
+        assert_eq!(labels(["a.x_m", "b.y_m", "a.x_m"]), ["a.x_m", "b.y_m", "a.x_m (2)"]);
+    }
+
+    #[test]
+    fn a_value_with_commas_and_a_failure_of_several_lines_stay_in_their_cells() -> Result<()> {
+        let row = Row {
+            run: "dp-0.01".into(),
+            dp: 0.01,
+            varied: vec![("gravity".into(), "[0.0, -9.81]".into())],
+            n: Some(0.25),
+            status: "failed",
+            reason: Some("too fast\n  usual cause".into()),
+            ..Row::default()
+        };
+        let text = csv(&[row], &["gravity".into()])?;
+        let mut reader = csv::Reader::from_reader(text.as_slice());
+        let record = reader.records().next().and_then(|r| r.ok()).unwrap_or_default();
+        assert_eq!((&record[2], &record[4], record.len()), ("[0.0, -9.81]", "0.25", 18));
+        assert_eq!(&record[17], "too fast   usual cause");
+        Ok(())
+    }
+}

@@ -1,0 +1,253 @@
+//! What a study leaves behind, whole after every run: `study.csv`, `study.json`, `study.html`.
+
+use std::{fs, path::PathBuf};
+
+use serde::Serialize;
+
+use super::{
+    Grid, Job, Line, Ran, Row, Style, convergence, csv, least_squares, log_log,
+    page::{self, unit},
+    rows::{labels, rows},
+};
+use crate::{
+    check::said,
+    error::{Error, Result},
+    record::{manifest::Machine, write_whole},
+};
+
+/// The table and the page of a study.
+pub struct Sheet {
+    title: String,
+    command: String,
+    keys: Vec<String>,
+    checks: Vec<String>,
+    out: PathBuf,
+    /// The runs.
+    pub jobs: Vec<Job>,
+}
+
+/// How an error falls with the spacing under one combination.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Order {
+    check: String,
+    /// Which error.
+    error: String,
+    /// The varied keys and their values.
+    varied: String,
+    /// By least squares over all spacings, –.
+    least_squares: Option<f64>,
+    /// From the three finest, –.
+    three_finest: Option<f64>,
+    /// Grid-convergence index of the finest, –.
+    index: Option<f64>,
+}
+
+/// An error that is plotted: its name, and how a row tells it.
+type Metric = (&'static str, fn(&Row) -> Option<f64>);
+
+#[derive(Serialize)]
+struct Whole<'a> {
+    title: &'a str,
+    command: &'a str,
+    date: String,
+    version: &'static str,
+    machine: Machine,
+    threads: Option<usize>,
+    rows: &'a [Row],
+    orders: &'a [Order],
+}
+
+impl Sheet {
+    /// The sheet of `grid` in the folder `out`, asked for by `command`.
+    ///
+    /// # Errors
+    /// `Usage` for a grid that is none; those of the scene's words; `File` if the folder cannot be made.
+    pub fn new(grid: &Grid, out: PathBuf, command: String) -> Result<Self> {
+        let jobs = grid.jobs(&out)?;
+        let mut checks = Vec::new();
+        if let Some(job) = jobs.first() {
+            checks = labels(job.checks()?.iter().map(|c| c.words().series.as_str()));
+        }
+        let keys = grid.vary.iter().map(|vary| vary.key.clone()).collect();
+        Ok(Self { title: format!("Study of {}", grid.name), command, keys, checks, out, jobs })
+    }
+
+    /// A row for each run and check, those to come too.
+    pub fn rows(&self, ran: &[Ran]) -> Vec<Row> {
+        rows(&self.jobs, ran, &self.checks)
+    }
+
+    /// Files that [`Sheet::write`] writes.
+    pub fn files(&self) -> [PathBuf; 3] {
+        ["study.csv", "study.json", "study.html"].map(|name| self.out.join(name))
+    }
+
+    /// Writes all three files; `ran` are the first runs.
+    ///
+    /// # Errors
+    /// `File` if one cannot be written; each is replaced as a whole.
+    pub fn write(&self, ran: &[Ran]) -> Result<()> {
+        fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
+        let rows = self.rows(ran);
+        let orders = self.orders(&rows);
+        let first = ran.iter().find_map(|r| r.manifest.as_ref());
+        let (machine, threads) = (first.map_or_else(Machine::this, |m| m.machine.clone()), first.map(|m| m.threads));
+        let whole = Whole {
+            title: &self.title,
+            command: &self.command,
+            date: page::now(),
+            version: env!("CARGO_PKG_VERSION"),
+            machine: machine.clone(),
+            threads,
+            rows: &rows,
+            orders: &orders,
+        };
+        let [table, json, html] = self.files();
+        write_whole(&table, &csv(&rows, &self.keys)?)?;
+        let text = serde_json::to_string_pretty(&whole).map_err(|e| Error::file(&json, e))?;
+        write_whole(&json, (text + "\n").as_bytes())?;
+        write_whole(&html, &page::page(&self.title, &self.body(&rows, &orders, &machine, threads)?))
+    }
+
+    /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
+    /// where there is no N.
+    fn metrics(rows: &[Row], check: &str) -> Vec<Metric> {
+        let known: [Metric; 3] = [("N", |r| r.n), ("aligned N", |r| r.aligned_n), ("largest distance", |r| r.off)];
+        let has = |metric: &Metric| rows.iter().any(|r| r.check == check && metric.1(r).is_some());
+        let found: Vec<Metric> = known.into_iter().filter(has).collect();
+        let relative = found.iter().any(|m| m.0 == "N");
+        found.into_iter().filter(|m| !(relative && m.0 == "largest distance")).collect()
+    }
+
+    /// The combinations, in words.
+    fn groups(&self) -> Vec<String> {
+        let mut groups: Vec<String> = Vec::new();
+        for job in &self.jobs {
+            if !groups.contains(&job.group) {
+                groups.push(job.group.clone());
+            }
+        }
+        groups
+    }
+
+    /// The finished rows of a check and combination.
+    fn of<'a>(&self, rows: &'a [Row], check: &str, group: &str) -> Vec<&'a Row> {
+        let own = |r: &&Row| self.jobs.iter().any(|job| job.name == r.run && job.group == group);
+        rows.iter().filter(|r| r.check == check && r.status == "finished").filter(own).collect()
+    }
+
+    fn orders(&self, rows: &[Row]) -> Vec<Order> {
+        let mut orders = Vec::new();
+        for check in &self.checks {
+            for (error, figure) in Self::metrics(rows, check) {
+                for group in self.groups() {
+                    let of = self.of(rows, check, &group);
+                    let points: Vec<(f64, f64)> = of.iter().filter_map(|r| Some((r.dp, figure(r)?))).collect();
+                    let fine = convergence(&points);
+                    orders.push(Order {
+                        check: check.clone(),
+                        error: error.into(),
+                        varied: group,
+                        least_squares: least_squares(&points),
+                        three_finest: fine.map(|c| c.order),
+                        index: fine.map(|c| c.index),
+                    });
+                }
+            }
+        }
+        orders
+    }
+
+    fn body(&self, rows: &[Row], orders: &[Order], machine: &Machine, threads: Option<usize>) -> Result<String> {
+        let mut body = page::origin(&self.command, machine, threads);
+        for check in &self.checks {
+            body += &format!("<h2>{}</h2>\n", page::escape(check));
+            for (error, figure) in Self::metrics(rows, check) {
+                body += &self.plot(rows, check, error, figure)?;
+            }
+            let own: Vec<&Order> = orders.iter().filter(|o| o.check == *check).collect();
+            body += &page::table(&self.order_rows(&own));
+        }
+        body += "<p>Order: q of error ∝ dp^q. By least squares over all spacings it is of the error itself; from the three finest, of \
+                 the differences between them, and the index (Roache 1994, factor 1.25) is what the finest may still change \
+                 by, relative to itself. Neither can be said (–) with fewer spacings or where the figure does not converge \
+                 monotonically.</p>\n<h2>Runs</h2>\n";
+        body += &page::table(&self.run_rows(rows));
+        Ok(body)
+    }
+
+    /// Error over processor time.
+    fn plot(&self, rows: &[Row], check: &str, error: &str, figure: fn(&Row) -> Option<f64>) -> Result<String> {
+        let groups = self.groups();
+        let line = |(i, group): (usize, &String)| {
+            let known: Vec<(f64, f64, f64)> = self
+                .of(rows, check, group)
+                .iter()
+                .filter_map(|r| Some((r.cpu_s.filter(|s| *s > 0.0)?, figure(r).filter(|e| *e > 0.0)?, r.dp)))
+                .collect();
+            let labels = known.iter().map(|p| format!("{} mm", millimetres(p.2))).collect();
+            Line { labels, ..Line::new(i, Style::Dotted, known.iter().map(|p| (p.0, p.1)).collect()) }
+        };
+        let lines: Vec<Line> = groups.iter().enumerate().map(line).collect();
+        let unit = if error == "largest distance" { unit(check) } else { "–" };
+        let svg = log_log(["processor time, s", &format!("{error} of {check}, {unit}")], &lines)?;
+        let keys: Vec<(usize, String)> =
+            groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()).collect();
+        Ok(page::figure(
+            &svg,
+            &keys,
+            &format!("{error} over processor time; at each point its dp. Left and low is good."),
+        ))
+    }
+
+    fn order_rows(&self, orders: &[&Order]) -> Vec<Vec<String>> {
+        let head = ["error", "varied", "order, least squares", "order, three finest", "index of the finest, %"];
+        let mut rows = vec![head.map(String::from).to_vec()];
+        rows.extend(orders.iter().map(|o| {
+            let two = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.2}"));
+            let percent = o.index.map_or("–".into(), |x| format!("{:.1}", 100.0 * x));
+            vec![o.error.clone(), o.varied.clone(), two(o.least_squares), two(o.three_finest), percent]
+        }));
+        rows
+    }
+
+    /// The rows as a table in words, for a page or a terminal.
+    pub fn run_rows(&self, rows: &[Row]) -> Vec<Vec<String>> {
+        let mut head = vec!["dp, mm".to_string()];
+        head.extend(self.keys.iter().cloned());
+        let rest = [
+            "check",
+            "N",
+            "M",
+            "peak",
+            "off",
+            "aligned N",
+            "delay",
+            "wall, s",
+            "processors, s",
+            "particle-steps",
+            "status",
+        ];
+        head.extend(rest.map(String::from));
+        let row = |r: &Row| {
+            let mut cells = vec![millimetres(r.dp)];
+            cells.extend(r.varied.iter().map(|(_, value)| value.clone()));
+            cells.push(r.check.clone());
+            cells.extend([r.n, r.m, r.peak].map(said::figure));
+            cells.push(said::digits(r.off));
+            cells.push(said::figure(r.aligned_n));
+            cells.push(r.delay_s.map_or("–".into(), said::delay));
+            cells.extend([r.wall_s, r.cpu_s].map(|s| s.map_or("–".into(), |s| format!("{s:.1}"))));
+            cells.push(r.particle_steps.map_or("–".into(), |n| format!("{:.3e}", n as f64)));
+            let why = r.reason.as_ref().and_then(|why| why.lines().next()).map(|why| format!(": {why}"));
+            cells.push(format!("{}{}", r.status, why.unwrap_or_default()));
+            cells
+        };
+        std::iter::once(head).chain(rows.iter().map(row)).collect()
+    }
+}
+
+/// A length (m) in millimetres, without the round-off of its last digits.
+fn millimetres(x: f64) -> String {
+    format!("{}", (x * 1e9).round() / 1e6)
+}
