@@ -14,7 +14,7 @@ use serde::Serialize;
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    run::{outputs, with_threads},
+    run::{outputs, pool},
     scene::{Built, Scene},
     simulation::{Simulation, Spent},
     solid::Dim,
@@ -144,21 +144,23 @@ impl Work {
 /// # Errors
 /// Whatever stops a simulation, and `Usage` if threads cannot be had.
 pub fn time(works: &[Work], threads: &[usize], rounds: usize) -> Result<Vec<Timing>> {
-    let most = threads.iter().copied().max();
-    let mut ready = with_threads(most, || works.iter().map(ready_in).collect::<Result<Vec<_>>>())?;
+    // All live to the end: processor time is that of the threads alive.
+    let pools = threads.iter().map(|&n| Ok((n, pool(Some(n))?))).collect::<Result<Vec<_>>>()?;
+    let Some((_, largest)) = pools.iter().max_by_key(|(n, _)| n) else { return Ok(Vec::new()) };
+    let mut ready = largest.install(|| works.iter().map(ready_in).collect::<Result<Vec<_>>>())?;
     let mut timings = Vec::new();
-    for &threads in threads {
-        timings.extend(with_threads(Some(threads), || {
+    for (threads, pool) in &pools {
+        timings.extend(pool.install(|| {
             let mut best: Vec<Option<Timing>> = vec![None; works.len()];
             for _ in 0..rounds {
                 for (ready, best) in ready.iter_mut().zip(&mut best) {
-                    let timing = ready.time(threads)?;
+                    let timing = ready.time(*threads)?;
                     if best.as_ref().is_none_or(|b| timing.cpu_ns < b.cpu_ns) {
                         *best = Some(timing);
                     }
                 }
             }
-            Ok(best.into_iter().flatten().collect::<Vec<_>>())
+            Ok::<_, Error>(best.into_iter().flatten().collect::<Vec<_>>())
         })?);
     }
     Ok(timings)
@@ -333,7 +335,7 @@ pub fn fixed(steps: usize, name: &str) -> Result<()> {
         let names: Vec<String> = terms(2, 3000).into_iter().map(|w| w.name).collect();
         return Err(Error::new(Kind::Usage, format!("no work {name:?}; there are {}", names.join("; "))));
     };
-    with_threads(Some(1), || {
+    pool(Some(1))?.install(|| {
         let mut plane = ready_in(&plane)?;
         let mut space = ready_in(&space)?;
         (0..steps).try_for_each(|_| {

@@ -183,18 +183,18 @@ fn not_built(dimension: usize) -> Error {
 }
 
 /// Runs `work` in a pool of `threads` threads.
-pub(crate) fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    pool(threads)?.install(work)
+}
+
+/// A pool of `threads` threads, by default one for each processor.
+pub(crate) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if threads == Some(0) {
         return Err(
             Error::new(Kind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
         );
     }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .build()
-        .map_err(|why| {
-            Error::new(Kind::Usage, format!("the threads cannot be started: {why}"))
-                .help("ask for fewer with --threads")
-        })?
-        .install(work)
+    rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(|why| {
+        Error::new(Kind::Usage, format!("the threads cannot be started: {why}")).help("ask for fewer with --threads")
+    })
 }

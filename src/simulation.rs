@@ -99,7 +99,7 @@ impl<const D: usize> Simulation<D> {
             })
             .fold(f64::INFINITY, f64::min);
         let stepper = Stepper::new(&model);
-        let system = System::new(model, &water, &levels, solids, domain)?;
+        let system = System::new(model, water, levels, solids, domain)?;
         let bodies = Bodies::new(engine, 0);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let simulation = Self { system, stepper, bodies, dt_bodies, clock, stepping: Duration::ZERO };

@@ -73,8 +73,8 @@ impl<const D: usize> System<D> {
     /// each particle, m), and the solids with their skins.
     pub(crate) fn new(
         model: Model,
-        water: &[Vector<D>],
-        levels: &[f64],
+        water: Vec<Vector<D>>,
+        levels: Vec<f64>,
         specs: Vec<SolidSpec<D>>,
         domain: Option<Bounds<D>>,
     ) -> Result<Self>
@@ -83,12 +83,13 @@ impl<const D: usize> System<D> {
     {
         let medium = model.medium::<D>();
         let state = State::new(medium.c0, medium.gamma);
-        let mut fluid = Particles::default();
-        for (r, level) in water.iter().zip(levels) {
-            // Depth along g: the level is a height on the last axis.
-            let depth = (level - r[D - 1]).max(0.0) * -medium.gravity[D - 1];
-            fluid.push(*r, medium.rho0 * (1.0 + state.excess(depth.max(0.0))));
-        }
+        // Depth along g: the level is a height on the last axis.
+        let depth = |(r, level): (&Vector<D>, &f64)| (level - r[D - 1]).max(0.0) * -medium.gravity[D - 1];
+        let still = |depth: f64| medium.rho0 * (1.0 + state.excess(depth.max(0.0)));
+        let rho = water.iter().zip(&levels).map(depth).map(still).collect();
+        drop(levels);
+        let (v, id) = (vec![Vector::zeros(); water.len()], (0..water.len() as u32).collect());
+        let fluid = Particles { r: water, v, rho, id };
         let (mut skin, mut local, mut solids) = (Particles::default(), Vec::new(), Vec::new());
         let mut normals = Vec::new();
         for spec in specs {
