@@ -9,7 +9,7 @@
 
 use crate::{law::Num, space::Vector};
 
-/// Limiter β, –.
+/// Limiter β of [@zhang2017], –.
 const BETA: f64 = 3.0;
 
 /// The sums of a boundary particle over the water near it [@adami2012].
