@@ -33,6 +33,8 @@ pub(super) struct Lanes<const D: usize> {
     units: Units,
     level: Level,
     packed: Packed<D>,
+    /// Whether the water lies packed for this pass already.
+    has_water: bool,
     /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
     sums: Vec<Row>,
     /// Where in `sums` the rows of a cluster begin: its own slab's, and those of the slab before.
@@ -44,7 +46,7 @@ impl<const D: usize> Lanes<D> {
     /// The sweep of those laws, made in `units`.
     pub(super) fn new(laws: Box<dyn Laws<D>>, fits: Box<dyn Fits<D>>, units: Units, level: Level) -> Self {
         let (packed, sums, at) = (Packed::default(), Vec::new(), Vec::new());
-        Self { laws, fits, units, level, packed, sums, at, spent: Duration::ZERO }
+        Self { laws, fits, units, level, packed, has_water: false, sums, at, spent: Duration::ZERO }
     }
 
     /// Makes room for the sums of all slabs, `rows` a cluster; returns how many rows each slab writes.
@@ -140,7 +142,8 @@ impl<const D: usize> Sweep<D> for Lanes<D> {
 
     fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]) {
         let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
-        self.packed.pack(input, clusters, &self.units);
+        self.packed.pack(input, clusters, &self.units, false);
+        self.has_water = true;
         let lengths = self.lay_out(clusters, fits::rows(D));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
@@ -160,7 +163,7 @@ impl<const D: usize> Sweep<D> for Lanes<D> {
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
         let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
         let needs = self.laws.needs();
-        self.packed.pack(input, clusters, &self.units);
+        self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
         if needs.inputs(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
