@@ -106,6 +106,31 @@ pub struct Solid<const D: usize> {
     pub kinematics: Kinematics<D>,
     /// Its boundary particles' indices in the system's skin arrays.
     pub skin: Range<usize>,
+    /// Acceleration of `kinematics.centre`, a mean over the last few steps, m/s².
+    pub acceleration: Vector<D>,
+    /// Angular acceleration, such a mean, rad/s².
+    pub whirl: Wedge<D>,
     /// The water's load on it at the last force pass (pressure and viscosity, no weight).
     pub load: Load<D>,
+}
+
+/// How far the accelerations of a solid follow its last step: a mean over five or so, so that a body lighter than the
+/// water that it drags is not driven to and fro.
+const FOLLOW: f64 = 0.2;
+
+impl<const D: usize> Solid<D> {
+    /// Moves it to `next` over `dt` (s).
+    pub(crate) fn go(&mut self, next: Kinematics<D>, dt: f64) {
+        let now = &self.kinematics;
+        self.acceleration += ((next.velocity - now.velocity) / dt - self.acceleration) * FOLLOW;
+        let whirl = (next.spin + now.spin * -1.0) * (1.0 / dt);
+        self.whirl = self.whirl * (1.0 - FOLLOW) + whirl * FOLLOW;
+        self.kinematics = next;
+    }
+
+    /// Acceleration (m/s²) of its point at the world position `x` (m).
+    pub fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> {
+        let (arm, spin) = (x - self.kinematics.centre, &self.kinematics.spin);
+        self.acceleration + self.whirl.at(&arm) + spin.at(&spin.at(&arm))
+    }
 }

@@ -7,11 +7,12 @@ use rayon::prelude::*;
 
 use super::{
     Input, Output, Peaks, Sums, Sweep,
+    fits::Fits,
     laws::{Compiled, Laws},
     rows::{Needs, Running},
 };
 use crate::{
-    law::{Extra, Pair, Side, Term, kernel::Kernel, pressure::repulsion},
+    law::{Extra, Pair, Side, Term, kernel::Kernel, pressure::repulsion, wall::Fit},
     near::{CHUNK, Chunk, Pairs},
     particles::{PER_TASK, Particles},
     space::{Matrix, Vector},
@@ -20,6 +21,7 @@ use crate::{
 /// The oracle with its laws.
 pub(super) struct Gather<const D: usize> {
     laws: Box<dyn Laws<D>>,
+    fits: Box<dyn Fits<D>>,
     nodes: [Vec<Node<D>>; 2],
     spent: Duration,
 }
@@ -27,15 +29,15 @@ pub(super) struct Gather<const D: usize> {
 /// A particle as a pair needs it, packed together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node<const D: usize> {
-    r: [f64; D],
-    v: [f64; D],
-    side: Side<f64, D>,
+    pub(super) r: [f64; D],
+    pub(super) v: [f64; D],
+    pub(super) side: Side<f64, D>,
 }
 
 impl<const D: usize> Gather<D> {
     /// The oracle of those laws, made in SI.
-    pub(super) fn new(laws: Box<dyn Laws<D>>) -> Self {
-        Self { laws, nodes: [Vec::new(), Vec::new()], spent: Duration::ZERO }
+    pub(super) fn new(laws: Box<dyn Laws<D>>, fits: Box<dyn Fits<D>>) -> Self {
+        Self { laws, fits, nodes: [Vec::new(), Vec::new()], spent: Duration::ZERO }
     }
 }
 
@@ -157,6 +159,18 @@ impl<const D: usize> Sweep<D> for Gather<D> {
 
     fn spent(&self) -> Duration {
         self.spent
+    }
+
+    fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]) {
+        let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
+        let needs = self.laws.needs();
+        nodes(input, input.water, input.stress, &[], needs, &mut self.nodes[0]);
+        nodes(input, input.skin, &[], input.marks, needs, &mut self.nodes[1]);
+        let start = Instant::now();
+        let (sums, nodes) = (&self.fits, [&self.nodes[0][..], &self.nodes[1][..]]);
+        let chunks = fits.par_chunks_mut(CHUNK).zip(input.near.wet().par_chunks(CHUNK)).zip(&lists.skin);
+        chunks.for_each(|((fits, wet), chunk)| sums.skin(nodes, wet, chunk, fits));
+        self.spent += start.elapsed();
     }
 
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {

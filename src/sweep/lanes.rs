@@ -13,13 +13,14 @@ use rayon::prelude::*;
 
 use super::{
     Input, Output, Peaks, Sums, Sweep,
+    fits::{self, Fits},
     laws::{Compiled, Laws},
     packed::{Cluster, Packed},
     rows::{Needs, Running},
 };
 use crate::{
     lanes::{self, LANES, Level, Row, Simd, Work, f32x8, i32x8},
-    law::{Extra, Pair, Side, Term, Units, kernel::Kernel},
+    law::{Extra, Pair, Side, Term, Units, kernel::Kernel, wall::Fit},
     near::{Clusters, Pairs, Slab},
     particles::PER_TASK,
     space::Vector,
@@ -28,9 +29,12 @@ use crate::{
 /// The sweep in lanes with its laws.
 pub(super) struct Lanes<const D: usize> {
     laws: Box<dyn Laws<D>>,
+    fits: Box<dyn Fits<D>>,
     units: Units,
     level: Level,
     packed: Packed<D>,
+    /// Whether the water lies packed for this pass already.
+    has_water: bool,
     /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
     sums: Vec<Row>,
     /// Where in `sums` the rows of a cluster begin: its own slab's, and those of the slab before.
@@ -40,9 +44,9 @@ pub(super) struct Lanes<const D: usize> {
 
 impl<const D: usize> Lanes<D> {
     /// The sweep of those laws, made in `units`.
-    pub(super) fn new(laws: Box<dyn Laws<D>>, units: Units, level: Level) -> Self {
+    pub(super) fn new(laws: Box<dyn Laws<D>>, fits: Box<dyn Fits<D>>, units: Units, level: Level) -> Self {
         let (packed, sums, at) = (Packed::default(), Vec::new(), Vec::new());
-        Self { laws, units, level, packed, sums, at, spent: Duration::ZERO }
+        Self { laws, fits, units, level, packed, has_water: false, sums, at, spent: Duration::ZERO }
     }
 
     /// Makes room for the sums of all slabs, `rows` a cluster; returns how many rows each slab writes.
@@ -103,13 +107,7 @@ impl<const D: usize> Lanes<D> {
     fn pairs(&mut self, clusters: &Clusters) -> f64 {
         let lengths = self.lay_out(clusters, self.laws.needs().sums(D));
         let start = Instant::now();
-        let mut rest = self.sums.as_mut_slice();
-        let mut works = Vec::with_capacity(lengths.len());
-        for (slab, length) in clusters.slabs.iter().zip(lengths) {
-            let (these, others) = rest.split_at_mut(length);
-            works.push((slab, these));
-            rest = others;
-        }
+        let works = works(clusters, &lengths, &mut self.sums);
         let (laws, level, packed) = (&self.laws, self.level, &self.packed);
         let closing = works
             .into_par_iter()
@@ -121,6 +119,18 @@ impl<const D: usize> Lanes<D> {
     }
 }
 
+/// The slabs, each with the rows of `sums` that it writes.
+fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [Row]) -> Vec<(&'a Slab, &'a mut [Row])> {
+    let mut rest = sums;
+    let mut works = Vec::with_capacity(lengths.len());
+    for (slab, &length) in clusters.slabs.iter().zip(lengths) {
+        let (these, others) = rest.split_at_mut(length);
+        works.push((slab, these));
+        rest = others;
+    }
+    works
+}
+
 impl<const D: usize> Sweep<D> for Lanes<D> {
     fn extra(&self) -> bool {
         self.laws.needs().any()
@@ -130,10 +140,30 @@ impl<const D: usize> Sweep<D> for Lanes<D> {
         self.spent
     }
 
+    fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]) {
+        let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
+        self.packed.pack(input, clusters, &self.units, false);
+        self.has_water = true;
+        let lengths = self.lay_out(clusters, fits::rows(D));
+        let start = Instant::now();
+        let works = works(clusters, &lengths, &mut self.sums);
+        let (sums, level, packed) = (&self.fits, self.level, &self.packed);
+        works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.slab(level, packed, slab, rows));
+        self.spent += start.elapsed();
+        let Units { length, time } = self.units;
+        fits.par_iter_mut().zip(&clusters.wet).with_min_len(PER_TASK).for_each(|(fit, &slot)| {
+            let sum = self.of_slot(slot, fits::rows(D));
+            fits::each(fit, |row, x| *x = sum(row));
+            fit.head *= (length / time).powi(2);
+            fit.arm = fit.arm.map(|x| x * length);
+            fit.flow = fit.flow.map(|x| x * (length / time));
+        });
+    }
+
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
         let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
         let needs = self.laws.needs();
-        self.packed.pack(input, clusters, &self.units);
+        self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
         if needs.inputs(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }

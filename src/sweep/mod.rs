@@ -3,6 +3,7 @@
 //! `gather` is the oracle, in f64; `lanes` does the same eight pairs at a time, each pair once. Threads and buffers are
 //! theirs; what is compiled anew for every choice of laws is in `laws` and no more.
 
+mod fits;
 mod gather;
 mod lanes;
 mod laws;
@@ -13,7 +14,7 @@ use std::time::Duration;
 
 use crate::{
     lanes::Level,
-    law::{Extra, Medium, Term, Units, kernel::Kernel, state::State},
+    law::{Extra, Medium, Term, Units, kernel::Kernel, state::State, wall::Fit},
     near::Near,
     particles::Particles,
     space::{Matrix, Vector},
@@ -81,6 +82,10 @@ pub trait Sweep<const D: usize>: Send + Sync {
     /// Time spent on pairs so far.
     fn spent(&self) -> Duration;
 
+    /// Sums of the wet boundary particles over the water, for walls that extrapolate; the lists must hold, and
+    /// [`Sweep::rates`] comes next, with the same water.
+    fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]);
+
     /// Sums over all pairs; the lists must hold.
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks;
 }
@@ -101,8 +106,9 @@ where
     W: Term<D> + 'static,
 {
     let laws = Box::new(laws::Compiled::new(kernel, inner, wall, medium));
+    let fits = Box::new(fits::Weighed(kernel.weighed(medium.volume0())));
     match level {
-        Some(level) => Box::new(lanes::Lanes::new(laws, units, level)),
-        None => Box::new(gather::Gather::new(laws)),
+        Some(level) => Box::new(lanes::Lanes::new(laws, fits, units, level)),
+        None => Box::new(gather::Gather::new(laws, fits)),
     }
 }

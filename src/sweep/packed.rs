@@ -35,12 +35,13 @@ pub(super) struct Packed<const D: usize> {
 }
 
 impl<const D: usize> Packed<D> {
-    /// Packs all particles that may meet.
-    pub(super) fn pack(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units) {
+    /// Packs all particles that may meet; only the boundary particles if the water has not changed since.
+    pub(super) fn pack(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
         self.clusters.resize(clusters.len(), Cluster::EMPTY);
         let inv_unit = 1.0 / units.length;
         clusters.by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
-            for (c, cluster) in (slab.first..).zip(packed) {
+            let skip = if water_stays { slab.middle - slab.first } else { 0 };
+            for (c, cluster) in (slab.first..).zip(packed).skip(skip) {
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
                 let particles = if c < slab.middle { input.water } else { input.skin };
                 near::fill(&mut cluster.x, source, &particles.r, inv_unit);

@@ -7,7 +7,7 @@ use crate::{
     error::{Error, Kind, Result},
     particles::Particles,
     solid::{Kinematics, Load},
-    space::{Matrix, Pose, Vector},
+    space::{Matrix, Pose, Vector, Wedge},
     sweep::Sums,
 };
 
@@ -18,6 +18,7 @@ pub(crate) struct SystemState<const D: usize> {
     skin: Particles<D>,
     kinematics: Vec<Kinematics<D>>,
     loads: Vec<Load<D>>,
+    accelerations: Vec<(Vector<D>, Wedge<D>)>,
     stress: Vec<Matrix<D>>,
     /// Where the water and the solids were when the lists were made.
     built: (Vec<Vector<D>>, Vec<Pose<D>>),
@@ -32,6 +33,7 @@ impl<const D: usize> System<D> {
             skin: self.skin.clone(),
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
             loads: self.solids.iter().map(|s| s.load).collect(),
+            accelerations: self.solids.iter().map(|s| (s.acceleration, s.whirl)).collect(),
             stress: self.stress.clone(),
             built: (self.near.built().to_vec(), self.built.clone().unwrap_or_default()),
             passes: self.passes,
@@ -44,6 +46,7 @@ impl<const D: usize> System<D> {
             && kept.skin.len() == self.skin.len()
             && kept.kinematics.len() == self.solids.len()
             && kept.loads.len() == self.solids.len()
+            && kept.accelerations.len() == self.solids.len()
             && kept.stress.len() == self.stress.len()
             && kept.built.0.len() == kept.fluid.len()
             && kept.built.1.len() == kept.kinematics.len();
@@ -54,6 +57,9 @@ impl<const D: usize> System<D> {
         (self.fluid, self.skin, self.stress, self.passes) = (kept.fluid, kept.skin, kept.stress, kept.passes);
         for ((solid, k), load) in self.solids.iter_mut().zip(kept.kinematics).zip(kept.loads) {
             (solid.kinematics, solid.load) = (k, load);
+        }
+        for (solid, kept) in self.solids.iter_mut().zip(kept.accelerations) {
+            (solid.acceleration, solid.whirl) = kept;
         }
         let (water, poses) = kept.built;
         let mut skin = self.skin.r.clone();

@@ -4,6 +4,7 @@
 mod guard;
 mod kept;
 mod view;
+mod walls;
 
 pub(crate) use guard::Seen;
 pub(crate) use kept::SystemState;
@@ -16,11 +17,11 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    law::{Extra, Medium, state::State, wall::Dbc},
-    model::{Dimension, Model, Shifting, Viscosity},
+    law::{Extra, Medium, state::State},
+    model::{Dimension, Model, Viscosity, Walls},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
-    solid::{Dim, Load, Role, Solid, SolidSpec, skin},
+    solid::{Dim, Load, Solid, SolidSpec, skin},
     space::{Bounds, Matrix, Pose, Vector, Wedge},
     sweep::{Input, Output, Sums, Sweep},
 };
@@ -36,6 +37,8 @@ pub struct System<const D: usize> {
     pub(crate) skin: Particles<D>,
     /// Places of the boundary particles in their solids' frames, m.
     local: Vec<Vector<D>>,
+    /// Where the water is from them, unit vectors in their solids' frames; empty unless walls extrapolate.
+    normals: Vec<Vector<D>>,
     /// The box around each solid's skin in its own frame, m.
     boxes: Vec<Bounds<D>>,
     /// Where the solids were when the lists were made, if they were.
@@ -88,19 +91,24 @@ impl<const D: usize> System<D> {
         let (v, id) = (vec![Vector::zeros(); water.len()], (0..water.len() as u32).collect());
         let fluid = Particles { r: water, v, rho, id };
         let (mut skin, mut local, mut solids) = (Particles::default(), Vec::new(), Vec::new());
+        let mut normals = Vec::new();
         for spec in specs {
             let kinematics = spec.start();
             let first = skin.len();
             for point in spec.shape.skin(model.dp, model.layers()) {
                 skin.push(kinematics.pose.point(&point.r), medium.rho0);
                 local.push(point.r);
+                if model.walls == Walls::Extrapolating {
+                    normals.push(spec.shape.outward(&point.r, 1e-3 * model.dp));
+                }
             }
             if skin.len() == first {
                 return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
                     .help("make it larger or dp smaller"));
             }
             let load = Load { force: Vector::zeros(), torque: Wedge::zero() };
-            solids.push(Solid { spec, kinematics, skin: first..skin.len(), load });
+            let (acceleration, whirl) = (Vector::zeros(), Wedge::zero());
+            solids.push(Solid { spec, kinematics, acceleration, whirl, skin: first..skin.len(), load });
         }
         let everything = Bounds::around(&fluid.r).union(&Bounds::around(&skin.r));
         let domain = domain.unwrap_or_else(|| everything.grown(everything.size().max() + model.reach()));
@@ -113,7 +121,7 @@ impl<const D: usize> System<D> {
             } else {
                 Vec::new()
             },
-            marks: marks(&model, &solids, skin.len()),
+            marks: walls::marks(&model, &solids, skin.len()),
             sums: vec![Sums::zero(); fluid.len()],
             skin_sums: Vec::new(),
             extra: Vec::new(),
@@ -128,6 +136,7 @@ impl<const D: usize> System<D> {
             fluid,
             skin,
             local,
+            normals,
             boxes,
             solids,
             domain,
@@ -138,30 +147,6 @@ impl<const D: usize> System<D> {
         system.still_skin();
         system.rates();
         Ok(system)
-    }
-
-    /// Gives each boundary particle beside water the density of still water at its depth.
-    fn still_skin(&mut self) {
-        let up = D - 1;
-        let g = -self.medium.gravity[up];
-        let still: Vec<f64> = self
-            .near
-            .wet()
-            .par_iter()
-            .map(|&i| {
-                let x = &self.skin.r[i as usize];
-                let mut nearest = (f64::INFINITY, 0.0);
-                self.near.water_around(x, &mut |j| {
-                    let d = (self.fluid.r[j] - x).norm_squared();
-                    if d < nearest.0 {
-                        let head = self.state.pressure(self.fluid.rho[j] / self.medium.rho0 - 1.0);
-                        nearest = (d, head + g * (self.fluid.r[j][up] - x[up]));
-                    }
-                });
-                self.medium.rho0 * (1.0 + self.state.excess(nearest.1.max(0.0)))
-            })
-            .collect();
-        self.set_skin_density(|k, _, _| still[k]);
     }
 
     /// Sorts the water along the columns and makes new neighbour lists, if they are due; returns what whoever keeps
@@ -224,20 +209,14 @@ impl<const D: usize> System<D> {
     /// Rates of the water and loads on the solids at the present places, velocities and densities; the lists
     /// must hold.
     pub(crate) fn rates(&mut self) {
+        self.extrapolate();
         if self.sweep.extra() {
             self.extra.resize(self.fluid.len(), Extra::all(0.0));
         }
-        let input = Input {
-            near: &self.near,
-            water: &self.fluid,
-            skin: &self.skin,
-            stress: &self.stress,
-            marks: &self.marks,
-            medium: &self.medium,
-            state: &self.state,
-        };
+        let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
+        let input = Input { near, water: fluid, skin, stress, marks, medium, state };
         let mut output = Output { water: &mut self.sums, skin: &mut self.skin_sums, extra: &mut self.extra };
-        self.peaks = self.sweep.rates(&input, &mut output);
+        self.peaks = sweep.rates(&input, &mut output);
         if let Viscosity::Sps(sps) = self.model.viscosity {
             let (medium, rho, extra) = (&self.medium, &self.fluid.rho, &self.extra);
             self.stress.par_iter_mut().enumerate().with_min_len(PER_TASK).for_each(|(i, stress)| {
@@ -301,33 +280,6 @@ impl<const D: usize> System<D> {
         let range = range.clone();
         skin::place(kinematics, &self.local[range.clone()], &mut self.skin.r[range.clone()], &mut self.skin.v[range]);
     }
-
-    /// Lets the density (kg/m³) of each wet boundary particle become what `rho` makes of its place among the wet, its
-    /// index and its density, never below what the wall law allows. The dry ones stay at ρ₀.
-    pub(crate) fn set_skin_density(&mut self, mut rho: impl FnMut(usize, usize, f64) -> f64) {
-        let rho0 = self.medium.rho0;
-        for (k, &i) in self.near.wet().iter().enumerate() {
-            let i = i as usize;
-            self.skin.rho[i] = Dbc.close(rho(k, i, self.skin.rho[i]), rho0);
-        }
-    }
-}
-
-/// Beside which boundary particles water is not shifted.
-fn marks<const D: usize>(model: &Model, solids: &[Solid<D>], skin: usize) -> Vec<bool> {
-    let held = |solid: &Solid<D>| match model.shifting {
-        Shifting::AwayFromSolids(_) => true,
-        Shifting::AwayFromFixed(_) => matches!(solid.spec.role, Role::Fixed),
-        Shifting::None | Shifting::Everywhere(_) => false,
-    };
-    if model.shift().is_none() {
-        return Vec::new();
-    }
-    let mut marks = vec![false; skin];
-    for solid in solids {
-        marks[solid.skin.clone()].fill(held(solid));
-    }
-    marks
 }
 
 /// Puts `array` into `order`: the new i-th is the old `order[i]`-th. An empty array stays empty.

@@ -41,7 +41,7 @@ impl<const D: usize> Bodies<D> {
     /// Puts the solids where they will be half a step on: driven ones exactly, free ones as they drift.
     pub(super) fn drift(&self, system: &mut System<D>, over: Interval) {
         let half = 0.5 * over.dt;
-        place(system, |_, solid| match &solid.spec.role {
+        place(system, None, |_, solid| match &solid.spec.role {
             Role::Fixed => None,
             Role::Driven(motion) => Some(motion.kinematics(&solid.spec.pose, over.t + half)),
             Role::Free(_) => Some(drifted(&solid.kinematics, half)),
@@ -71,7 +71,7 @@ impl<const D: usize> Bodies<D> {
         }
         self.steps += 1;
         let engine = self.engine.as_deref();
-        place(system, |i, solid| match &solid.spec.role {
+        place(system, Some(over.dt), |i, solid| match &solid.spec.role {
             Role::Free(_) => engine.map(|e| e.kinematics(i)),
             _ => driven(solid),
         });
@@ -79,11 +79,19 @@ impl<const D: usize> Bodies<D> {
     }
 }
 
-/// Gives each solid the kinematics that `to` says, if any, and places its skin.
-fn place<const D: usize>(system: &mut System<D>, to: impl Fn(usize, &Solid<D>) -> Option<Kinematics<D>>) {
+/// Gives each solid the kinematics that `to` says, if any, and places its skin; `over` is the length (s) of a step that
+/// ends there.
+fn place<const D: usize>(
+    system: &mut System<D>,
+    over: Option<f64>,
+    to: impl Fn(usize, &Solid<D>) -> Option<Kinematics<D>>,
+) {
     for i in 0..system.solids.len() {
         if let Some(kinematics) = to(i, &system.solids[i]) {
-            system.solids[i].kinematics = kinematics;
+            match over {
+                Some(dt) => system.solids[i].go(kinematics, dt),
+                None => system.solids[i].kinematics = kinematics,
+            }
             system.place(i);
         }
     }

@@ -1,7 +1,7 @@
 //! Water and solids: what one loses the other gains.
 
 use pontoon::{
-    model::{Diffusion, Model, Scheme, Sweeping, Viscosity},
+    model::{Diffusion, Model, Scheme, Sweeping, Viscosity, Walls},
     shape::Shape,
     simulation::Simulation,
     solid::{Formula, Law, Motion, Role},
@@ -23,6 +23,12 @@ fn drop_with_body(scheme: Scheme, sweep: Sweeping) -> Simulation<2> {
         // Without damping no Euler step comes before its time.
         (model.cfl, model.viscosity, model.diffusion) = (0.2, Viscosity::None, Diffusion::None);
     }
+    drop_under(model)
+}
+
+/// That drop with another model.
+fn drop_under(model: Model) -> Simulation<2> {
+    let dp = model.dp;
     let mut water = rig::lattice([-0.2, -0.2], [0.4, 0.4], dp);
     water.retain(|r| r[0].abs() > 0.06 || r[1].abs() > 0.04);
     let body = rig::float(Shape::Box { size: Vector::from([0.12, 0.08]) }, [0.0, 0.0], 600.0);
@@ -53,6 +59,21 @@ fn a_free_drop_with_a_body_inside_keeps_its_momentum() {
         let end = rig::water_momentum(&sim) + body_momentum(&sim);
         assert!(body_momentum(&sim).norm() > 1e-3 * scale, "the body was carried along");
         assert!((end - start).norm() < rounding * scale, "{:e}", (end - start).norm() / scale);
+    }
+}
+
+#[test]
+fn walls_that_extrapolate_keep_momentum_too() {
+    for (sweep, lost) in SWEEPS {
+        let mut model = drop_with_body(Scheme::Symplectic, sweep).system().model().clone();
+        model.walls = Walls::Extrapolating;
+        let mut sim = drop_under(model);
+        let start = rig::water_momentum(&sim) + body_momentum(&sim);
+        for _ in 0..200 {
+            sim.step().expect("a sound run");
+        }
+        let change = (rig::water_momentum(&sim) + body_momentum(&sim) - start).norm();
+        assert!(change < lost * momentum_scale(&sim), "{sweep:?}: {change} kg m/s");
     }
 }
 

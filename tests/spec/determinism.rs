@@ -2,7 +2,7 @@
 
 use pontoon::{
     law::{shifting::Shift, viscosity::Sps},
-    model::{Model, Scheme, Shifting, Viscosity},
+    model::{Model, Scheme, Shifting, Viscosity, Walls},
     shape::Shape,
     simulation::Simulation,
     solid::{Formula, Law, Motion, Role},
@@ -11,11 +11,18 @@ use pontoon::{
 
 use crate::rig;
 
+/// Both steppers and both walls.
+const BOTH: [(Scheme, Walls); 3] = [
+    (Scheme::Symplectic, Walls::Dbc),
+    (Scheme::Verlet { euler_every: 50 }, Walls::Dbc),
+    (Scheme::Symplectic, Walls::Extrapolating),
+];
+
 /// A dam break onto two floats that collide, beside a paddle, with every term that remembers something.
-fn scene(scheme: Scheme) -> Simulation<2> {
+fn scene(scheme: Scheme, walls: Walls) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    (model.scheme, model.cfl) = (scheme, 0.2);
+    (model.scheme, model.cfl, model.walls) = (scheme, 0.2, walls);
     model.viscosity = Viscosity::Sps(Sps::default());
     model.shifting = Shifting::AwayFromFixed(Shift::default());
     let mut water = rig::lattice([0.1, 0.0], [0.5, 0.3], dp);
@@ -41,42 +48,42 @@ fn steps(sim: &mut Simulation<2>, n: u32) {
 
 #[test]
 fn one_two_three_and_eight_threads_give_the_same_bits() {
-    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
+    for (scheme, walls) in BOTH {
         let runs: Vec<Vec<u8>> = [1, 2, 3, 8]
             .into_iter()
             .map(|n| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
                 pool.install(|| {
-                    let mut sim = scene(scheme);
+                    let mut sim = scene(scheme, walls);
                     steps(&mut sim, 150);
                     sim.save().unwrap()
                 })
             })
             .collect();
-        assert!(runs.iter().all(|run| *run == runs[0]), "{scheme:?}");
+        assert!(runs.iter().all(|run| *run == runs[0]), "{scheme:?} {walls:?}");
     }
 }
 
 #[test]
 fn a_resumed_run_goes_on_to_the_same_bits() {
-    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
-        let mut whole = scene(scheme);
+    for (scheme, walls) in BOTH {
+        let mut whole = scene(scheme, walls);
         steps(&mut whole, 73);
         let kept = whole.save().unwrap();
         steps(&mut whole, 120);
-        let mut resumed = scene(scheme);
+        let mut resumed = scene(scheme, walls);
         resumed.restore(&kept).unwrap();
         assert_eq!(resumed.save().unwrap(), kept, "what was kept comes back whole");
         steps(&mut resumed, 120);
-        assert!(resumed.save().unwrap() == whole.save().unwrap(), "{scheme:?}");
+        assert!(resumed.save().unwrap() == whole.save().unwrap(), "{scheme:?} {walls:?}");
     }
 }
 
 #[test]
 fn damaged_bytes_are_refused() {
-    let sim = scene(Scheme::Symplectic);
+    let sim = scene(Scheme::Symplectic, Walls::Dbc);
     let kept = sim.save().unwrap();
-    let mut other = scene(Scheme::Symplectic);
+    let mut other = scene(Scheme::Symplectic, Walls::Dbc);
     assert!(other.restore(&kept[..kept.len() / 2]).is_err());
     assert!(other.restore(&[]).is_err());
 }

@@ -12,7 +12,7 @@ use pontoon::{
         state::State,
         viscosity::{Artificial, Laminar, Sps},
     },
-    model::{Diffusion, Dimension, Kernel, Model, Scheme, Shifting, Sweeping, Viscosity},
+    model::{Diffusion, Dimension, Kernel, Model, Scheme, Shifting, Sweeping, Viscosity, Walls},
     near::Near,
     particles::Particles,
     shape::Shape,
@@ -148,6 +148,18 @@ fn a_floating_box_and_a_light_one() {
         setup.solids.push(rig::float(Shape::Box { size: Vector::from([0.2, 0.1]) }, [0.5, 0.31], density));
         agrees("float", &setup, &run(&setup, 0.15));
     }
+}
+
+#[test]
+fn walls_that_extrapolate() {
+    let mut model = Model::water(2, 0.0125, 0.3);
+    model.walls = Walls::Extrapolating;
+    let setup = dam(model, [0.8, 0.3], 0.0);
+    agrees("2-D", &setup, &run(&setup, 0.35));
+    let mut model = Model::water(3, 0.025, 0.3);
+    model.walls = Walls::Extrapolating;
+    let setup = dam(model, [0.6, 0.15, 0.3], 0.0);
+    agrees("3-D", &setup, &run(&setup, 0.3));
 }
 
 #[test]

@@ -1,0 +1,121 @@
+//! Sums of boundary particles over the water near them, for walls that extrapolate: one kernel and no laws.
+
+use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
+
+use super::{
+    gather::Node,
+    packed::{Cluster, Packed},
+};
+use crate::{
+    lanes::{self, LANES, Level, Row, Simd, Work, f32x8, i32x8},
+    law::{Num, kernel::Kernel, wall::Fit},
+    near::{Chunk, Slab},
+};
+
+/// The sums under one kernel.
+pub(super) trait Fits<const D: usize>: Send + Sync {
+    /// By the oracle, of the boundary particles `wet`, whose neighbours `lists` hold.
+    fn skin(&self, nodes: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, fits: &mut [Fit<f64, D>]);
+
+    /// In lanes, of a slab and the one after it.
+    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, sums: &mut [Row]);
+}
+
+/// A kernel, weighed with a particle's volume at ρ₀.
+pub(super) struct Weighed<K>(pub(super) K);
+
+/// Rows of sums.
+pub(super) const fn rows(dimension: usize) -> usize {
+    2 * dimension + 2
+}
+
+impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
+    fn skin(&self, [water, skin]: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, fits: &mut [Fit<f64, D>]) {
+        for (k, (out, &i)) in fits.iter_mut().zip(wet).enumerate() {
+            let mut fit = Fit::all(0.0);
+            for &j in lists.of(k).0 {
+                let (wall, water) = (&skin[i as usize], &water[j as usize]);
+                let r: [f64; D] = std::array::from_fn(|k| wall.r[k] - water.r[k]);
+                let r2 = r.iter().map(|x| x * x).sum();
+                fit.add(self.0.w(r2), water.side.p, water.side.s, water.v, r);
+            }
+            *out = fit;
+        }
+    }
+
+    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, sums: &mut [Row]) {
+        lanes::with(level, OfSlab { kernel: self.0, packed, slab, sums });
+    }
+}
+
+/// The sums in `rows` and as a fit.
+#[inline(always)]
+pub(super) fn each<N: Num, const D: usize>(fit: &mut Fit<N, D>, mut visit: impl FnMut(usize, &mut N)) {
+    visit(0, &mut fit.weight);
+    visit(1, &mut fit.head);
+    for (k, arm) in fit.arm.iter_mut().enumerate() {
+        visit(2 + k, arm);
+    }
+    for (k, flow) in fit.flow.iter_mut().enumerate() {
+        visit(2 + D + k, flow);
+    }
+}
+
+struct OfSlab<'a, K, const D: usize> {
+    kernel: K,
+    packed: &'a Packed<D>,
+    slab: &'a Slab,
+    sums: &'a mut [Row],
+}
+
+impl<K: Kernel, const D: usize> Work for OfSlab<'_, K, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { kernel, packed, slab, sums } = self;
+        let Slab { first, middle, end, spans, index } = slab;
+        let (rows, zero) = (rows(D), f32x8::splat(simd, 0.0));
+        sums.fill(Row::default());
+        for c in *first..*end {
+            for l in 0..LANES {
+                let [start, skin, end] = spans[(c - first) * LANES + l];
+                let is_water = c < *middle;
+                let others = &index[if is_water { skin } else { start } as usize..end as usize];
+                let Cluster { x, v, s } = &packed.clusters[c];
+                let all = |x: f32| f32x8::splat(simd, x);
+                let (p, volume) = (all(s[2][l]), all(s[3][l]));
+                let mine: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, x[k][l]));
+                let velocity: [f32x8<S>; D] = std::array::from_fn(|k| all(v[k][l]));
+                let mut sum = Fit::all(zero);
+                for &j in others {
+                    let Cluster { x, v, s } = &packed.clusters[j as usize];
+                    let mut r = [zero; D];
+                    for k in 0..D {
+                        r[k] = f32x8::float_from(mine[k] - lanes::load_whole(simd, &x[k]));
+                    }
+                    let mut r2 = r[0] * r[0];
+                    for d in &r[1..] {
+                        r2 = d.mul_add(*d, r2);
+                    }
+                    let w = kernel.w(r2);
+                    if is_water {
+                        // One water particle beside eight of a wall, which take it.
+                        let theirs = &mut sums[(j as usize - first) * rows..][..rows];
+                        let mut fit = Fit::all(zero);
+                        each(&mut fit, |row, x| *x = lanes::load(simd, &theirs[row].0));
+                        fit.add(w, p, volume, velocity, r.map(|x| -x));
+                        each(&mut fit, |row, x| x.store_array(&mut theirs[row].0));
+                    } else {
+                        let velocity = std::array::from_fn(|k| lanes::load(simd, &v[k]));
+                        sum.add(w, lanes::load(simd, &s[2]), lanes::load(simd, &s[3]), velocity, r);
+                    }
+                }
+                if !is_water {
+                    let mine = &mut sums[(c - first) * rows..][..rows];
+                    each(&mut sum, |row, sum| mine[row].0[l] += lanes::total(*sum));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! By what density the boundary particles show themselves, and beside which of them water is not shifted.
+
+use rayon::prelude::*;
+
+use super::System;
+use crate::{
+    law::wall::{Dbc, Fit, Place},
+    model::{Model, Shifting, Walls},
+    particles::PER_TASK,
+    solid::{Role, Solid},
+    sweep::Input,
+};
+
+impl<const D: usize> System<D> {
+    /// Gives each boundary particle beside water the density of still water at its depth.
+    pub(super) fn still_skin(&mut self) {
+        if self.model.walls != Walls::Dbc {
+            return;
+        }
+        let up = D - 1;
+        let g = -self.medium.gravity[up];
+        let still: Vec<f64> = self
+            .near
+            .wet()
+            .par_iter()
+            .map(|&i| {
+                let x = &self.skin.r[i as usize];
+                let mut nearest = (f64::INFINITY, 0.0);
+                self.near.water_around(x, &mut |j| {
+                    let d = (self.fluid.r[j] - x).norm_squared();
+                    if d < nearest.0 {
+                        let head = self.state.pressure(self.fluid.rho[j] / self.medium.rho0 - 1.0);
+                        nearest = (d, head + g * (self.fluid.r[j][up] - x[up]));
+                    }
+                });
+                self.medium.rho0 * (1.0 + self.state.excess(nearest.1.max(0.0)))
+            })
+            .collect();
+        self.set_skin_density(|k, _, _| still[k]);
+    }
+
+    /// Lets the density (kg/m³) of each wet boundary particle become what `rho` makes of its place among the wet, its
+    /// index and its density, never below what the wall law allows, where the law integrates it. The dry ones stay at ρ₀.
+    pub(crate) fn set_skin_density(&mut self, mut rho: impl FnMut(usize, usize, f64) -> f64) {
+        if self.model.walls != Walls::Dbc {
+            return;
+        }
+        let rho0 = self.medium.rho0;
+        for (k, &i) in self.near.wet().iter().enumerate() {
+            let i = i as usize;
+            self.skin.rho[i] = Dbc.close(rho(k, i, self.skin.rho[i]), rho0);
+        }
+    }
+
+    /// Gives each wet boundary particle the pressure that the water near it would have at its place, where the walls
+    /// do that.
+    pub(super) fn extrapolate(&mut self) {
+        if self.model.walls != Walls::Extrapolating {
+            return;
+        }
+        let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
+        let input = Input { near, water: fluid, skin, stress, marks, medium, state };
+        let mut fits = vec![Fit::all(0.0); input.near.wet().len()];
+        sweep.fits(&input, &mut fits);
+        let density = |(&i, fit): (&u32, &Fit<f64, D>)| {
+            let i = i as usize;
+            let solid = &self.solids[self.solids.partition_point(|solid| solid.skin.end <= i)];
+            let place = Place {
+                pull: self.medium.gravity - solid.acceleration_at(&self.skin.r[i]),
+                v: self.skin.v[i],
+                normal: solid.kinematics.pose.rotation * self.normals[i],
+            };
+            self.medium.rho0 * (1.0 + self.state.excess(fit.close(&place, self.medium.c0)))
+        };
+        let wet = self.near.wet();
+        let rho: Vec<f64> = wet.par_iter().zip(&fits).with_min_len(PER_TASK).map(density).collect();
+        for (&i, rho) in wet.iter().zip(rho) {
+            self.skin.rho[i as usize] = rho;
+        }
+    }
+}
+
+/// Beside which boundary particles water is not shifted.
+pub(super) fn marks<const D: usize>(model: &Model, solids: &[Solid<D>], skin: usize) -> Vec<bool> {
+    let held = |solid: &Solid<D>| match model.shifting {
+        Shifting::AwayFromSolids(_) => true,
+        Shifting::AwayFromFixed(_) => matches!(solid.spec.role, Role::Fixed),
+        Shifting::None | Shifting::Everywhere(_) => false,
+    };
+    if model.shift().is_none() {
+        return Vec::new();
+    }
+    let mut marks = vec![false; skin];
+    for solid in solids {
+        marks[solid.skin.clone()].fill(held(solid));
+    }
+    marks
+}
