@@ -104,8 +104,8 @@ impl Sweeping {
 pub enum Walls {
     /// Dynamic boundary particles: they obey continuity, and their density never falls below ρ₀.
     Dbc,
-    /// Boundary particles show the pressure that the water near them would have at their place.
-    Extrapolating,
+    /// The same, but their density settles to that of the pressure that the water near them would have at their place.
+    Settling,
 }
 
 /// Which scheme advances time. Scene word `time.scheme`.

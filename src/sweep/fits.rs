@@ -1,4 +1,4 @@
-//! Sums of boundary particles over the water near them, for walls that extrapolate: one kernel and no laws.
+//! Sums of boundary particles over the water near them, for walls that settle: one kernel and no laws.
 
 use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
 
@@ -26,7 +26,7 @@ pub(super) struct Weighed<K>(pub(super) K);
 
 /// Rows of sums.
 pub(super) const fn rows(dimension: usize) -> usize {
-    2 * dimension + 2
+    dimension + 2
 }
 
 impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
@@ -37,7 +37,7 @@ impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
                 let (wall, water) = (&skin[i as usize], &water[j as usize]);
                 let r: [f64; D] = std::array::from_fn(|k| wall.r[k] - water.r[k]);
                 let r2 = r.iter().map(|x| x * x).sum();
-                fit.add(self.0.w(r2), water.side.p, water.side.s, water.v, r);
+                fit.add(self.0.w(r2), water.side.p, water.side.s, r);
             }
             *out = fit;
         }
@@ -55,9 +55,6 @@ pub(super) fn each<N: Num, const D: usize>(fit: &mut Fit<N, D>, mut visit: impl 
     visit(1, &mut fit.head);
     for (k, arm) in fit.arm.iter_mut().enumerate() {
         visit(2 + k, arm);
-    }
-    for (k, flow) in fit.flow.iter_mut().enumerate() {
-        visit(2 + D + k, flow);
     }
 }
 
@@ -82,14 +79,13 @@ impl<K: Kernel, const D: usize> Work for OfSlab<'_, K, D> {
                 let [start, skin, end] = spans[(c - first) * LANES + l];
                 let is_water = c < *middle;
                 let others = &index[if is_water { skin } else { start } as usize..end as usize];
-                let Cluster { x, v, s } = &packed.clusters[c];
+                let Cluster { x, s, .. } = &packed.clusters[c];
                 let all = |x: f32| f32x8::splat(simd, x);
                 let (p, volume) = (all(s[2][l]), all(s[3][l]));
                 let mine: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, x[k][l]));
-                let velocity: [f32x8<S>; D] = std::array::from_fn(|k| all(v[k][l]));
                 let mut sum = Fit::all(zero);
                 for &j in others {
-                    let Cluster { x, v, s } = &packed.clusters[j as usize];
+                    let Cluster { x, s, .. } = &packed.clusters[j as usize];
                     let mut r = [zero; D];
                     for k in 0..D {
                         r[k] = f32x8::float_from(mine[k] - lanes::load_whole(simd, &x[k]));
@@ -104,11 +100,10 @@ impl<K: Kernel, const D: usize> Work for OfSlab<'_, K, D> {
                         let theirs = &mut sums[(j as usize - first) * rows..][..rows];
                         let mut fit = Fit::all(zero);
                         each(&mut fit, |row, x| *x = lanes::load(simd, &theirs[row].0));
-                        fit.add(w, p, volume, velocity, r.map(|x| -x));
+                        fit.add(w, p, volume, r.map(|x| -x));
                         each(&mut fit, |row, x| x.store_array(&mut theirs[row].0));
                     } else {
-                        let velocity = std::array::from_fn(|k| lanes::load(simd, &v[k]));
-                        sum.add(w, lanes::load(simd, &s[2]), lanes::load(simd, &s[3]), velocity, r);
+                        sum.add(w, lanes::load(simd, &s[2]), lanes::load(simd, &s[3]), r);
                     }
                 }
                 if !is_water {

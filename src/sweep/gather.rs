@@ -30,7 +30,7 @@ pub(super) struct Gather<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node<const D: usize> {
     pub(super) r: [f64; D],
-    pub(super) v: [f64; D],
+    v: [f64; D],
     pub(super) side: Side<f64, D>,
 }
 

@@ -156,7 +156,6 @@ impl<const D: usize> Sweep<D> for Lanes<D> {
             fits::each(fit, |row, x| *x = sum(row));
             fit.head *= (length / time).powi(2);
             fit.arm = fit.arm.map(|x| x * length);
-            fit.flow = fit.flow.map(|x| x * (length / time));
         });
     }
 

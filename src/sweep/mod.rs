@@ -82,7 +82,7 @@ pub trait Sweep<const D: usize>: Send + Sync {
     /// Time spent on pairs so far.
     fn spent(&self) -> Duration;
 
-    /// Sums of the wet boundary particles over the water, for walls that extrapolate; the lists must hold, and
+    /// Sums of the wet boundary particles over the water, for walls that settle; the lists must hold, and
     /// [`Sweep::rates`] comes next, with the same water.
     fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]);
 

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use crate::{
     error::{Error, Result},
     law::{Extra, Medium, state::State},
-    model::{Dimension, Model, Viscosity, Walls},
+    model::{Dimension, Model, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
     solid::{Dim, Load, Solid, SolidSpec, skin},
@@ -37,8 +37,8 @@ pub struct System<const D: usize> {
     pub(crate) skin: Particles<D>,
     /// Places of the boundary particles in their solids' frames, m.
     local: Vec<Vector<D>>,
-    /// Where the water is from them, unit vectors in their solids' frames; empty unless walls extrapolate.
-    normals: Vec<Vector<D>>,
+    /// To which densities (kg/m³) they settle; empty unless they do.
+    goals: Vec<f64>,
     /// The box around each solid's skin in its own frame, m.
     boxes: Vec<Bounds<D>>,
     /// Where the solids were when the lists were made, if they were.
@@ -91,16 +91,12 @@ impl<const D: usize> System<D> {
         let (v, id) = (vec![Vector::zeros(); water.len()], (0..water.len() as u32).collect());
         let fluid = Particles { r: water, v, rho, id };
         let (mut skin, mut local, mut solids) = (Particles::default(), Vec::new(), Vec::new());
-        let mut normals = Vec::new();
         for spec in specs {
             let kinematics = spec.start();
             let first = skin.len();
             for point in spec.shape.skin(model.dp, model.layers()) {
                 skin.push(kinematics.pose.point(&point.r), medium.rho0);
                 local.push(point.r);
-                if model.walls == Walls::Extrapolating {
-                    normals.push(spec.shape.outward(&point.r, 1e-3 * model.dp));
-                }
             }
             if skin.len() == first {
                 return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
@@ -136,7 +132,7 @@ impl<const D: usize> System<D> {
             fluid,
             skin,
             local,
-            normals,
+            goals: Vec::new(),
             boxes,
             solids,
             domain,
@@ -209,7 +205,7 @@ impl<const D: usize> System<D> {
     /// Rates of the water and loads on the solids at the present places, velocities and densities; the lists
     /// must hold.
     pub(crate) fn rates(&mut self) {
-        self.extrapolate();
+        self.aim();
         if self.sweep.extra() {
             self.extra.resize(self.fluid.len(), Extra::all(0.0));
         }

@@ -4,7 +4,10 @@ use rayon::prelude::*;
 
 use super::System;
 use crate::{
-    law::wall::{Dbc, Fit, Place},
+    law::{
+        Medium,
+        wall::{Dbc, Fit, settled},
+    },
     model::{Model, Shifting, Walls},
     particles::PER_TASK,
     solid::{Role, Solid},
@@ -14,9 +17,6 @@ use crate::{
 impl<const D: usize> System<D> {
     /// Gives each boundary particle beside water the density of still water at its depth.
     pub(super) fn still_skin(&mut self) {
-        if self.model.walls != Walls::Dbc {
-            return;
-        }
         let up = D - 1;
         let g = -self.medium.gravity[up];
         let still: Vec<f64> = self
@@ -36,26 +36,25 @@ impl<const D: usize> System<D> {
                 self.medium.rho0 * (1.0 + self.state.excess(nearest.1.max(0.0)))
             })
             .collect();
-        self.set_skin_density(|k, _, _| still[k]);
+        self.set_skin_density(0.0, |k, _, _| still[k]);
     }
 
     /// Lets the density (kg/m³) of each wet boundary particle become what `rho` makes of its place among the wet, its
-    /// index and its density, never below what the wall law allows, where the law integrates it. The dry ones stay at ρ₀.
-    pub(crate) fn set_skin_density(&mut self, mut rho: impl FnMut(usize, usize, f64) -> f64) {
-        if self.model.walls != Walls::Dbc {
-            return;
-        }
-        let rho0 = self.medium.rho0;
+    /// index and its density over `dt` (s), never below what the wall law allows, and settle. The dry ones stay at ρ₀.
+    pub(crate) fn set_skin_density(&mut self, dt: f64, mut rho: impl FnMut(usize, usize, f64) -> f64) {
+        let Medium { rho0, h, c0, .. } = self.medium;
+        let settled = settled(dt, h, c0);
         for (k, &i) in self.near.wet().iter().enumerate() {
             let i = i as usize;
-            self.skin.rho[i] = Dbc.close(rho(k, i, self.skin.rho[i]), rho0);
+            let own = Dbc.close(rho(k, i, self.skin.rho[i]), rho0);
+            self.skin.rho[i] = self.goals.get(i).map_or(own, |goal| own + (goal - own) * settled);
         }
     }
 
-    /// Gives each wet boundary particle the pressure that the water near it would have at its place, where the walls
-    /// do that.
-    pub(super) fn extrapolate(&mut self) {
-        if self.model.walls != Walls::Extrapolating {
+    /// Finds for each wet boundary particle the density of the pressure that the water near it would have at its place,
+    /// where the walls settle to that.
+    pub(super) fn aim(&mut self) {
+        if self.model.walls != Walls::Settling {
             return;
         }
         let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
@@ -65,17 +64,14 @@ impl<const D: usize> System<D> {
         let density = |(&i, fit): (&u32, &Fit<f64, D>)| {
             let i = i as usize;
             let solid = &self.solids[self.solids.partition_point(|solid| solid.skin.end <= i)];
-            let place = Place {
-                pull: self.medium.gravity - solid.acceleration_at(&self.skin.r[i]),
-                v: self.skin.v[i],
-                normal: solid.kinematics.pose.rotation * self.normals[i],
-            };
-            self.medium.rho0 * (1.0 + self.state.excess(fit.close(&place, self.medium.c0)))
+            let pull = self.medium.gravity - solid.acceleration_at(&self.skin.r[i]);
+            self.medium.rho0 * (1.0 + self.state.excess(fit.close(&pull)))
         };
         let wet = self.near.wet();
-        let rho: Vec<f64> = wet.par_iter().zip(&fits).with_min_len(PER_TASK).map(density).collect();
-        for (&i, rho) in wet.iter().zip(rho) {
-            self.skin.rho[i as usize] = rho;
+        let goals: Vec<f64> = wet.par_iter().zip(&fits).with_min_len(PER_TASK).map(density).collect();
+        self.goals.resize(self.skin.len(), self.medium.rho0);
+        for (&i, goal) in wet.iter().zip(goals) {
+            self.goals[i as usize] = goal;
         }
     }
 }

@@ -40,7 +40,7 @@ impl Symplectic {
             })
             .reduce(|| Seen::NOTHING, Seen::and);
         let rates = std::mem::take(&mut system.skin_sums);
-        system.set_skin_density(|k, _, rho| rho + rho0 * rates[k].dx * half);
+        system.set_skin_density(half, |k, _, rho| rho + rho0 * rates[k].dx * half);
         system.skin_sums = rates;
         bodies.drift(system, over);
 
@@ -71,7 +71,7 @@ impl Symplectic {
             system.look();
         }
         let rates = std::mem::take(&mut system.skin_sums);
-        system.set_skin_density(|k, i, rho| whole(start.1[i], rho, rates[k].dx));
+        system.set_skin_density(dt, |k, i, rho| whole(start.1[i], rho, rates[k].dx));
         system.skin_sums = rates;
         bodies.advance(system, over, 1.0)
     }

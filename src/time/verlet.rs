@@ -109,7 +109,7 @@ impl<const D: usize> Verlet<D> {
             system.look();
         }
         let (rates, before) = (std::mem::take(&mut system.skin_sums), &mut self.skin_rho_before);
-        system.set_skin_density(|k, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * rates[k].dx * span);
+        system.set_skin_density(span, |k, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * rates[k].dx * span);
         system.skin_sums = rates;
 
         let weight = if euler { 1.0 } else { 0.5 * span / dt };

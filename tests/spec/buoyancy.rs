@@ -192,10 +192,10 @@ fn a_box_dropped_from_above_its_draft_comes_back_to_it() {
 }
 
 #[test]
-fn walls_that_extrapolate_leave_no_gap_at_a_box_that_has_moved() {
+fn walls_that_settle_leave_no_gap_at_a_box_that_has_moved() {
     for above in [2.0, -2.0] {
         let mut case = Case::new(block([16.0, 10.0]), 0.5, [48.0, 16.0]);
-        (case.shift[1], case.alpha, case.walls) = (above, 0.1, Walls::Extrapolating);
+        (case.shift[1], case.alpha, case.walls) = (above, 0.1, Walls::Settling);
         let mut bobber = Afloat::new(case);
         bobber.watch(3.0, |_| 0.0);
         let late = mean(&bobber.watch(1.0, Afloat::too_deep));

@@ -63,10 +63,10 @@ fn a_free_drop_with_a_body_inside_keeps_its_momentum() {
 }
 
 #[test]
-fn walls_that_extrapolate_keep_momentum_too() {
+fn walls_that_settle_keep_momentum_too() {
     for (sweep, lost) in SWEEPS {
         let mut model = drop_with_body(Scheme::Symplectic, sweep).system().model().clone();
-        model.walls = Walls::Extrapolating;
+        model.walls = Walls::Settling;
         let mut sim = drop_under(model);
         let start = rig::water_momentum(&sim) + body_momentum(&sim);
         for _ in 0..200 {

@@ -15,7 +15,7 @@ use crate::rig;
 const BOTH: [(Scheme, Walls); 3] = [
     (Scheme::Symplectic, Walls::Dbc),
     (Scheme::Verlet { euler_every: 50 }, Walls::Dbc),
-    (Scheme::Symplectic, Walls::Extrapolating),
+    (Scheme::Symplectic, Walls::Settling),
 ];
 
 /// A dam break onto two floats that collide, beside a paddle, with every term that remembers something.

@@ -151,13 +151,13 @@ fn a_floating_box_and_a_light_one() {
 }
 
 #[test]
-fn walls_that_extrapolate() {
+fn walls_that_settle() {
     let mut model = Model::water(2, 0.0125, 0.3);
-    model.walls = Walls::Extrapolating;
+    model.walls = Walls::Settling;
     let setup = dam(model, [0.8, 0.3], 0.0);
     agrees("2-D", &setup, &run(&setup, 0.35));
     let mut model = Model::water(3, 0.025, 0.3);
-    model.walls = Walls::Extrapolating;
+    model.walls = Walls::Settling;
     let setup = dam(model, [0.6, 0.15, 0.3], 0.0);
     agrees("3-D", &setup, &run(&setup, 0.3));
 }

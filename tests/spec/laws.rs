@@ -10,7 +10,7 @@ use pontoon::{
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
-        wall::{Fit, Place},
+        wall::{Fit, settled},
     },
     model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
     space::Vector,
@@ -205,34 +205,30 @@ fn diffusion_flattens_a_bump() {
     }
 }
 
-/// What a boundary particle at the origin sees of water in random places, of pressure `p` (P/ρ₀) and velocity `v`.
-fn fit(p: impl Fn(&Vector<3>) -> f64, v: [f64; 3]) -> Fit<f64, 3> {
+/// What a boundary particle at the origin sees of water in random places, of pressure `p` (P/ρ₀).
+fn fit(p: impl Fn(&Vector<3>) -> f64) -> Fit<f64, 3> {
     let (mut dice, mut fit) = (Dice(5), Fit::all(0.0));
     for _ in 0..40 {
         let r = (dice.point::<3>() - Vector::repeat(0.5)) * 0.02;
-        fit.add(dice.roll(), p(&r), 1.0, v, (-r).into());
+        fit.add(dice.roll(), p(&r), 1.0, (-r).into());
     }
     fit
 }
 
 #[test]
-fn a_wall_extrapolates_the_pressure_of_water_that_moves_with_it_exactly() {
-    let (pull, v) = (Vector::from([1.0, -2.0, -9.81]), Vector::from([0.3, 0.1, 0.0]));
-    let place = Place { pull, v, normal: Vector::from([0.6, 0.0, 0.8]) };
-    // ∇P = ρ₀ (g − a): linear, and nothing comes towards the wall.
-    let p = fit(|r| 7.0 + pull.dot(r), v.into()).close(&place, 20.0);
+fn the_pressure_of_water_that_moves_with_a_wall_is_extrapolated_to_it_exactly() {
+    let pull = Vector::from([1.0, -2.0, -9.81]);
+    // ∇P = ρ₀ (g − a): linear.
+    let p = fit(|r| 7.0 + pull.dot(r)).close(&pull);
     assert!((p - 7.0).abs() < 1e-12, "{p}");
-    // Never below zero: a wall does not suck.
-    assert_eq!(fit(|r| pull.dot(r) - 1.0, v.into()).close(&place, 20.0), 0.0);
-    assert_eq!(Fit::<f64, 3>::all(0.0).close(&place, 20.0), 0.0, "no water, no pressure");
+    assert_eq!(fit(|r| pull.dot(r) - 1.0).close(&pull), 0.0, "a wall does not suck");
+    assert_eq!(Fit::<f64, 3>::all(0.0).close(&pull), 0.0, "no water, no pressure");
 }
 
 #[test]
-fn water_that_strikes_a_wall_meets_pressure_and_water_that_leaves_or_slides_along_it_none() {
-    let normal = Vector::from([0.0, 0.0, 1.0]);
-    let place = Place { pull: Vector::zeros(), v: Vector::zeros(), normal };
-    let p = |v: [f64; 3], c0: f64| fit(|_| 7.0, v).close(&place, c0) - 7.0;
-    // min(3u, c₀) u: 3·4 where the flow is slow, 20·10 where it is fast.
-    assert!((p([0.0, 0.0, -2.0], 20.0) - 12.0).abs() < 1e-12 && (p([0.0, 0.0, -10.0], 20.0) - 200.0).abs() < 1e-10);
-    assert!(p([0.0, 0.0, 2.0], 20.0).abs() < 1e-12 && p([5.0, 1.0, 0.0], 20.0).abs() < 1e-12);
+fn a_wall_settles_as_fast_in_one_step_as_in_many() {
+    let many = (0..10).fold(1.0, |left, _| left * (1.0 - settled(1e-4, 0.02, 20.0)));
+    assert!((many - (1.0 - settled(1e-3, 0.02, 20.0))).abs() < 1e-15);
+    // Ten h/c₀ leave 1/e of the way.
+    assert!((settled(0.01, 0.02, 20.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
 }

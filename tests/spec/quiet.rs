@@ -41,7 +41,7 @@ fn profile(sim: &Simulation<2>, dp: f64) -> Vec<(f64, f64)> {
 
 #[test]
 fn after_five_seconds_the_pressure_is_hydrostatic_and_the_level_stands() {
-    [Walls::Dbc, Walls::Extrapolating].into_iter().for_each(stands);
+    [Walls::Dbc, Walls::Settling].into_iter().for_each(stands);
 }
 
 fn stands(walls: Walls) {

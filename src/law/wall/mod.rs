@@ -1,7 +1,7 @@
 //! Walls: by what density a boundary particle shows itself to the water.
 
 mod dbc;
-mod extrapolating;
+mod settling;
 
 pub use dbc::Dbc;
-pub use extrapolating::{Fit, Place};
+pub use settling::{Fit, settled};
