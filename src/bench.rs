@@ -9,6 +9,7 @@ use std::{
     time::Instant,
 };
 
+use cpu_time::ProcessTime;
 use serde::Serialize;
 
 use crate::{
@@ -144,7 +145,6 @@ impl Work {
 /// # Errors
 /// Whatever stops a simulation, and `Usage` if threads cannot be had.
 pub fn time(works: &[Work], threads: &[usize], rounds: usize) -> Result<Vec<Timing>> {
-    // All live to the end: processor time is that of the threads alive.
     let pools = threads.iter().map(|&n| Ok((n, pool(Some(n))?))).collect::<Result<Vec<_>>>()?;
     let Some((_, largest)) = pools.iter().max_by_key(|(n, _)| n) else { return Ok(Vec::new()) };
     let mut ready = largest.install(|| works.iter().map(ready_in).collect::<Result<Vec<_>>>())?;
@@ -250,14 +250,15 @@ impl<const D: usize> Timed for Ready<D> {
     }
 
     fn time(&mut self, threads: usize) -> Result<Timing> {
-        let (before, cpu, start) = (self.sim.spent(), cpu_seconds(), Instant::now());
+        let (before, cpu, start) = (self.sim.spent(), ProcessTime::try_now().ok(), Instant::now());
         let mut steps = 0;
         while start.elapsed().as_secs_f64() < LASTS || steps < 3 {
             self.step()?;
             steps += 1;
         }
         let wall = start.elapsed().as_secs_f64();
-        let cpu = cpu.zip(cpu_seconds()).map_or(wall, |(a, b)| b - a);
+        let spent = cpu.and_then(|cpu| cpu.try_elapsed().ok());
+        let cpu = spent.map_or(wall * threads as f64, |spent| spent.as_secs_f64());
         let Spent { steps: all, lists, pairs, bodies } = self.sim.spent();
         let all = (all - before.steps).as_secs_f64();
         let (lists, bodies) = ((lists - before.lists).as_secs_f64(), (bodies - before.bodies).as_secs_f64());
@@ -343,16 +344,6 @@ pub fn fixed(steps: usize, name: &str) -> Result<()> {
             space.step()
         })
     })
-}
-
-/// Processor time of all threads so far, s, where the system tells.
-fn cpu_seconds() -> Option<f64> {
-    let mut total = 0.0;
-    for task in std::fs::read_dir("/proc/self/task").ok()?.flatten() {
-        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
-        total += text.split(' ').next()?.parse::<f64>().ok()?;
-    }
-    Some(total * 1e-9)
 }
 
 /// Largest memory of the program since [`forget_peak`], B, where the system tells.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Job, Ran, State};
 use crate::{
-    check::Verdict,
+    check::{Figures, Verdict},
     error::{Error, Kind, Result},
 };
 
@@ -19,16 +19,9 @@ pub struct Row {
     pub varied: Vec<(String, String)>,
     /// What was compared, as `probe.column`; empty for a run without checks.
     pub check: String,
-    /// Relative deviation, –.
-    #[serde(rename = "N")]
-    pub n: Option<f64>,
-    /// Amplitude ratio, –.
-    #[serde(rename = "M")]
-    pub m: Option<f64>,
-    /// Relative error of the first peak, –.
-    pub peak: Option<f64>,
-    /// Largest distance, in the unit of the series.
-    pub off: Option<f64>,
+    /// What came out.
+    #[serde(flatten)]
+    pub figures: Figures,
     /// N of the running mean, –.
     #[serde(rename = "mean_N")]
     pub mean_n: Option<f64>,
@@ -56,7 +49,7 @@ pub struct Row {
 impl Row {
     /// The error that is plotted: N, or else the largest distance.
     pub fn error(&self) -> Option<f64> {
-        self.n.or(self.off)
+        self.figures.n.or(self.figures.off)
     }
 }
 
@@ -112,12 +105,8 @@ fn costs(row: Row, ran: &Ran) -> Row {
 }
 
 fn judged(row: Row, verdict: &Verdict) -> Row {
-    let figures = verdict.figures;
     Row {
-        n: figures.n,
-        m: figures.m,
-        peak: figures.peak,
-        off: figures.off,
+        figures: verdict.figures,
         mean_n: verdict.meaned.and_then(|m| m.figures.n),
         aligned_n: verdict.aligned.map(|a| a.n),
         delay_s: verdict.aligned.map(|a| a.delay),
@@ -160,7 +149,8 @@ pub fn csv(rows: &[Row], keys: &[String]) -> Result<Vec<u8>> {
         let value = |key: &String| row.varied.iter().find(|(k, _)| k == key).map_or(String::new(), |(_, v)| v.clone());
         cells.extend(keys.iter().map(value));
         cells.push(row.check.clone());
-        cells.extend([row.n, row.m, row.peak, row.off, row.mean_n, row.aligned_n, row.delay_s].map(number));
+        let Figures { n, m, peak, off } = row.figures;
+        cells.extend([n, m, peak, off, row.mean_n, row.aligned_n, row.delay_s].map(number));
         cells.push(row.passed.map_or(String::new(), |kept| kept.to_string()));
         cells.push(row.water.map_or(String::new(), |n| n.to_string()));
         cells.extend([row.wall_s, row.cpu_s].map(number));
@@ -186,7 +176,7 @@ mod tests {
             run: "dp-0.01".into(),
             dp: 0.01,
             varied: vec![("gravity".into(), "[0.0, -9.81]".into())],
-            n: Some(0.25),
+            figures: Figures { n: Some(0.25), ..Figures::default() },
             status: "failed",
             reason: Some("too fast\n  usual cause".into()),
             ..Row::default()

@@ -112,7 +112,8 @@ impl Sheet {
     /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
     /// where there is no N.
     fn metrics(rows: &[Row], check: &str) -> Vec<Metric> {
-        let known: [Metric; 3] = [("N", |r| r.n), ("aligned N", |r| r.aligned_n), ("largest distance", |r| r.off)];
+        let known: [Metric; 3] =
+            [("N", |r| r.figures.n), ("aligned N", |r| r.aligned_n), ("largest distance", |r| r.figures.off)];
         let has = |metric: &Metric| rows.iter().any(|r| r.check == check && metric.1(r).is_some());
         let found: Vec<Metric> = known.into_iter().filter(has).collect();
         let relative = found.iter().any(|m| m.0 == "N");
@@ -233,8 +234,8 @@ impl Sheet {
             let mut cells = vec![millimetres(r.dp)];
             cells.extend(r.varied.iter().map(|(_, value)| value.clone()));
             cells.push(r.check.clone());
-            cells.extend([r.n, r.m, r.peak].map(said::figure));
-            cells.push(said::digits(r.off));
+            cells.extend([r.figures.n, r.figures.m, r.figures.peak].map(said::figure));
+            cells.push(said::digits(r.figures.off));
             cells.push(said::figure(r.aligned_n));
             cells.push(r.delay_s.map_or("–".into(), said::delay));
             cells.extend([r.wall_s, r.cpu_s].map(|s| s.map_or("–".into(), |s| format!("{s:.1}"))));

@@ -9,7 +9,7 @@
 
 use crate::{law::Num, space::Vector};
 
-/// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 2 water strays into the faces.
+/// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
 const TIME: f64 = 10.0;
 
 /// The part of the way (–) to its goal that a boundary particle goes in `dt` (s), with h (m) and c₀ (m/s).
