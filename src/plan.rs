@@ -89,6 +89,8 @@ pub struct CheckWords {
     pub from: Option<f64>,
     /// Last time of the run that counts, s.
     pub until: Option<f64>,
+    /// Time of the run at which the instrument was set to zero, s.
+    pub zero: Option<f64>,
     /// Time over which the instrument takes its mean, s.
     pub mean: Option<f64>,
     /// How the run is moved in time to lie on the reference.
@@ -97,6 +99,13 @@ pub struct CheckWords {
     pub paper: Option<Score>,
     /// What the run must reach.
     pub bound: Option<Score>,
+}
+
+impl CheckWords {
+    /// The series in words, with when it was set to zero.
+    pub fn label(&self) -> String {
+        self.zero.map_or(self.series.clone(), |at| format!("{}, 0 at {at} s", self.series))
+    }
 }
 
 /// What a series is held against.

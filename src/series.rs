@@ -97,6 +97,11 @@ impl Series {
         Self { t: self.t.iter().map(|t| t + by).collect(), x: self.x.clone() }
     }
 
+    /// The same with `offset` taken off every value.
+    pub fn less(&self, offset: f64) -> Self {
+        Self { t: self.t.clone(), x: self.x.iter().map(|x| x - offset).collect() }
+    }
+
     /// What an instrument shows that takes the mean over `seconds`:
     ///
     ///   x̄(t) = 1/s ∫ x dt over t − s/2 … t + s/2

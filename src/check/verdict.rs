@@ -180,7 +180,7 @@ impl Check {
 
     fn blank(&self) -> Verdict {
         Verdict {
-            series: self.words.series.clone(),
+            series: self.words.label(),
             figures: Figures::default(),
             meaned: None,
             aligned: None,
@@ -197,7 +197,10 @@ impl Check {
     fn run(&self, folder: &Path) -> Result<(Series, Option<Series>)> {
         let (probe, column) = self.words.series.rsplit_once('.').unwrap_or((&self.words.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
-        let sim = table::read(&path, "t_s", column, 0.0)?;
+        let mut sim = table::read(&path, "t_s", column, 0.0)?;
+        if let Some(at) = self.words.zero {
+            sim = sim.less(sim.at(at));
+        }
         let meaned = self.words.mean.map(|seconds| sim.running_mean(seconds));
         Ok((sim, meaned))
     }

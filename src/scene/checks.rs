@@ -122,6 +122,7 @@ impl Scene {
                 reference,
                 from: check.from,
                 until: check.until,
+                zero: check.zero,
                 mean: check.mean,
                 align: check.align,
                 paper: check.paper,

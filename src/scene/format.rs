@@ -239,6 +239,9 @@ pub struct CheckEntry {
     /// Last time of the run that counts, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
+    /// Time of the run at which the instrument was set to zero, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero: Option<f64>,
     /// Time over which the instrument takes its mean, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean: Option<f64>,

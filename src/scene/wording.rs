@@ -68,6 +68,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("check.formula", "formula = \"0.05*cos(2*pi*t/1.2)\""),
     ("check.from", "from = 1.0         # s, of the run"),
     ("check.until", "until = 2.0        # s, of the run"),
+    ("check.zero", "zero = 6.32        # s, of the run"),
     ("check.mean", "mean = 0.005       # s"),
     ("align", "align = \"best\", or  align = { crossing = 5.0 }"),
     ("align.crossing", "align = { crossing = 5.0 }        # in the unit of the series"),

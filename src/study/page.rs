@@ -72,7 +72,7 @@ pub fn now() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
 }
 
-/// The unit of a column by the end of its name, as in `fx_N_per_m`.
+/// The unit of a column by the end of its name, as in `fx_N_per_m`; what follows a comma is no part of it.
 pub fn unit(column: &str) -> &'static str {
     const UNITS: [(&str, &str); 15] = [
         ("_Nm_per_m", "N m/m"),
@@ -91,6 +91,7 @@ pub fn unit(column: &str) -> &'static str {
         ("_m", "m"),
         ("_s", "s"),
     ];
+    let column = column.split(',').next().unwrap_or(column);
     UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("–", |(_, unit)| unit)
 }
 
@@ -106,6 +107,6 @@ mod tests {
 
     #[test]
     fn columns_tell_their_units() {
-        assert_eq!(["fx_N_per_m", "fx_N", "heave_m", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
+        assert_eq!(["fx_N_per_m", "fx_N", "heave_m, 0 at 2 s", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
     }
 }

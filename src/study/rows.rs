@@ -76,10 +76,10 @@ pub fn rows(jobs: &[Job], ran: &[Ran], checks: &[String]) -> Vec<Row> {
 }
 
 /// Names of checks: their series, with a number from the second of a series on.
-pub fn labels<'a>(series: impl IntoIterator<Item = &'a str>) -> Vec<String> {
-    let all: Vec<&str> = series.into_iter().collect();
+pub fn labels(series: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
+    let all: Vec<String> = series.into_iter().map(Into::into).collect();
     let label = |i: usize| match all[..i].iter().filter(|other| **other == all[i]).count() {
-        0 => all[i].to_string(),
+        0 => all[i].clone(),
         before => format!("{} ({})", all[i], before + 1),
     };
     (0..all.len()).map(label).collect()

@@ -66,7 +66,7 @@ impl Sheet {
         let jobs = grid.jobs(&out)?;
         let mut checks = Vec::new();
         if let Some(job) = jobs.first() {
-            checks = labels(job.checks()?.iter().map(|c| c.words().series.as_str()));
+            checks = labels(job.checks()?.iter().map(|c| c.words().label()));
         }
         let keys = grid.vary.iter().map(|vary| vary.key.clone()).collect();
         Ok(Self { title: format!("Study of {}", grid.name), command, keys, checks, out, jobs })

@@ -40,6 +40,7 @@ fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckWords {
         reference: Reference::Formula(formula.into()),
         from: None,
         until: None,
+        zero: None,
         mean: None,
         align: None,
         paper: None,
@@ -193,6 +194,17 @@ fn a_running_mean_has_figures_of_its_own_beside_the_raw_ones() -> std::io::Resul
     let meaned = verdict.meaned.and_then(|m| m.figures.n);
     assert!(verdict.figures.n.is_some_and(|n| n > 0.05) && meaned.is_some_and(|n| n < 0.01));
     assert_eq!(verdict.passed, Some(false), "the bound is on the raw run");
+    fs::remove_dir_all(folder)
+}
+
+#[test]
+fn an_instrument_set_to_zero_on_the_way_counts_from_there() -> std::io::Result<()> {
+    // The run stands 0.3 too high before the record begins, and the record knows nothing of it.
+    let folder = folder("zero", &table(|t| t * t + 0.3), "")?;
+    let raw = by_formula("box.heave_m", "t^2 - 0.25", bound(1e-9));
+    let set = CheckWords { zero: Some(0.5), ..raw.clone() };
+    assert_eq!([judge(&raw, &folder).passed, judge(&set, &folder).passed], [Some(false), Some(true)]);
+    assert_eq!(judge(&set, &folder).series, "box.heave_m, 0 at 0.5 s");
     fs::remove_dir_all(folder)
 }
 
