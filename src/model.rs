@@ -164,8 +164,8 @@ pub struct Model {
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
-    /// none: Wendland, h = 1.7 dp (√3 dp in 3-D), c₀ = 20 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, DBC,
-    /// symplectic at CFL 0.4. Change what you need.
+    /// none: Wendland, h = 1.7 dp (√3 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
+    /// that settle, symplectic at CFL 0.4. Change what you need.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
         let mut gravity = vec![0.0; dimension];
@@ -177,13 +177,13 @@ impl Model {
             h: dp * if dimension == 3 { 3f64.sqrt() } else { 1.7 },
             dp,
             rho0: 1000.0,
-            c0: 20.0 * (G * depth).sqrt(),
+            c0: 10.0 * (G * depth).sqrt(),
             gamma: 7.0,
             gravity,
             viscosity: Viscosity::Artificial(Artificial::default()),
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
-            walls: Walls::Dbc,
+            walls: Walls::Settling,
             sweep: Sweeping::Fast,
             scheme: Scheme::Symplectic,
             cfl: 0.4,

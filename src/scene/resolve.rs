@@ -101,12 +101,12 @@ impl Scene {
         let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
         filler.fill("model.diffusion", &mut model.diffusion, usual.diffusion, why);
         filler.fill("model.shifting", &mut model.shifting, usual.shifting, "shifting slowly inflates the water");
-        filler.fill("model.walls", &mut model.walls, usual.walls, "the method's wall, robust in violent flow");
+        filler.fill("model.walls", &mut model.walls, usual.walls, "no gap between water and wall; bodies rest at their draft");
         let why = "single precision where it is harmless; \"reference\" is double precision throughout";
         filler.fill("model.sweep", &mut model.sweep, usual.sweep, why);
         if model.c0.is_none() {
-            let why = "density then varies by less than 1 %; the depth is from the lowest water to the highest level";
-            filler.fill("model.c0_factor", &mut model.c0_factor, 20.0, why);
+            let why = "density varies by 1 %, a few in an impact; the depth is from the lowest water to the highest level";
+            filler.fill("model.c0_factor", &mut model.c0_factor, 10.0, why);
         }
         filler.fill("model.rho0", &mut model.rho0, usual.rho0, "fresh water, kg/m³");
         filler.fill("model.gamma", &mut model.gamma, usual.gamma, "water");

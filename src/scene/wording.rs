@@ -47,7 +47,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("viscosity.sps", "viscosity = { sps = { nu0 = 1e-6 } }"),
     ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
     ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
-    ("walls", "walls = \"dbc\"      # or \"settling\""),
+    ("walls", "walls = \"settling\"      # or \"dbc\""),
     ("sweep", "sweep = \"fast\""),
     ("time", "[time]\nscheme = \"symplectic\""),
     ("scheme", "scheme = { verlet = { euler_every = 50 } }"),
