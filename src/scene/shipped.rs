@@ -29,6 +29,11 @@ pub fn shipped() -> &'static [Shipped] {
         scene!("buoyancy"),
         scene!("buoyancy-3d"),
         scene!("dam-break", "tip.csv"),
+        scene!("martin-moyce", "front.csv"),
+        scene!("lobovsky", "pressure.csv"),
+        scene!("sinking-cylinder", "centre.csv"),
+        scene!("ciem-piston", "flume.csv"),
+        scene!("ren-box", "harmonics.csv"),
         scene!("flume-box", "flap.csv", "body.csv", "elevation_1.csv", "elevation_2.csv"),
         scene!("column", "force.csv", "velocity.csv"),
     ]
