@@ -58,7 +58,7 @@ fn main() -> Result<()> {
 
 /// Still water in a tank.
 fn setup() -> Result<Setup<2>> {
-    let viscosity = Viscosity::Artificial(Artificial { alpha: 0.01, beta: 0.0 });
+    let viscosity = Viscosity::Artificial(Artificial { alpha: 0.01 });
     let model = Model { viscosity, ..Model::water(2, DP, SIZE[1]) };
     let tank = SolidSpec {
         name: "tank".into(),

@@ -80,7 +80,7 @@ where
         let mut model = Model::water(D, DP, pool[up]);
         model.c0 *= 0.5;
         model.walls = walls;
-        model.viscosity = Viscosity::Artificial(Artificial { alpha, beta: 0.0 });
+        model.viscosity = Viscosity::Artificial(Artificial { alpha });
         let sim = rig::simulation(model, water, pool[up], vec![tank, float]);
         Self { sim, shape, body, area: pool.product() / pool[up] }
     }

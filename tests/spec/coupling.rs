@@ -10,15 +10,19 @@ use pontoon::{
 
 use crate::rig;
 
-/// A drop in free space with a body inside it, started spinning and stretching.
 /// Both sweeps and what they may lose of what they add up in 500 to 1,000 steps: rounding of f64; and of single precision,
 /// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/performance.md).
 const SWEEPS: [(Sweeping, f64); 2] = [(Sweeping::Reference, 1e-12), (Sweeping::Fast, 1e-8)];
 
+/// Speed of sound in a drop, m/s: so fast that 1,000 steps end before the drop has flown apart.
+const C0: f64 = 34.0;
+
+/// A drop in free space with a body inside it, started spinning and stretching.
 fn drop_with_body(scheme: Scheme, sweep: Sweeping) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.scheme, model.gravity, model.sweep) = (scheme, vec![0.0, 0.0], sweep);
+    (model.c0, model.walls) = (C0, Walls::Dbc);
     if scheme != Scheme::Symplectic {
         // Without damping no Euler step comes before its time.
         (model.cfl, model.viscosity, model.diffusion) = (0.2, Viscosity::None, Diffusion::None);
@@ -82,7 +86,7 @@ fn a_free_drop_keeps_its_angular_momentum() {
     for (sweep, rounding) in SWEEPS {
         let dp = 0.02;
         let mut model = Model::water(2, dp, 0.3);
-        (model.gravity, model.sweep) = (vec![0.0, 0.0], sweep);
+        (model.gravity, model.sweep, model.c0) = (vec![0.0, 0.0], sweep, C0);
         let mut sim = rig::simulation(model, rig::lattice([-0.2, -0.2], [0.4, 0.4], dp), -1.0, vec![]);
         sim.set_water_velocity(|r| Vector::from([2.0 * r[0] + 3.0 * r[1], -2.0 * r[1] - 5.0 * r[0]]));
         let spin = |sim: &Simulation<2>| -> (f64, f64) {
@@ -147,9 +151,21 @@ fn an_euler_step_moves_the_shared_momentum_by_less_than_a_step_does() {
 
 #[test]
 fn a_piston_gives_the_water_the_work_that_it_records() {
+    // Work by the recorded force against kinetic, potential and compression energy of water and walls: 2 %, the
+    // project's bound; what is lost goes into the floor under the walls' density. Walls that settle change their density
+    // otherwise than by being compressed, so that the balance is open by as much again.
+    for (walls, open) in [(Walls::Dbc, 0.02), (Walls::Settling, 0.04)] {
+        let (work, gained) = pushed(walls);
+        assert!(work > 1.0, "the piston did {work} J/m");
+        assert!((work / gained - 1.0).abs() < open, "{walls:?}: work {work} J/m, gained {gained} J/m");
+    }
+}
+
+/// The work (J/m) that a piston records, and the energy (J/m) that water and walls gain.
+fn pushed(walls: Walls) -> (f64, f64) {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    (model.viscosity, model.diffusion) = (Viscosity::None, Diffusion::None);
+    (model.viscosity, model.diffusion, model.walls) = (Viscosity::None, Diffusion::None, walls);
     let law = Law::Formula(Formula::parse("0.06*(1-cos(6*t))/2").unwrap());
     let motion = Motion::slide(Vector::from([1.0, 0.0]), law);
     let shape = Shape::Box { size: Vector::from([0.08, 0.6]) };
@@ -159,18 +175,12 @@ fn a_piston_gives_the_water_the_work_that_it_records() {
     tank.pose = Pose::at(Vector::from([-0.2, 0.0]));
     let mut sim = rig::simulation(model, rig::lattice([0.0, 0.0], [1.2, 0.3], dp), 0.3, vec![tank, piston]);
     let start = energy(&sim);
-    let (mut work, mut before) = (0.0, power(&sim));
+    let mut work = 0.0;
     while sim.time() < 0.5 {
         sim.step_to(0.5).unwrap();
-        let now = power(&sim);
-        work += now * sim.dt();
-        before = now;
+        work += power(&sim) * sim.dt();
     }
-    let gained = energy(&sim) - start;
-    assert!(before.is_finite() && work > 1.0, "the piston did {work} J/m");
-    // Work by the recorded force against kinetic, potential and compression energy of water and walls: 2 %, the
-    // project's bound; what is lost goes into the floor under the walls' density.
-    assert!((work / gained - 1.0).abs() < 0.02, "work {work} J/m, gained {gained} J/m");
+    (work, energy(&sim) - start)
 }
 
 /// Power of the piston on the water, W/m, with the velocity in the middle of the step that the load belongs to.

@@ -226,7 +226,7 @@ where
     let kernels = [Kernel::Wendland, Kernel::Cubic { tensile: true }, Kernel::Cubic { tensile: false }];
     let viscosities = [
         Viscosity::None,
-        Viscosity::Artificial(Artificial { alpha: 0.1, beta: 0.0 }),
+        Viscosity::Artificial(Artificial { alpha: 0.1 }),
         Viscosity::Laminar(Laminar { nu0: 1e-3 }),
         Viscosity::Sps(Sps::default()),
     ];
@@ -284,7 +284,7 @@ fn with_instructions(level: lanes::Level, water: &Particles<3>, skin: &Particles
     let units = Units { length: Near::<3>::unit(model.reach()), time: model.h / model.c0 };
     let (medium, state) = (model.medium::<3>(), State::new(model.c0, model.gamma));
     let counted = medium.counted_in(&units);
-    let wall = ((Pressure, Continuity), Artificial { alpha: 0.1, beta: 0.0 }.term(&counted));
+    let wall = ((Pressure, Continuity), Artificial { alpha: 0.1 }.term(&counted));
     let inner = (wall, Fourtakas::default().term(&counted));
     let kernel = Wendland::new(counted.h, 3);
     let mut sweep = sweep::compile(kernel, inner, wall, &counted, units, Some(level));

@@ -72,7 +72,7 @@ fn swapping_the_particles_changes_the_sign_and_no_bit() {
 
 #[test]
 fn viscosity_takes_energy_and_never_gives_it() {
-    let (artificial, laminar) = (Artificial { alpha: 0.3, beta: 0.0 }.term(&medium()), Laminar { nu0: 0.1 }.term(&Units::SI));
+    let (artificial, laminar) = (Artificial { alpha: 0.3 }.term(&medium()), Laminar { nu0: 0.1 }.term(&Units::SI));
     let mut dice = Dice(3);
     for _ in 0..1000 {
         let [ab, _] = pair(&mut dice);
@@ -134,7 +134,7 @@ fn shifting_stops_at_the_free_surface_and_is_held_to_a_tenth_of_dp() {
 fn the_sweep_agrees_with_a_loop_over_all_pairs() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    model.viscosity = Viscosity::Artificial(Artificial { alpha: 0.1, beta: 0.0 });
+    model.viscosity = Viscosity::Artificial(Artificial { alpha: 0.1 });
     model.diffusion = Diffusion::Molteni(Molteni::default());
     model.kernel = Kernel::Wendland;
     model.sweep = Sweeping::Reference;

@@ -70,8 +70,8 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
     let model = Model::water(2, 0.01, 1.0);
     let mut sim = rig::simulation(model.clone(), vec![Vector::from([0.0, 0.0])], 0.0, vec![]);
     sim.step().unwrap();
-    // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀.
-    assert_eq!(sim.dt(), model.cfl * model.h / model.c0);
+    // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀. Bits may differ by the order of the factors.
+    assert!((sim.dt() / (model.cfl * model.h / model.c0) - 1.0).abs() < 1e-15);
     let peaks = pontoon::system::Peaks { acceleration: 1e7, closing: 0.0 };
     assert_eq!(limit::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / 1e7).sqrt());
     let peaks = pontoon::system::Peaks { acceleration: 0.0, closing: 100.0 };

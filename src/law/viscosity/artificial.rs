@@ -1,5 +1,5 @@
-//! Artificial viscosity:  dv_a/dt = −Σ m_b Π_ab ∇_a W,  Π_ab = (−α c̄ μ_ab + β μ_ab²)/ρ̄_ab for approaching
-//! particles, else 0;  μ_ab = h v_ab·r_ab/(r² + η²).
+//! Artificial viscosity:  dv_a/dt = −Σ m_b Π_ab ∇_a W,  Π_ab = −α c̄ μ_ab/ρ̄_ab for approaching particles,
+//! else 0;  μ_ab = h v_ab·r_ab/(r² + η²).
 
 use serde::{Deserialize, Serialize};
 
@@ -12,21 +12,19 @@ use crate::law::{Medium, Num, Pair, Term};
 pub struct Artificial {
     /// α, –.
     pub alpha: f64,
-    /// β, –: resists the square of the speed of approach, hence impacts and little else.
-    pub beta: f64,
 }
 
 impl Default for Artificial {
-    /// α = 0.02, β = 0, the paper's.
+    /// α = 0.02, the paper's.
     fn default() -> Self {
-        Self { alpha: 0.02, beta: 0.0 }
+        Self { alpha: 0.02 }
     }
 }
 
 impl Artificial {
     /// The law in water of the given constants.
     pub fn term<const D: usize>(&self, medium: &Medium<D>) -> ArtificialTerm {
-        ArtificialTerm { alpha_c_h: self.alpha * medium.c0 * medium.h, beta_h2: self.beta * medium.h * medium.h }
+        ArtificialTerm { alpha_c_h: self.alpha * medium.c0 * medium.h }
     }
 }
 
@@ -34,14 +32,11 @@ impl Artificial {
 #[derive(Clone, Copy, Debug)]
 pub struct ArtificialTerm {
     alpha_c_h: f64,
-    beta_h2: f64,
 }
 
 impl<const D: usize> Term<D> for ArtificialTerm {
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        let closing = ab.vr.min(ab.of(0.0));
-        let speed = ab.of(-self.beta_h2).fma(closing * ab.inv_r2, ab.of(self.alpha_c_h));
-        (speed * closing).fma(ab.drag, sum)
+        (ab.of(self.alpha_c_h) * ab.vr.min(ab.of(0.0))).fma(ab.drag, sum)
     }
 }
