@@ -164,7 +164,7 @@ pub struct Model {
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
-    /// none: Wendland, h = 1.7 dp (√3 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
+    /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
     /// that settle, symplectic at CFL 0.4. Change what you need.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
@@ -174,7 +174,7 @@ impl Model {
         }
         Self {
             kernel: Kernel::Wendland,
-            h: dp * if dimension == 3 { 3f64.sqrt() } else { 1.7 },
+            h: dp * if dimension == 3 { 1.5 } else { 1.7 },
             dp,
             rho0: 1000.0,
             c0: 10.0 * (G * depth).sqrt(),

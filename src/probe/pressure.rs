@@ -1,12 +1,10 @@
-//! The water's pressure at a point: P(x) = Σ V_b P_b W / Σ V_b W.
+//! The water's pressure at a point: P(x) = Σ V_b [P_b + ρ_b g·(x − r_b)] W / Σ V_b W. What stands between the point and
+//! the water that it sees is added as still water's weight, so that the point may lie on a wall.
 
 use super::{Probe, interpolate, point};
 use crate::{error::Result, simulation::Simulation, space::Vector};
 
-/// Watches the pressure (Pa, above the air's) at a fixed point; NaN while the point is dry.
-///
-/// At a wall the mean reaches into the water only, so it belongs to a place about half a smoothing length
-/// off the wall; put the point there.
+/// Watches the pressure (Pa, above the air's) at a fixed point; 0 while the point is dry.
 pub struct Pressure<const D: usize> {
     at: Vector<D>,
 }
@@ -28,8 +26,11 @@ impl<const D: usize> Probe<D> for Pressure<D> {
 
     fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
         let system = sim.system();
-        let rho = &system.fluid().rho;
-        let mean = interpolate(system, &self.at, |b| [system.pressure(rho[b])]);
-        mean.unwrap_or([f64::NAN]).to_vec()
+        let (fluid, gravity) = (system.fluid(), system.gravity());
+        let pressure = |b: usize| {
+            let rho = fluid.rho[b];
+            [system.pressure(rho) + rho * gravity.dot(&(self.at - fluid.r[b]))]
+        };
+        interpolate(system, &self.at, pressure).unwrap_or([0.0]).to_vec()
     }
 }

@@ -57,7 +57,7 @@ impl Scene {
     pub(super) fn default_h_over_dp(&self) -> (f64, &'static str) {
         let usual = Model::water(self.dimension, 1.0, 1.0);
         match self.dimension {
-            3 => (usual.h / usual.dp, "the method's choice, h = √3 dp: about 170 neighbours"),
+            3 => (usual.h / usual.dp, "waves lose height below 1.5 dp and keep no more above; about 110 neighbours"),
             _ => (usual.h / usual.dp, "waves lose height below 1.7 dp; about 36 neighbours"),
         }
     }
@@ -101,11 +101,17 @@ impl Scene {
         let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
         filler.fill("model.diffusion", &mut model.diffusion, usual.diffusion, why);
         filler.fill("model.shifting", &mut model.shifting, usual.shifting, "shifting slowly inflates the water");
-        filler.fill("model.walls", &mut model.walls, usual.walls, "no gap between water and wall; bodies rest at their draft");
+        filler.fill(
+            "model.walls",
+            &mut model.walls,
+            usual.walls,
+            "no gap between water and wall; bodies rest at their draft",
+        );
         let why = "single precision where it is harmless; \"reference\" is double precision throughout";
         filler.fill("model.sweep", &mut model.sweep, usual.sweep, why);
         if model.c0.is_none() {
-            let why = "density varies by 1 %, a few in an impact; the depth is from the lowest water to the highest level";
+            let why =
+                "density varies by 1 %, a few in an impact; the depth is from the lowest water to the highest level";
             filler.fill("model.c0_factor", &mut model.c0_factor, 10.0, why);
         }
         filler.fill("model.rho0", &mut model.rho0, usual.rho0, "fresh water, kg/m³");
