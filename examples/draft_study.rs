@@ -1,6 +1,7 @@
-//! How deep do bodies float? Boxes and balls of several densities and resolutions at rest in a closed tank,
-//! against Archimedes: `cargo run --release --example draft_study -- --quick` (six minutes of one core; without
-//! `--quick` fourteen). Prints a table in markdown.
+//! How deep do bodies float? Boxes, upright and tilted, and balls of several densities and resolutions at rest in a
+//! closed tank, against Archimedes: `cargo run --release --example draft_study -- settling 2d-10 3d-10`. The words
+//! are the walls (`dbc` or `settling`) and the grids (2d-10, 2d-20, 2d-40, 3d-10, 3d-20: dimension and dp a height);
+//! unsaid they are `dbc 2d-10 2d-20`. Prints a table in markdown.
 //!
 //! Each body starts at its draft of equilibrium, is left alone for a few heave periods, and the error of its
 //! draft is averaged over the last of them. The water level is sounded by volume: (particles × dpᴰ + displaced
@@ -9,8 +10,8 @@
 use std::f64::consts::TAU;
 
 use pontoon::{
-    error::Result,
-    model::{Dimension, Model},
+    error::{Error, Result},
+    model::{Dimension, Model, Walls},
     probe::{Elevation, Probe},
     shape::{Region, Shape, fill},
     simulation::{Setup, Simulation},
@@ -22,6 +23,13 @@ const RHO0: f64 = 1000.0;
 const G: f64 = 9.81;
 /// Height of every body, m.
 const HEIGHT: f64 = 0.2;
+/// Density over the water's, –.
+const RATIOS: [f64; 6] = [0.1, 0.3, 0.5, 0.7, 0.9, 0.95];
+/// Tilt of the boxes that are locked at an angle, rad.
+const TILT: f64 = 20.0 * TAU / 360.0;
+/// Errors of draft that must and should be kept, dp.
+const MUST: f64 = 0.25;
+const GOAL: f64 = 0.1;
 /// Readings in the last period.
 const READINGS: usize = 50;
 
@@ -33,8 +41,11 @@ struct Case<const D: usize> {
     ratio: f64,
     /// Sideways shift off the lattice, dp.
     shift: f64,
+    /// Angle at which it is locked, rad.
+    tilt: f64,
     /// Particles per body height.
     n: f64,
+    walls: Walls,
     /// Inner size of the tank and, last, depth of the water, m.
     pool: Vector<D>,
     /// Heave periods to run.
@@ -50,15 +61,22 @@ where
     }
 
     fn body(&self) -> FreeBody<D> {
-        // A cube would turn over at most of these densities: it may not. In 2-D everything may.
-        let locked_rotations = [D == 3; 3];
+        // A cube would turn over at most of these densities: it may not. In 2-D everything upright may.
+        let locked_rotations = [D == 3 || self.tilt != 0.0; 3];
         FreeBody { locked_rotations, ..FreeBody::from_density(&self.shape, self.ratio * RHO0) }
+    }
+
+    /// Afloat at `level` (m).
+    fn afloat(&self, mut position: Vector<D>, level: f64) -> Result<Pose<D>> {
+        position += Vector::repeat(self.shift * self.dp());
+        let mut pose = Pose::turned(position, &[0.0, self.tilt][3 - D..]);
+        pose.position[D - 1] += equilibrium_height(&self.shape, &pose, self.body().mass, RHO0, level)?;
+        Ok(pose)
     }
 
     fn simulation(&self) -> Result<Simulation<D>> {
         let (dp, depth, body) = (self.dp(), self.pool[D - 1], self.body());
-        let mut pose = Pose::at(self.pool * 0.5 + Vector::repeat(self.shift * dp));
-        pose.position[D - 1] += equilibrium_height(&self.shape, &pose, body.mass, RHO0, depth)?;
+        let pose = self.afloat(self.pool * 0.5, depth)?;
         let mut size = self.pool;
         size[D - 1] += 0.5 * HEIGHT;
         let tank = Shape::Tank { size, thickness: 4.0 * dp };
@@ -71,7 +89,9 @@ where
         let tank = solid("tank", tank, Pose::identity(), Role::Fixed);
         let float = solid("float", self.shape.clone(), pose, Role::Free(body));
         let levels = vec![depth; water.len()];
-        let model = model(D, dp, depth);
+        // Half the usual speed of sound: nothing here moves fast.
+        let usual = Model::water(D, dp, depth);
+        let model = Model { c0: 0.5 * usual.c0, walls: self.walls, ..usual };
         Simulation::new(Setup { model, water, levels, solids: vec![tank, float], domain: None })
     }
 
@@ -89,7 +109,7 @@ where
         let mut sim = self.simulation()?;
         let beside = 0.25 * (self.pool[0] - HEIGHT);
         let gauge = Elevation::new(sim.system(), &[beside, 0.5 * self.pool[0]][..D - 1])?;
-        let period = TAU * (self.ratio * HEIGHT / G).sqrt();
+        let period = TAU * (HEIGHT / G).sqrt();
         let mut mean = (0.0, 0.0);
         for i in 1..=READINGS {
             let until = period * (self.periods - 1.0 + i as f64 / READINGS as f64);
@@ -109,65 +129,68 @@ where
 
     fn row(&self) -> Result<()> {
         let (by_volume, by_gauge) = self.run()?;
-        let pose = Pose::identity();
-        let draft = equilibrium_height(&self.shape, &pose, self.body().mass, RHO0, 0.0)?;
-        let draft = (0.5 * HEIGHT - draft) / self.dp();
+        let draft = -self.shape.bounds_at(&self.afloat(Vector::zeros(), 0.0)?).min[D - 1] / self.dp();
         let percent = 100.0 * by_volume / draft;
+        let kept = match by_volume.abs() {
+            e if e <= GOAL => "goal",
+            e if e <= MUST => "must",
+            _ => "MISSED",
+        };
         let Self { name, ratio, n, .. } = self;
-        println!("| {name} | {ratio:.3} | {n} | {draft:.2} | {by_volume:+.2} | {percent:+.1} | {by_gauge:+.2} |");
+        println!(
+            "| {name} | {ratio:.3} | {n} | {draft:.2} | {by_volume:+.2} | {percent:+.1} | {by_gauge:+.2} | {kept} |"
+        );
         Ok(())
     }
 }
 
-/// Half the usual speed of sound: nothing here moves fast.
-fn model(dimension: usize, dp: f64, depth: f64) -> Model {
-    let usual = Model::water(dimension, dp, depth);
-    Model { c0: 0.5 * usual.c0, ..usual }
+/// Bodies of one density in 2-D, `n` particles high. A box off the lattice lies 0.3 dp aside and draws 0.3 dp more.
+fn flat(n: f64, ratio: f64, walls: Walls) -> Result<()> {
+    let block = Shape::Box { size: Vector::from([1.5, 1.0]) * HEIGHT };
+    let case = |name, shape: &Shape<2>, ratio, (shift, tilt), pool: [f64; 2]| {
+        let (shape, pool) = (shape.clone(), Vector::from(pool) * HEIGHT);
+        Case { name, shape, ratio, shift, tilt, n, walls, pool, periods: 3.0 }.row()
+    };
+    case("2-D box on the lattice", &block, ratio, (0.0, 0.0), [4.5, 1.5])?;
+    case("2-D box off the lattice", &block, ratio + 0.3 / n, (0.3, 0.0), [4.5, 1.5])?;
+    case("2-D box tilted by 20°", &block, ratio, (0.3, TILT), [4.5, 2.0])?;
+    case("2-D ball", &Shape::Ball { radius: 0.5 * HEIGHT }, ratio, (0.0, 0.0), [3.0, 1.5])
 }
 
-/// Bodies in 2-D, `n` particles high. A box off the lattice lies 0.3 dp aside and draws 0.3 dp more.
-fn flat(n: f64, ratio: f64) -> Result<()> {
-    let block = Shape::Box { size: Vector::from([1.5 * HEIGHT, HEIGHT]) };
-    let case = |name, shape, ratio, shift, wide: f64| Case {
-        name,
-        shape,
-        ratio,
-        shift,
-        n,
-        pool: Vector::from([wide, 1.5]) * HEIGHT,
-        periods: 3.0,
+/// Bodies of one density in 3-D, `n` particles high.
+fn spatial(n: f64, ratio: f64, walls: Walls) -> Result<()> {
+    let cube = Shape::Box { size: Vector::repeat(HEIGHT) };
+    let case = |name, shape: &Shape<3>, ratio, (shift, tilt), deep| {
+        let (shape, pool) = (shape.clone(), Vector::from([2.2, 2.2, deep]) * HEIGHT);
+        Case { name, shape, ratio, shift, tilt, n, walls, pool, periods: 1.3 }.row()
     };
-    case("2-D box on the lattice", block.clone(), ratio, 0.0, 4.5).row()?;
-    case("2-D box off the lattice", block, ratio + 0.3 / n, 0.3, 4.5).row()?;
-    case("2-D ball", Shape::Ball { radius: 0.5 * HEIGHT }, ratio, 0.0, 3.0).row()
-}
-
-/// Bodies in 3-D, `n` particles high.
-fn spatial(n: f64, ratio: f64) -> Result<()> {
-    let case = |name, shape| Case {
-        name,
-        shape,
-        ratio,
-        shift: 0.0,
-        n,
-        pool: Vector::from([2.2, 2.2, 1.3]) * HEIGHT,
-        periods: 1.3,
-    };
-    case("3-D cube on the lattice", Shape::Box { size: Vector::repeat(HEIGHT) }).row()?;
-    case("3-D ball", Shape::Ball { radius: 0.5 * HEIGHT }).row()
+    case("3-D cube on the lattice", &cube, ratio, (0.0, 0.0), 1.3)?;
+    case("3-D cube off the lattice", &cube, ratio + 0.3 / n, (0.3, 0.0), 1.3)?;
+    case("3-D cube tilted by 20°", &cube, ratio, (0.3, TILT), 1.6)?;
+    case("3-D ball", &Shape::Ball { radius: 0.5 * HEIGHT }, ratio, (0.0, 0.0), 1.3)
 }
 
 fn main() -> Result<()> {
-    let quick = std::env::args().any(|a| a == "--quick");
-    println!("| body | ratio | dp a height | draft, dp | error, dp | error, % of the draft | by a gauge, dp |");
-    println!("|---|---|---|---|---|---|---|");
-    for n in if quick { vec![10.0] } else { vec![10.0, 20.0] } {
-        for ratio in [0.3, 0.5, 0.7, 0.9] {
-            flat(n, ratio)?;
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let walls = if words.iter().any(|w| w == "settling") { Walls::Settling } else { Walls::Dbc };
+    let mut grids: Vec<&str> = words.iter().map(String::as_str).filter(|w| w.contains('-')).collect();
+    if grids.is_empty() {
+        grids = vec!["2d-10", "2d-20"];
+    }
+    println!("Walls: {walls:?}. A draft must be right to {MUST} dp and should be to {GOAL} dp.\n");
+    println!("| body | ratio | dp a height | draft, dp | error, dp | error, % of the draft | by a gauge, dp | kept |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for grid in grids {
+        for ratio in RATIOS {
+            match grid {
+                "2d-10" => flat(10.0, ratio, walls)?,
+                "2d-20" => flat(20.0, ratio, walls)?,
+                "2d-40" => flat(40.0, ratio, walls)?,
+                "3d-10" => spatial(10.0, ratio, walls)?,
+                "3d-20" => spatial(20.0, ratio, walls)?,
+                _ => return Err(Error::scene(format!("no grid is called {grid}"))),
+            }
         }
     }
-    for ratio in [0.3, 0.5, 0.7, 0.9] {
-        spatial(10.0, ratio)?;
-    }
-    if quick { Ok(()) } else { flat(40.0, 0.5) }
+    Ok(())
 }
