@@ -1,4 +1,5 @@
-//! The water's pressure at a point: P(x) = Σ V_b [P_b + ρ_b g·(x − r_b)] W / Σ V_b W. What stands between the point and
+//! The water's pressure at a point: P(x) = Σ V_b [P_b (ρ₀/ρ_b)² + ρ₀ g·(x − r_b)] W / Σ V_b W: what acts
+//! (see [`State::acting`](crate::law::state::State::acting)). What stands between the point and
 //! the water that it sees is added as still water's weight, so that the point may lie on a wall.
 
 use super::{Probe, interpolate, point};
@@ -28,8 +29,8 @@ impl<const D: usize> Probe<D> for Pressure<D> {
         let system = sim.system();
         let (fluid, gravity) = (system.fluid(), system.gravity());
         let pressure = |b: usize| {
-            let rho = fluid.rho[b];
-            [system.pressure(rho) + rho * gravity.dot(&(self.at - fluid.r[b]))]
+            let head = gravity.dot(&(self.at - fluid.r[b]));
+            [system.acting_pressure(fluid.rho[b]) + system.medium().rho0 * head]
         };
         interpolate(system, &self.at, pressure).unwrap_or([0.0]).to_vec()
     }

@@ -85,7 +85,7 @@ impl<const D: usize> System<D> {
         let state = State::new(medium.c0, medium.gamma);
         // Depth along g: the level is a height on the last axis.
         let depth = |(r, level): (&Vector<D>, &f64)| (level - r[D - 1]).max(0.0) * -medium.gravity[D - 1];
-        let still = |depth: f64| medium.rho0 * (1.0 + state.excess(depth.max(0.0)));
+        let still = |head: f64| medium.rho0 * (1.0 + state.still(head));
         let rho = water.iter().zip(&levels).map(depth).map(still).collect();
         drop(levels);
         let (v, id) = (vec![Vector::zeros(); water.len()], (0..water.len() as u32).collect());

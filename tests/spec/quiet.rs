@@ -40,13 +40,14 @@ fn profile(sim: &Simulation<2>, dp: f64) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn after_five_seconds_the_pressure_is_hydrostatic_and_the_level_stands() {
+fn after_eight_seconds_the_pressure_is_hydrostatic_and_the_level_stands() {
     [Walls::Dbc, Walls::Settling].into_iter().for_each(stands);
 }
 
 fn stands(walls: Walls) {
     let dp = 0.02;
-    let sim = still_tank(Scheme::Symplectic, Shifting::None, walls, dp, 5.0);
+    // The lattice falls out of step after half a second; eight seconds later what that stirred has come to rest.
+    let sim = still_tank(Scheme::Symplectic, Shifting::None, walls, dp, 8.0);
     for (p, still) in profile(&sim, dp) {
         // 2 % of the pressure at the bed, the project's bound for Fourtakas' term.
         assert!((p - still).abs() < 0.02 * 9810.0 * DEPTH, "{p} Pa for {still} Pa");

@@ -10,7 +10,13 @@ use pontoon::{
 };
 
 /// Scenes that are run coarser here: their own spacing takes minutes.
-const COARSER: [(&str, &str); 3] = [("buoyancy-3d", "0.04"), ("column", "0.04"), ("flume-box", "0.02")];
+const COARSER: [(&str, &str); 5] = [
+    ("added-mass-3d", "0.04"),
+    ("buoyancy-3d", "0.04"),
+    ("column", "0.04"),
+    ("column-gate", "0.04"),
+    ("flume-box", "0.02"),
+];
 
 fn home() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
