@@ -244,7 +244,7 @@ impl Model {
             Kernel::Cubic { tensile: false } => make.with_kernel(kernel::Cubic::new(h, D), (Pressure, Continuity)),
             Kernel::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
-                let tensile = Tensile { inv_w_dp: 1.0 / kernel.weighed(make.medium.volume0()).w(dp * dp) };
+                let tensile = Tensile { inv_w_dp: 1.0 / kernel.on_lattice(dp, D).w(dp * dp) };
                 make.with_kernel(kernel, ((Pressure, tensile), Continuity))
             }
         }

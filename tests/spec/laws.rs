@@ -149,7 +149,15 @@ fn the_sweep_agrees_with_a_loop_over_all_pairs() {
     sim.refresh();
 
     let (fluid, mass) = (sim.system().fluid(), rho0 * dp * dp);
-    let alpha_d = 7.0 / (4.0 * std::f64::consts::PI * h * h);
+    let slope = |q: f64| 7.0 / (4.0 * std::f64::consts::PI * h * h) / (h * h) * -5.0 * (1.0 - q / 2.0).powi(3);
+    // The kernel is normed so that the gradient of x is 1 on the lattice.
+    let row = |j: i32| (-4..=4).map(move |i| (f64::from(i) * dp, f64::from(j) * dp));
+    let on_lattice: f64 = (-4..=4)
+        .flat_map(row)
+        .map(|(x, y)| (x, x.hypot(y) / h))
+        .filter(|(_, q)| *q < 2.0)
+        .map(|(x, q)| -x * x * slope(q) * dp * dp)
+        .sum();
     let pressure = |rho: f64| c0 * c0 * rho0 / 7.0 * ((rho / rho0).powi(7) - 1.0);
     let mut scale: (f64, f64) = (0.0, 0.0);
     let mut worst: (f64, f64) = (0.0, 0.0);
@@ -161,7 +169,7 @@ fn the_sweep_agrees_with_a_loop_over_all_pairs() {
             if q >= 2.0 {
                 continue;
             }
-            let grad_w = r * (alpha_d / (h * h) * -5.0 * (1.0 - q / 2.0).powi(3));
+            let grad_w = r * (slope(q) / on_lattice);
             let (rho_a, rho_b) = (fluid.rho[a], fluid.rho[b]);
             let mu = h * v.dot(&r) / (r.norm_squared() + 0.01 * h * h);
             let pi = if mu < 0.0 { -0.1 * c0 * mu / (0.5 * (rho_a + rho_b)) } else { 0.0 };
