@@ -1,7 +1,7 @@
 //! How deep do bodies float? Boxes, upright and tilted, and balls of several densities and resolutions at rest in a
-//! closed tank, against Archimedes: `cargo run --release --example draft_study -- settling 2d-10 3d-10`. The words
-//! are the walls (`dbc` or `settling`) and the grids (2d-10, 2d-20, 2d-40, 3d-10, 3d-20: dimension and dp a height);
-//! unsaid they are `dbc 2d-10 2d-20`. Prints a table in markdown.
+//! closed tank, against Archimedes: `cargo run --release --example draft_study -- dbc 2d-10 3d-10`. The words
+//! are the walls (`settling` or `dbc`) and the grids (2d-10, 2d-20, 2d-40, 3d-10, 3d-20: dimension and dp a height);
+//! unsaid they are `settling 2d-10 2d-20`. Prints a table in markdown.
 //!
 //! Each body starts at its draft of equilibrium, is left alone for a few heave periods, and the error of its
 //! draft is averaged over the last of them. The water level is sounded by volume: (particles × dpᴰ + displaced
@@ -89,9 +89,7 @@ where
         let tank = solid("tank", tank, Pose::identity(), Role::Fixed);
         let float = solid("float", self.shape.clone(), pose, Role::Free(body));
         let levels = vec![depth; water.len()];
-        // Half the usual speed of sound: nothing here moves fast.
-        let usual = Model::water(D, dp, depth);
-        let model = Model { c0: 0.5 * usual.c0, walls: self.walls, ..usual };
+        let model = Model { walls: self.walls, ..Model::water(D, dp, depth) };
         Simulation::new(Setup { model, water, levels, solids: vec![tank, float], domain: None })
     }
 
@@ -172,8 +170,14 @@ fn spatial(n: f64, ratio: f64, walls: Walls) -> Result<()> {
 
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let walls = if words.iter().any(|w| w == "settling") { Walls::Settling } else { Walls::Dbc };
-    let mut grids: Vec<&str> = words.iter().map(String::as_str).filter(|w| w.contains('-')).collect();
+    let (mut walls, mut grids) = (Walls::Settling, Vec::new());
+    for word in &words {
+        match word.as_str() {
+            "dbc" => walls = Walls::Dbc,
+            "settling" => walls = Walls::Settling,
+            grid => grids.push(grid),
+        }
+    }
     if grids.is_empty() {
         grids = vec!["2d-10", "2d-20"];
     }
@@ -188,7 +192,10 @@ fn main() -> Result<()> {
                 "2d-40" => flat(40.0, ratio, walls)?,
                 "3d-10" => spatial(10.0, ratio, walls)?,
                 "3d-20" => spatial(20.0, ratio, walls)?,
-                _ => return Err(Error::scene(format!("no grid is called {grid}"))),
+                _ => {
+                    let help = "write dbc or settling, and 2d-10, 2d-20, 2d-40, 3d-10, 3d-20";
+                    return Err(Error::scene(format!("no grid is called {grid:?}")).help(help));
+                }
             }
         }
     }

@@ -162,6 +162,9 @@ pub struct Model {
     pub dt_max: f64,
 }
 
+/// c₀ over √(g·depth) where nobody says it, –.
+pub const C0_FACTOR: f64 = 10.0;
+
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
     /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
@@ -177,7 +180,7 @@ impl Model {
             h: dp * if dimension == 3 { 1.5 } else { 1.7 },
             dp,
             rho0: 1000.0,
-            c0: 10.0 * (G * depth).sqrt(),
+            c0: C0_FACTOR * (G * depth).sqrt(),
             gamma: 7.0,
             gravity,
             viscosity: Viscosity::Artificial(Artificial::default()),
@@ -244,7 +247,7 @@ impl Model {
             Kernel::Cubic { tensile: false } => make.with_kernel(kernel::Cubic::new(h, D), (Pressure, Continuity)),
             Kernel::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
-                let tensile = Tensile { inv_w_dp: 1.0 / kernel.on_lattice(dp, D).w(dp * dp) };
+                let tensile = Tensile { inv_w_dp: 1.0 / kernel.on_lattice(&make.medium).w(dp * dp) };
                 make.with_kernel(kernel, ((Pressure, tensile), Continuity))
             }
         }

@@ -294,6 +294,9 @@ fn check<const D: usize>(setup: &Setup<D>) -> Result<()> {
             return Err(Error::scene(format!("{name} must be a positive number, not {value}")));
         }
     }
+    if m.reach() <= m.dp {
+        return Err(Error::scene(format!("h must exceed dp/2 for particles to see one another, and is {} m", m.h)));
+    }
     if m.gravity.len() != D || m.gravity.iter().any(|g| !g.is_finite()) {
         return Err(Error::scene(format!("gravity needs {D} finite components")));
     }

@@ -150,9 +150,10 @@ impl Check {
         let (reference, covered) = match self.common(&sim) {
             Ok(common) => common,
             Err(why) => {
-                // A run that ends before its reference begins is too short, no failure.
+                // A run that ends before its reference begins, or before it is set to zero, is too short, no failure.
                 let (from, until) = window(&self.words);
-                let reaches = matches!(self.reference, Known::Formula(_)) && sim.within(from, until).is_ok();
+                let set = self.words.zero.is_none_or(|at| at <= sim.span().1);
+                let reaches = set && matches!(self.reference, Known::Formula(_)) && sim.within(from, until).is_ok();
                 verdict.passed = self.words.bound.filter(|_| reaches).map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
@@ -208,6 +209,9 @@ impl Check {
     /// The reference where the run covers it, and which share of it that is.
     fn common(&self, sim: &Series) -> Result<(Series, f64)> {
         let (first, last) = sim.span();
+        if let Some(at) = self.words.zero.filter(|at| *at > last) {
+            return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
+        }
         let (from, until) = window(&self.words);
         match &self.reference {
             Known::Table(whole) => {

@@ -61,6 +61,9 @@ impl Scene {
 
     fn verify_times(&self, key: &str, check: &CheckEntry) -> Result<()> {
         self.positive(&format!("{key}.mean"), check.mean)?;
+        if let Some(zero) = check.zero.filter(|zero| !(*zero >= 0.0 && zero.is_finite())) {
+            return Err(self.wrong(&format!("{key}.zero"), format!("zero is a time of the run, and {zero} s is none")));
+        }
         if let Some(Align::Crossing(threshold)) = check.align {
             self.positive(&format!("{key}.align.crossing"), Some(threshold))?;
         }

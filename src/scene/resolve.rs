@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    model::{Model, Scheme},
+    model::{C0_FACTOR, Model, Scheme},
 };
 
 /// A value in force and who said it.
@@ -112,7 +112,7 @@ impl Scene {
         if model.c0.is_none() {
             let why =
                 "density varies by 1 %, a few in an impact; the depth is from the lowest water to the highest level";
-            filler.fill("model.c0_factor", &mut model.c0_factor, 10.0, why);
+            filler.fill("model.c0_factor", &mut model.c0_factor, C0_FACTOR, why);
         }
         filler.fill("model.rho0", &mut model.rho0, usual.rho0, "fresh water, kg/m³");
         filler.fill("model.gamma", &mut model.gamma, usual.gamma, "water");

@@ -49,7 +49,7 @@ pub(super) struct Compiled<K, T, W> {
 impl<K: Kernel, T, W> Compiled<K, T, W> {
     /// With kernel and laws made for `medium`, in its units.
     pub(super) fn new<const D: usize>(kernel: K, inner: T, wall: W, medium: &Medium<D>) -> Self {
-        let (kernel, reach2) = (kernel.on_lattice(medium.dp, D), (REACH * medium.h).powi(2));
+        let (kernel, reach2) = (kernel.on_lattice(medium), (REACH * medium.h).powi(2));
         Self { kernel, inner, wall, eta2: medium.eta2(), reach2 }
     }
 }

@@ -106,7 +106,7 @@ where
     W: Term<D> + 'static,
 {
     let laws = Box::new(laws::Compiled::new(kernel, inner, wall, medium));
-    let fits = Box::new(fits::Weighed(kernel.on_lattice(medium.dp, D)));
+    let fits = Box::new(fits::Weighed(kernel.on_lattice(medium)));
     match level {
         Some(level) => Box::new(lanes::Lanes::new(laws, fits, units, level)),
         None => Box::new(gather::Gather::new(laws, fits)),

@@ -205,6 +205,8 @@ fn an_instrument_set_to_zero_on_the_way_counts_from_there() -> std::io::Result<(
     let set = CheckWords { zero: Some(0.5), ..raw.clone() };
     assert_eq!([judge(&raw, &folder).passed, judge(&set, &folder).passed], [Some(false), Some(true)]);
     assert_eq!(judge(&set, &folder).series, "box.heave_m, 0 at 0.5 s");
+    let late = judge(&CheckWords { zero: Some(1e3), ..set }, &folder);
+    assert!(late.passed.is_none() && late.note.is_some_and(|note| note.contains("before it is set to zero")));
     fs::remove_dir_all(folder)
 }
 

@@ -6,7 +6,7 @@ mod wendland;
 pub use cubic::Cubic;
 pub use wendland::Wendland;
 
-use super::Num;
+use super::{Medium, Num};
 
 /// A kernel for one smoothing length and dimension.
 pub trait Kernel: Copy + Send + Sync {
@@ -16,29 +16,27 @@ pub trait Kernel: Copy + Send + Sync {
     /// The same with W and ∂W multiplied by `volume`.
     fn weighed(self, volume: f64) -> Self;
 
-    /// The same, weighed with the volume of particles `dp` (m) apart so that a lattice of them has the first moment
-    /// −Σ V r_x ∂W r_x = 1: the gradient of what is linear is then exact on it. The support holds at most 12 dp.
-    fn on_lattice(self, dp: f64, dimension: usize) -> Self {
-        let volume = dp.powi(dimension as i32);
-        let (n, layers) = (MOST, if dimension == 2 { 0..=0 } else { -MOST..=MOST });
+    /// The same, weighed with the volume of a particle so that −Σ r_x ∂W r_x = 1 over a lattice of spacing dp: there the
+    /// gradient of what is linear is exact.
+    fn on_lattice<const D: usize>(self, medium: &Medium<D>) -> Self {
+        let Medium { h, dp, .. } = *medium;
+        let most = (REACH * h / dp) as i32;
+        let layers = if D == 2 { 0 } else { most };
         let mut moment = 0.0;
-        for k in layers {
-            for j in -n..=n {
-                for i in -n..=n {
-                    let r2 = f64::from(i * i + j * j + k * k) * dp * dp;
-                    moment -= volume * f64::from(i * i) * dp * dp * self.slope(r2);
+        for k in -layers..=layers {
+            for j in -most..=most {
+                for i in -most..=most {
+                    let [x, y, z] = [i, j, k].map(|n| f64::from(n) * dp);
+                    moment -= x * x * self.slope(x * x + y * y + z * z);
                 }
             }
         }
-        self.weighed(volume / moment)
+        self.weighed(1.0 / moment)
     }
 
     /// ∂W = (dW/dr)/r (1/mᴰ⁺²) at squared distance `r2` (m²): ∇_a W = ∂W r_ab. Finite at r = 0.
     fn slope<N: Num>(&self, r2: N) -> N;
 }
-
-/// Most particles in a row within the support.
-const MOST: i32 = 12;
 
 /// Support radius over smoothing length, the same for every kernel here.
 pub const REACH: f64 = 2.0;
