@@ -90,7 +90,7 @@ where
         let float = solid("float", self.shape.clone(), pose, Role::Free(body));
         let levels = vec![depth; water.len()];
         let model = Model { walls: self.walls, ..Model::water(D, dp, depth) };
-        Simulation::new(Setup { model, water, levels, solids: vec![tank, float], domain: None })
+        Simulation::new(Setup::new(model, water, levels, vec![tank, float]))
     }
 
     /// The water level (m) that the tank's volume gives.

@@ -73,5 +73,5 @@ fn setup() -> Result<Setup<2>> {
     let region = Region { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
     let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
     let levels = vec![SIZE[1]; water.len()];
-    Ok(Setup { model, water, levels, solids: vec![tank], domain: None })
+    Ok(Setup::new(model, water, levels, vec![tank]))
 }

@@ -231,9 +231,9 @@ where
         let system = sim.system();
         let mut pairs = 0usize;
         for (i, r) in system.fluid().r.iter().enumerate() {
-            system.water_near(r, &mut |j, _| pairs += usize::from(j != i));
+            system.water_near(r, &mut |j, _, _| pairs += usize::from(j != i));
             // A pair with a boundary particle is seen from it as well.
-            system.solid_near(r, &mut |_, _| pairs += 2);
+            system.solid_near(r, &mut |_, _, _| pairs += 2);
         }
         let pairs = pairs as f64 / (system.fluid().len() + system.wet()) as f64;
         Ok(Self { sim, outputs, name: work.name.clone(), setup_s, peak, pairs })

@@ -31,11 +31,41 @@ impl<const D: usize> Particles<D> {
         self.r.is_empty()
     }
 
+    /// The first `n` of them.
+    pub fn first(&self, n: usize) -> View<'_, D> {
+        View { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
+    }
+
     /// Adds a particle at rest at `r` (m) of density `rho` (kg/m³); its id is its number.
     pub fn push(&mut self, r: Vector<D>, rho: f64) {
         self.id.push(self.r.len() as u32);
         self.r.push(r);
         self.v.push(Vector::zeros());
         self.rho.push(rho);
+    }
+}
+
+/// Some of the particles of one kind, to look at: as [`Particles`].
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a, const D: usize> {
+    /// Position, m.
+    pub r: &'a [Vector<D>],
+    /// Velocity, m/s.
+    pub v: &'a [Vector<D>],
+    /// Density, kg/m³.
+    pub rho: &'a [f64],
+    /// Name of the particle for life.
+    pub id: &'a [u32],
+}
+
+impl<const D: usize> View<'_, D> {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.r.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.r.is_empty()
     }
 }

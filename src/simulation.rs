@@ -2,32 +2,19 @@
 
 use std::time::{Duration, Instant};
 
+pub use crate::system::Setup;
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Fault, Kind, Result},
-    model::{Dimension, Model},
+    model::Dimension,
     solid::{Dim, HasEngine as _, Role, SolidSpec},
-    space::{Bounds, Vector, Wedge},
+    space::{Vector, Wedge},
     system::{System, SystemState},
     time::{Bodies, Interval, Stepper, limit},
 };
-
-/// What a simulation starts from.
-#[derive(Clone, Debug)]
-pub struct Setup<const D: usize> {
-    /// The model.
-    pub model: Model,
-    /// Places of the water particles, m.
-    pub water: Vec<Vector<D>>,
-    /// Height of the still surface above each of them, m.
-    pub levels: Vec<f64>,
-    /// The solids.
-    pub solids: Vec<SolidSpec<D>>,
-    /// Where particles may be; by default everything at the start, with its own largest extent around it.
-    pub domain: Option<Bounds<D>>,
-}
 
 /// Water and solids moving through time.
 pub struct Simulation<const D: usize> {
@@ -78,16 +65,15 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        check(&setup)?;
-        let Setup { model, water, levels, solids, domain } = setup;
-        let medium = model.medium::<D>();
-        for solid in &solids {
+        setup.check()?;
+        let (medium, solids, dp) = (setup.model.medium::<D>(), &setup.solids, setup.model.dp);
+        for solid in solids {
             solid.check()?;
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
         let engine = if solids.iter().any(|s| free(&s)) {
             let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-            Some(Dim::<D>::engine(&solids, &start, &medium.gravity, model.dp)?)
+            Some(Dim::<D>::engine(solids, &start, &medium.gravity, dp)?)
         } else {
             None
         };
@@ -98,8 +84,8 @@ impl<const D: usize> Simulation<D> {
                 _ => None,
             })
             .fold(f64::INFINITY, f64::min);
-        let stepper = Stepper::new(&model);
-        let system = System::new(model, water, levels, solids, domain)?;
+        let stepper = Stepper::new(&setup.model);
+        let system = System::new(setup)?;
         let bodies = Bodies::new(engine, 0);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let simulation = Self { system, stepper, bodies, dt_bodies, clock, stepping: Duration::ZERO };
@@ -149,7 +135,7 @@ impl<const D: usize> Simulation<D> {
     pub fn limit(&self) -> f64 {
         let model = self.system.model();
         let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        water.min(self.dt_bodies).min(model.dt_max)
+        water.min(limit::viscous(model)).min(self.dt_bodies).min(model.dt_max)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -275,36 +261,3 @@ impl<const D: usize> Simulation<D> {
 }
 
 const NO_STEP: &str = "The accelerations are not finite, or the end lies in the past.";
-
-/// Refuses a setup whose constants have no meaning.
-fn check<const D: usize>(setup: &Setup<D>) -> Result<()> {
-    let m = &setup.model;
-    let positive = [
-        ("dp", m.dp),
-        ("h", m.h),
-        ("rho0", m.rho0),
-        ("c0", m.c0),
-        ("gamma", m.gamma),
-        ("cfl", m.cfl),
-        ("dt_max", m.dt_max),
-    ];
-    for (name, value) in positive {
-        let finite = value.is_finite() || name == "dt_max";
-        if !(value > 0.0 && finite) {
-            return Err(Error::scene(format!("{name} must be a positive number, not {value}")));
-        }
-    }
-    if m.reach() <= m.dp {
-        return Err(Error::scene(format!("h must exceed dp/2 for particles to see one another, and is {} m", m.h)));
-    }
-    if m.gravity.len() != D || m.gravity.iter().any(|g| !g.is_finite()) {
-        return Err(Error::scene(format!("gravity needs {D} finite components")));
-    }
-    if setup.levels.len() != setup.water.len() {
-        return Err(Error::scene("every water particle needs the level of its surface"));
-    }
-    if let Some(i) = setup.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
-        return Err(Error::scene(format!("water particle {i} has no finite place")));
-    }
-    Ok(())
-}

@@ -44,7 +44,7 @@ fn level<const D: usize>(system: &System<D>, at: &Vector<D>) -> f64 {
         let mut x = *at;
         x[up] = z;
         let mut sum = 0.0;
-        system.water_near(&x, &mut |b, w| sum += system.particle_mass() / system.fluid().rho[b] * w);
+        system.water_near(&x, &mut |b, _, w| sum += system.particle_mass() / system.fluid().rho[b] * w);
         sum
     };
     fall(filled, low, high + 2.0 * h, 0.5 * dp, 1e-3 * dp).unwrap_or(f64::NAN)

@@ -65,9 +65,10 @@ fn compression(x: f64, gamma: f64) -> f64 {
     power + 1.0 / x - 1.0
 }
 
-/// −Σ m g·r of the water (J).
+/// −Σ m g·r of the water (J). Along a periodic axis there is no height, and gravity does work.
 fn water_potential<const D: usize>(system: &System<D>) -> f64 {
-    let g = system.gravity();
+    let (all, periodic) = (system.gravity(), system.periodic());
+    let g = Vector::<D>::from_fn(|i, _| if periodic[i].is_some() { 0.0 } else { all[i] });
     -system.particle_mass() * system.fluid().r.iter().map(|r| g.dot(r)).sum::<f64>()
 }
 

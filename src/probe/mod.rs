@@ -86,14 +86,14 @@ fn point<const D: usize>(at: &[f64], count: usize) -> Result<Vector<D>> {
 fn interpolate<const D: usize, const C: usize>(
     system: &System<D>,
     x: &Vector<D>,
-    quantity: impl Fn(usize) -> [f64; C],
+    quantity: impl Fn(usize, &Vector<D>) -> [f64; C],
 ) -> Option<[f64; C]> {
-    let (mass, rho) = (system.particle_mass(), &system.fluid().rho);
+    let (mass, rho) = (system.particle_mass(), system.fluid().rho);
     let (mut sum, mut weight) = ([0.0; C], 0.0);
-    system.water_near(x, &mut |b, w| {
+    system.water_near(x, &mut |b, r, w| {
         let share = mass / rho[b] * w;
         weight += share;
-        for (s, q) in sum.iter_mut().zip(quantity(b)) {
+        for (s, q) in sum.iter_mut().zip(quantity(b, r)) {
             *s += share * q;
         }
     });

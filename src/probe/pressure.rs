@@ -28,8 +28,8 @@ impl<const D: usize> Probe<D> for Pressure<D> {
     fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
         let system = sim.system();
         let (fluid, gravity) = (system.fluid(), system.gravity());
-        let pressure = |b: usize| {
-            let head = gravity.dot(&(self.at - fluid.r[b]));
+        let pressure = |b: usize, r: &Vector<D>| {
+            let head = gravity.dot(&(self.at - r));
             [system.acting_pressure(fluid.rho[b]) + system.medium().rho0 * head]
         };
         interpolate(system, &self.at, pressure).unwrap_or([0.0]).to_vec()

@@ -24,8 +24,8 @@ impl<const D: usize> Probe<D> for Velocity<D> {
     }
 
     fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let v = &sim.system().fluid().v;
-        let mean = interpolate(sim.system(), &self.at, |b| -> [f64; D] { v[b].into() });
+        let v = sim.system().fluid().v;
+        let mean = interpolate(sim.system(), &self.at, |b, _| -> [f64; D] { v[b].into() });
         mean.unwrap_or([f64::NAN; D]).to_vec()
     }
 }

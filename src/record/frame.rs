@@ -11,7 +11,7 @@ use vtkio::model::{
 use super::{cannot_write, write_whole};
 use crate::{
     error::{Error, Kind, Result, nearest},
-    particles::Particles,
+    particles::View,
     space::Vector,
     system::System,
 };
@@ -70,7 +70,7 @@ impl Frames {
         &self,
         name: &str,
         system: &System<D>,
-        particles: &Particles<D>,
+        particles: View<'_, D>,
         owner: Option<Vec<f32>>,
     ) -> Result<()> {
         let mut fields: Vec<Attribute> = self.fields.iter().map(|name| attribute(name, system, particles)).collect();
@@ -79,23 +79,23 @@ impl Frames {
         );
         let path = self.folder.join("frames").join(name);
         let bytes =
-            cloud(&particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
+            cloud(particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
         write_whole(&path, &bytes)
     }
 }
 
 /// The chosen field of all particles.
-fn attribute<const D: usize>(field: &str, system: &System<D>, particles: &Particles<D>) -> Attribute {
+fn attribute<const D: usize>(field: &str, system: &System<D>, particles: View<'_, D>) -> Attribute {
     let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
     let all = |f: &dyn Fn(usize) -> f64| (0..particles.len()).map(|i| f(i) as f32).collect();
     match field {
-        "velocity" => array(field, ElementType::Vectors, padded(&particles.v)),
+        "velocity" => array(field, ElementType::Vectors, padded(particles.v)),
         "density" => array(field, scalar, all(&|i| particles.rho[i])),
         "pressure" => array(field, scalar, all(&|i| system.pressure(particles.rho[i]))),
         _ => Attribute::DataArray(DataArrayBase {
             name: field.into(),
             elem: scalar,
-            data: IOBuffer::U32(particles.id.clone()),
+            data: IOBuffer::U32(particles.id.to_vec()),
         }),
     }
 }

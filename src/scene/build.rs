@@ -3,6 +3,7 @@
 
 use super::{
     FillWords, FrameWords, Frames, Plan, ProbeEntry, ProbeKind, ProbeWords, Scene,
+    flow::Flow,
     geometry::{pose, shape, vector, world_bounds},
 };
 use crate::{
@@ -15,6 +16,7 @@ use crate::{
     simulation::Setup,
     solid::SolidSpec,
     space::{Bounds, Pose, Vector},
+    system::periodic,
 };
 
 /// Most particles that a scene may ask for: about 100 GB of memory.
@@ -39,6 +41,7 @@ pub(super) struct Body<const D: usize> {
     region: Region<D>,
     bottom: f64,
     pub(super) level: f64,
+    flow: Flow<D>,
 }
 
 impl<const D: usize> Body<D> {
@@ -73,6 +76,8 @@ impl Scene {
         if let Some(domain) = &domain {
             scene.inside(domain, &water, &solids)?;
         }
+        let periodic = scene.periods();
+        periodic::check(&periodic, &model, &solids).map_err(|e| scene.origin.place(e, "periodic"))?;
         scene.affordable(&water, &solids)?;
         let regions: Vec<Region<D>> =
             water.iter().map(|b| Region { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
@@ -90,10 +95,12 @@ impl Scene {
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
         let level = |x: &Vector<D>| nearest(x).map_or(still_level, |body| body.level);
         let levels = filled.r.iter().map(level).collect();
+        let flow = |x: &Vector<D>| nearest(x).map_or((Vector::zeros(), 0.0), |body| body.flow.at(x));
+        let (velocity, pressure) = filled.r.iter().map(flow).unzip();
         if let Some(part) = scene.scatter {
             scatter(&mut filled.r, part * scene.dp);
         }
-        let setup = Setup { model, water: filled.r, levels, solids, domain };
+        let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, domain, periodic };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, warnings })
     }
 
@@ -135,7 +142,7 @@ impl Scene {
                 let what = format!("the level is not above {bottom} m, the bottom of this water");
                 return Err(self.wrong(&format!("{key}.level"), what));
             }
-            bodies.push(Body { region: Region { shape, pose }, bottom, level });
+            bodies.push(Body { region: Region { shape, pose }, bottom, level, flow: self.flow(&key, words)? });
         }
         Ok(bodies)
     }

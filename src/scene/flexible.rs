@@ -102,6 +102,32 @@ impl<'de> Deserialize<'de> for Draft {
     }
 }
 
+/// A formula in the place, or a number.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FieldWords(pub String);
+
+impl<'de> Deserialize<'de> for FieldWords {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct Words;
+        impl Visitor<'_> for Words {
+            type Value = FieldWords;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "a number, or a formula such as \"0.1*sin(2*pi*x)\"")
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<FieldWords, E> {
+                Ok(FieldWords(text.into()))
+            }
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<FieldWords, E> {
+                Ok(FieldWords(format!("{x:?}")))
+            }
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<FieldWords, E> {
+                Ok(FieldWords(x.to_string()))
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}
+
 /// A number, a list of numbers, or a list of rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::{
     bodies::{AtWords, ShapeWords, SolidWords},
     document::Origin,
-    flexible::Frames,
+    flexible::{FieldWords, Frames},
+    flow::PeriodicWords,
 };
 use crate::{
     model::{Diffusion, Kernel, Scheme, Shifting, Sweeping, Viscosity, Walls},
@@ -38,6 +39,9 @@ pub struct Scene {
     /// Box that nothing may leave.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub domain: Option<BoxWords>,
+    /// Periodic sides.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<PeriodicWords>,
     /// Bodies of water.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub water: Vec<WaterWords>,
@@ -86,6 +90,12 @@ pub struct WaterWords {
     /// Height of its surface, m, where that lies below the top of `fill`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<f64>,
+    /// Velocity at the start, m/s: a formula in the place or a number for each axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<Vec<FieldWords>>,
+    /// Pressure at the start beyond that of water at rest, Pa: a formula in the place or a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<FieldWords>,
 }
 
 /// What a body of water fills: a box by its corners, or any shape somewhere.
@@ -267,6 +277,7 @@ impl Scene {
             gravity: None,
             scatter: None,
             domain: None,
+            periodic: None,
             water: Vec::new(),
             solid: Vec::new(),
             model: ModelWords::default(),
@@ -288,7 +299,8 @@ impl Scene {
     /// The same scene with water in the box from corner `min` to corner `max` (m) too.
     pub fn water_box(mut self, min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
         let corners = Some(BoxWords { min: min.into(), max: max.into() });
-        self.water.push(WaterWords { fill: FillWords { corners, ..FillWords::default() }, level: None });
+        let fill = FillWords { corners, ..FillWords::default() };
+        self.water.push(WaterWords { fill, level: None, velocity: None, pressure: None });
         self
     }
 

@@ -9,6 +9,7 @@ mod build_solids;
 mod checks;
 mod document;
 pub mod flexible;
+pub mod flow;
 pub mod format;
 mod geometry;
 pub mod resolve;
@@ -24,7 +25,8 @@ pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, PartWords, ShapeWords, SolidWords};
 pub use build::Built;
 pub use document::Source;
-pub use flexible::{Draft, Frames, FramesWords, LineWords, Numbers};
+pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers};
+pub use flow::PeriodicWords;
 pub use format::{
     BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,
 };

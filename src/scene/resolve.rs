@@ -255,7 +255,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 15] = [
+const ORDER: [&str; 16] = [
     "title",
     "dimension",
     "dp",
@@ -263,6 +263,7 @@ const ORDER: [&str; 15] = [
     "gravity",
     "scatter",
     "domain",
+    "periodic",
     "water",
     "solid",
     "model",

@@ -67,6 +67,7 @@ impl Scene {
         if let Some(domain) = &self.domain {
             self.corners("domain", domain)?;
         }
+        self.verify_periodic()?;
         if self.water.is_empty() {
             return Err(self.wrong("water", "the scene has no water"));
         }
@@ -92,6 +93,7 @@ impl Scene {
     }
 
     fn verify_water(&self, key: &str, water: &WaterWords) -> Result<()> {
+        self.verify_flow(key, water)?;
         let fill = &water.fill;
         let key = format!("{key}.fill");
         match (&fill.corners, &fill.shape) {

@@ -1,9 +1,13 @@
-//! A formula in the time t, as a scene says it: its value and, by the chain rule, its exact rate.
+//! A formula in the time t, or in the place x, y, z, as a scene says it: its value and, by the chain rule, its exact rate
+//! by the first of them.
 //!
 //! Usual precedence: −t^2 is −(t²), 2^3^2 is 2^(3²), 2e-3 is a number. Every node is evaluated as the pair
 //! (x, dx/dt), so there is nothing to differentiate symbolically and nothing to approximate.
 
-use crate::error::{Error, Result, nearest};
+use crate::{
+    error::{Error, Result, nearest},
+    space::Vector,
+};
 
 /// A formula in the time t (s): numbers, `t`, `pi`, `+ - * / ^`, brackets and the usual functions.
 ///
@@ -26,7 +30,8 @@ type Function = fn(f64) -> (f64, f64);
 #[derive(Clone, Debug)]
 enum Node {
     Number(f64),
-    Time,
+    /// The i-th of the numbers that the formula is of.
+    Variable(usize),
     Negate(Box<Node>),
     Binary(Binary, Box<Node>, Box<Node>),
     Call(Function, Box<Node>),
@@ -75,28 +80,61 @@ impl Formula {
     /// # Errors
     /// `Scene` if it cannot be read: says what is wrong, at which character, and which words are known.
     pub fn parse(text: &str) -> Result<Self> {
-        let mut reader = Reader { text, place: 0, depth: 0 };
-        if text.len() > LENGTH {
-            return Err(reader.wrong(format!("it is longer than {LENGTH} characters")));
-        }
-        let root = reader.sum()?;
-        match reader.peek() {
-            None => Ok(Self { root }),
-            Some(c) => Err(reader.wrong(format!("an operator is expected before '{c}'"))),
-        }
+        read(text, &["t"]).map(|root| Self { root })
     }
 
     /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
     pub fn at(&self, t: f64) -> (f64, f64) {
-        self.root.at(t)
+        self.root.at(&[t])
+    }
+}
+
+/// A formula in the place: x and y (m), in 3-D also z.
+///
+/// ```
+/// # use pontoon::solid::Field;
+/// let swirl = Field::<2>::parse("-sin(pi*x)*cos(pi*y)")?;
+/// assert_eq!(swirl.at(&[0.5, 0.0].into()), -1.0);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Field<const D: usize> {
+    root: Node,
+}
+
+impl<const D: usize> Field<D> {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// As [`Formula::parse`].
+    pub fn parse(text: &str) -> Result<Self> {
+        read(text, &["x", "y", "z"][..D]).map(|root| Self { root })
+    }
+
+    /// Value at the place `r` (m).
+    pub fn at(&self, r: &Vector<D>) -> f64 {
+        self.root.at(r.as_slice()).0
+    }
+}
+
+/// Reads a formula of the numbers called `names`.
+fn read(text: &str, names: &'static [&'static str]) -> Result<Node> {
+    let mut reader = Reader { text, names, place: 0, depth: 0 };
+    if text.len() > LENGTH {
+        return Err(reader.wrong(format!("it is longer than {LENGTH} characters")));
+    }
+    let root = reader.sum()?;
+    match reader.peek() {
+        None => Ok(root),
+        Some(c) => Err(reader.wrong(format!("an operator is expected before '{c}'"))),
     }
 }
 
 impl Node {
-    fn at(&self, t: f64) -> (f64, f64) {
+    fn at(&self, t: &[f64]) -> (f64, f64) {
         match self {
             Self::Number(x) => (*x, 0.0),
-            Self::Time => (t, 1.0),
+            Self::Variable(i) => (t[*i], if *i == 0 { 1.0 } else { 0.0 }),
             Self::Negate(x) => {
                 let (x, dx) = x.at(t);
                 (-x, -dx)
@@ -144,6 +182,8 @@ impl Binary {
 /// Reads a formula from left to right.
 struct Reader<'a> {
     text: &'a str,
+    /// What the numbers that it is of are called.
+    names: &'static [&'static str],
     place: usize,
     depth: usize,
 }
@@ -211,8 +251,12 @@ impl<'a> Reader<'a> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() => self.word(),
-            Some(c) => Err(self.wrong(format!("a number, t or a function is expected before '{c}'"))),
-            None => Err(self.wrong("it ends where a number, t or a function is expected")),
+            Some(c) => {
+                Err(self.wrong(format!("a number, {} or a function is expected before '{c}'", self.names.join(", "))))
+            }
+            None => {
+                Err(self.wrong(format!("it ends where a number, {} or a function is expected", self.names.join(", "))))
+            }
         }
     }
 
@@ -234,14 +278,16 @@ impl<'a> Reader<'a> {
         let rest = &self.text[self.place..];
         let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
         let word = &rest[..end];
-        if word == "t" || word == "pi" {
+        let variable = self.names.iter().position(|name| *name == word).map(Node::Variable);
+        let constant = (word == "pi").then_some(Node::Number(std::f64::consts::PI));
+        if let Some(node) = variable.or(constant) {
             self.place += end;
-            return Ok(if word == "t" { Node::Time } else { Node::Number(std::f64::consts::PI) });
+            return Ok(node);
         }
         let function = FUNCTIONS.iter().find(|(name, _)| *name == word);
         let choice = CHOICES.iter().find(|(name, _)| *name == word);
         if function.is_none() && choice.is_none() {
-            let meant = nearest(word, known()).map(|k| format!("; did you mean \"{k}\"?")).unwrap_or_default();
+            let meant = nearest(word, self.known()).map(|k| format!("; did you mean \"{k}\"?")).unwrap_or_default();
             return Err(self.wrong(format!("\"{word}\" is not known{meant}")));
         }
         self.place += end;
@@ -279,17 +325,22 @@ impl<'a> Reader<'a> {
 
     fn wrong(&self, what: impl std::fmt::Display) -> Error {
         let column = self.text[..self.place].chars().count() + 1;
-        let known = known().collect::<Vec<_>>().join(", ");
+        let known = self.known().collect::<Vec<_>>().join(", ");
+        let example = match self.names {
+            ["t"] => "of the time t (s), such as 0.05*sin(2*pi*t/1.2)",
+            _ => "of the place (m), such as 0.1*sin(2*pi*x)*cos(2*pi*y)",
+        };
         Error::scene(format!(
             "formula \"{}\", character {column}: {what}",
             self.text.chars().take(80).collect::<String>()
         ))
-        .help(format!("write a formula of the time t (s), such as 0.05*sin(2*pi*t/1.2)\nknown: + - * / ^ ( ), {known}"))
+        .help(format!("write a formula {example}\nknown: + - * / ^ ( ), {known}"))
     }
-}
 
-fn known() -> impl Iterator<Item = &'static str> {
-    ["t", "pi"].into_iter().chain(FUNCTIONS.iter().map(|f| f.0)).chain(CHOICES.iter().map(|c| c.0))
+    fn known(&self) -> impl Iterator<Item = &'static str> + use<> {
+        let words = FUNCTIONS.iter().map(|f| f.0).chain(CHOICES.iter().map(|c| c.0));
+        self.names.iter().copied().chain(["pi"]).chain(words)
+    }
 }
 
 #[cfg(test)]

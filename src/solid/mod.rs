@@ -15,7 +15,7 @@ mod tests;
 
 pub use driven::{Law, Motion};
 pub use engine::{Dim, Engine, EngineFault, HasEngine};
-pub use formula::Formula;
+pub use formula::{Field, Formula};
 
 use std::ops::Range;
 

@@ -15,6 +15,8 @@ use crate::{
 #[derive(Serialize, Deserialize)]
 pub(crate) struct SystemState<const D: usize> {
     fluid: Particles<D>,
+    /// Which particle each image mirrors; the images are the last of the fluid.
+    images: Vec<u32>,
     skin: Particles<D>,
     kinematics: Vec<Kinematics<D>>,
     loads: Vec<Load<D>>,
@@ -30,6 +32,7 @@ impl<const D: usize> System<D> {
     pub(crate) fn save(&self) -> SystemState<D> {
         SystemState {
             fluid: self.fluid.clone(),
+            images: self.images.of.clone(),
             skin: self.skin.clone(),
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
             loads: self.solids.iter().map(|s| s.load).collect(),
@@ -42,12 +45,12 @@ impl<const D: usize> System<D> {
 
     /// Goes back to a kept state of the same scene.
     pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
-        let same = kept.fluid.len() == self.fluid.len()
+        let same = kept.fluid.len().checked_sub(kept.images.len()) == Some(self.real())
             && kept.skin.len() == self.skin.len()
             && kept.kinematics.len() == self.solids.len()
             && kept.loads.len() == self.solids.len()
             && kept.accelerations.len() == self.solids.len()
-            && kept.stress.len() == self.stress.len()
+            && kept.stress.is_empty() == self.stress.is_empty()
             && kept.built.0.len() == kept.fluid.len()
             && kept.built.1.len() == kept.kinematics.len();
         if !same {
@@ -55,6 +58,8 @@ impl<const D: usize> System<D> {
                 .help("it belongs to another scene: resume in the folder of its own run"));
         }
         (self.fluid, self.skin, self.stress, self.passes) = (kept.fluid, kept.skin, kept.stress, kept.passes);
+        self.images.of = kept.images;
+        self.sums.resize(self.fluid.len(), Sums::zero());
         for ((solid, k), load) in self.solids.iter_mut().zip(kept.kinematics).zip(kept.loads) {
             (solid.kinematics, solid.load) = (k, load);
         }

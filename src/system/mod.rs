@@ -3,11 +3,16 @@
 
 mod guard;
 mod kept;
+pub mod periodic;
+mod setup;
 mod view;
 mod walls;
 
 pub(crate) use guard::Seen;
 pub(crate) use kept::SystemState;
+use periodic::Images;
+pub use periodic::Periodic;
+pub use setup::Setup;
 
 pub use crate::sweep::Peaks;
 
@@ -21,7 +26,7 @@ use crate::{
     model::{Dimension, Model, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
-    solid::{Dim, Load, Solid, SolidSpec, skin},
+    solid::{Dim, Load, Solid, skin},
     space::{Bounds, Matrix, Pose, Vector, Wedge},
     sweep::{Input, Output, Sums, Sweep},
 };
@@ -45,6 +50,7 @@ pub struct System<const D: usize> {
     built: Option<Vec<Pose<D>>>,
     pub(crate) solids: Vec<Solid<D>>,
     domain: Bounds<D>,
+    images: Images<D>,
     /// Stress of the water from the last pass, m²/s²; empty unless the viscosity has one.
     stress: Vec<Matrix<D>>,
     /// Beside which boundary particles water is not shifted; empty unless water is shifted.
@@ -71,24 +77,22 @@ pub(crate) struct Renewal {
 impl<const D: usize> System<D> {
     /// Puts water at the places `water` (m), still below the levels `levels` (height of the surface above
     /// each particle, m), and the solids with their skins.
-    pub(crate) fn new(
-        model: Model,
-        water: Vec<Vector<D>>,
-        levels: Vec<f64>,
-        specs: Vec<SolidSpec<D>>,
-        domain: Option<Bounds<D>>,
-    ) -> Result<Self>
+    pub(crate) fn new(setup: Setup<D>) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
-        let medium = model.medium::<D>();
+        let Setup { model, water, levels, velocity, pressure, solids: specs, domain, periodic } = setup;
+        let (medium, reach) = (model.medium::<D>(), model.reach());
         let state = State::new(medium.c0, medium.gamma);
         // Depth along g: the level is a height on the last axis.
         let depth = |(r, level): (&Vector<D>, &f64)| (level - r[D - 1]).max(0.0) * -medium.gravity[D - 1];
-        let still = |head: f64| medium.rho0 * (1.0 + state.still(head));
-        let rho = water.iter().zip(&levels).map(depth).map(still).collect();
+        let more = pressure.into_iter().chain(std::iter::repeat(0.0));
+        let head = water.iter().zip(&levels).map(depth).zip(more).map(|(head, p)| head + p / medium.rho0);
+        let rho = head.map(|head| medium.rho0 * (1.0 + state.still(head))).collect();
         drop(levels);
-        let (v, id) = (vec![Vector::zeros(); water.len()], (0..water.len() as u32).collect());
+        let mut v = velocity;
+        v.resize(water.len(), Vector::zeros());
+        let id = (0..water.len() as u32).collect();
         let fluid = Particles { r: water, v, rho, id };
         let (mut skin, mut local, mut solids) = (Particles::default(), Vec::new(), Vec::new());
         for spec in specs {
@@ -107,11 +111,11 @@ impl<const D: usize> System<D> {
             solids.push(Solid { spec, kinematics, acceleration, whirl, skin: first..skin.len(), load });
         }
         let everything = Bounds::around(&fluid.r).union(&Bounds::around(&skin.r));
-        let domain = domain.unwrap_or_else(|| everything.grown(everything.size().max() + model.reach()));
+        let domain = domain.unwrap_or_else(|| everything.grown(everything.size().max() + reach));
         let boxes = solids.iter().map(|s: &Solid<D>| Bounds::around(&local[s.skin.clone()])).collect();
         let mut system = Self {
             sweep: Dim::<D>::sweep(&model),
-            near: Near::new(model.reach(), model.dp, model.sweep.level()),
+            near: Near::new(reach, model.dp, model.sweep.level()),
             stress: if matches!(model.viscosity, Viscosity::Sps(_)) {
                 vec![Matrix::zeros(); fluid.len()]
             } else {
@@ -136,6 +140,7 @@ impl<const D: usize> System<D> {
             boxes,
             solids,
             domain,
+            images: Images::new(periodic, reach),
         };
         system.place_all();
         system.renew();
@@ -152,12 +157,7 @@ impl<const D: usize> System<D> {
             return None;
         }
         let start = Instant::now();
-        let order = self.near.order(&self.fluid.r);
-        permute(&mut self.fluid.r, &order);
-        permute(&mut self.fluid.v, &order);
-        permute(&mut self.fluid.rho, &order);
-        permute(&mut self.fluid.id, &order);
-        permute(&mut self.stress, &order);
+        let order = self.reorder();
         self.listing += start.elapsed();
         Some(Renewal { order, dried: self.lists() })
     }
@@ -213,6 +213,7 @@ impl<const D: usize> System<D> {
         let input = Input { near, water: fluid, skin, stress, marks, medium, state };
         let mut output = Output { water: &mut self.sums, skin: &mut self.skin_sums, extra: &mut self.extra };
         self.peaks = sweep.rates(&input, &mut output);
+        self.reflect();
         if let Viscosity::Sps(sps) = self.model.viscosity {
             let (medium, rho, extra) = (&self.medium, &self.fluid.rho, &self.extra);
             self.stress.par_iter_mut().enumerate().with_min_len(PER_TASK).for_each(|(i, stress)| {
@@ -237,7 +238,9 @@ impl<const D: usize> System<D> {
                 .par_chunks(CHUNK)
                 .zip(self.skin_sums[own].par_chunks(CHUNK))
                 .map(|(wet, sums)| {
-                    wet.iter().zip(sums).fold(none, |load, (&i, s)| {
+                    // Beyond a periodic side the water is an image, and what it does has been counted.
+                    let own = |(i, _): &(&u32, _)| self.images.between(&self.skin.r[**i as usize]);
+                    wet.iter().zip(sums).filter(own).fold(none, |load, (&i, s)| {
                         let force = s.dv * mass;
                         let torque = Wedge::torque(&(self.skin.r[i as usize] - centre), &force);
                         Load { force: load.force + force, torque: load.torque + torque }

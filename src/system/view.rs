@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use super::System;
+use super::{Periodic, System};
 use crate::{
     law::Medium,
     model::Model,
-    particles::Particles,
+    particles::View,
     solid::Solid,
     space::{Bounds, Vector},
 };
@@ -23,13 +23,13 @@ impl<const D: usize> System<D> {
     }
 
     /// The water.
-    pub fn fluid(&self) -> &Particles<D> {
-        &self.fluid
+    pub fn fluid(&self) -> View<'_, D> {
+        self.fluid.first(self.real())
     }
 
     /// The boundary particles of all solids.
-    pub fn skin(&self) -> &Particles<D> {
-        &self.skin
+    pub fn skin(&self) -> View<'_, D> {
+        self.skin.first(self.skin.len())
     }
 
     /// The solids.
@@ -45,6 +45,11 @@ impl<const D: usize> System<D> {
     /// Where particles may be.
     pub fn domain(&self) -> &Bounds<D> {
         &self.domain
+    }
+
+    /// Which sides are periodic.
+    pub fn periodic(&self) -> &Periodic<D> {
+        &self.images.periodic
     }
 
     /// Mass of every particle, ρ₀ dpᴰ (kg; kg/m in 2-D).
@@ -98,20 +103,25 @@ impl<const D: usize> System<D> {
         self.medium.gravity
     }
 
-    /// Calls `visit` with index and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m).
-    pub fn water_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, f64)) {
-        self.near.water_around(x, &mut |i| self.weigh(&self.fluid.r[i], x, i, visit));
+    /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
+    /// a periodic side the place is that of its image.
+    pub fn water_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+        let real = self.real();
+        self.near.water_around(x, &mut |i| {
+            let own = i.checked_sub(real).map_or(i, |k| self.images.of[k] as usize);
+            self.weigh(&self.fluid.r[i], x, own, visit);
+        });
     }
 
-    /// Calls `visit` with index and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
-    pub fn solid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, f64)) {
+    /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
+    pub fn solid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         self.near.skin_around(x, &mut |i| self.weigh(&self.skin.r[i], x, i, visit));
     }
 
-    fn weigh(&self, r: &Vector<D>, x: &Vector<D>, i: usize, visit: &mut dyn FnMut(usize, f64)) {
+    fn weigh(&self, r: &Vector<D>, x: &Vector<D>, i: usize, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         let r2 = (r - x).norm_squared();
         if r2 < self.model.reach().powi(2) {
-            visit(i, self.model.kernel_value(r2, D));
+            visit(i, r, self.model.kernel_value(r2, D));
         }
     }
 }

@@ -1,5 +1,5 @@
-//! How long a step may be:  Δt = CFL·min( √(h/|f|), h/(c₀ + h max|v_ab·r_ab|/(r² + η²)) ),  and with free
-//! bodies  Δt ≤ ½·2/ω_b.
+//! How long a step may be:  Δt = CFL·min( √(h/|f|), h/(c₀ + h max|v_ab·r_ab|/(r² + η²)) ),  with a viscosity ν₀
+//! Δt ≤ h²/(8 ν₀),  and with free bodies  Δt ≤ ½·2/ω_b.
 //!
 //! f is the whole acceleration, gravity too; √(h/|f|) is what eq. (14) of the paper means by h/√|f|.
 //! ω_b is the frequency of a body on the water's compressibility: every boundary particle of the outer
@@ -7,6 +7,7 @@
 
 use crate::{
     law::Medium,
+    model::{Model, Viscosity},
     shape::Shape,
     solid::FreeBody,
     space::{Vector, Wedge},
@@ -21,6 +22,16 @@ pub fn water<const D: usize>(peaks: &Peaks, medium: &Medium<D>, cfl: f64) -> f64
     let by_force = (medium.h / peaks.acceleration).sqrt();
     let by_sound = medium.h / (medium.c0 + medium.h * peaks.closing);
     cfl * by_force.min(by_sound)
+}
+
+/// The longest step (s) that the model's viscosity allows; [@morris1997].
+pub fn viscous(model: &Model) -> f64 {
+    let nu0 = match model.viscosity {
+        Viscosity::Laminar(v) => v.nu0,
+        Viscosity::Sps(v) => v.nu0,
+        Viscosity::None | Viscosity::Artificial(_) => 0.0,
+    };
+    model.h * model.h / (8.0 * nu0)
 }
 
 /// The longest step (s) that a free body allows: half of 2/ω_b.

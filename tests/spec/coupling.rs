@@ -91,7 +91,7 @@ fn a_free_drop_keeps_its_angular_momentum() {
         sim.set_water_velocity(|r| Vector::from([2.0 * r[0] + 3.0 * r[1], -2.0 * r[1] - 5.0 * r[0]]));
         let spin = |sim: &Simulation<2>| -> (f64, f64) {
             let fluid = sim.system().fluid();
-            let each = fluid.r.iter().zip(&fluid.v).map(|(r, v)| Wedge::torque(r, v).axial()[0]);
+            let each = fluid.r.iter().zip(fluid.v).map(|(r, v)| Wedge::torque(r, v).axial()[0]);
             each.fold((0.0, 0.0), |(sum, size), l| (sum + l, size + l.abs()))
         };
         let (start, scale) = spin(&sim);

@@ -9,6 +9,7 @@ mod kernels;
 mod lanes;
 mod laws;
 mod near;
+mod periodic;
 mod probes;
 mod quiet;
 mod rig;

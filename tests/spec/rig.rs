@@ -50,7 +50,7 @@ where
     Dim<D>: Dimension<D>,
 {
     let levels = vec![level; water.len()];
-    Simulation::new(Setup { model, water, levels, solids, domain: None }).expect("a sound setup")
+    Simulation::new(Setup::new(model, water, levels, solids)).expect("a sound setup")
 }
 
 /// Momentum of the water, kg m/s.

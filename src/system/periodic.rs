@@ -1,0 +1,169 @@
+//! Periodic sides: what leaves at one comes in at the other, and sees across them.
+//!
+//! Water near a side has an image one period away, a particle of the arrays like any other, after all that is real. An
+//! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
+//! counts the water leaves images out. Solids have none: they reach beyond the sides as far as the images do.
+
+use super::{System, permute};
+use crate::{
+    error::{Error, Result},
+    model::Model,
+    solid::{Role, SolidSpec},
+    space::{Bounds, Vector},
+    sweep::{Peaks, Sums},
+};
+
+/// How far images reach beyond a side, over the kernel's support: the skin beyond a side sees water as that inside does, also
+/// while lists grow old.
+const WIDTH: f64 = 2.5;
+
+/// For each axis where a period begins and ends (m), if it has one.
+pub type Periodic<const D: usize> = [Option<[f64; 2]>; D];
+
+/// The images of the water.
+pub(super) struct Images<const D: usize> {
+    pub(super) periodic: Periodic<D>,
+    width: f64,
+    /// Which particle each of them mirrors; they follow the real ones in this order.
+    pub(super) of: Vec<u32>,
+}
+
+impl<const D: usize> Images<D> {
+    /// None yet, for a kernel of support `reach` (m).
+    pub(super) fn new(periodic: Periodic<D>, reach: f64) -> Self {
+        Self { periodic, width: WIDTH * reach, of: Vec::new() }
+    }
+
+    /// Whether any side is periodic.
+    fn any(&self) -> bool {
+        self.periodic.iter().any(Option::is_some)
+    }
+
+    /// Brings particles that have left through a periodic side in at the other.
+    fn wrap(&self, r: &mut [Vector<D>]) {
+        for (axis, side) in self.periodic.iter().enumerate() {
+            let Some([from, to]) = *side else { continue };
+            for x in r.iter_mut().map(|r| &mut r[axis]).filter(|x| !(from..to).contains(x)) {
+                let left = (*x - from).rem_euclid(to - from);
+                // A way so small that it is lost in the sum ends on the side itself.
+                *x = if from + left < to { from + left } else { from };
+            }
+        }
+    }
+
+    /// Makes the images of the particles at `r` (m): which they mirror, and how far away they are (m).
+    fn make(&self, r: &[Vector<D>]) -> Vec<(u32, Vector<D>)> {
+        let mut images = Vec::new();
+        for (axis, side) in self.periodic.iter().enumerate() {
+            let Some([from, to]) = *side else { continue };
+            let mirror = |i: u32, away: Vector<D>, images: &mut Vec<_>| {
+                let x = r[i as usize][axis];
+                for (near, sign) in [(x < from + self.width, 1.0), (x >= to - self.width, -1.0)] {
+                    if near {
+                        let mut away = away;
+                        away[axis] += sign * (to - from);
+                        images.push((i, away));
+                    }
+                }
+            };
+            // Those of the axes before have images along this one too: the corners.
+            let before = images.len();
+            (0..r.len() as u32).for_each(|i| mirror(i, Vector::zeros(), &mut images));
+            for k in 0..before {
+                let (i, away) = images[k];
+                mirror(i, away, &mut images);
+            }
+        }
+        images
+    }
+
+    /// Whether `x` (m) lies between the sides.
+    pub(super) fn between(&self, x: &Vector<D>) -> bool {
+        let inside = |(x, side): (&f64, &Option<[f64; 2]>)| side.is_none_or(|[from, to]| (from..to).contains(x));
+        x.iter().zip(&self.periodic).all(inside)
+    }
+}
+
+impl<const D: usize> System<D> {
+    /// Number of water particles, images not counted.
+    pub(super) fn real(&self) -> usize {
+        self.fluid.len() - self.images.of.len()
+    }
+
+    /// Wraps the water round the periodic sides and puts it into `order` with new images at the end; returns in which
+    /// order everything is now.
+    pub(super) fn reorder(&mut self) -> Vec<u32> {
+        let real = self.real();
+        self.images.wrap(&mut self.fluid.r[..real]);
+        let mut order = self.near.order(&self.fluid.r[..real]);
+        let mut images = Vec::new();
+        if self.images.any() {
+            let sorted: Vec<Vector<D>> = order.iter().map(|&i| self.fluid.r[i as usize]).collect();
+            images = self.images.make(&sorted);
+            order.extend(images.iter().map(|(of, _)| order[*of as usize]).collect::<Vec<_>>());
+        }
+        permute(&mut self.fluid.r, &order);
+        permute(&mut self.fluid.v, &order);
+        permute(&mut self.fluid.rho, &order);
+        permute(&mut self.fluid.id, &order);
+        permute(&mut self.stress, &order);
+        for (r, (_, away)) in self.fluid.r[real..].iter_mut().zip(&images) {
+            *r += away;
+        }
+        self.images.of = images.into_iter().map(|(of, _)| of).collect();
+        self.sums.resize(self.fluid.len(), Sums::zero());
+        order
+    }
+
+    /// Gives the images the rates of what they mirror.
+    pub(super) fn reflect(&mut self) {
+        let real = self.real();
+        for (k, &i) in self.images.of.iter().enumerate() {
+            self.sums[real + k] = self.sums[i as usize];
+            if !self.extra.is_empty() {
+                self.extra[real + k] = self.extra[i as usize];
+            }
+        }
+        if self.images.any() {
+            // The outermost images see half their neighbours: what pulls at them says nothing of the water.
+            let largest = self.sums[..real].iter().map(|s| s.dv.norm_squared()).fold(0.0, f64::max);
+            self.peaks = Peaks { acceleration: largest.sqrt(), ..self.peaks };
+        }
+    }
+}
+
+/// Refuses periodic sides that cannot be.
+///
+/// # Errors
+/// `Scene` if a period is too short or no whole number of dp, or a solid is free or ends at a side.
+pub fn check<const D: usize>(periodic: &Periodic<D>, model: &Model, solids: &[SolidSpec<D>]) -> Result<()> {
+    let (dp, width) = (model.dp, WIDTH * model.reach());
+    for (axis, side) in periodic.iter().enumerate() {
+        let Some([from, to]) = *side else { continue };
+        let (name, length) = (["x", "y", "z"][axis], to - from);
+        if !(length >= width && length.is_finite()) {
+            let what = format!("the period along {name}, {length} m, is so short that particles would see themselves");
+            return Err(Error::scene(what).help(format!("it is {width} m at least, or else dp must be smaller")));
+        }
+        let rows = (length / dp).round();
+        if (length / dp - rows).abs() > 1e-6 * rows {
+            let what = format!("the period along {name}, {length} m, is not a whole number of dp");
+            return Err(Error::scene(what).help(format!("write  dp = {}", length / rows)));
+        }
+        if let Some(solid) = solids.iter().find(|solid| matches!(solid.role, Role::Free(_))) {
+            let what = format!("solid {:?} is free, and periodic sides allow only fixed and driven ones", solid.name);
+            return Err(Error::scene(what).help("close the sides with walls, or make the solid fixed or driven"));
+        }
+        let near = |x: f64, side: f64| (x - side).abs() < width * (1.0 - 1e-9);
+        let ends = |solid: &&SolidSpec<D>| {
+            let Bounds { min, max } = solid.shape.bounds_at(&solid.pose);
+            near(min[axis], from) || near(min[axis], to) || near(max[axis], from) || near(max[axis], to)
+        };
+        if let Some(solid) = solids.iter().find(ends) {
+            let what = format!("solid {:?} ends at a periodic side along {name}: solids are not repeated", solid.name);
+            let help = format!("let it reach {width} m or more beyond the side, or end as far before it");
+            return Err(Error::scene(what).help(help));
+        }
+    }
+    Ok(())
+}

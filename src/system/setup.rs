@@ -1,0 +1,71 @@
+//! What a simulation starts from.
+
+use super::periodic::{self, Periodic};
+use crate::{
+    error::{Error, Result},
+    model::Model,
+    solid::SolidSpec,
+    space::{Bounds, Vector},
+};
+
+/// What a simulation starts from.
+#[derive(Clone, Debug)]
+pub struct Setup<const D: usize> {
+    /// The model.
+    pub model: Model,
+    /// Places of the water particles, m.
+    pub water: Vec<Vector<D>>,
+    /// Height of the still surface above each of them, m.
+    pub levels: Vec<f64>,
+    /// The solids.
+    pub solids: Vec<SolidSpec<D>>,
+    /// Velocity of each of them, m/s; empty if all are at rest.
+    pub velocity: Vec<Vector<D>>,
+    /// Pressure of each beyond that of water at rest, Pa; empty if there is none.
+    pub pressure: Vec<f64>,
+    /// Where particles may be; by default everything at the start, with its own largest extent around it.
+    pub domain: Option<Bounds<D>>,
+    /// Which sides are periodic.
+    pub periodic: Periodic<D>,
+}
+
+impl<const D: usize> Setup<D> {
+    /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
+    pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
+        let (velocity, pressure, periodic) = (Vec::new(), Vec::new(), [None; D]);
+        Self { model, water, levels, solids, velocity, pressure, domain: None, periodic }
+    }
+
+    /// Refuses a setup whose constants have no meaning.
+    pub(crate) fn check(&self) -> Result<()> {
+        let m = &self.model;
+        let positive = [
+            ("dp", m.dp),
+            ("h", m.h),
+            ("rho0", m.rho0),
+            ("c0", m.c0),
+            ("gamma", m.gamma),
+            ("cfl", m.cfl),
+            ("dt_max", m.dt_max),
+        ];
+        for (name, value) in positive {
+            let finite = value.is_finite() || name == "dt_max";
+            if !(value > 0.0 && finite) {
+                return Err(Error::scene(format!("{name} must be a positive number, not {value}")));
+            }
+        }
+        if m.reach() <= m.dp {
+            return Err(Error::scene(format!("h must exceed dp/2 for particles to see one another, and is {} m", m.h)));
+        }
+        if m.gravity.len() != D || m.gravity.iter().any(|g| !g.is_finite()) {
+            return Err(Error::scene(format!("gravity needs {D} finite components")));
+        }
+        if self.levels.len() != self.water.len() {
+            return Err(Error::scene("every water particle needs the level of its surface"));
+        }
+        if let Some(i) = self.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
+            return Err(Error::scene(format!("water particle {i} has no finite place")));
+        }
+        periodic::check(&self.periodic, m, &self.solids)
+    }
+}
