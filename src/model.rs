@@ -1,5 +1,7 @@
 //! The chosen laws, as data; the one place where a name becomes a type.
 
+pub use crate::law::wall::Slip;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -151,6 +153,9 @@ pub struct Model {
     pub shifting: Shifting,
     /// Walls.
     pub walls: Walls,
+    /// How water slips along solids.
+    #[serde(default)]
+    pub slip: Slip,
     /// Which sweep adds up the pairs.
     #[serde(default)]
     pub sweep: Sweeping,
@@ -187,6 +192,7 @@ impl Model {
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
             walls: Walls::Settling,
+            slip: Slip::Partial,
             sweep: Sweeping::Fast,
             scheme: Scheme::Symplectic,
             cfl: 0.4,
@@ -284,11 +290,12 @@ struct Make<'a, const D: usize> {
 
 impl<const D: usize> Make<'_, D> {
     fn with_kernel<K: kernel::Kernel + 'static, P: Term<D> + 'static>(&self, kernel: K, base: P) -> Box<dyn Sweep<D>> {
+        let damped = kernel.damped(&self.medium);
         match self.model.viscosity {
             Viscosity::None => self.with_viscosity(kernel, base),
             Viscosity::Artificial(v) => self.with_viscosity(kernel, (base, v.term(&self.medium))),
-            Viscosity::Laminar(v) => self.with_viscosity(kernel, (base, v.term(&self.units))),
-            Viscosity::Sps(v) => self.with_viscosity(kernel, (base, v.terms(&self.units))),
+            Viscosity::Laminar(v) => self.with_viscosity(kernel, (base, v.term(&self.units, damped))),
+            Viscosity::Sps(v) => self.with_viscosity(kernel, (base, v.terms(&self.units, damped))),
         }
     }
 

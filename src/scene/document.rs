@@ -21,12 +21,13 @@ use super::{Scene, sets, wording};
 use crate::error::{Error, Result};
 
 /// Keys whose value is one choice out of several laws.
-pub(super) const CHOICES: [&str; 7] = [
+pub(super) const CHOICES: [&str; 8] = [
     "model.kernel",
     "model.viscosity",
     "model.diffusion",
     "model.shifting",
     "model.walls",
+    "model.slip",
     "model.sweep",
     "time.scheme",
 ];

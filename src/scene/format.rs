@@ -13,7 +13,7 @@ use super::{
     flow::PeriodicWords,
 };
 use crate::{
-    model::{Diffusion, Kernel, Scheme, Shifting, Sweeping, Viscosity, Walls},
+    model::{Diffusion, Kernel, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
     plan::{Align, Score},
 };
 
@@ -138,6 +138,9 @@ pub struct ModelWords {
     /// Walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walls: Option<Walls>,
+    /// How water slips along solids.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<Slip>,
     /// Which sweep adds up the pairs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sweep: Option<Sweeping>,

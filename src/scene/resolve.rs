@@ -107,6 +107,8 @@ impl Scene {
             usual.walls,
             "no gap between water and wall; bodies rest at their draft",
         );
+        let why = "boundary particles show their own velocity: enough where no boundary layer is resolved";
+        filler.fill("model.slip", &mut model.slip, usual.slip, why);
         let why = "single precision where it is harmless; \"reference\" is double precision throughout";
         filler.fill("model.sweep", &mut model.sweep, usual.sweep, why);
         if model.c0.is_none() {

@@ -54,6 +54,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
     ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
     ("walls", "walls = \"settling\"      # or \"dbc\""),
+    ("slip", "slip = \"none\"         # or \"free\", \"partial\""),
     ("sweep", "sweep = \"fast\""),
     ("time", "[time]\nscheme = \"symplectic\""),
     ("scheme", "scheme = { verlet = { euler_every = 50 } }"),

@@ -17,16 +17,16 @@ pub(super) trait Fits<const D: usize>: Send + Sync {
     /// By the oracle, of the boundary particles `wet`, whose neighbours `lists` hold.
     fn skin(&self, nodes: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, fits: &mut [Fit<f64, D>]);
 
-    /// In lanes, of a slab and the one after it.
-    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, sums: &mut [Row]);
+    /// In lanes, of a slab and the one after it; with the flow if `flow`.
+    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, flow: bool, sums: &mut [Row]);
 }
 
 /// A kernel, weighed with a particle's volume at ρ₀.
 pub(super) struct Weighed<K>(pub(super) K);
 
-/// Rows of sums.
-pub(super) const fn rows(dimension: usize) -> usize {
-    dimension + 2
+/// Rows of sums, with the flow or without.
+pub(super) const fn rows(dimension: usize, flow: bool) -> usize {
+    dimension + 2 + if flow { dimension } else { 0 }
 }
 
 impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
@@ -37,55 +37,66 @@ impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
                 let (wall, water) = (&skin[i as usize], &water[j as usize]);
                 let r: [f64; D] = std::array::from_fn(|k| wall.r[k] - water.r[k]);
                 let r2 = r.iter().map(|x| x * x).sum();
-                fit.add(self.0.w(r2), water.side.p, water.side.s, r);
+                let w = self.0.w(r2);
+                fit.add(w, water.side.p, water.side.s, r);
+                fit.add_flow(w, water.side.s, water.v);
             }
             *out = fit;
         }
     }
 
-    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, sums: &mut [Row]) {
-        lanes::with(level, OfSlab { kernel: self.0, packed, slab, sums });
+    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, flow: bool, sums: &mut [Row]) {
+        match flow {
+            true => lanes::with(level, OfSlab::<_, true, D> { kernel: self.0, packed, slab, sums }),
+            false => lanes::with(level, OfSlab::<_, false, D> { kernel: self.0, packed, slab, sums }),
+        }
     }
 }
 
 /// The sums in `rows` and as a fit.
 #[inline(always)]
-pub(super) fn each<N: Num, const D: usize>(fit: &mut Fit<N, D>, mut visit: impl FnMut(usize, &mut N)) {
+pub(super) fn each<N: Num, const D: usize>(fit: &mut Fit<N, D>, flow: bool, mut visit: impl FnMut(usize, &mut N)) {
     visit(0, &mut fit.weight);
     visit(1, &mut fit.head);
     for (k, arm) in fit.arm.iter_mut().enumerate() {
         visit(2 + k, arm);
     }
+    if flow {
+        for (k, flow) in fit.flow.iter_mut().enumerate() {
+            visit(2 + D + k, flow);
+        }
+    }
 }
 
-struct OfSlab<'a, K, const D: usize> {
+struct OfSlab<'a, K, const FLOW: bool, const D: usize> {
     kernel: K,
     packed: &'a Packed<D>,
     slab: &'a Slab,
     sums: &'a mut [Row],
 }
 
-impl<K: Kernel, const D: usize> Work for OfSlab<'_, K, D> {
+impl<K: Kernel, const FLOW: bool, const D: usize> Work for OfSlab<'_, K, FLOW, D> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { kernel, packed, slab, sums } = self;
         let Slab { first, middle, end, spans, index } = slab;
-        let (rows, zero) = (rows(D), f32x8::splat(simd, 0.0));
+        let (rows, zero) = (rows(D, FLOW), f32x8::splat(simd, 0.0));
         sums.fill(Row::default());
         for c in *first..*end {
             for l in 0..LANES {
                 let [start, skin, end] = spans[(c - first) * LANES + l];
                 let is_water = c < *middle;
                 let others = &index[if is_water { skin } else { start } as usize..end as usize];
-                let Cluster { x, s, .. } = &packed.clusters[c];
+                let Cluster { x, v, s } = &packed.clusters[c];
                 let all = |x: f32| f32x8::splat(simd, x);
                 let (p, volume) = (all(s[2][l]), all(s[3][l]));
+                let moves: [f32x8<S>; D] = std::array::from_fn(|k| all(v[k][l]));
                 let mine: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, x[k][l]));
                 let mut sum = Fit::all(zero);
                 for &j in others {
-                    let Cluster { x, s, .. } = &packed.clusters[j as usize];
+                    let Cluster { x, v, s } = &packed.clusters[j as usize];
                     let mut r = [zero; D];
                     for k in 0..D {
                         r[k] = f32x8::float_from(mine[k] - lanes::load_whole(simd, &x[k]));
@@ -99,16 +110,23 @@ impl<K: Kernel, const D: usize> Work for OfSlab<'_, K, D> {
                         // One water particle beside eight of a wall, which take it.
                         let theirs = &mut sums[(j as usize - first) * rows..][..rows];
                         let mut fit = Fit::all(zero);
-                        each(&mut fit, |row, x| *x = lanes::load(simd, &theirs[row].0));
+                        each(&mut fit, FLOW, |row, x| *x = lanes::load(simd, &theirs[row].0));
                         fit.add(w, p, volume, r.map(|x| -x));
-                        each(&mut fit, |row, x| x.store_array(&mut theirs[row].0));
+                        if FLOW {
+                            fit.add_flow(w, volume, moves);
+                        }
+                        each(&mut fit, FLOW, |row, x| x.store_array(&mut theirs[row].0));
                     } else {
-                        sum.add(w, lanes::load(simd, &s[2]), lanes::load(simd, &s[3]), r);
+                        let volume = lanes::load(simd, &s[3]);
+                        sum.add(w, lanes::load(simd, &s[2]), volume, r);
+                        if FLOW {
+                            sum.add_flow(w, volume, std::array::from_fn(|k| lanes::load(simd, &v[k])));
+                        }
                     }
                 }
                 if !is_water {
                     let mine = &mut sums[(c - first) * rows..][..rows];
-                    each(&mut sum, |row, sum| mine[row].0[l] += lanes::total(*sum));
+                    each(&mut sum, FLOW, |row, sum| mine[row].0[l] += lanes::total(*sum));
                 }
             }
         }

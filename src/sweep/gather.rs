@@ -30,7 +30,7 @@ pub(super) struct Gather<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node<const D: usize> {
     pub(super) r: [f64; D],
-    v: [f64; D],
+    pub(super) v: [f64; D],
     pub(super) side: Side<f64, D>,
 }
 
@@ -126,6 +126,7 @@ fn rows<const D: usize>(m: &Matrix<D>) -> [[f64; D]; D] {
 fn nodes<const D: usize>(
     input: &Input<'_, D>,
     particles: &Particles<D>,
+    v: &[Vector<D>],
     stress: &[Matrix<D>],
     marks: &[bool],
     needs: Needs,
@@ -147,7 +148,7 @@ fn nodes<const D: usize>(
                 mark: marks.get(i).map_or(0.0, |&m| f64::from(u8::from(m))),
                 stress: stress.get(i).map_or([[0.0; D]; D], rows),
             };
-            Node { r: particles.r[i].into(), v: particles.v[i].into(), side }
+            Node { r: particles.r[i].into(), v: v[i].into(), side }
         })
         .collect_into_vec(nodes);
 }
@@ -161,11 +162,11 @@ impl<const D: usize> Sweep<D> for Gather<D> {
         self.spent
     }
 
-    fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]) {
+    fn fits(&mut self, input: &Input<'_, D>, _flow: bool, fits: &mut [Fit<f64, D>]) {
         let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
         let needs = self.laws.needs();
-        nodes(input, input.water, input.stress, &[], needs, &mut self.nodes[0]);
-        nodes(input, input.skin, &[], input.marks, needs, &mut self.nodes[1]);
+        nodes(input, input.water, &input.water.v, input.stress, &[], needs, &mut self.nodes[0]);
+        nodes(input, input.skin, input.shown, &[], input.marks, needs, &mut self.nodes[1]);
         let start = Instant::now();
         let (sums, nodes) = (&self.fits, [&self.nodes[0][..], &self.nodes[1][..]]);
         let chunks = fits.par_chunks_mut(CHUNK).zip(input.near.wet().par_chunks(CHUNK)).zip(&lists.skin);
@@ -176,8 +177,8 @@ impl<const D: usize> Sweep<D> for Gather<D> {
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
         let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
         let needs = self.laws.needs();
-        nodes(input, input.water, input.stress, &[], needs, &mut self.nodes[0]);
-        nodes(input, input.skin, &[], input.marks, needs, &mut self.nodes[1]);
+        nodes(input, input.water, &input.water.v, input.stress, &[], needs, &mut self.nodes[0]);
+        nodes(input, input.skin, input.shown, &[], input.marks, needs, &mut self.nodes[1]);
         let start = Instant::now();
         let (laws, nodes) = (&self.laws, [&self.nodes[0][..], &self.nodes[1][..]]);
         let g = input.medium.gravity;

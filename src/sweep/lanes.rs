@@ -140,22 +140,23 @@ impl<const D: usize> Sweep<D> for Lanes<D> {
         self.spent
     }
 
-    fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]) {
+    fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]) {
         let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
         self.packed.pack(input, clusters, &self.units, false);
         self.has_water = true;
-        let lengths = self.lay_out(clusters, fits::rows(D));
+        let lengths = self.lay_out(clusters, fits::rows(D, flow));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let (sums, level, packed) = (&self.fits, self.level, &self.packed);
-        works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.slab(level, packed, slab, rows));
+        works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.slab(level, packed, slab, flow, rows));
         self.spent += start.elapsed();
         let Units { length, time } = self.units;
         fits.par_iter_mut().zip(&clusters.wet).with_min_len(PER_TASK).for_each(|(fit, &slot)| {
-            let sum = self.of_slot(slot, fits::rows(D));
-            fits::each(fit, |row, x| *x = sum(row));
+            let sum = self.of_slot(slot, fits::rows(D, flow));
+            fits::each(fit, flow, |row, x| *x = sum(row));
             fit.head *= (length / time).powi(2);
             fit.arm = fit.arm.map(|x| x * length);
+            fit.flow = fit.flow.map(|x| x * (length / time));
         });
     }
 

@@ -28,6 +28,8 @@ pub struct Input<'a, const D: usize> {
     pub water: &'a Particles<D>,
     /// The boundary particles.
     pub skin: &'a Particles<D>,
+    /// The velocities that they show, m/s.
+    pub shown: &'a [Vector<D>],
     /// Stress of the water, m²/s²; empty unless a law reads it.
     pub stress: &'a [Matrix<D>],
     /// Beside which boundary particles water is not shifted; empty unless a law reads it.
@@ -82,9 +84,9 @@ pub trait Sweep<const D: usize>: Send + Sync {
     /// Time spent on pairs so far.
     fn spent(&self) -> Duration;
 
-    /// Sums of the wet boundary particles over the water, for walls that settle; the lists must hold, and
-    /// [`Sweep::rates`] comes next, with the same water.
-    fn fits(&mut self, input: &Input<'_, D>, fits: &mut [Fit<f64, D>]);
+    /// Sums of the wet boundary particles over the water, for walls that settle or let water slip (with its `flow`); the
+    /// lists must hold, and [`Sweep::rates`] comes next, with the same water.
+    fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]);
 
     /// Sums over all pairs; the lists must hold.
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks;

@@ -7,7 +7,7 @@ use crate::{
     lanes::{LANES, Row},
     law::{Units, pressure::repulsion},
     near::{self, Clusters},
-    particles::Particles,
+    space::Vector,
 };
 
 /// Eight particles of one kind as a pair needs them, in the sweep's units.
@@ -43,9 +43,10 @@ impl<const D: usize> Packed<D> {
             let skip = if water_stays { slab.middle - slab.first } else { 0 };
             for (c, cluster) in (slab.first..).zip(packed).skip(skip) {
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
-                let particles = if c < slab.middle { input.water } else { input.skin };
+                let (particles, v) =
+                    if c < slab.middle { (input.water, &input.water.v[..]) } else { (input.skin, input.shown) };
                 near::fill(&mut cluster.x, source, &particles.r, inv_unit);
-                state(cluster, source, particles, input, units);
+                state(cluster, source, (&particles.rho, v), input, units);
             }
         });
     }
@@ -90,7 +91,7 @@ impl<const D: usize> Packed<D> {
 fn state<const D: usize>(
     cluster: &mut Cluster<D>,
     source: &[u32],
-    particles: &Particles<D>,
+    (rho, v): (&[f64], &[Vector<D>]),
     input: &Input<'_, D>,
     units: &Units,
 ) {
@@ -102,10 +103,10 @@ fn state<const D: usize>(
     }
     for (l, &i) in source[..n].iter().enumerate() {
         let i = i as usize;
-        for (out, v) in cluster.v.iter_mut().zip(particles.v[i].iter()) {
+        for (out, v) in cluster.v.iter_mut().zip(v[i].iter()) {
             out[l] = (v * speed) as f32;
         }
-        let x = (particles.rho[i] - rho0) * inv_rho0;
+        let x = (rho[i] - rho0) * inv_rho0;
         cluster.s[0][l] = x as f32;
         cluster.s[1][l] = (x - f64::from(x as f32)) as f32;
         cluster.s[2][l] = (input.state.pressure(x) * (speed * speed)) as f32;

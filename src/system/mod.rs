@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    law::{Extra, Medium, state::State},
+    law::{Extra, Medium, state::State, wall::Slip},
     model::{Dimension, Model, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
@@ -44,6 +44,10 @@ pub struct System<const D: usize> {
     local: Vec<Vector<D>>,
     /// To which densities (kg/m³) they settle; empty unless they do.
     goals: Vec<f64>,
+    /// Outward normals in their solids' frames, and depths (m) below the face; empty unless water slips by the face.
+    faces: Vec<(Vector<D>, f64)>,
+    /// The velocities (m/s) that they show the water; empty if those are their own.
+    shown: Vec<Vector<D>>,
     /// The box around each solid's skin in its own frame, m.
     boxes: Vec<Bounds<D>>,
     /// Where the solids were when the lists were made, if they were.
@@ -95,12 +99,17 @@ impl<const D: usize> System<D> {
         let id = (0..water.len() as u32).collect();
         let fluid = Particles { r: water, v, rho, id };
         let (mut skin, mut local, mut solids) = (Particles::default(), Vec::new(), Vec::new());
+        let mut faces = Vec::new();
         for spec in specs {
             let kinematics = spec.start();
             let first = skin.len();
             for point in spec.shape.skin(model.dp, model.layers()) {
                 skin.push(kinematics.pose.point(&point.r), medium.rho0);
                 local.push(point.r);
+            }
+            if model.slip != Slip::Partial {
+                let face = |r: &Vector<D>| (spec.shape.outward(r, 0.05 * model.dp), -spec.shape.signed_distance(r));
+                faces.extend(local[first..].iter().map(face));
             }
             if skin.len() == first {
                 return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
@@ -137,6 +146,8 @@ impl<const D: usize> System<D> {
             skin,
             local,
             goals: Vec::new(),
+            faces,
+            shown: Vec::new(),
             boxes,
             solids,
             domain,
@@ -209,8 +220,9 @@ impl<const D: usize> System<D> {
         if self.sweep.extra() {
             self.extra.resize(self.fluid.len(), Extra::all(0.0));
         }
-        let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
-        let input = Input { near, water: fluid, skin, stress, marks, medium, state };
+        let Self { sweep, near, fluid, skin, shown, stress, marks, medium, state, .. } = self;
+        let shown = if shown.is_empty() { &skin.v } else { shown };
+        let input = Input { near, water: fluid, skin, shown, stress, marks, medium, state };
         let mut output = Output { water: &mut self.sums, skin: &mut self.skin_sums, extra: &mut self.extra };
         self.peaks = sweep.rates(&input, &mut output);
         self.reflect();

@@ -1,4 +1,4 @@
-//! By what density the boundary particles show themselves, and beside which of them water is not shifted.
+//! By what density and velocity the boundary particles show themselves, and beside which of them water is not shifted.
 
 use rayon::prelude::*;
 
@@ -6,11 +6,12 @@ use super::System;
 use crate::{
     law::{
         Medium,
-        wall::{Dbc, Fit, settled},
+        wall::{Dbc, Fit, Slip, settled},
     },
     model::{Model, Shifting, Walls},
     particles::PER_TASK,
     solid::{Role, Solid},
+    space::Vector,
     sweep::Input,
 };
 
@@ -51,28 +52,59 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Finds for each wet boundary particle the density of the pressure that the water near it would have at its place,
-    /// where the walls settle to that.
+    /// Looks at the water near each wet boundary particle: finds the density of the pressure that it would have there, if
+    /// walls settle to that, and the velocity to show it, if it slips by the face.
     pub(super) fn aim(&mut self) {
-        if self.model.walls != Walls::Settling {
+        let (settling, slip) = (self.model.walls == Walls::Settling, self.model.slip);
+        if !settling && slip == Slip::Partial {
             return;
         }
         let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
-        let input = Input { near, water: fluid, skin, stress, marks, medium, state };
+        let input = Input { near, water: fluid, skin, shown: &skin.v, stress, marks, medium, state };
         let mut fits = vec![Fit::all(0.0); input.near.wet().len()];
-        sweep.fits(&input, &mut fits);
+        sweep.fits(&input, slip != Slip::Partial, &mut fits);
+        if settling {
+            self.aim_at(&fits);
+        }
+        if slip != Slip::Partial {
+            self.show(&fits);
+        }
+    }
+
+    /// Makes goals of the pressures of `fits`, one for each wet boundary particle.
+    fn aim_at(&mut self, fits: &[Fit<f64, D>]) {
         let density = |(&i, fit): (&u32, &Fit<f64, D>)| {
             let i = i as usize;
-            let solid = &self.solids[self.solids.partition_point(|solid| solid.skin.end <= i)];
-            let pull = self.medium.gravity - solid.acceleration_at(&self.skin.r[i]);
+            let pull = self.medium.gravity - self.owner(i).acceleration_at(&self.skin.r[i]);
             self.medium.rho0 * (1.0 + self.state.excess(fit.close(&pull)))
         };
         let wet = self.near.wet();
-        let goals: Vec<f64> = wet.par_iter().zip(&fits).with_min_len(PER_TASK).map(density).collect();
+        let goals: Vec<f64> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(density).collect();
         self.goals.resize(self.skin.len(), self.medium.rho0);
         for (&i, goal) in wet.iter().zip(goals) {
             self.goals[i as usize] = goal;
         }
+    }
+
+    /// Makes the velocities to show of `fits`, one for each wet boundary particle.
+    fn show(&mut self, fits: &[Fit<f64, D>]) {
+        let velocity = |(&i, fit): (&u32, &Fit<f64, D>)| {
+            let i = i as usize;
+            let (normal, depth) = self.faces[i];
+            let normal = self.owner(i).kinematics.pose.rotation * normal;
+            self.model.slip.close(fit, self.skin.v[i], &normal, depth)
+        };
+        let wet = self.near.wet();
+        let shown: Vec<Vector<D>> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(velocity).collect();
+        self.shown.resize(self.skin.len(), Vector::zeros());
+        for (&i, v) in wet.iter().zip(shown) {
+            self.shown[i as usize] = v;
+        }
+    }
+
+    /// The solid of boundary particle `i`.
+    fn owner(&self, i: usize) -> &Solid<D> {
+        &self.solids[self.solids.partition_point(|solid| solid.skin.end <= i)]
     }
 }
 

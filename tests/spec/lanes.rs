@@ -285,7 +285,7 @@ fn with_instructions(level: lanes::Level, water: &Particles<3>, skin: &Particles
     let kernel = Wendland::new(counted.h, 3);
     let mut sweep = sweep::compile(kernel, inner, wall, &counted, units, Some(level));
     let (mut sums, mut on_skin) = (vec![Sums::zero(); water.len()], vec![Sums::zero(); near.wet().len()]);
-    let input = Input { near: &near, water, skin, stress: &[], marks: &[], medium: &medium, state: &state };
+    let input = Input { near: &near, water, skin, shown: &skin.v, stress: &[], marks: &[], medium: &medium, state: &state };
     sweep.rates(&input, &mut Output { water: &mut sums, skin: &mut on_skin, extra: &mut [] });
     sums.into_iter().chain(on_skin).collect()
 }

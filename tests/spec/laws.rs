@@ -10,7 +10,7 @@ use pontoon::{
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
-        wall::{Fit, settled},
+        wall::{Fit, Slip, settled},
     },
     model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
     space::Vector,
@@ -62,7 +62,7 @@ fn swapping_the_particles_changes_the_sign_and_no_bit() {
     odd_under_swap("tensile", Tensile { inv_w_dp: 1e-6 });
     odd_under_swap("continuity", Continuity);
     odd_under_swap("artificial", Artificial::default().term(&m));
-    odd_under_swap("laminar", Laminar::default().term(&Units::SI));
+    odd_under_swap("laminar", Laminar::default().term(&Units::SI, 1.0));
     odd_under_swap("sps", SpsTerm);
     odd_under_swap("molteni", Molteni::default().term(&m));
     odd_under_swap("fourtakas", Fourtakas::default().term(&m));
@@ -72,7 +72,7 @@ fn swapping_the_particles_changes_the_sign_and_no_bit() {
 
 #[test]
 fn viscosity_takes_energy_and_never_gives_it() {
-    let (artificial, laminar) = (Artificial { alpha: 0.3 }.term(&medium()), Laminar { nu0: 0.1 }.term(&Units::SI));
+    let (artificial, laminar) = (Artificial { alpha: 0.3 }.term(&medium()), Laminar { nu0: 0.1 }.term(&Units::SI, 1.0));
     let mut dice = Dice(3);
     for _ in 0..1000 {
         let [ab, _] = pair(&mut dice);
@@ -231,6 +231,28 @@ fn the_pressure_of_water_that_moves_with_a_wall_is_extrapolated_to_it_exactly() 
     assert!((p - 7.0).abs() < 1e-12, "{p}");
     assert_eq!(fit(|r| pull.dot(r) - 1.0).close(&pull), 0.0, "a wall does not suck");
     assert_eq!(Fit::<f64, 3>::all(0.0).close(&pull), 0.0, "no water, no pressure");
+}
+
+#[test]
+fn a_shear_along_a_face_is_continued_behind_it_exactly() {
+    let mut dice = Dice(5);
+    // A wall that moves, its face 0.004 m above the boundary particle at the origin, and water that shears and approaches.
+    let (wall, depth, normal) = (Vector::from([0.3, 0.1, 0.2]), 0.004, Vector::<3>::z());
+    let moves = |r: &Vector<3>| wall + Vector::from([5.0, -3.0, 2.0]) * (r[2] - depth);
+    let mut fit = Fit::all(0.0);
+    for _ in 0..40 {
+        let r = (dice.point::<3>() - Vector::from([0.5, 0.5, -0.4])).component_mul(&Vector::from([0.02, 0.02, 0.01]));
+        let w = dice.roll();
+        fit.add(w, 0.0, 1.0, (-r).into());
+        fit.add_flow(w, 1.0, moves(&r).into());
+    }
+    let shown = |slip: Slip| slip.close(&fit, wall, &normal, depth);
+    let continued = wall + Vector::from([5.0, -3.0, 0.0]) * -depth;
+    assert!((shown(Slip::None) - continued).norm() < 1e-14, "{}", shown(Slip::None));
+    assert_eq!(shown(Slip::Partial), wall);
+    let mean = Vector::from(fit.flow) / fit.weight;
+    assert!((shown(Slip::Free) - Vector::from([mean[0], mean[1], wall[2]])).norm() < 1e-14, "nothing to drag at");
+    assert_eq!(Slip::None.close(&Fit::<f64, 3>::all(0.0), wall, &normal, depth), wall, "no water, no continuation");
 }
 
 #[test]

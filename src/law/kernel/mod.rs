@@ -19,23 +19,35 @@ pub trait Kernel: Copy + Send + Sync {
     /// The same, weighed with the volume of a particle so that −Σ r_x ∂W r_x = 1 over a lattice of spacing dp: there the
     /// gradient of what is linear is exact.
     fn on_lattice<const D: usize>(self, medium: &Medium<D>) -> Self {
-        let Medium { h, dp, .. } = *medium;
-        let most = (REACH * h / dp) as i32;
-        let layers = if D == 2 { 0 } else { most };
-        let mut moment = 0.0;
-        for k in -layers..=layers {
-            for j in -most..=most {
-                for i in -most..=most {
-                    let [x, y, z] = [i, j, k].map(|n| f64::from(n) * dp);
-                    moment -= x * x * self.slope(x * x + y * y + z * z);
-                }
-            }
-        }
-        self.weighed(1.0 / moment)
+        self.weighed(1.0 / moment(&self, medium, |_| 1.0))
+    }
+
+    /// The part that r²/(r² + η²) leaves of a viscous force on a lattice, –.
+    fn damped<const D: usize>(&self, medium: &Medium<D>) -> f64 {
+        let eta2 = medium.eta2();
+        moment(self, medium, |r2| r2 / (r2 + eta2)) / moment(self, medium, |_| 1.0)
     }
 
     /// ∂W = (dW/dr)/r (1/mᴰ⁺²) at squared distance `r2` (m²): ∇_a W = ∂W r_ab. Finite at r = 0.
     fn slope<N: Num>(&self, r2: N) -> N;
+}
+
+/// −Σ r_x f(r²) ∂W r_x over a lattice of spacing dp around its middle.
+fn moment<K: Kernel + ?Sized, const D: usize>(kernel: &K, medium: &Medium<D>, f: impl Fn(f64) -> f64) -> f64 {
+    let Medium { h, dp, .. } = *medium;
+    let most = (REACH * h / dp) as i32;
+    let layers = if D == 2 { 0 } else { most };
+    let mut moment = 0.0;
+    for k in -layers..=layers {
+        for j in -most..=most {
+            for i in -most..=most {
+                let [x, y, z] = [i, j, k].map(|n| f64::from(n) * dp);
+                let r2 = x * x + y * y + z * z;
+                moment -= x * x * f(r2) * kernel.slope(r2);
+            }
+        }
+    }
+    moment
 }
 
 /// Support radius over smoothing length, the same for every kernel here.

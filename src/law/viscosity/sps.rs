@@ -27,9 +27,9 @@ impl Default for Sps {
 }
 
 impl Sps {
-    /// The laws, in those units: laminar part and stress.
-    pub fn terms(&self, units: &Units) -> (LaminarTerm, SpsTerm) {
-        (Laminar { nu0: self.nu0 }.term(units), SpsTerm)
+    /// The laws, in those units: laminar part, as [`Laminar::term`], and stress.
+    pub fn terms(&self, units: &Units, damped: f64) -> (LaminarTerm, SpsTerm) {
+        (Laminar { nu0: self.nu0 }.term(units, damped), SpsTerm)
     }
 
     /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of

@@ -2,6 +2,8 @@
 
 mod dbc;
 mod settling;
+mod slip;
 
 pub use dbc::Dbc;
 pub use settling::{Fit, settled};
+pub use slip::Slip;

@@ -26,13 +26,15 @@ pub struct Fit<N, const D: usize> {
     pub head: N,
     /// Σ V₀ W_wf r_wf, m.
     pub arm: [N; D],
+    /// Σ V_f W_wf v_f, m/s; summed where the wall's [`Slip`](super::Slip) asks for it.
+    pub flow: [N; D],
 }
 
 impl<N: Num, const D: usize> Fit<N, D> {
     /// All sums `zero`.
     #[inline(always)]
     pub fn all(zero: N) -> Self {
-        Self { weight: zero, head: zero, arm: [zero; D] }
+        Self { weight: zero, head: zero, arm: [zero; D], flow: [zero; D] }
     }
 
     /// Adds a water particle of pressure `p` (P/ρ₀, m²/s²) and specific volume `s` (ρ₀/ρ) at r_w − `r_wf` (m), seen with
@@ -44,6 +46,15 @@ impl<N: Num, const D: usize> Fit<N, D> {
         self.head = share.fma(p, self.head);
         for (arm, r) in self.arm.iter_mut().zip(r_wf) {
             *arm = w.fma(r, *arm);
+        }
+    }
+
+    /// Adds its velocity `v` (m/s) too.
+    #[inline(always)]
+    pub fn add_flow(&mut self, w: N, s: N, v: [N; D]) {
+        let share = w * s;
+        for (flow, v) in self.flow.iter_mut().zip(v) {
+            *flow = share.fma(v, *flow);
         }
     }
 }
