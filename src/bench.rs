@@ -115,7 +115,7 @@ impl Work {
         let (origin, pool, tank) = (vec![0.0; self.dimension], size(0.8, DEPTH), size(2.0 * self.dry, 1.2));
         let mut text = format!(
             "dimension = {}\ndp = {dp:?}\nuntil = 1000.0\n{}
-             model = {{ h_over_dp = {:?}, walls = \"dbc\", c0_factor = 20.0 }}\ntime = {{ scheme = {{ verlet = {{ euler_every = 50 }} }}, cfl = 0.2 }}
+             model = {{ h_over_dp = {:?}, walls = \"dbc\", slip = \"partial\", c0_factor = 20.0 }}\ntime = {{ scheme = {{ verlet = {{ euler_every = 50 }} }}, cfl = 0.2 }}
              water = [{{ fill = {{ box = {{ min = {origin:?}, max = {pool:?} }} }} }}]
              [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = {tank:?} }} }}\n",
             self.dimension,

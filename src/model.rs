@@ -154,7 +154,6 @@ pub struct Model {
     /// Walls.
     pub walls: Walls,
     /// How water slips along solids.
-    #[serde(default)]
     pub slip: Slip,
     /// Which sweep adds up the pairs.
     #[serde(default)]
@@ -173,7 +172,7 @@ pub const C0_FACTOR: f64 = 10.0;
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
     /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
-    /// that settle, symplectic at CFL 0.4. Change what you need.
+    /// that settle and do not drag, symplectic at CFL 0.4. Change what you need.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
         let mut gravity = vec![0.0; dimension];
@@ -192,7 +191,7 @@ impl Model {
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
             walls: Walls::Settling,
-            slip: Slip::Partial,
+            slip: Slip::Free,
             sweep: Sweeping::Fast,
             scheme: Scheme::Symplectic,
             cfl: 0.4,
@@ -291,22 +290,38 @@ struct Make<'a, const D: usize> {
 impl<const D: usize> Make<'_, D> {
     fn with_kernel<K: kernel::Kernel + 'static, P: Term<D> + 'static>(&self, kernel: K, base: P) -> Box<dyn Sweep<D>> {
         let damped = kernel.damped(&self.medium);
+        // Of the viscosity that a scene names, the part beside solids.
+        let beside = if self.model.slip == Slip::Free { 0.0 } else { 1.0 };
         match self.model.viscosity {
-            Viscosity::None => self.with_viscosity(kernel, base),
-            Viscosity::Artificial(v) => self.with_viscosity(kernel, (base, v.term(&self.medium))),
-            Viscosity::Laminar(v) => self.with_viscosity(kernel, (base, v.term(&self.units, damped))),
-            Viscosity::Sps(v) => self.with_viscosity(kernel, (base, v.terms(&self.units, damped))),
+            Viscosity::None => self.with_viscosity(kernel, base, base),
+            Viscosity::Artificial(v) => {
+                let wall = Artificial { alpha: v.alpha * beside };
+                self.with_viscosity(kernel, (base, v.term(&self.medium)), (base, wall.term(&self.medium)))
+            }
+            Viscosity::Laminar(v) => {
+                let wall = Laminar { nu0: v.nu0 * beside };
+                self.with_viscosity(kernel, (base, v.term(&self.units, damped)), (base, wall.term(&self.units, damped)))
+            }
+            Viscosity::Sps(v) => {
+                let wall = Sps { nu0: v.nu0 * beside, ..v };
+                self.with_viscosity(
+                    kernel,
+                    (base, v.terms(&self.units, damped)),
+                    (base, wall.terms(&self.units, damped)),
+                )
+            }
         }
     }
 
     fn with_viscosity<K: kernel::Kernel + 'static, P: Term<D> + 'static>(
         &self,
         kernel: K,
-        both: P,
+        inner: P,
+        wall: P,
     ) -> Box<dyn Sweep<D>> {
         match self.model.shifting {
-            Shifting::None => self.with_shifting(kernel, both, both),
-            _ => self.with_shifting(kernel, (both, ShiftTerm), ((both, ShiftTerm), HeldTerm)),
+            Shifting::None => self.with_shifting(kernel, inner, wall),
+            _ => self.with_shifting(kernel, (inner, ShiftTerm), ((wall, ShiftTerm), HeldTerm)),
         }
     }
 

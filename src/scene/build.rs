@@ -171,7 +171,7 @@ impl Scene {
             diffusion: words.diffusion.ok_or_else(|| missing("model.diffusion"))?,
             shifting: words.shifting.ok_or_else(|| missing("model.shifting"))?,
             walls: words.walls.ok_or_else(|| missing("model.walls"))?,
-            slip: words.slip.unwrap_or_default(),
+            slip: words.slip.ok_or_else(|| missing("model.slip"))?,
             sweep: words.sweep.unwrap_or_default(),
             scheme: time.scheme.ok_or_else(|| missing("time.scheme"))?,
             cfl: time.cfl.ok_or_else(|| missing("time.cfl"))?,

@@ -107,7 +107,7 @@ impl Scene {
             usual.walls,
             "no gap between water and wall; bodies rest at their draft",
         );
-        let why = "boundary particles show their own velocity: enough where no boundary layer is resolved";
+        let why = "no particle resolves the boundary layer, and artificial viscosity would make one many dp thick";
         filler.fill("model.slip", &mut model.slip, usual.slip, why);
         let why = "single precision where it is harmless; \"reference\" is double precision throughout";
         filler.fill("model.sweep", &mut model.sweep, usual.sweep, why);

@@ -44,7 +44,7 @@ pub struct System<const D: usize> {
     local: Vec<Vector<D>>,
     /// To which densities (kg/m³) they settle; empty unless they do.
     goals: Vec<f64>,
-    /// Outward normals in their solids' frames, and depths (m) below the face; empty unless water slips by the face.
+    /// Outward normals in their solids' frames, and depths (m) below the face; empty unless water sticks to the face.
     faces: Vec<(Vector<D>, f64)>,
     /// The velocities (m/s) that they show the water; empty if those are their own.
     shown: Vec<Vector<D>>,
@@ -107,7 +107,7 @@ impl<const D: usize> System<D> {
                 skin.push(kinematics.pose.point(&point.r), medium.rho0);
                 local.push(point.r);
             }
-            if model.slip != Slip::Partial {
+            if model.slip == Slip::None {
                 let face = |r: &Vector<D>| (spec.shape.outward(r, 0.05 * model.dp), -spec.shape.signed_distance(r));
                 faces.extend(local[first..].iter().map(face));
             }

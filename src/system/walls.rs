@@ -6,7 +6,7 @@ use super::System;
 use crate::{
     law::{
         Medium,
-        wall::{Dbc, Fit, Slip, settled},
+        wall::{Dbc, Fit, Slip, settled, sticking},
     },
     model::{Model, Shifting, Walls},
     particles::PER_TASK,
@@ -53,20 +53,20 @@ impl<const D: usize> System<D> {
     }
 
     /// Looks at the water near each wet boundary particle: finds the density of the pressure that it would have there, if
-    /// walls settle to that, and the velocity to show it, if it slips by the face.
+    /// walls settle to that, and the velocity to show it, if it sticks to the face.
     pub(super) fn aim(&mut self) {
-        let (settling, slip) = (self.model.walls == Walls::Settling, self.model.slip);
-        if !settling && slip == Slip::Partial {
+        let (settling, sticks) = (self.model.walls == Walls::Settling, self.model.slip == Slip::None);
+        if !settling && !sticks {
             return;
         }
         let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
         let input = Input { near, water: fluid, skin, shown: &skin.v, stress, marks, medium, state };
         let mut fits = vec![Fit::all(0.0); input.near.wet().len()];
-        sweep.fits(&input, slip != Slip::Partial, &mut fits);
+        sweep.fits(&input, sticks, &mut fits);
         if settling {
             self.aim_at(&fits);
         }
-        if slip != Slip::Partial {
+        if sticks {
             self.show(&fits);
         }
     }
@@ -92,7 +92,7 @@ impl<const D: usize> System<D> {
             let i = i as usize;
             let (normal, depth) = self.faces[i];
             let normal = self.owner(i).kinematics.pose.rotation * normal;
-            self.model.slip.close(fit, self.skin.v[i], &normal, depth)
+            sticking(fit, self.skin.v[i], &normal, depth)
         };
         let wet = self.near.wet();
         let shown: Vec<Vector<D>> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(velocity).collect();

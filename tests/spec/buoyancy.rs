@@ -196,10 +196,11 @@ fn walls_that_settle_leave_no_gap_at_a_box_that_has_moved() {
         let mut case = Case::new(block([16.0, 10.0]), 0.5, [48.0, 16.0]);
         (case.shift[1], case.alpha, case.walls) = (above, 0.1, Walls::Settling);
         let mut bobber = Afloat::new(case);
-        bobber.watch(3.0, |_| 0.0);
+        bobber.watch(6.0, |_| 0.0);
         let late = mean(&bobber.watch(1.0, Afloat::too_deep));
-        // The bound of a box that has never moved; with dynamic boundary particles −0.2 to −0.3 dp stay.
-        assert!(late.abs() < 0.1, "released {above} dp above its draft: {late} dp");
+        // Half the bound of a box that has never moved; with dynamic boundary particles −0.2 to −0.3 dp stay. The water under the
+        // box takes six seconds to find its places: after three it floats up to 0.1 dp too high.
+        assert!(late.abs() < 0.05, "released {above} dp above its draft: {late} dp");
     }
 }
 

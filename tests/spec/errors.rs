@@ -113,6 +113,12 @@ fn values_that_cannot_be_meant_are_refused() {
     wrong("two_smoothing_lengths", "[model]", "[model]\nh_over_dp = 1.7\nc_h = 1.2");
     wrong("empty_box_of_water", "max = [1.0, 0.5]", "max = [1.0, 0.0]");
     wrong("too_many_particles", "dp        = 0.05", "dp        = 1e-5");
+    wrong("period_between_free_bodies", "until     = 1.0", "until     = 1.0\nperiodic = { x = [0.0, 1.0] }");
+    wrong("period_of_nothing", "until     = 1.0", "until     = 1.0\nperiodic = { x = [1.0, 0.0] }");
+    wrong("period_in_a_third_axis", "until     = 1.0", "until     = 1.0\nperiodic = { z = [0.0, 1.0] }");
+    let water = "max = [1.0, 0.5] } }";
+    wrong("velocity_of_one", water, &format!("{water}\nvelocity = [0.1]"));
+    wrong("velocity_in_time", water, &format!("{water}\nvelocity = [\"sin(t)\", 0.0]"));
     wrong("no_sound", "until     = 1.0", "until     = 1.0\ngravity = [0.0, 0.0]");
 }
 

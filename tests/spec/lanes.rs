@@ -12,7 +12,7 @@ use pontoon::{
         state::State,
         viscosity::{Artificial, Laminar, Sps},
     },
-    model::{Diffusion, Dimension, Kernel, Model, Scheme, Shifting, Sweeping, Viscosity, Walls},
+    model::{Diffusion, Dimension, Kernel, Model, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
     near::Near,
     particles::Particles,
     shape::Shape,
@@ -163,6 +163,16 @@ fn walls_that_settle() {
 }
 
 #[test]
+fn walls_that_let_water_slip_and_that_do_not() {
+    for slip in [Slip::None, Slip::Free] {
+        let setup = dam(Model { slip, ..Model::water(2, 0.0125, 0.3) }, [0.8, 0.3], 0.0);
+        agrees(&format!("2-D {slip:?}"), &setup, &run(&setup, 0.35));
+    }
+    let setup = dam(Model { slip: Slip::None, ..Model::water(3, 0.025, 0.3) }, [0.6, 0.15, 0.3], 0.0);
+    agrees("3-D", &setup, &run(&setup, 0.3));
+}
+
+#[test]
 fn a_deep_column_at_rest() {
     let (dp, depth) = (0.01, 10.0);
     let mut setup = dam(Model::water(2, dp, depth), [0.12, depth], 0.0);
@@ -285,7 +295,8 @@ fn with_instructions(level: lanes::Level, water: &Particles<3>, skin: &Particles
     let kernel = Wendland::new(counted.h, 3);
     let mut sweep = sweep::compile(kernel, inner, wall, &counted, units, Some(level));
     let (mut sums, mut on_skin) = (vec![Sums::zero(); water.len()], vec![Sums::zero(); near.wet().len()]);
-    let input = Input { near: &near, water, skin, shown: &skin.v, stress: &[], marks: &[], medium: &medium, state: &state };
+    let input =
+        Input { near: &near, water, skin, shown: &skin.v, stress: &[], marks: &[], medium: &medium, state: &state };
     sweep.rates(&input, &mut Output { water: &mut sums, skin: &mut on_skin, extra: &mut [] });
     sums.into_iter().chain(on_skin).collect()
 }

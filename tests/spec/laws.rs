@@ -10,7 +10,7 @@ use pontoon::{
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
-        wall::{Fit, Slip, settled},
+        wall::{Fit, settled, sticking},
     },
     model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
     space::Vector,
@@ -246,13 +246,10 @@ fn a_shear_along_a_face_is_continued_behind_it_exactly() {
         fit.add(w, 0.0, 1.0, (-r).into());
         fit.add_flow(w, 1.0, moves(&r).into());
     }
-    let shown = |slip: Slip| slip.close(&fit, wall, &normal, depth);
     let continued = wall + Vector::from([5.0, -3.0, 0.0]) * -depth;
-    assert!((shown(Slip::None) - continued).norm() < 1e-14, "{}", shown(Slip::None));
-    assert_eq!(shown(Slip::Partial), wall);
-    let mean = Vector::from(fit.flow) / fit.weight;
-    assert!((shown(Slip::Free) - Vector::from([mean[0], mean[1], wall[2]])).norm() < 1e-14, "nothing to drag at");
-    assert_eq!(Slip::None.close(&Fit::<f64, 3>::all(0.0), wall, &normal, depth), wall, "no water, no continuation");
+    let shown = sticking(&fit, wall, &normal, depth);
+    assert!((shown - continued).norm() < 1e-14, "{shown}");
+    assert_eq!(sticking(&Fit::<f64, 3>::all(0.0), wall, &normal, depth), wall, "no water, no continuation");
 }
 
 #[test]

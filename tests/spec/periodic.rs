@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use pontoon::{
     law::{shifting::Shift, viscosity::Laminar},
-    model::{Diffusion, Model, Shifting, Sweeping, Viscosity},
+    model::{Diffusion, Model, Shifting, Slip, Sweeping, Viscosity},
     shape::Shape,
     simulation::{Setup, Simulation},
     solid::Role,
@@ -101,7 +101,7 @@ fn walls_take_from_a_driven_channel_what_drives_it() {
     // In steady flow the drag of both walls is the weight of the water along the channel, images not counted.
     let (height, length, g) = (1.0, 0.5, 0.8);
     let mut model = Model { gravity: vec![g, 0.0], shifting: Shifting::None, diffusion: Diffusion::None, ..model() };
-    model.viscosity = Viscosity::Laminar(Laminar { nu0: 0.1 });
+    (model.viscosity, model.slip) = (Viscosity::Laminar(Laminar { nu0: 0.1 }), Slip::None);
     let water = rig::lattice([0.0, 0.0], [length, height], DP);
     let slab = |name: &str, y: f64| {
         let shape = Shape::Box { size: Vector::from([3.0, 0.2]) };

@@ -6,4 +6,4 @@ mod slip;
 
 pub use dbc::Dbc;
 pub use settling::{Fit, settled};
-pub use slip::Slip;
+pub use slip::{Slip, sticking};
