@@ -1,6 +1,7 @@
 //! Steppers: their order on motions whose solution is known or refines itself, and the length of a step.
 
 use pontoon::{
+    law::viscosity::Laminar,
     model::{Diffusion, Model, Scheme, Viscosity},
     simulation::Simulation,
     space::Vector,
@@ -72,6 +73,10 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
     sim.step().unwrap();
     // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀.
     assert_eq!(sim.dt(), model.cfl * (model.h / model.c0));
+    // Morris' limit; artificial viscosity is in the other two.
+    assert_eq!(limit::viscous(&model), f64::INFINITY);
+    let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
+    assert_eq!(limit::viscous(&thick), model.h * model.h / 4.0);
     let peaks = pontoon::system::Peaks { acceleration: 1e7, closing: 0.0 };
     assert_eq!(limit::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / 1e7).sqrt());
     let peaks = pontoon::system::Peaks { acceleration: 0.0, closing: 100.0 };

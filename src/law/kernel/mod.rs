@@ -33,7 +33,7 @@ pub trait Kernel: Copy + Send + Sync {
 }
 
 /// −Σ r_x f(r²) ∂W r_x over a lattice of spacing dp around its middle.
-fn moment<K: Kernel + ?Sized, const D: usize>(kernel: &K, medium: &Medium<D>, f: impl Fn(f64) -> f64) -> f64 {
+fn moment<K: Kernel, const D: usize>(kernel: &K, medium: &Medium<D>, f: impl Fn(f64) -> f64) -> f64 {
     let Medium { h, dp, .. } = *medium;
     let most = (REACH * h / dp) as i32;
     let layers = if D == 2 { 0 } else { most };
