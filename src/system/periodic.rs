@@ -46,7 +46,7 @@ impl<const D: usize> Images<D> {
             for x in r.iter_mut().map(|r| &mut r[axis]).filter(|x| !(from..to).contains(x)) {
                 let left = (*x - from).rem_euclid(to - from);
                 // A way so small that it is lost in the sum ends on the side itself.
-                *x = if from + left < to { from + left } else { from };
+                *x = if from + left >= to { from } else { from + left };
             }
         }
     }
