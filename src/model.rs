@@ -289,8 +289,8 @@ struct Make<'a, const D: usize> {
 
 impl<const D: usize> Make<'_, D> {
     fn with_kernel<K: kernel::Kernel + 'static, P: Term<D> + 'static>(&self, kernel: K, base: P) -> Box<dyn Sweep<D>> {
-        let damped = kernel.damped(&self.medium);
-        // Of the viscosity that a scene names, the part beside solids.
+        let damped = || kernel.damped(&self.medium);
+        // Which part of the viscosity acts between water and solids.
         let beside = if self.model.slip == Slip::Free { 0.0 } else { 1.0 };
         match self.model.viscosity {
             Viscosity::None => self.with_viscosity(kernel, base, base),
@@ -300,14 +300,18 @@ impl<const D: usize> Make<'_, D> {
             }
             Viscosity::Laminar(v) => {
                 let wall = Laminar { nu0: v.nu0 * beside };
-                self.with_viscosity(kernel, (base, v.term(&self.units, damped)), (base, wall.term(&self.units, damped)))
+                self.with_viscosity(
+                    kernel,
+                    (base, v.term(&self.units, damped())),
+                    (base, wall.term(&self.units, damped())),
+                )
             }
             Viscosity::Sps(v) => {
                 let wall = Sps { nu0: v.nu0 * beside, ..v };
                 self.with_viscosity(
                     kernel,
-                    (base, v.terms(&self.units, damped)),
-                    (base, wall.terms(&self.units, damped)),
+                    (base, v.terms(&self.units, damped())),
+                    (base, wall.terms(&self.units, damped())),
                 )
             }
         }

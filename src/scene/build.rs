@@ -96,7 +96,8 @@ impl Scene {
         let level = |x: &Vector<D>| nearest(x).map_or(still_level, |body| body.level);
         let levels = filled.r.iter().map(level).collect();
         let flow = |x: &Vector<D>| nearest(x).map_or((Vector::zeros(), 0.0), |body| body.flow.at(x));
-        let (velocity, pressure) = filled.r.iter().map(flow).unzip();
+        let moves = scene.water.iter().any(|words| words.velocity.is_some() || words.pressure.is_some());
+        let (velocity, pressure) = filled.r.iter().filter(|_| moves).map(flow).unzip();
         if let Some(part) = scene.scatter {
             scatter(&mut filled.r, part * scene.dp);
         }

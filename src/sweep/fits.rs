@@ -14,8 +14,8 @@ use crate::{
 
 /// The sums under one kernel.
 pub(super) trait Fits<const D: usize>: Send + Sync {
-    /// By the oracle, of the boundary particles `wet`, whose neighbours `lists` hold.
-    fn skin(&self, nodes: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, fits: &mut [Fit<f64, D>]);
+    /// By the oracle, of the boundary particles `wet`, whose neighbours `lists` hold; with the flow if `flow`.
+    fn skin(&self, nodes: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, flow: bool, fits: &mut [Fit<f64, D>]);
 
     /// In lanes, of a slab and the one after it; with the flow if `flow`.
     fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, flow: bool, sums: &mut [Row]);
@@ -30,7 +30,7 @@ pub(super) const fn rows(dimension: usize, flow: bool) -> usize {
 }
 
 impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
-    fn skin(&self, [water, skin]: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, fits: &mut [Fit<f64, D>]) {
+    fn skin(&self, [water, skin]: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, flow: bool, fits: &mut [Fit<f64, D>]) {
         for (k, (out, &i)) in fits.iter_mut().zip(wet).enumerate() {
             let mut fit = Fit::all(0.0);
             for &j in lists.of(k).0 {
@@ -39,7 +39,9 @@ impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
                 let r2 = r.iter().map(|x| x * x).sum();
                 let w = self.0.w(r2);
                 fit.add(w, water.side.p, water.side.s, r);
-                fit.add_flow(w, water.side.s, water.v);
+                if flow {
+                    fit.add_flow(w, water.side.s, water.v);
+                }
             }
             *out = fit;
         }

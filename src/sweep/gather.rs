@@ -162,7 +162,7 @@ impl<const D: usize> Sweep<D> for Gather<D> {
         self.spent
     }
 
-    fn fits(&mut self, input: &Input<'_, D>, _flow: bool, fits: &mut [Fit<f64, D>]) {
+    fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]) {
         let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
         let needs = self.laws.needs();
         nodes(input, input.water, &input.water.v, input.stress, &[], needs, &mut self.nodes[0]);
@@ -170,7 +170,7 @@ impl<const D: usize> Sweep<D> for Gather<D> {
         let start = Instant::now();
         let (sums, nodes) = (&self.fits, [&self.nodes[0][..], &self.nodes[1][..]]);
         let chunks = fits.par_chunks_mut(CHUNK).zip(input.near.wet().par_chunks(CHUNK)).zip(&lists.skin);
-        chunks.for_each(|((fits, wet), chunk)| sums.skin(nodes, wet, chunk, fits));
+        chunks.for_each(|((fits, wet), chunk)| sums.skin(nodes, wet, chunk, flow, fits));
         self.spent += start.elapsed();
     }
 

@@ -84,7 +84,7 @@ pub trait Sweep<const D: usize>: Send + Sync {
     /// Time spent on pairs so far.
     fn spent(&self) -> Duration;
 
-    /// Sums of the wet boundary particles over the water, for walls that settle or let water slip (with its `flow`); the
+    /// Sums of the wet boundary particles over the water, for walls that settle or that it sticks to (with its `flow`); the
     /// lists must hold, and [`Sweep::rates`] comes next, with the same water.
     fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]);
 

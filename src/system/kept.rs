@@ -45,12 +45,15 @@ impl<const D: usize> System<D> {
 
     /// Goes back to a kept state of the same scene.
     pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
-        let same = kept.fluid.len().checked_sub(kept.images.len()) == Some(self.real())
+        let real = self.real();
+        let stress = if self.stress.is_empty() { 0 } else { kept.fluid.len() };
+        let same = kept.fluid.len().checked_sub(kept.images.len()) == Some(real)
+            && kept.images.iter().all(|&i| (i as usize) < real)
             && kept.skin.len() == self.skin.len()
             && kept.kinematics.len() == self.solids.len()
             && kept.loads.len() == self.solids.len()
             && kept.accelerations.len() == self.solids.len()
-            && kept.stress.is_empty() == self.stress.is_empty()
+            && kept.stress.len() == stress
             && kept.built.0.len() == kept.fluid.len()
             && kept.built.1.len() == kept.kinematics.len();
         if !same {

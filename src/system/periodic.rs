@@ -90,8 +90,8 @@ impl<const D: usize> System<D> {
         self.fluid.len() - self.images.of.len()
     }
 
-    /// Wraps the water round the periodic sides and puts it into `order` with new images at the end; returns in which
-    /// order everything is now.
+    /// Wraps the water round the periodic sides, sorts it along the columns and puts new images at its end; returns the order:
+    /// `order[new] = old`, for an image that of what it mirrors.
     pub(super) fn reorder(&mut self) -> Vec<u32> {
         let real = self.real();
         self.images.wrap(&mut self.fluid.r[..real]);

@@ -17,12 +17,12 @@ pub struct Setup<const D: usize> {
     pub water: Vec<Vector<D>>,
     /// Height of the still surface above each of them, m.
     pub levels: Vec<f64>,
-    /// The solids.
-    pub solids: Vec<SolidSpec<D>>,
     /// Velocity of each of them, m/s; empty if all are at rest.
     pub velocity: Vec<Vector<D>>,
     /// Pressure of each beyond that of water at rest, Pa; empty if there is none.
     pub pressure: Vec<f64>,
+    /// The solids.
+    pub solids: Vec<SolidSpec<D>>,
     /// Where particles may be; by default everything at the start, with its own largest extent around it.
     pub domain: Option<Bounds<D>>,
     /// Which sides are periodic.
@@ -62,6 +62,10 @@ impl<const D: usize> Setup<D> {
         }
         if self.levels.len() != self.water.len() {
             return Err(Error::scene("every water particle needs the level of its surface"));
+        }
+        let each = |n: usize| n == 0 || n == self.water.len();
+        if !each(self.velocity.len()) || !each(self.pressure.len()) {
+            return Err(Error::scene("velocities and pressures are given for every water particle or for none"));
         }
         if let Some(i) = self.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
             return Err(Error::scene(format!("water particle {i} has no finite place")));

@@ -62,8 +62,8 @@ impl<const D: usize> System<D> {
         self.medium.rho0 * self.state.pressure(rho / self.medium.rho0 - 1.0)
     }
 
-    /// Pressure (Pa) with which water of density `rho` (kg/m³) acts on its neighbours, a little less: its particles lie dp apart
-    /// whatever its density.
+    /// Pressure (Pa) with which water of density `rho` (kg/m³) acts where its particles lie dp apart: a little less than
+    /// [`System::pressure`].
     pub fn acting_pressure(&self, rho: f64) -> f64 {
         self.medium.rho0 * self.state.acting(rho / self.medium.rho0 - 1.0)
     }
