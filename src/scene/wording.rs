@@ -124,7 +124,9 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         let parent = key.strip_suffix(word).map_or(key, |parent| parent.trim_end_matches('.'));
         let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
-        let guess = nearest(word, known.iter().copied()).and_then(example).or_else(|| example(parent));
+        // Of the same parent: a water's velocity is not a probe's.
+        let near = nearest(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
+        let guess = near.or_else(|| example(parent));
         let known = format!("known here: {}", list(known));
         return (with(error, [known].into_iter().chain(guess).collect()), shown);
     }

@@ -117,6 +117,7 @@ fn values_that_cannot_be_meant_are_refused() {
     wrong("period_of_nothing", "until     = 1.0", "until     = 1.0\nperiodic = { x = [1.0, 0.0] }");
     wrong("period_in_a_third_axis", "until     = 1.0", "until     = 1.0\nperiodic = { z = [0.0, 1.0] }");
     let water = "max = [1.0, 0.5] } }";
+    wrong("misspelt_velocity", water, &format!("{water}\nvelocty = [0.1, 0.0]"));
     wrong("velocity_of_one", water, &format!("{water}\nvelocity = [0.1]"));
     wrong("velocity_in_time", water, &format!("{water}\nvelocity = [\"sin(t)\", 0.0]"));
     wrong("no_sound", "until     = 1.0", "until     = 1.0\ngravity = [0.0, 0.0]");
