@@ -1,11 +1,16 @@
 //! A running simulation: limit, step, check; no files.
 
+mod rescue;
+
 use std::time::{Duration, Instant};
 
 pub use crate::system::Setup;
+pub use rescue::Rescued;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+
+use rescue::Rescue;
 
 use crate::{
     error::{Error, Fault, Kind, Result},
@@ -13,7 +18,7 @@ use crate::{
     solid::{Dim, HasEngine as _, Role, SolidSpec},
     space::{Vector, Wedge},
     system::{System, SystemState},
-    time::{Bodies, Interval, Stepper, limit},
+    time::{Bodies, Held, Interval, Light, Stepper, limit},
 };
 
 /// Water and solids moving through time.
@@ -21,9 +26,8 @@ pub struct Simulation<const D: usize> {
     system: System<D>,
     stepper: Stepper<D>,
     bodies: Bodies<D>,
-    /// Longest step that the free bodies allow, s.
-    dt_bodies: f64,
     clock: Clock,
+    rescue: Rescue,
     stepping: Duration,
 }
 
@@ -54,6 +58,8 @@ struct Kept<const D: usize> {
     stepper: Stepper<D>,
     clock: Clock,
     engine: Option<Vec<u8>>,
+    light: Vec<Held>,
+    rescued: Vec<Rescued>,
 }
 
 impl<const D: usize> Simulation<D> {
@@ -77,26 +83,21 @@ impl<const D: usize> Simulation<D> {
         } else {
             None
         };
-        let dt_bodies = solids
-            .iter()
-            .filter_map(|s| match &s.role {
-                Role::Free(body) => Some(limit::body(&s.shape, body, &medium)),
-                _ => None,
-            })
-            .fold(f64::INFINITY, f64::min);
         let stepper = Stepper::new(&setup.model);
+        let longest = limit::sound(&setup.model);
         let system = System::new(setup)?;
-        let bodies = Bodies::new(engine, 0);
+        let bodies = Bodies::new(engine, Light::find(&system, longest));
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
-        let simulation = Self { system, stepper, bodies, dt_bodies, clock, stepping: Duration::ZERO };
+        let simulation = Self { system, stepper, bodies, clock, rescue: Rescue::default(), stepping: Duration::ZERO };
         simulation.guard()?;
         Ok(simulation)
     }
 
-    /// Goes one step on, as long as water and bodies allow.
+    /// Goes one step on, as long as water and bodies allow. At the first alarm of a guard it goes back to a good state
+    /// instead, some hundred steps, and takes half the step for a while: see [`Simulation::rescued`].
     ///
     /// # Errors
-    /// `Fault` if a particle or body leaves the valid range: names it, its place and the usual cause.
+    /// `Fault` if a particle or body leaves the valid range again: names it, its place and the usual cause.
     pub fn step(&mut self) -> Result<()> {
         self.step_to(f64::INFINITY)
     }
@@ -107,9 +108,39 @@ impl<const D: usize> Simulation<D> {
     /// As [`Simulation::step`].
     pub fn step_to(&mut self, end: f64) -> Result<()> {
         let start = Instant::now();
-        let outcome = self.advance(end);
+        if self.rescue.due(self.clock.steps) {
+            self.rescue.keep(self.clock.steps, self.clock.time, self.save()?);
+        }
+        let outcome = self.advance(end).or_else(|error| self.go_back(error));
         self.stepping += start.elapsed();
         outcome
+    }
+
+    /// Goes back to a good state after the alarm `error`, or gives it on if that is no use.
+    fn go_back(&mut self, error: Error) -> Result<()> {
+        if error.kind != Kind::Fault {
+            return Err(error);
+        }
+        match self.rescue.answer(&error.what, self.clock.steps, self.clock.time) {
+            Some(good) => {
+                let log = std::mem::take(&mut self.rescue.log);
+                self.restore(&good)?;
+                self.rescue.log = log;
+                Ok(())
+            }
+            None => Err(error),
+        }
+    }
+
+    /// Never goes back: the first alarm ends the run.
+    pub fn without_rescue(mut self) -> Self {
+        self.rescue = Rescue::off();
+        self
+    }
+
+    /// When and why the run went back to a good state and took half the step for a while.
+    pub fn rescued(&self) -> &[Rescued] {
+        &self.rescue.log
     }
 
     fn advance(&mut self, end: f64) -> Result<()> {
@@ -131,11 +162,11 @@ impl<const D: usize> Simulation<D> {
         self.guard()
     }
 
-    /// The longest step (s) that the present rates, the bodies and the model allow.
+    /// The longest step (s) that the present rates and the model allow.
     pub fn limit(&self) -> f64 {
         let model = self.system.model();
         let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        water.min(limit::viscous(model)).min(self.dt_bodies).min(model.dt_max)
+        water.min(limit::viscous(model)).min(model.dt_max) * self.rescue.share(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -205,6 +236,12 @@ impl<const D: usize> Simulation<D> {
         }
     }
 
+    /// Impulse (N s; N s/m in 2-D) that the water has given to free solid number `solid` and that it has yet to get: none but
+    /// of a body lighter than the water that sound sets moving in a step.
+    pub fn withheld(&self, solid: usize) -> Vector<D> {
+        self.bodies.withheld(solid)
+    }
+
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
     pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
         if let Some(engine) = self.bodies.engine_mut() {
@@ -238,7 +275,9 @@ impl<const D: usize> Simulation<D> {
     /// `Restart` if the engine's state cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
-        let kept = Kept { system: self.system.save(), stepper: self.stepper.clone(), clock: self.clock, engine };
+        let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
+        let rescued = self.rescue.log.clone();
+        let kept = Kept { system, stepper, clock, engine, light: self.bodies.held(), rescued };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
@@ -254,8 +293,11 @@ impl<const D: usize> Simulation<D> {
             (None, None) => {}
             _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
         }
+        if !self.bodies.restore(&kept.light) {
+            return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
+        }
         self.system.restore(kept.system)?;
-        (self.stepper, self.clock) = (kept.stepper, kept.clock);
+        (self.stepper, self.clock, self.rescue.log) = (kept.stepper, kept.clock, kept.rescued);
         Ok(())
     }
 }

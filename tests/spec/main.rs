@@ -8,6 +8,7 @@ mod errors;
 mod kernels;
 mod lanes;
 mod laws;
+mod light;
 mod near;
 mod periodic;
 mod probes;

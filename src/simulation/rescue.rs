@@ -1,0 +1,103 @@
+//! What a simulation does when a guard sounds its first alarm: it goes back to a good state that it has in memory and takes
+//! half the step for a while. If the alarm returns meanwhile, the run stops with the report of that.
+//!
+//! A run without an alarm is not changed by a bit: the states are only kept.
+
+use serde::{Deserialize, Serialize};
+
+/// Steps from one kept state to the next: a state costs about a step's time to keep, so this costs less than 1 %.
+const EVERY: u64 = 500;
+
+/// Steps that a state must be older than the alarm; a younger one may be ill already.
+const AGE: u64 = 100;
+
+/// Times that a run is rescued; a run that needs more is not computed but nursed.
+const MOST: usize = 3;
+
+/// One time that a run was rescued.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rescued {
+    /// What the guard said.
+    pub alarm: String,
+    /// When it said so, s.
+    pub at: f64,
+    /// To when the run went back, s.
+    pub back_to: f64,
+    /// Until when the step is halved, s.
+    pub halved_until: f64,
+}
+
+/// The states kept, and what came of them.
+#[derive(Default)]
+pub(super) struct Rescue {
+    off: bool,
+    /// The last two states, the older first: step, time, bytes.
+    kept: Vec<(u64, f64, Vec<u8>)>,
+    /// What happened so far.
+    pub(super) log: Vec<Rescued>,
+}
+
+impl Rescue {
+    /// None, ever.
+    pub(super) fn off() -> Self {
+        Self { off: true, ..Self::default() }
+    }
+
+    /// Whether a state is to be kept after `steps` steps.
+    pub(super) fn due(&self, steps: u64) -> bool {
+        !self.off && (self.kept.is_empty() || steps.is_multiple_of(EVERY))
+    }
+
+    /// Keeps the state `bytes` of `steps` steps and `time` (s).
+    pub(super) fn keep(&mut self, steps: u64, time: f64, bytes: Vec<u8>) {
+        if self.kept.len() == 2 {
+            self.kept.remove(0);
+        }
+        self.kept.push((steps, time, bytes));
+    }
+
+    /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run; none if that is no use.
+    pub(super) fn answer(&mut self, alarm: &str, steps: u64, time: f64) -> Option<Vec<u8>> {
+        let again = self.log.last().is_some_and(|last| time <= last.halved_until);
+        if again || self.log.len() >= MOST {
+            return None;
+        }
+        let old = self.kept.iter().rposition(|(at, ..)| at + AGE <= steps).unwrap_or(0);
+        self.kept.truncate(old + 1);
+        let (_, back_to, bytes) = self.kept.pop()?;
+        // As long again beyond the alarm as the way back.
+        let halved_until = time + (time - back_to);
+        self.log.push(Rescued { alarm: alarm.into(), at: time, back_to, halved_until });
+        Some(bytes)
+    }
+
+    /// What part of the step is taken at `time` (s), –.
+    pub(super) fn share(&self, time: f64) -> f64 {
+        if self.log.last().is_some_and(|last| time < last.halved_until) { 0.5 } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_goes_back_far_enough_and_only_while_that_helps() {
+        let mut rescue = Rescue::default();
+        assert!(rescue.due(0));
+        for step in [0, 500, 1000] {
+            rescue.keep(step, step as f64 * 1e-3, vec![(step / 500) as u8]);
+        }
+        assert!(rescue.due(1500) && !rescue.due(1501));
+        // The state of step 1000 is too young.
+        assert_eq!(rescue.answer("speed", 1050, 1.05), Some(vec![1]));
+        let log = &rescue.log[0];
+        assert_eq!((log.back_to, log.at), (0.5, 1.05));
+        assert!((log.halved_until - 1.6).abs() < 1e-12);
+        assert_eq!((rescue.share(1.0), rescue.share(1.7)), (0.5, 1.0));
+        rescue.keep(900, 0.9, vec![9]);
+        assert_eq!(rescue.answer("speed", 1200, 1.2), None, "it returned while the step was halved");
+        assert!(rescue.answer("speed", 9000, 9.0).is_some(), "later trouble is other trouble");
+        assert_eq!(Rescue::off().answer("speed", 9000, 9.0), None);
+    }
+}
