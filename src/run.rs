@@ -17,7 +17,7 @@ mod lock;
 pub(crate) mod outputs;
 
 pub(crate) use folder::{same_tables, scene_file};
-pub use inspect::{Report, inspect};
+pub use inspect::{Inspection, Report, SeriesColumns, SolidCount, Timing, inspect};
 pub(crate) use lock::Lock;
 pub(crate) use outputs::series_folder;
 

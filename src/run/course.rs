@@ -13,6 +13,7 @@ use crate::{
     check::Check,
     error::{Error, Kind, Result},
     model::Dimension,
+    preflight,
     record::{
         Checkpoint, Manifest,
         manifest::{Count, InForce, Machine, Status},
@@ -49,10 +50,12 @@ where
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub fn new(scene: &Scene, origin: Origin) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
-        let Built { setup, plan, warnings, .. } = scene.build::<D>()?;
+        let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup)?;
         let probes = outputs::probes(&plan, sim.system())?;
         let checks = outputs::checks(&plan, &probes)?;
+        let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
+        let warnings = preflight::look(&sim, &plan, still, overlapped, &columns).warnings();
         let text = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(InForce::from).collect();
         let (folder, mut checkpoint, resumed, lock) = match origin {
