@@ -84,7 +84,10 @@ fn facts(report: &Report) -> Vec<Vec<String>> {
     let mut row = |name: &str, text: String| rows.push(vec![name.into(), text]);
     row("dimension", format!("{}-D", size.dimension));
     row("water", format!("{} particles, {} m deep, {} dp", size.fluid, three(size.depth_m), three(size.depth_dp)));
-    row("boundary", format!("{} particles in {} layers, {} of them beside water", size.boundary, size.layers, size.wet));
+    row(
+        "boundary",
+        format!("{} particles in {} layers, {} of them beside water", size.boundary, size.layers, size.wet),
+    );
     row("memory", format!("about {}", bytes(size.memory_bytes)));
     let over = sound.over_depth.map_or(String::new(), |x| format!(" = {} √(g·depth)", three(x)));
     let from = report.sound_from.as_ref().map_or(String::new(), |v| format!(" ({}, {})", v.key, origin(&v.source)));
@@ -110,9 +113,9 @@ fn facts(report: &Report) -> Vec<Vec<String>> {
     }
     row("disk", disk(&size.disk));
     for wave in &report.preflight.waves {
-        let made = format!("{} m, {} dp", three(wave.height_m), three(wave.height_dp));
-        let how = format!("of {} m in {} s", three(wave.stroke_m), three(wave.period_s));
-        row("waves", format!("about {made} high, by strokes {how} of \"{}\"", wave.solid));
+        let high = format!("about {} m high, {} dp", three(wave.height_m), three(wave.height_dp));
+        let (stroke, period) = (three(wave.stroke_m), three(wave.period_s));
+        row("waves", format!("{high}, by \"{}\": stroke {stroke} m, period {period} s", wave.solid));
     }
     rows
 }

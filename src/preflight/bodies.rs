@@ -4,7 +4,7 @@
 //!
 //! A: area of the waterplane, m_a: the water that heaves along. For m_a stands half of that of a flat plate of the same
 //! waterplane: ½ π ρ₀ (A/2)² in 2-D, ½ (8/3) ρ₀ a³ with π a² = A in 3-D [@newman1977], ch. 4; half, for there is water on one
-//! side only. Nothing is added to I: a real roll is slower, of a box by a tenth to a half.
+//! side only. Nothing is added to I: a real roll is slower.
 //!
 //! The coupling is explicit: with Δt = C h/c₀ a body needs a mass per wetted area above ½ C ρ₀ h. Below it the
 //! bodies' own limit of the step (`time/limit.rs`) holds the run together at the price of ever shorter steps.
@@ -102,7 +102,24 @@ impl<const D: usize> Look<'_, D> {
             self.carried(&found, step, findings);
             bodies.push(found);
         }
+        self.slender(&bodies, findings);
         bodies
+    }
+
+    /// Bodies through which water does not see, but whose middle sees the water of both sides.
+    fn slender(&self, bodies: &[Body], findings: &mut Vec<Finding>) {
+        let reach = self.system.model().reach() * (1.0 - 1e-6);
+        let thin: Vec<&Body> = bodies.iter().filter(|b| (reach..2.0 * reach).contains(&b.thinnest_m)).collect();
+        let Some(thinnest) = thin.iter().map(|b| b.thinnest_m).reduce(f64::min) else { return };
+        let names: Vec<String> = thin.iter().map(|b| format!("\"{}\"", b.name)).collect();
+        let what = format!(
+            "thinner than twice the kernel's reach, {} dp: {}; boundary particles in their middle see the water of both \
+             sides",
+            three(2.0 * self.reach_dp()),
+            names.join(", ")
+        );
+        let mend = format!("none would be with  dp = {}", down(0.5 * thinnest / self.reach_dp()));
+        findings.push(Finding::note("slender_body", what, mend));
     }
 
     fn body(&self, solid: &Solid<D>, body: &FreeBody<D>, faces: &[Face<D>], dt_s: f64) -> Body {
@@ -207,7 +224,8 @@ impl<const D: usize> Look<'_, D> {
         let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
         if least < 0.0 {
             let what = format!("\"{name}\" will turn over: its metacentric height is {} m", three(least));
-            let mend = format!("lower its centre of mass by {} m or more (centre_offset), or lock its turn", up(-least));
+            let mend =
+                format!("lower its centre of mass by {} m or more (centre_offset), or lock its turn", up(-least));
             findings.push(Finding::warning("capsizes", what, mend));
         } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
             let heel = afloat.heel_deg.unwrap_or_default();
@@ -225,7 +243,7 @@ impl<const D: usize> Look<'_, D> {
                 three(off.abs() / self.dp()),
                 three(afloat.draft_m)
             );
-            let mend = "at rest it starts with  draft = \"equilibrium\"".into();
+            let mend = "it starts at rest with  draft = \"equilibrium\"".into();
             findings.push(Finding::note("off_draft", what, mend));
         }
     }
@@ -235,17 +253,15 @@ impl<const D: usize> Look<'_, D> {
         let (model, name) = (self.system.model(), &body.name);
         let density = body.density_ratio * model.rho0;
         let reach = model.reach();
-        if body.thinnest_m < 2.0 * reach * (1.0 - 1e-6) {
-            let what = format!("\"{name}\" is {} m thin, {} dp", three(body.thinnest_m), three(body.thinnest_dp));
-            let mend = |n: f64| format!("dp = {}", down(body.thinnest_m / (n * self.reach_dp())));
-            findings.push(if body.thinnest_m < reach * (1.0 - 1e-6) {
-                let what =
-                    format!("{what}, and the kernel reaches {} dp: water sees through it", three(self.reach_dp()));
-                Finding::warning("thin_body", what, mend(1.0))
-            } else {
-                let what = format!("{what}: boundary particles in its middle see the water of both sides");
-                Finding::note("thin_body", what, mend(2.0))
-            });
+        if body.thinnest_m < reach * (1.0 - 1e-6) {
+            let what = format!(
+                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water sees through it",
+                three(body.thinnest_m),
+                three(body.thinnest_dp),
+                three(self.reach_dp())
+            );
+            let mend = format!("make it {} m thick, or dp = {}", up(reach), down(body.thinnest_m / self.reach_dp()));
+            findings.push(Finding::warning("thin_body", what, mend));
         }
         if body.over_limit < 1.0 {
             let what = format!(
@@ -254,8 +270,11 @@ impl<const D: usize> Look<'_, D> {
                 three(density),
                 three(body.least_ratio * model.rho0)
             );
-            let mend =
-                format!("density = {}, or dp = {}", up(body.least_ratio * model.rho0), down(model.dp * body.over_limit));
+            let mend = format!(
+                "density = {}, or dp = {}",
+                up(body.least_ratio * model.rho0),
+                down(model.dp * body.over_limit)
+            );
             findings.push(Finding::warning("too_light", what, mend));
         }
         let short = body.dt_s / step.sound_s;

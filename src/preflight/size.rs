@@ -36,7 +36,7 @@ pub struct Size {
     pub depth_dp: f64,
     /// Places of the water's lattice that solids took.
     pub removed: usize,
-    /// Memory while it runs, B: about.
+    /// Memory of its arrays, lists and frames while it runs, B: about.
     pub memory_bytes: f64,
     /// What it will write.
     pub disk: Disk,
@@ -102,7 +102,9 @@ impl<const D: usize> Look<'_, D> {
         // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
         let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + extra;
         let skin = particle + (2.0 * d + 2.0) * number;
-        fluid * water + boundary * skin + system.list_bytes() as f64
+        // A frame is put together as numbers, as text and as the file's text.
+        let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * picture(frames).0.max(picture(frames).1));
+        fluid * water + boundary * skin + system.list_bytes() as f64 + fluid.max(boundary) * picture
     }
 
     fn disk(&self, step: &Step, columns: &[usize]) -> Disk {

@@ -13,7 +13,7 @@ use crate::{
     time::limit,
 };
 
-/// Speed of sound over the largest speed, at least, for densities to stay within 1 % [@monaghan1992].
+/// Speed of sound over the largest speed, at least: densities vary by the square of its inverse, then 1 %.
 const TIMES: f64 = 10.0;
 
 /// Times at which a driven solid is looked at.

@@ -47,7 +47,7 @@ fn least<const D: usize>(mut ways: Vec<(f64, Vector<D>)>) -> Option<(f64, Vector
 }
 
 /// Whether all of the shape has as many layers as are asked for.
-fn layered<const D: usize>(shape: &Shape<D>) -> bool {
+pub fn layered<const D: usize>(shape: &Shape<D>) -> bool {
     match shape {
         Shape::Tank { .. } | Shape::Polyline { .. } => true,
         Shape::Compound(parts) => parts.iter().all(|(_, part)| layered(part)),

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::{
     Finding, Look,
+    thickness::layered,
     words::{down, three},
 };
 use crate::{
@@ -76,7 +77,8 @@ impl<const D: usize> Look<'_, D> {
     fn wave(&self, solid: &Solid<D>, motion: &Motion<D>) -> Option<Wave> {
         let level = self.still.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
-        if self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
+        // A tank that is shaken holds the water rather than pushing it.
+        if layered(&solid.spec.shape) || self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
             return None;
         }
         // The material point in the still level, and how it goes sideways.
@@ -91,7 +93,8 @@ impl<const D: usize> Look<'_, D> {
                 way
             })
             .collect();
-        let furthest = sideways.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?.try_normalize(0.0)?;
+        let furthest =
+            sideways.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?.try_normalize(0.0)?;
         let way: Vec<f64> = sideways.iter().map(|x| x.dot(&furthest)).collect();
         let (stroke, steps) = swing(&way)?;
         let period = 2.0 * steps as f64 * step;

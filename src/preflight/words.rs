@@ -47,7 +47,10 @@ mod tests {
     #[test]
     fn numbers_are_rounded_to_the_side_that_helps() {
         assert_eq!([three(0.123456), three(-12.0), three(1234.4), three(2e-7)], ["0.123", "-12", "1234", "2.00e-7"]);
-        assert_eq!([down(0.01), down(0.0129), up(0.0121), up(131.0), down(2.0)], ["0.01", "0.012", "0.013", "140", "2"]);
+        assert_eq!(
+            [down(0.01), down(0.0129), up(0.0121), up(131.0), down(2.0)],
+            ["0.01", "0.012", "0.013", "140", "2"]
+        );
         assert_eq!(place(&[0.1 + 0.2, -1e-17]), "[0.3, 0]");
     }
 }

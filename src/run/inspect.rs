@@ -119,8 +119,9 @@ where
     let series = plan.probes.iter().zip(&probes);
     let series = series.map(|(words, p)| SeriesColumns { name: words.name.clone(), columns: p.columns() }).collect();
     let timing = if timed { time(&mut sim, &mut preflight) } else { None };
-    let said = |key: &str| values.iter().find(|v| v.key == key && !v.value.is_empty()).cloned();
-    let sound_from = said("model.c0").or_else(|| said("model.c0_factor"));
+    // What was said wins over what follows from it.
+    let of_sound = values.iter().filter(|v| v.key == "model.c0" || v.key == "model.c0_factor");
+    let sound_from = of_sound.min_by_key(|v| v.source.starts_with("default")).cloned();
     Ok(Report { title: plan.title, until_s: plan.until, preflight, sound_from, timing, solids, series, values })
 }
 

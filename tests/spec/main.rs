@@ -10,6 +10,7 @@ mod lanes;
 mod laws;
 mod near;
 mod periodic;
+mod preflight;
 mod probes;
 mod quiet;
 mod rig;
