@@ -36,9 +36,9 @@ static COUNTING: Counting = Counting;
 fn a_run_takes_about_the_memory_that_was_told() {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let cases = [
-        ("lobovsky", "0.02", vec![("dp", "0.003")]),
-        ("lobovsky", "0.02", vec![("dp", "0.003"), ("frames", "off")]),
-        ("lobovsky", "0.02", vec![("dp", "0.006"), ("model.sweep", "reference")]),
+        ("lobovsky", "0.004", vec![("dp", "0.003")]),
+        ("lobovsky", "0.004", vec![("dp", "0.003"), ("frames", "off")]),
+        ("lobovsky", "0.004", vec![("dp", "0.006"), ("model.sweep", "reference")]),
         ("added-mass-3d", "0.003", vec![("dp", "0.04"), ("frames", "off")]),
         ("buoyancy-3d", "0.003", vec![("model.viscosity", "sps"), ("frames", "off")]),
     ];

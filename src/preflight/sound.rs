@@ -77,7 +77,7 @@ impl<const D: usize> Look<'_, D> {
     pub(super) fn sound(&self, findings: &mut Vec<Finding>) -> Sound {
         let long = (self.g * self.still.depth).sqrt();
         let water = self.system.fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        let mut expected = vec![("√(g·depth)".to_string(), long), ("the water at the start".into(), water)];
+        let mut expected = vec![("long waves, √(g·depth)".to_string(), long), ("the water at the start".into(), water)];
         for (i, solid) in self.solids().iter().enumerate() {
             let name = &solid.spec.name;
             match &solid.spec.role {
@@ -93,8 +93,8 @@ impl<const D: usize> Look<'_, D> {
             && c0 < TIMES * speed * (1.0 - 1e-3)
         {
             let text = format!(
-                "the speed of sound, {} m/s, is only {} times the speed of {what}, {} m/s: the water will be squeezed by \
-                 {} %",
+                "the speed of sound, {} m/s, is only {} times that of {what}, {} m/s: the water's \
+                 density will vary by {} %",
                 three(c0),
                 three(c0 / speed),
                 three(*speed),

@@ -51,7 +51,7 @@ impl<const D: usize> Look<'_, D> {
         let depth = self.still.depth;
         if self.g > 0.0 && depth < 10.0 * self.dp() * (1.0 - 1e-9) {
             let what = format!(
-                "the water is {} m deep, {} dp; waves and floats want 10 dp",
+                "the water is {} m deep, {} dp: too few for waves and floats, which take 10",
                 three(depth),
                 three(depth / self.dp())
             );
