@@ -23,12 +23,14 @@ pub fn of<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<Face<D>> {
     }
 }
 
-fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<Face<D>> {
+/// The faces of `shape`, dp (m) apart, but for those at which the parts of a compound join.
+pub fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<Face<D>> {
     let face = |r: Vector<D>| {
         let n = shape.outward(&r, 0.05 * dp);
         Face { x: r - n * shape.signed_distance(&r), n }
     };
-    shape.skin(dp, 1).into_iter().map(|point| face(point.r)).filter(|face| face.n.norm() > 0.5).collect()
+    let free = |face: &Face<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
+    shape.skin(dp, 1).into_iter().map(|point| face(point.r)).filter(free).collect()
 }
 
 /// Every so many-th of `faces`, `most` of them or fewer.

@@ -103,13 +103,7 @@ mod tests {
     use super::*;
 
     fn thin<const D: usize>(shape: Shape<D>) -> f64 {
-        let faces: Vec<Face<D>> = shape
-            .skin(0.01, 1)
-            .into_iter()
-            .map(|p| (p.r, shape.outward(&p.r, 5e-4)))
-            .map(|(r, n)| Face { x: r - n * shape.signed_distance(&r), n })
-            .collect();
-        thinnest(&shape, &faces, 0.01).unwrap_or(f64::NAN)
+        thinnest(&shape, &faces::of_shape(&shape, 0.01), 0.01).unwrap_or(f64::NAN)
     }
 
     #[test]

@@ -3,7 +3,10 @@
 /// `x` to three digits, without trailing zeros.
 pub fn three(x: f64) -> String {
     let size = x.abs();
-    if x == 0.0 || !x.is_finite() {
+    if x == 0.0 {
+        return "0".into();
+    }
+    if !x.is_finite() {
         return format!("{x}");
     }
     if !(1e-4..1e6).contains(&size) {
