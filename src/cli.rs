@@ -4,6 +4,7 @@
 //! is wrong; 3 a check misses its bound; 130 interrupted.
 
 mod bench;
+mod inspect;
 mod progress;
 mod report;
 mod shelf;
@@ -40,7 +41,7 @@ Try:
   pontoon scenes                      what is there to run
   pontoon run raft                    several floats, a paddle, a tank
   pontoon run raft --dp 0.01          the same, finer
-  pontoon inspect raft                every value in force and why; runs nothing
+  pontoon inspect raft                what it costs, what looks wrong, every value in force
 Results go to runs/<scene>: open frames.pvd with ParaView, series/*.csv with anything."
 )]
 struct Cli {
@@ -75,12 +76,14 @@ or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
         #[arg(long, short)]
         quiet: bool,
     },
-    /// Read a scene, count its particles, print every value in force and its source; run nothing
-    #[command(after_help = "Example:\n  pontoon inspect raft --dp 0.01")]
-    Inspect {
-        #[command(flatten)]
-        scene: SceneArgs,
-    },
+    /// Tell what a scene would cost and what looks wrong with it, and print every value in force
+    #[command(after_help = "\
+Examples:
+  pontoon inspect raft --dp 0.01
+  pontoon inspect my-bay.toml --no-timing --json
+What looks wrong comes first, each with the number that would mend it; `run` prints the warnings too.
+Nothing is written. The scene is stepped for a second to tell how long a run takes on this machine.")]
+    Inspect(inspect::InspectArgs),
     /// Run a scene at several spacings, with several laws: errors against processor time, orders
     #[command(after_help = "\
 Examples:
@@ -192,9 +195,8 @@ fn obey(command: Command) -> Result<u8> {
             let outcome = run::resume(&folder, threads, &mut follow);
             end(outcome, follow, quiet)
         }
-        Command::Inspect { scene } => {
-            let found = shelf::find(&scene.scene)?;
-            say(&report::inspected(&run::inspect(found.path(), &scene.sets())?));
+        Command::Inspect(args) => {
+            say(&inspect::inspect(&args)?);
             Ok(0)
         }
         Command::Validate(args) => validate::validate(args),

@@ -30,6 +30,7 @@ pub mod check;
 pub mod record;
 // entrance
 pub mod scene;
+pub mod preflight;
 pub mod run;
 pub mod study;
 pub mod bench;

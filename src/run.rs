@@ -17,7 +17,7 @@ mod lock;
 pub(crate) mod outputs;
 
 pub(crate) use folder::{same_tables, scene_file};
-pub use inspect::{Report, inspect};
+pub use inspect::{Inspection, Report, SeriesColumns, SolidCount, Timing, inspect};
 pub(crate) use lock::Lock;
 pub(crate) use outputs::series_folder;
 
@@ -28,6 +28,7 @@ use crate::{
     model::Dimension,
     record::{Checkpoint, Manifest, manifest::Status, restart},
     scene::Scene,
+    simulation::Rescued,
     solid::Dim,
 };
 
@@ -73,6 +74,11 @@ pub trait Watch: Send {
     /// Told once, before the first step.
     fn start(&mut self, start: &Start) {
         let _ = start;
+    }
+
+    /// Told when the run goes back to a good state after an alarm.
+    fn rescued(&mut self, how: &Rescued) {
+        let _ = how;
     }
 
     /// Told before the first step and after each; `false` asks the run to stop now, with a checkpoint.

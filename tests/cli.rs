@@ -203,6 +203,43 @@ fn help_and_lists_teach() {
     assert_eq!(desk.pontoon(&[]).code, Some(2));
 }
 
+#[test]
+fn inspect_says_what_a_run_costs_and_what_looks_wrong_before_every_value() {
+    let desk = Desk::new("inspect");
+    // The reference sweep, as the memory of lists depends on the processor's lanes.
+    let said = desk.pontoon(&["inspect", "raft", "--no-timing", "--sweep", "reference"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/inspect/raft.txt");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, &said.out).unwrap();
+    }
+    let kept = fs::read_to_string(&path).unwrap_or_default();
+    assert!(said.out == kept, "the page changed; renew with UPDATE_GOLDEN=1:\n{}", said.out);
+    // The same as JSON, with a timing.
+    let said = desk.pontoon(&["inspect", "still-tank", "--json", "--threads", "1"]);
+    let json: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    for key in ["/size/fluid", "/size/memory_bytes", "/sound/c0_mps", "/step/dt_s", "/timing/run_s"] {
+        assert!(json.pointer(key).and_then(serde_json::Value::as_f64).is_some_and(|x| x > 0.0), "{key}");
+    }
+    assert!(json["findings"].as_array().is_some_and(Vec::is_empty), "{}", json["findings"]);
+    assert_eq!(fs::read_dir(&desk.0).unwrap().count(), 0, "nothing is written");
+}
+
+#[test]
+fn a_run_prints_its_warnings_and_keeps_them_in_the_manifest_and_no_notes() {
+    let desk = Desk::new("warnings");
+    let sets = ["--set", "model.c0_factor=5", "--set", "solid.apple.at.bottom=0.5"];
+    let run = ["run", "raft", "--until", "0.002", "--set", "frames=off", "--out", "a"];
+    let said = desk.pontoon(&[&run[..], &sets].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let words = ["warning: the speed of sound, 7.83 m/s, is only ", "c0 = "];
+    assert!(words.iter().all(|word| said.err.contains(word)) && !said.err.contains("draft"), "{}", said.err);
+    let warnings = desk.manifest("a")["warnings"].clone();
+    assert_eq!(warnings.as_array().map(Vec::len), Some(1), "{warnings}");
+    assert!(warnings[0].as_str().is_some_and(|w| w.contains("7.83 m/s")), "{warnings}");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_ends_as_an_unbroken_one_to_the_byte() {

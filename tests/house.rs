@@ -6,7 +6,7 @@ use std::{
 };
 
 /// The rooms in the order in which they depend on one another.
-const ROOMS: [&str; 22] = [
+const ROOMS: [&str; 23] = [
     "error",
     "series",
     "space",
@@ -26,6 +26,7 @@ const ROOMS: [&str; 22] = [
     "check",
     "record",
     "scene",
+    "preflight",
     "run",
     "study",
     "bench",

@@ -9,7 +9,10 @@ use std::{
 };
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pontoon::run::{Progress, Start, Watch};
+use pontoon::{
+    run::{Progress, Start, Watch},
+    simulation::Rescued,
+};
 
 use super::{complain, report};
 
@@ -58,6 +61,12 @@ impl Watch for Follow {
     fn start(&mut self, start: &Start) {
         if !self.quiet {
             complain(&report::started(start));
+        }
+    }
+
+    fn rescued(&mut self, how: &Rescued) {
+        if !self.quiet {
+            self.bar.suspend(|| complain(&format!("warning: {how}\n")));
         }
     }
 

@@ -1,11 +1,11 @@
-//! The texts that are printed: at the start, at the end, for `inspect` and `scenes`.
+//! The texts that are printed: at the start, at the end, for `scenes`.
 
 use std::fmt::Write;
 
 use pontoon::{
     check::{Verdict, said},
     record::manifest::Status,
-    run::{Body, Outcome, Report, Start},
+    run::{Body, Outcome, Start},
 };
 
 use super::shelf::Listed;
@@ -46,7 +46,8 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-fn threads(n: usize) -> String {
+/// A number of threads as a user says it.
+pub fn threads(n: usize) -> String {
     if n == 1 { "1 thread".into() } else { format!("{n} threads") }
 }
 
@@ -126,39 +127,6 @@ fn bodies(bodies: &[Body]) -> String {
 fn checks(checks: &[Verdict]) -> String {
     let all: Vec<(&[String], &Verdict)> = checks.iter().map(|v| (&[][..], v)).collect();
     table(&said::rows(&all, &[]))
-}
-
-/// What `inspect` prints.
-pub fn inspected(report: &Report) -> String {
-    let count = report.particles;
-    let mut text = format!("{}\n", report.title);
-    for warning in &report.warnings {
-        let _ = writeln!(text, "warning: {warning}");
-    }
-    let steps = report.until / report.dt;
-    text += &table(&[
-        vec!["dimension".into(), format!("{}-D", report.dimension)],
-        vec!["water".into(), format!("{} particles", count.fluid)],
-        vec!["boundary".into(), format!("{} particles", count.boundary)],
-        vec![
-            "time step".into(),
-            format!("at most {:.3e} s: {} steps or more to {} s", report.dt, short(steps.ceil()), report.until),
-        ],
-    ]);
-    if !report.solids.is_empty() {
-        let mut rows = vec![["solid", "role", "particles"].map(String::from).to_vec()];
-        rows.extend(report.solids.iter().map(|(name, role, n)| vec![name.clone(), role.to_string(), n.to_string()]));
-        let _ = write!(text, "\n{}", table(&rows));
-    }
-    if !report.series.is_empty() {
-        let mut rows = vec![["series", "columns"].map(String::from).to_vec()];
-        rows.extend(report.series.iter().map(|(name, columns)| vec![name.clone(), columns.join(" ")]));
-        let _ = write!(text, "\n{}", table(&rows));
-    }
-    let mut rows = vec![["key", "value", "source"].map(String::from).to_vec()];
-    rows.extend(report.values.iter().map(|v| vec![v.key.clone(), v.value.clone(), v.source.to_string()]));
-    let _ = write!(text, "\n{}", table(&rows));
-    text
 }
 
 /// What `scenes` prints.

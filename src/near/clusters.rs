@@ -80,6 +80,12 @@ impl Clusters {
         self.source.is_empty()
     }
 
+    /// Memory of the clusters and their lists, B.
+    pub(super) fn bytes(&self) -> usize {
+        let slab = |slab: &Slab| 12 * slab.spans.len() + 4 * slab.index.len();
+        4 * (self.source.len() + self.water.len() + self.wet.len()) + self.slabs.iter().map(slab).sum::<usize>()
+    }
+
     /// Makes clusters and lists of the water and of those boundary particles that may be near it; returns which
     /// boundary particles are, in ascending order.
     pub(super) fn build<const D: usize>(

@@ -47,6 +47,12 @@ pub struct Lists {
 }
 
 impl Lists {
+    /// Memory of the lists, B.
+    pub(super) fn bytes(&self) -> usize {
+        let chunk = |chunk: &Chunk| 12 * chunk.spans.len() + 4 * chunk.index.len();
+        self.water.iter().chain(&self.skin).map(chunk).sum()
+    }
+
     /// Lists all pairs nearer than `reach` (m) among water and of water with skin; returns which of the boundary
     /// particles `near` have any.
     pub(super) fn build<const D: usize>(

@@ -128,6 +128,15 @@ impl<const D: usize> Near<D> {
         &self.wet
     }
 
+    /// Memory of the lists, and of the particles as the sweep packs them, B.
+    pub fn bytes(&self) -> usize {
+        match &self.pairs {
+            Pairs::Lists(lists) => lists.bytes() + (self.built.0.len() + self.wet.len()) * 8 * (2 * D + 6),
+            // Eight particles packed in single precision: places, velocities, four numbers; and two rows of sums.
+            Pairs::Clusters(clusters, _) => clusters.bytes() + clusters.source.len() * 4 * (2 * D + 4 + 2 * (D + 1)),
+        }
+    }
+
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
     pub fn water_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
         self.around(&self.grids().0, x, visit);

@@ -13,6 +13,7 @@ use crate::{
     check::Check,
     error::{Error, Kind, Result},
     model::Dimension,
+    preflight,
     record::{
         Checkpoint, Manifest,
         manifest::{Count, InForce, Machine, Status},
@@ -49,10 +50,12 @@ where
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub fn new(scene: &Scene, origin: Origin) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
-        let Built { setup, plan, warnings, .. } = scene.build::<D>()?;
+        let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup)?;
         let probes = outputs::probes(&plan, sim.system())?;
         let checks = outputs::checks(&plan, &probes)?;
+        let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
+        let warnings = preflight::look(&sim, &plan, still, overlapped, &columns).warnings();
         let text = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(InForce::from).collect();
         let (folder, mut checkpoint, resumed, lock) = match origin {
@@ -105,13 +108,15 @@ impl<const D: usize> Course<D> {
         let until = self.manifest.until_s;
         let mut going = watch.step(&self.progress());
         while going && self.sim.time() < until {
-            let (clock, passes) = (Instant::now(), self.sim.passes());
+            let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rescued().len());
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not moved on and do not count.
             let moved = self.sim.system().fluid().len() + self.sim.system().wet();
-            self.checkpoint.particle_steps += moved as u64 * (self.sim.passes() - passes);
+            // A run that went back has made fewer passes than before.
+            self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
             stepped?;
+            self.tell(rescued, watch);
             let written = self.outputs.look(&self.sim)?;
             if written.checkpoint {
                 self.save()?;
@@ -128,6 +133,14 @@ impl<const D: usize> Course<D> {
         }
         self.outputs.finish(&self.sim)?;
         Ok(Status::Finished)
+    }
+
+    /// Tells whoever watches, and the manifest, of each rescue but the first `known`.
+    fn tell(&mut self, known: usize, watch: &mut dyn Watch) {
+        for how in &self.sim.rescued()[known..] {
+            watch.rescued(how);
+            self.manifest.warnings.push(how.to_string());
+        }
     }
 
     /// Writes the checkpoint.

@@ -1,79 +1,144 @@
-//! What a scene would run, without running it.
+//! What a scene would run, without running it: the pre-flight's facts and findings, a short timing, every value in force.
 
-use std::path::Path;
+use std::{path::Path, time::Instant};
 
-use super::{folder, not_built, outputs};
+use serde::Serialize;
+
+use super::{folder, not_built, outputs, with_threads};
 use crate::{
     error::Result,
     model::Dimension,
-    record::manifest::Count,
-    scene::{Built, Resolved, Scene},
+    preflight::{self, Finding, Preflight},
+    record::manifest::InForce,
+    scene::{Built, Scene},
     simulation::Simulation,
-    solid::{Dim, Role},
+    solid::Dim,
 };
 
+/// How long a timing lasts at most, s: no step is begun after it.
+const LASTS: f64 = 1.0;
+
+/// What an inspection is asked for beside its scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inspection {
+    /// Keys of the scene and the values that replace the scene's own.
+    pub sets: Vec<(String, String)>,
+    /// Threads; by default one for each processor.
+    pub threads: Option<usize>,
+    /// Whether to step for up to a second, to tell how long a run will take on this machine.
+    pub timing: bool,
+}
+
 /// What a scene would run.
+#[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Its caption.
     pub title: String,
-    /// 2 or 3.
-    pub dimension: usize,
     /// Simulated time at the end, s.
-    pub until: f64,
-    /// How many particles of each sort.
-    pub particles: Count,
-    /// Name, role and number of skin particles of each solid.
-    pub solids: Vec<(String, &'static str, usize)>,
-    /// The largest time step that sound and the Courant number allow, CFL h/c₀ (s).
-    pub dt: f64,
-    /// Files of the probes, with their columns.
-    pub series: Vec<(String, Vec<String>)>,
-    /// Remarks: water removed from solids, and the like.
-    pub warnings: Vec<String>,
+    pub until_s: f64,
+    /// What it will cost and what looks wrong.
+    #[serde(flatten)]
+    pub preflight: Preflight,
+    /// Where the speed of sound comes from: key, value and who said it.
+    pub sound_from: Option<InForce>,
+    /// How fast this machine is, if it was asked for.
+    pub timing: Option<Timing>,
+    /// The solids.
+    pub solids: Vec<SolidCount>,
+    /// Files of the probes.
+    pub series: Vec<SeriesColumns>,
     /// Every value in force and where it comes from.
-    pub values: Vec<Resolved>,
+    pub values: Vec<InForce>,
 }
 
-/// Reads, resolves and builds the scene at `path` with the changes `sets`; runs nothing, writes nothing.
+/// A solid and its boundary particles.
+#[derive(Clone, Debug, Serialize)]
+pub struct SolidCount {
+    /// Its name.
+    pub name: String,
+    /// `fixed`, `driven` or `free`.
+    pub role: &'static str,
+    /// Number of its boundary particles.
+    pub particles: usize,
+}
+
+/// The file of a probe.
+#[derive(Clone, Debug, Serialize)]
+pub struct SeriesColumns {
+    /// Stem of the file.
+    pub name: String,
+    /// Its columns beside the time.
+    pub columns: Vec<String>,
+}
+
+/// Some steps of the scene, timed. Nothing was written.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Timing {
+    /// Threads.
+    pub threads: usize,
+    /// Steps timed.
+    pub steps: usize,
+    /// Wall time of a step, s.
+    pub step_s: f64,
+    /// Wall time of the whole run at that pace, s; outputs come on top.
+    pub run_s: f64,
+}
+
+/// Reads, resolves and builds the scene at `path` with the changes of `asked`; writes nothing.
 ///
 /// # Errors
 /// Those that [`run`](super::run) would meet before its first step.
-pub fn inspect(path: &Path, sets: &[(String, String)]) -> Result<Report> {
-    let scene = Scene::read(&folder::scene_file(path), sets)?;
-    match scene.dimension {
+pub fn inspect(path: &Path, asked: &Inspection) -> Result<Report> {
+    let scene = Scene::read(&folder::scene_file(path), &asked.sets)?;
+    with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]
-        2 => report::<2>(&scene),
+        2 => report::<2>(&scene, asked.timing),
         #[cfg(feature = "dim3")]
-        3 => report::<3>(&scene),
+        3 => report::<3>(&scene, asked.timing),
         other => Err(not_built(other)),
-    }
+    })
 }
 
-fn report<const D: usize>(scene: &Scene) -> Result<Report>
+fn report<const D: usize>(scene: &Scene, timed: bool) -> Result<Report>
 where
     Dim<D>: Dimension<D>,
 {
-    let values = scene.resolve()?;
-    let Built { setup, plan, warnings, .. } = scene.build::<D>()?;
-    let dt = (setup.model.cfl * setup.model.h / setup.model.c0).min(setup.model.dt_max);
-    let sim = Simulation::new(setup)?;
-    let system = sim.system();
-    let probes = outputs::probes(&plan, system)?;
+    let values: Vec<InForce> = scene.resolve()?.into_iter().map(InForce::from).collect();
+    let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
+    let mut sim = Simulation::new(setup)?;
+    let probes = outputs::probes(&plan, sim.system())?;
     outputs::checks(&plan, &probes)?;
-    let role = |role: &Role<D>| match role {
-        Role::Fixed => "fixed",
-        Role::Driven(_) => "driven",
-        Role::Free(_) => "free",
-    };
-    Ok(Report {
-        title: plan.title,
-        dimension: D,
-        until: plan.until,
-        particles: Count { fluid: system.fluid().len(), boundary: system.skin().len() },
-        solids: system.solids().iter().map(|s| (s.spec.name.clone(), role(&s.spec.role), s.skin.len())).collect(),
-        dt,
-        series: plan.probes.iter().zip(&probes).map(|(words, p)| (words.name.clone(), p.columns())).collect(),
-        warnings,
-        values,
-    })
+    let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
+    let mut preflight = preflight::look(&sim, &plan, still, overlapped, &columns);
+    let solids = sim.system().solids().iter().map(|s| SolidCount {
+        name: s.spec.name.clone(),
+        role: preflight::role(&s.spec.role),
+        particles: s.skin.len(),
+    });
+    let solids = solids.collect();
+    let series = plan.probes.iter().zip(&probes);
+    let series = series.map(|(words, p)| SeriesColumns { name: words.name.clone(), columns: p.columns() }).collect();
+    let timing = if timed { time(&mut sim, &mut preflight) } else { None };
+    // What was said wins over what follows from it.
+    let of_sound = values.iter().filter(|v| v.key == "model.c0" || v.key == "model.c0_factor");
+    let sound_from = of_sound.min_by_key(|v| v.source.starts_with("default")).cloned();
+    Ok(Report { title: plan.title, until_s: plan.until, preflight, sound_from, timing, solids, series, values })
+}
+
+/// Steps for up to a second, the first step left out unless it takes all the time: it begins with cold caches.
+fn time<const D: usize>(sim: &mut Simulation<D>, preflight: &mut Preflight) -> Option<Timing> {
+    let begun = Instant::now();
+    let mut times = Vec::new();
+    while begun.elapsed().as_secs_f64() < LASTS {
+        let start = Instant::now();
+        if let Err(error) = sim.step() {
+            preflight.findings.insert(0, Finding::stopped(&error, times.len()));
+            break;
+        }
+        times.push(start.elapsed().as_secs_f64());
+    }
+    let warm = if times.len() > 1 { &times[1..] } else { &times[..] };
+    let step_s = warm.iter().sum::<f64>() / warm.len() as f64;
+    let run_s = step_s * preflight.step.steps;
+    (!warm.is_empty()).then(|| Timing { threads: rayon::current_num_threads(), steps: warm.len(), step_s, run_s })
 }

@@ -47,6 +47,10 @@ struct Watched<const D: usize> {
 
 impl<const D: usize> Watched<D> {
     fn look(&mut self, sim: &Simulation<D>) -> Result<()> {
+        // A run that went back after an alarm makes again what is written already.
+        if self.table.last().is_some_and(|(t, _)| t >= sim.time()) {
+            return Ok(());
+        }
         let mut row = self.probe.look(sim);
         if let Some((_, before)) = self.table.last() {
             self.probe.follow(before, &mut row);
@@ -120,6 +124,7 @@ impl<const D: usize> Outputs<D> {
         }
         if let Some((frames, due)) = &mut self.frames
             && due.take(t)
+            && frames.times().last().is_none_or(|&last| last < t)
         {
             frames.write(sim.system(), t)?;
             written.frame = true;

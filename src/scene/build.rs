@@ -32,8 +32,17 @@ pub struct Built<const D: usize> {
     pub overlapped: usize,
     /// Places left empty because an earlier body of water is there.
     pub doubled: usize,
-    /// What looks wrong but may be meant.
-    pub warnings: Vec<String>,
+    /// The water at rest.
+    pub still: Still,
+}
+
+/// The water at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Still {
+    /// The highest level, from which drafts are measured, m.
+    pub level: f64,
+    /// From the lowest water to there, m.
+    pub depth: f64,
 }
 
 /// A body of water: where it is and how high it stands.
@@ -90,7 +99,6 @@ impl Scene {
             return Err(scene.wrong("water", "no water is left: it is thinner than dp, or solids fill it"));
         }
         let plan = scene.planned()?;
-        let warnings = warnings(&plan, &solids);
         // Packing may have moved a particle a little way out of its water.
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
         let level = |x: &Vector<D>| nearest(x).map_or(still_level, |body| body.level);
@@ -102,7 +110,9 @@ impl Scene {
             scatter(&mut filled.r, part * scene.dp);
         }
         let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, domain, periodic };
-        Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, warnings })
+        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
+        let still = Still { level: still_level, depth: still_level - bottom };
+        Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
     }
 
     /// What a run watches, keeps and judges; makes no particles.
@@ -285,18 +295,4 @@ fn kind(probe: &ProbeEntry) -> ProbeKind {
         ProbeEntry { front: Some(_), .. } => ProbeKind::Front,
         _ => ProbeKind::Energy,
     }
-}
-
-/// What looks wrong but may be meant: points that are watched inside a solid.
-fn warnings<const D: usize>(plan: &Plan, solids: &[SolidSpec<D>]) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for probe in &plan.probes {
-        let (ProbeKind::Velocity { at } | ProbeKind::Pressure { at }) = &probe.what else { continue };
-        let x: Vector<D> = vector(at);
-        let holds = |solid: &&SolidSpec<D>| solid.shape.signed_distance(&solid.pose.local(&x)) < 0.0;
-        if let Some(solid) = solids.iter().find(holds) {
-            warnings.push(format!("probe \"{}\" at {at:?} m is inside solid \"{}\"", probe.name, solid.name));
-        }
-    }
-    warnings
 }

@@ -74,7 +74,7 @@ pub(super) fn pose<const D: usize>(at: &AtWords, shape: &Shape<D>, level: f64) -
 }
 
 /// The smallest box around the posed shape, m.
-pub(super) fn world_bounds<const D: usize>(shape: &Shape<D>, pose: &Pose<D>) -> Bounds<D> {
+pub(crate) fn world_bounds<const D: usize>(shape: &Shape<D>, pose: &Pose<D>) -> Bounds<D> {
     let extent = |i: usize, sign: f64| {
         let mut direction = Vector::<D>::zeros();
         direction[i] = sign;

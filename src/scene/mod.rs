@@ -23,13 +23,14 @@ mod wording;
 
 pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, PartWords, ShapeWords, SolidWords};
-pub use build::Built;
+pub use build::{Built, Still};
 pub use document::Source;
 pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers};
 pub use flow::PeriodicWords;
 pub use format::{
     BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,
 };
+pub(crate) use geometry::world_bounds;
 pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 pub use size::Size;

@@ -3,6 +3,8 @@
 //!
 //! A run without an alarm is not changed by a bit: the states are only kept.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// Steps from one kept state to the next: a state costs about a step's time to keep, so this costs less than 1 %.
@@ -25,6 +27,13 @@ pub struct Rescued {
     pub back_to: f64,
     /// Until when the step is halved, s.
     pub halved_until: f64,
+}
+
+impl fmt::Display for Rescued {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { alarm, back_to, halved_until, .. } = self;
+        write!(f, "{alarm}: went back to {back_to:.6} s, and takes half the step until {halved_until:.6} s")
+    }
 }
 
 /// The states kept, and what came of them.

@@ -88,6 +88,11 @@ impl<const D: usize> System<D> {
         self.near.wet().len()
     }
 
+    /// Memory of the neighbour lists, B.
+    pub fn list_bytes(&self) -> usize {
+        self.near.bytes()
+    }
+
     /// Time spent so far on lists and sorting, and on pairs.
     pub fn spent(&self) -> (Duration, Duration) {
         (self.listing, self.sweep.spent())

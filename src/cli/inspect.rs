@@ -1,0 +1,173 @@
+//! `pontoon inspect`: what a scene would run and what looks wrong with it, on a page or as JSON.
+
+use std::fmt::Write;
+
+use clap::Args;
+use pontoon::{
+    error::{Error, Kind, Result},
+    preflight::{Body, Disk, Finding, Severity, three},
+    run::{self, Inspection, Report},
+};
+
+use super::{
+    SceneArgs,
+    report::{duration, short, table, threads},
+    shelf,
+};
+
+/// What is inspected, and how it is said.
+#[derive(Args)]
+pub struct InspectArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Threads of the timing [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Leave out the second of stepping that tells how long a run takes on this machine
+    #[arg(long)]
+    no_timing: bool,
+    /// Print everything as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// The page, or the JSON.
+pub fn inspect(args: &InspectArgs) -> Result<String> {
+    let found = shelf::find(&args.scene.scene)?;
+    let asked = Inspection { sets: args.scene.sets(), threads: args.threads, timing: !args.no_timing };
+    let report = run::inspect(found.path(), &asked)?;
+    if args.json {
+        let text = serde_json::to_string_pretty(&report).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
+        return Ok(text + "\n");
+    }
+    Ok(page(&report))
+}
+
+/// What `inspect` prints.
+fn page(report: &Report) -> String {
+    let mut text = format!("{}\n", report.title);
+    text += &findings(&report.preflight.findings);
+    text += &table(&facts(report));
+    if !report.preflight.bodies.is_empty() {
+        let _ = write!(text, "\n{}", bodies(&report.preflight.bodies, report.preflight.size.dimension));
+    }
+    if !report.solids.is_empty() {
+        let mut rows = vec![["solid", "role", "particles"].map(String::from).to_vec()];
+        rows.extend(report.solids.iter().map(|s| vec![s.name.clone(), s.role.into(), s.particles.to_string()]));
+        let _ = write!(text, "\n{}", table(&rows));
+    }
+    if !report.series.is_empty() {
+        let mut rows = vec![["series", "columns"].map(String::from).to_vec()];
+        rows.extend(report.series.iter().map(|s| vec![s.name.clone(), s.columns.join(" ")]));
+        let _ = write!(text, "\n{}", table(&rows));
+    }
+    let mut rows = vec![["key", "value", "source"].map(String::from).to_vec()];
+    rows.extend(report.values.iter().map(|v| vec![v.key.clone(), v.value.clone(), v.source.clone()]));
+    let _ = write!(text, "\n{}", table(&rows));
+    text
+}
+
+/// Each finding with what mends it.
+fn findings(findings: &[Finding]) -> String {
+    let mut text = String::new();
+    for finding in findings {
+        let word = if finding.severity == Severity::Warning { "warning" } else { "note" };
+        let _ = writeln!(text, "{word}: {}\n  {}", finding.what, finding.mend.replace('\n', "\n  "));
+    }
+    text
+}
+
+/// What the run will cost, line by line.
+fn facts(report: &Report) -> Vec<Vec<String>> {
+    let (size, sound, step) = (&report.preflight.size, &report.preflight.sound, &report.preflight.step);
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut row = |name: &str, text: String| rows.push(vec![name.into(), text]);
+    row("dimension", format!("{}-D", size.dimension));
+    row("water", format!("{} particles, {} m deep, {} dp", size.fluid, three(size.depth_m), three(size.depth_dp)));
+    row(
+        "boundary",
+        format!("{} particles in {} layers, {} of them beside water", size.boundary, size.layers, size.wet),
+    );
+    row("memory", format!("about {}", bytes(size.memory_bytes)));
+    let over = sound.over_depth.map_or(String::new(), |x| format!(" = {} √(g·depth)", three(x)));
+    let from = report.sound_from.as_ref().map_or(String::new(), |v| format!(" ({}, {})", v.key, origin(&v.source)));
+    row("sound", format!("{} m/s{over}{from}", three(sound.c0_mps)));
+    if let Some(first) = sound.expected.first() {
+        let times = three(sound.c0_mps / first.speed_mps);
+        row("fastest", format!("{} m/s, {}: sound is {times} times as fast", three(first.speed_mps), first.what));
+    }
+    row("time step", format!("at most {:.3e} s, by {}", step.dt_s, step.bound_by));
+    let passes = if step.passes == 1 { "one force pass" } else { "two force passes" };
+    row("steps", format!("{} or more to {} s, {passes} each", short(step.steps), report.until_s));
+    if let Some(timing) = &report.timing {
+        row(
+            "run time",
+            format!(
+                "about {} with {}, outputs on top: {} steps took {:.2e} s each",
+                duration(timing.run_s),
+                threads(timing.threads),
+                timing.steps,
+                timing.step_s
+            ),
+        );
+    }
+    row("disk", disk(&size.disk));
+    for wave in &report.preflight.waves {
+        let high = format!("about {} m high, {} dp", three(wave.height_m), three(wave.height_dp));
+        let (stroke, period) = (three(wave.stroke_m), three(wave.period_s));
+        row("waves", format!("{high}, by \"{}\": stroke {stroke} m, period {period} s", wave.solid));
+    }
+    rows
+}
+
+/// Who said a value, without the reason of a default.
+fn origin(source: &str) -> &str {
+    source.split(':').next().unwrap_or(source)
+}
+
+fn disk(disk: &Disk) -> String {
+    let frames = match disk.frames {
+        0 => "no frames".to_string(),
+        n => format!("{n} frames {}", bytes(disk.frames_bytes)),
+    };
+    format!("{frames}, tables {}, a checkpoint {}", bytes(disk.tables_bytes), bytes(disk.checkpoint_bytes))
+}
+
+/// A number of bytes as a user says it.
+fn bytes(n: f64) -> String {
+    match n {
+        n if n >= 1e9 => format!("{:.1} GB", n / 1e9),
+        n if n >= 1e6 => format!("{:.0} MB", n / 1e6),
+        n => format!("{:.0} kB", (n / 1e3).ceil()),
+    }
+}
+
+/// How the free bodies float, and whether particles carry them.
+fn bodies(bodies: &[Body], dimension: usize) -> String {
+    let mass = if dimension == 2 { "mass (kg/m)" } else { "mass (kg)" };
+    let heads = ["body", mass, "displaced", "ratio", "draft (m)", "at rest", "GM (m)", "heave (s)", "roll (s)"];
+    let mut rows = vec![heads.map(String::from).to_vec()];
+    let mut grain = vec![["body", "thinnest (dp)", "least ratio"].map(String::from).to_vec()];
+    for body in bodies {
+        let mut row = vec![body.name.clone(), three(body.mass_kg), three(body.displaced_kg), three(body.density_ratio)];
+        row.push(three(body.draft_m));
+        match &body.afloat {
+            Some(afloat) => {
+                let gm: Vec<String> = afloat.tilts.iter().map(|t| three(t.gm_m)).collect();
+                let roll: Vec<String> = afloat.tilts.iter().map(|t| t.period_s.map_or("–".into(), three)).collect();
+                row.extend([
+                    three(afloat.draft_m),
+                    gm.join(" "),
+                    format!("{}–{}", three(afloat.heave_s), three(afloat.heave_with_added_s)),
+                    roll.join(" "),
+                ]);
+            }
+            None if body.density_ratio >= 1.0 => row.push("sinks".into()),
+            None => {}
+        }
+        rows.push(row);
+        grain.push(vec![body.name.clone(), three(body.thinnest_dp), three(body.least_ratio)]);
+    }
+    let said = "  heave: without and with an estimate of the water that heaves along; roll: without any\n";
+    format!("{}{said}\n{}", table(&rows), table(&grain))
+}

@@ -1,0 +1,109 @@
+//! Gaps between a solid that moves and another, narrower than the kernel reaches.
+
+use super::{
+    Finding, Look,
+    faces::Face,
+    words::{down, place, three},
+};
+use crate::{scene::world_bounds, solid::Role, space::Vector};
+
+/// Solids nearer than this (dp) are in touch: contact is the engine's.
+const TOUCH: f64 = 0.1;
+
+/// Faces that look at one another, as the cosine between their normals: of solids apart, and of solids in touch, whose
+/// faces part at every round place.
+const FACING: [f64; 2] = [-0.8, -0.99];
+
+/// What was found between solids.
+pub struct Gaps {
+    /// Which solids touch another.
+    pub touching: Vec<bool>,
+}
+
+/// The narrowest gap between two solids.
+#[derive(Clone, Copy, Debug)]
+struct Gap<const D: usize> {
+    width: f64,
+    middle: Vector<D>,
+}
+
+impl<const D: usize> Look<'_, D> {
+    /// Gaps between every solid that moves and every other.
+    pub(super) fn gaps(&self, findings: &mut Vec<Finding>) -> Gaps {
+        let n = self.solids().len();
+        let mut touching = vec![false; n];
+        let moves = |i: usize| !matches!(self.solids()[i].spec.role, Role::Fixed);
+        for i in 0..n {
+            for j in 0..i {
+                let mut found = [None, None];
+                let mut touch = false;
+                for (gap, (a, b)) in found.iter_mut().zip([(i, j), (j, i)]) {
+                    if moves(a) {
+                        let (nearest, facing) = self.between(a, b);
+                        (*gap, touch) = (facing, touch || nearest < TOUCH * self.dp());
+                    }
+                }
+                touching[i] |= touch;
+                touching[j] |= touch;
+                let narrowest = found.into_iter().flatten().min_by(|a, b| a.width.total_cmp(&b.width));
+                findings.extend(narrowest.map(|gap| self.said(gap, j, i)));
+            }
+        }
+        Gaps { touching }
+    }
+
+    /// The least distance (m) of the faces of solid `a` from solid `b`, and the narrowest gap between faces that look at
+    /// one another, if it is narrower than the kernel reaches.
+    fn between(&self, a: usize, b: usize) -> (f64, Option<Gap<D>>) {
+        let (dp, reach) = (self.dp(), self.system.model().reach());
+        let [one, other] = [a, b].map(|i| &self.solids()[i]);
+        let around = world_bounds(&other.spec.shape, &other.kinematics.pose).grown(reach);
+        let near = |face: &Face<D>| {
+            let x = one.kinematics.pose.point(&face.x);
+            let local = other.kinematics.pose.local(&x);
+            let d = around.contains(&x).then(|| other.spec.shape.signed_distance(&local)).filter(|d| *d < reach)?;
+            let n = one.kinematics.pose.rotation * face.n;
+            let facing = n.dot(&(other.kinematics.pose.rotation * other.spec.shape.outward(&local, 0.05 * dp)));
+            Some((d, facing, Gap { width: d, middle: x + n * (0.5 * d) }))
+        };
+        let near: Vec<_> = self.faces[a].iter().filter_map(near).collect();
+        let nearest = near.iter().map(|(d, ..)| *d).fold(f64::INFINITY, f64::min);
+        // Faces of solids in touch part slowly beside the contact; what is narrow and even there is a gap all the same.
+        let (least, facing) = if nearest < TOUCH * dp { (0.5 * dp, FACING[1]) } else { (0.0, FACING[0]) };
+        let gaps = near.into_iter().filter(|(d, cosine, _)| *d >= least && *cosine <= facing).map(|x| x.2);
+        (nearest, gaps.min_by(|a, b| a.width.total_cmp(&b.width)))
+    }
+
+    fn said(&self, gap: Gap<D>, a: usize, b: usize) -> Finding {
+        let (dp, reach) = (self.dp(), self.system.model().reach());
+        let name = |i: usize| &self.solids()[i].spec.name;
+        let what = format!(
+            "\"{}\" and \"{}\" are {} m apart at {}, {} dp, and the kernel reaches {} dp",
+            name(a),
+            name(b),
+            three(gap.width),
+            place(&gap.middle),
+            three(gap.width / dp),
+            three(self.reach_dp())
+        );
+        let apart = |more: &str| {
+            let further = three(reach - gap.width);
+            format!("{more} move them {further} m further apart, or dp = {}", down(gap.width / self.reach_dp()))
+        };
+        if self.wet(&gap.middle) {
+            let what = what + ": the water between them is not resolved";
+            Finding::warning("narrow_gap", what, apart("let them touch,"))
+        } else {
+            Finding::note("narrow_gap", what + "; it is dry at the start", apart("if it floods,"))
+        }
+    }
+
+    /// Whether there is water within the kernel's support of `x` (m), and `x` not above its level.
+    pub(super) fn wet(&self, x: &Vector<D>) -> bool {
+        let mut near = false;
+        if self.g == 0.0 || x[D - 1] <= self.still.level {
+            self.system.water_near(x, &mut |_, _, _| near = true);
+        }
+        near
+    }
+}

@@ -1,0 +1,168 @@
+//! Pre-flight: what a run of a built scene will cost and what looks wrong with it, told before its first step. Nothing
+//! is stepped, written or changed.
+//!
+//! Facts are numbers; a [`Finding`] is a sentence with the number that would mend it. What a run prints at its start
+//! are the findings that are warnings.
+
+mod bodies;
+mod faces;
+mod gaps;
+mod places;
+mod size;
+mod sound;
+mod thickness;
+mod waves;
+mod words;
+
+use serde::Serialize;
+
+pub use bodies::{Afloat, Body, Tilt};
+pub use size::{Disk, Size};
+pub use sound::{Expected, Sound, Step};
+pub use waves::Wave;
+pub use words::three;
+
+use crate::{
+    error::Error,
+    plan::Plan,
+    scene::Still,
+    simulation::Simulation,
+    solid::{Role, Solid},
+    system::System,
+};
+use faces::Face;
+
+/// How much a finding matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// The results will suffer, or the run will not show what it is meant to.
+    Warning,
+    /// Worth knowing; it may well be meant.
+    Note,
+}
+
+/// Something that may not be as it was meant.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// How much it matters.
+    pub severity: Severity,
+    /// Its kind, for programs: `capsizes`, `thin_body`, ...
+    pub topic: &'static str,
+    /// What is wrong, with its numbers, as one sentence.
+    pub what: String,
+    /// What would mend it, with the number.
+    pub mend: String,
+}
+
+impl Finding {
+    fn warning(topic: &'static str, what: String, mend: String) -> Self {
+        Self { severity: Severity::Warning, topic, what, mend }
+    }
+
+    fn note(topic: &'static str, what: String, mend: String) -> Self {
+        Self { severity: Severity::Note, topic, what, mend }
+    }
+
+    /// That the timing stopped with `error` after so many `steps`.
+    pub fn stopped(error: &Error, steps: usize) -> Self {
+        let mend = error.help.clone().unwrap_or_else(|| "see the other findings".into());
+        Self::warning("breaks_down", format!("after {steps} steps: {}", error.what), mend)
+    }
+
+    /// The finding in one line, for a record.
+    pub fn line(&self) -> String {
+        format!("{}: {}", self.what, self.mend)
+    }
+}
+
+/// What is known before the first step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Preflight {
+    /// Particles, memory, disk.
+    pub size: Size,
+    /// Speed of sound and the speeds that it must outrun.
+    pub sound: Sound,
+    /// How long a step may be, and why.
+    pub step: Step,
+    /// Waves that driven solids make.
+    pub waves: Vec<Wave>,
+    /// Free bodies.
+    pub bodies: Vec<Body>,
+    /// What may not be as it was meant; warnings first.
+    pub findings: Vec<Finding>,
+}
+
+impl Preflight {
+    /// The findings that a run tells at its start.
+    pub fn warnings(&self) -> Vec<String> {
+        self.findings.iter().filter(|f| f.severity == Severity::Warning).map(Finding::line).collect()
+    }
+}
+
+/// What a look at a simulation's start rests on.
+struct Look<'a, const D: usize> {
+    system: &'a System<D>,
+    plan: &'a Plan,
+    still: Still,
+    /// Gravity down the last axis, m/s²; 0 if it points elsewhere, and then nothing floats.
+    g: f64,
+    /// The outermost layer of each solid; empty where nobody asks.
+    faces: Vec<Vec<Face<D>>>,
+}
+
+/// Looks at a simulation before its first step. `columns`: how many columns each of the plan's probes writes beside the
+/// time; `overlapped`: places of the water's lattice that solids took.
+pub fn look<const D: usize>(
+    sim: &Simulation<D>,
+    plan: &Plan,
+    still: Still,
+    overlapped: usize,
+    columns: &[usize],
+) -> Preflight {
+    let system = sim.system();
+    let down = -system.gravity()[D - 1];
+    let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
+    let faces = system.solids().iter().map(|s| faces::of(s, system.model().dp)).collect();
+    let look = Look { system, plan, still, g, faces };
+    let mut findings = Vec::new();
+    let sound = look.sound(&mut findings);
+    let step = look.step();
+    let size = look.size(&step, columns, overlapped, &mut findings);
+    let gaps = look.gaps(&mut findings);
+    let bodies = look.bodies(&gaps.touching, &mut findings);
+    look.walls(&mut findings);
+    look.probes(&sound, &mut findings);
+    let waves = look.waves(&mut findings);
+    findings.sort_by_key(|f| f.severity);
+    Preflight { size, sound, step, waves, bodies, findings }
+}
+
+impl<const D: usize> Look<'_, D> {
+    fn dp(&self) -> f64 {
+        self.system.model().dp
+    }
+
+    /// The kernel's support over dp.
+    fn reach_dp(&self) -> f64 {
+        self.system.model().reach() / self.dp()
+    }
+
+    fn solids(&self) -> &[Solid<D>] {
+        self.system.solids()
+    }
+
+    /// How long (s) a run is.
+    fn until(&self) -> f64 {
+        self.plan.until
+    }
+}
+
+/// What moves a solid, in a word of the scene.
+pub fn role<const D: usize>(role: &Role<D>) -> &'static str {
+    match role {
+        Role::Fixed => "fixed",
+        Role::Driven(_) => "driven",
+        Role::Free(_) => "free",
+    }
+}

@@ -1,0 +1,133 @@
+//! How large a run is: particles, memory, disk.
+
+use serde::Serialize;
+
+use super::{
+    Finding, Look, Step,
+    words::{three, up},
+};
+use crate::{model::Viscosity, plan::FrameWords};
+
+/// Disk that frames may take without a word, B.
+const BUDGET: f64 = 10e9;
+
+/// Shares of the water's lattice that solids may take: without a word, and without a warning.
+const TAKEN: [f64; 2] = [0.25, 0.5];
+
+/// Length of a number in a table with its comma, B: seventeen digits as a rule.
+const NUMBER: f64 = 19.0;
+
+/// How large a run is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Size {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particles of water.
+    pub fluid: usize,
+    /// Boundary particles of all solids.
+    pub boundary: usize,
+    /// Those of them that have water near them; the others cost next to nothing.
+    pub wet: usize,
+    /// Layers of boundary particles.
+    pub layers: usize,
+    /// Depth of the water, m.
+    pub depth_m: f64,
+    /// The same over dp.
+    pub depth_dp: f64,
+    /// Places of the water's lattice that solids took.
+    pub removed: usize,
+    /// Memory of its arrays, lists and frames while it runs, B: about.
+    pub memory_bytes: f64,
+    /// What it will write.
+    pub disk: Disk,
+}
+
+/// What a run will write, about, B.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Disk {
+    /// Tables of the probes.
+    pub tables_bytes: f64,
+    /// Number of frames.
+    pub frames: usize,
+    /// All frames.
+    pub frames_bytes: f64,
+    /// A checkpoint.
+    pub checkpoint_bytes: f64,
+}
+
+impl<const D: usize> Look<'_, D> {
+    /// How large the run is; `columns`: how many each probe writes beside the time.
+    pub(super) fn size(&self, step: &Step, columns: &[usize], removed: usize, findings: &mut Vec<Finding>) -> Size {
+        let (system, model) = (self.system, self.system.model());
+        let (fluid, boundary) = (system.fluid().len(), system.skin().len());
+        let disk = self.disk(step, columns);
+        let share = removed as f64 / (removed + fluid) as f64;
+        if share > TAKEN[0] {
+            let what = format!("solids take {} % of what the water was to fill", three(100.0 * share));
+            let mend = "if that is not meant, see where they are".to_string();
+            findings.push(if share > TAKEN[1] {
+                Finding::warning("water_removed", what, mend)
+            } else {
+                Finding::note("water_removed", what, mend)
+            });
+        }
+        if disk.frames_bytes > BUDGET {
+            let what = format!("{} frames will take {} GB", disk.frames, three(disk.frames_bytes / 1e9));
+            let every = self.plan.frames.as_ref().map_or(0.0, |f| f.every).max(step.dt_s);
+            let mend = format!("frames.every = {} keeps them to 10 GB", up(every * disk.frames_bytes / BUDGET));
+            findings.push(Finding::warning("large_frames", what, mend));
+        }
+        Size {
+            dimension: D,
+            fluid,
+            boundary,
+            wet: system.wet(),
+            layers: model.layers(),
+            depth_m: self.still.depth,
+            depth_dp: self.still.depth / model.dp,
+            removed,
+            memory_bytes: self.memory(),
+            disk,
+        }
+    }
+
+    /// Memory (B) of a run: the arrays of the particles, their lists, what a step and a frame take for a while.
+    fn memory(&self) -> f64 {
+        let system = self.system;
+        let (fluid, boundary) = (system.fluid().len() as f64, system.skin().len() as f64);
+        let (d, number) = (D as f64, 8.0);
+        let particle = 2.0 * d * number + number + 4.0;
+        let stress = if matches!(system.model().viscosity, Viscosity::Sps(_)) { 3.0 * d * d * number } else { 0.0 };
+        let extra = if system.model().shift().is_some() { (2.0 * d + 2.0) * number } else { 0.0 };
+        // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
+        let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + extra;
+        let skin = particle + (2.0 * d + 2.0) * number;
+        // A frame is put together as numbers, as text and as the file's text.
+        let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * picture(frames).0.max(picture(frames).1));
+        fluid * water + boundary * skin + system.list_bytes() as f64 + fluid.max(boundary) * picture
+    }
+
+    fn disk(&self, step: &Step, columns: &[usize]) -> Disk {
+        let (fluid, boundary) = (self.system.fluid().len() as f64, self.system.skin().len() as f64);
+        // An output comes at every step at most.
+        let count = |every: f64| (self.until() / every.max(step.dt_s)).floor() + 1.0;
+        let tables = self.plan.probes.iter().zip(columns);
+        let tables_bytes = tables.map(|(probe, n)| count(probe.every) * (n + 1) as f64 * NUMBER).sum();
+        let frames = self.plan.frames.as_ref().map_or(0.0, |f| count(f.every));
+        let (water, solids) = self.plan.frames.as_ref().map_or((0.0, 0.0), picture);
+        let d = D as f64;
+        Disk {
+            tables_bytes,
+            frames: frames as usize,
+            frames_bytes: frames * (fluid * water + boundary * solids),
+            checkpoint_bytes: fluid * (3.0 * d * 8.0 + 11.0) + boundary * (2.0 * d * 8.0 + 11.0),
+        }
+    }
+}
+
+/// Bytes of a particle of water and of a boundary particle in a frame: place, vertex and fields, in base 64.
+fn picture(frames: &FrameWords) -> (f64, f64) {
+    let fields: f64 = frames.fields.iter().map(|field| if field == "velocity" { 12.0 } else { 4.0 }).sum();
+    let place = 12.0 + 8.0 + 8.0 + 1.0;
+    (4.0 / 3.0 * (place + fields), 4.0 / 3.0 * (place + fields + 4.0))
+}

@@ -1,0 +1,62 @@
+//! The memory that an inspection tells is that which a run takes, counted by the allocator. Alone in its program, so
+//! that nothing else is counted.
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    path::Path,
+    sync::atomic::{AtomicUsize, Ordering::Relaxed},
+};
+
+use pontoon::run::{self, Inspection, Options, Progress};
+
+static NOW: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+/// The system's allocator, and how much of it is in use.
+struct Counting;
+
+// SAFETY: every call is handed on to the system's allocator as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let now = NOW.fetch_add(layout.size(), Relaxed) + layout.size();
+        PEAK.fetch_max(now, Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        NOW.fetch_sub(layout.size(), Relaxed);
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+#[test]
+fn a_run_takes_about_the_memory_that_was_told() {
+    let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let cases = [
+        ("lobovsky", "0.004", vec![("dp", "0.003")]),
+        ("lobovsky", "0.004", vec![("dp", "0.003"), ("frames", "off")]),
+        ("lobovsky", "0.004", vec![("dp", "0.006"), ("model.sweep", "reference")]),
+        ("added-mass-3d", "0.003", vec![("dp", "0.04"), ("frames", "off")]),
+        ("buoyancy-3d", "0.003", vec![("model.viscosity", "sps"), ("frames", "off")]),
+    ];
+    for (i, (scene, until, more)) in cases.into_iter().enumerate() {
+        let mut sets: Vec<(String, String)> = more.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+        sets.push(("until".into(), until.into()));
+        let path = home.join(scene);
+        let asked = Inspection { sets: sets.clone(), ..Inspection::default() };
+        let told = run::inspect(&path, &asked).unwrap().preflight.size.memory_bytes;
+        let out = std::env::temp_dir().join(format!("pontoon-memory-{}-{i}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&out);
+        let options = Options { out: Some(out.clone()), sets, threads: Some(1) };
+        let before = NOW.load(Relaxed);
+        PEAK.store(before, Relaxed);
+        run::run(&path, &options, &mut |_: &Progress| true).unwrap();
+        let taken = (PEAK.load(Relaxed) - before) as f64;
+        std::fs::remove_dir_all(&out).unwrap();
+        // Lists grow by doubling and steps keep copies for a while: a factor of 1.6 either way.
+        assert!((1.0 / 1.6..1.6).contains(&(taken / told)), "{scene} {more:?}: {taken} B, told {told} B");
+    }
+}
