@@ -5,6 +5,7 @@ mod checks;
 mod coupling;
 mod determinism;
 mod errors;
+mod hostile;
 mod kernels;
 mod lanes;
 mod laws;
