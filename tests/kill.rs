@@ -179,12 +179,17 @@ fn run_with_kills(desk: &Desk, wanted: u32, random: &mut Random, met: &mut Met) 
             assert_eq!(child.wait().unwrap().code(), Some(0));
             return;
         }
-        // One in five is killed while it starts, the others some rows on, at any point of a step.
-        if random.below(5) > 0 {
+        // One in five is killed while it starts, two within a write of a checkpoint, two at any point of a step.
+        let how = random.below(5);
+        if how > 0 {
             let rows = desk.rows("broken") + random.below(40) as usize;
             desk.wait_for(&mut child, "broken", rows);
         }
-        sleep(Duration::from_micros(random.below(8000)));
+        let part = broken.join("checkpoint.bin.part");
+        while how > 2 && !part.exists() && child.try_wait().unwrap().is_none() {
+            std::hint::spin_loop();
+        }
+        sleep(Duration::from_micros(random.below(if how > 2 { 2000 } else { 8000 })));
         child.kill().unwrap();
         if let Some(code) = child.wait().unwrap().code() {
             assert_eq!(code, 0, "the run failed by itself");
@@ -259,7 +264,13 @@ fn a_damaged_checkpoint_is_told_and_the_one_before_goes_on_to_the_same_bits() {
     );
     fs::write(&table, &rows).unwrap();
 
-    // The last is of no use: the one before is taken, with a warning.
+    // The last is missing, as after a kill between two names, or of no use: the one before is taken, with a warning.
+    desk.killed("b");
+    fs::remove_file(desk.path("b").join(LAST)).unwrap();
+    let output = desk.resume("b");
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("warning: b/checkpoint.bin: there is no checkpoint; the run goes on from the"));
+    same_bits(&desk.path("b"), &desk.path("unbroken"));
     put(LAST, &flipped);
     let output = desk.resume("a");
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));

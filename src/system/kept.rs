@@ -11,7 +11,7 @@ use crate::{
     sweep::Sums,
 };
 
-/// No place is so far away, m: with what is not finite, what would break the lists.
+/// No place of a solid is so far away, m; nor is what is not finite.
 const FARTHEST: f64 = 1e100;
 
 /// What of a system must be kept to go on to the same bits.
@@ -48,7 +48,7 @@ impl<const D: usize> System<D> {
 
     /// Goes back to a kept state of the same scene.
     pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
-        let (real, sound) = (self.real(), |x: &Vector<D>| x.amax() < FARTHEST);
+        let real = self.real();
         let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
         let stress = if self.stress.is_empty() { 0 } else { kept.fluid.len() };
         let same = kept.fluid.len().checked_sub(kept.images.len()) == Some(real)
@@ -73,7 +73,10 @@ impl<const D: usize> System<D> {
                 skin[i] = pose.point(&self.local[i]);
             }
         }
-        if !water.iter().chain(&skin).chain(&kept.fluid.r).chain(&kept.skin.r).all(sound) {
+        // No run goes on with water outside its domain, but images lie beyond periodic sides.
+        let around = self.domain.grown(self.domain.size().max());
+        let near = water.iter().chain(&kept.fluid.r).all(|x| around.contains(x));
+        if !near || !skin.iter().chain(&kept.skin.r).all(|x| x.amax() < FARTHEST) {
             return Err(Error::new(Kind::Restart, "the checkpoint holds a particle that is nowhere"));
         }
         (self.fluid, self.skin, self.stress, self.passes) = (kept.fluid, kept.skin, kept.stress, kept.passes);

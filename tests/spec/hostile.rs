@@ -131,8 +131,8 @@ fn a_scene_for_a_million_million_particles_is_refused_with_the_arithmetic() {
     };
     let water = SCENE.replace("level = 0.5", "").replace("[domain]\nmin = [-3.0, -2.0]\nmax = [4.0, 5.0]", "");
     let large = water.replace("max = [1.0, 0.8]", "max = [100000.0, 100000.0]");
-    refused(&large, &["asks for 1.0e12 particles", "1e10 m² of water / dp²", "the most is 2e8", "write  dp ="]);
-    let walls = SCENE.replace("tank = { size = [1.0, 1.0]", "tank = { size = [1.0, 1e11]");
+    refused(&large, &["asks for 1.0e12 particles", "10000000000 m² of water / dp²", "the most is 2e8", "write  dp ="]);
+    let walls = SCENE.replace("tank = { size = [1.0, 1.0]", "tank = { size = [1.0, 1e10]");
     refused(&walls, &["e12 particles", "m of solids × 4 layers / dp", "the most is 2e8"]);
     let fine = SCENE.replace("dp        = 0.1", "dp        = 7e-7");
     refused(&fine, &["e12 particles", "write  dp ="]);
