@@ -137,10 +137,14 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+/// Words longer than this are no slips of the pen, and would take long to compare.
+const LONG: usize = 100;
+
 /// The entry of `known` nearest to `word`, if it is near enough to be what was meant.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()
+        .filter(|k| word.len().max(k.len()) <= LONG)
         .map(|k| (strsim::normalized_damerau_levenshtein(word, k), k))
         .filter(|(likeness, _)| *likeness >= 0.5)
         .max_by(|a, b| a.0.total_cmp(&b.0))

@@ -17,6 +17,8 @@ pub struct Plan {
     pub frames: Option<FrameWords>,
     /// Simulated time from one checkpoint to the next, s; none if not asked for.
     pub checkpoint_every: Option<f64>,
+    /// Wall time from one checkpoint to the next, s.
+    pub checkpoint_wall: f64,
     /// What the run is held against.
     pub checks: Vec<CheckWords>,
     /// Folder of the scene file: where the tables it names lie.

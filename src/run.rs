@@ -13,20 +13,24 @@
 mod course;
 mod folder;
 mod inspect;
+mod kept;
 mod lock;
 pub(crate) mod outputs;
 
 pub(crate) use folder::{same_tables, scene_file};
 pub use inspect::{Inspection, Report, SeriesColumns, SolidCount, Timing, inspect};
+pub(crate) use kept::any as has_checkpoint;
 pub(crate) use lock::Lock;
 pub(crate) use outputs::series_folder;
 
 use std::path::{Path, PathBuf};
 
+use kept::Kept;
+
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    record::{Checkpoint, Manifest, manifest::Status, restart},
+    record::{Checkpoint, Manifest, manifest::Status},
     scene::Scene,
     simulation::Rescued,
     solid::Dim,
@@ -134,7 +138,8 @@ pub fn run(path: &Path, options: &Options, watch: &mut dyn Watch) -> Result<Outc
     with_threads(options.threads, || by_dimension(&scene, origin, watch))
 }
 
-/// Goes on with the interrupted run in `folder`, to the same bits as if it had not been interrupted.
+/// Goes on with the interrupted run in `folder`, to the same bits as if it had not been interrupted: from its last
+/// checkpoint, or the one before where that is missing or damaged; a warning in the manifest says so.
 ///
 /// # Errors
 /// `Restart` if it has finished or still goes on, holds no whole checkpoint, or its scene has changed since;
@@ -147,19 +152,9 @@ pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> R
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
     }
-    let checkpoint = Checkpoint::read(&checkpoint(folder))?;
-    let scene = Scene::read(&folder.join(folder::SCENE), &checkpoint.sets)?;
-    if restart::hash(scene.to_toml()?.as_bytes()) != checkpoint.scene {
-        let what = format!("the scene in {} is not the one that this run began with", folder.display());
-        return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
-    }
-    let origin = Origin::Resumed { folder, checkpoint: Box::new(checkpoint), lock };
+    let Kept { checkpoint, scene, warning } = kept::newest(folder)?;
+    let origin = Origin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
     with_threads(threads, || by_dimension(&scene, origin, watch))
-}
-
-/// Where the run in `folder` keeps its checkpoint.
-pub(crate) fn checkpoint(folder: &Path) -> PathBuf {
-    folder.join(course::CHECKPOINT)
 }
 
 /// Where a run comes from.
@@ -167,7 +162,7 @@ enum Origin<'a> {
     /// A scene file, for the folder `out` or one of our choice.
     Fresh { file: &'a Path, out: Option<&'a Path>, sets: &'a [(String, String)] },
     /// A checkpoint in the run's folder.
-    Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, lock: Lock },
+    Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, warning: Option<String>, lock: Lock },
 }
 
 /// Chooses the dimension: the one place.

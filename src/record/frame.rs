@@ -1,14 +1,17 @@
 //! Frames for ParaView: `frames.pvd` is the film, `frames/water_00000.vtu` and `frames/solids_00000.vtu`
 //! are its pictures. Points have three coordinates; in 2-D the third is zero. Single precision.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fs::File,
+    path::{Path, PathBuf},
+};
 
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArrayBase, DataSet, ElementType, IOBuffer,
     UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
-use super::{cannot_write, write_whole};
+use super::{cannot_write, settle, write_whole};
 use crate::{
     error::{Error, Kind, Result, nearest},
     particles::View,
@@ -19,11 +22,16 @@ use crate::{
 /// Fields that a frame may hold.
 pub const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
 
+/// The pictures of a frame.
+const PARTS: [&str; 2] = ["water", "solids"];
+
 /// The frames of a run. Solids carry the number of their solid besides the chosen fields.
 pub struct Frames {
     folder: PathBuf,
     fields: Vec<String>,
     times: Vec<f64>,
+    /// How many of them are on the disk itself.
+    settled: usize,
 }
 
 impl Frames {
@@ -42,7 +50,7 @@ impl Frames {
         }
         let pictures = folder.join("frames");
         std::fs::create_dir_all(&pictures).map_err(|e| cannot_write(&pictures, &e))?;
-        Ok(Self { folder: folder.to_owned(), fields: fields.to_vec(), times })
+        Ok(Self { folder: folder.to_owned(), fields: fields.to_vec(), settled: times.len(), times })
     }
 
     /// Times of the frames so far, s.
@@ -64,6 +72,24 @@ impl Frames {
         self.picture(&format!("solids_{number:05}.vtu"), system, system.skin(), Some(owner))?;
         self.times.push(t);
         write_whole(&self.folder.join("frames.pvd"), film(&self.times).as_bytes())
+    }
+
+    /// Waits until all frames are on the disk itself.
+    ///
+    /// # Errors
+    /// `File` if one cannot be opened or the disk refuses.
+    pub fn sync(&mut self) -> Result<()> {
+        let pictures = self.folder.join("frames");
+        for number in self.settled..self.times.len() {
+            for name in PARTS.map(|part| pictures.join(format!("{part}_{number:05}.vtu"))) {
+                File::open(&name).and_then(|file| file.sync_data()).map_err(|e| cannot_write(&name, &e))?;
+            }
+        }
+        if self.settled < self.times.len() {
+            settle(&pictures);
+            self.settled = self.times.len();
+        }
+        Ok(())
     }
 
     fn picture<const D: usize>(
@@ -139,7 +165,7 @@ fn film(times: &[f64]) -> String {
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
     );
     for (i, t) in times.iter().enumerate() {
-        for (part, name) in ["water", "solids"].iter().enumerate() {
+        for (part, name) in PARTS.iter().enumerate() {
             text += &format!(
                 "<DataSet timestep=\"{t:?}\" part=\"{part}\" name=\"{name}\" file=\"frames/{name}_{i:05}.vtu\"/>\n"
             );

@@ -13,7 +13,7 @@ pub use table::Table;
 use std::{
     fs::{self, File},
     io::{self, Write},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use crate::error::{Error, Result};
@@ -23,35 +23,46 @@ use crate::error::{Error, Result};
 /// # Errors
 /// `File`, naming the file, if the disk is full or the folder cannot be written; the old file stays.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    replace(path, |file| file.write_all(bytes))
+    write_part(path, |file| file.write_all(bytes))?;
+    put_part(path)
 }
 
-/// As [`write_whole`], and waits for the disk, some milliseconds: the next start after a power cut, too, sees
-/// the old file or the new one.
-///
-/// # Errors
-/// As [`write_whole`].
-pub fn write_lasting(path: &Path, bytes: &[u8]) -> Result<()> {
-    replace(path, |file| file.write_all(bytes).and_then(|()| file.sync_all()))
-}
-
-fn replace(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
-    let mut temporary = path.as_os_str().to_owned();
-    temporary.push(".part");
-    let temporary = Path::new(&temporary);
-    let written = File::create(temporary).and_then(|mut file| {
-        fill(&mut file)?;
-        fs::rename(temporary, path)
-    });
-    written.map_err(|why| {
+/// Fills the file that is to become the one at `path`.
+fn write_part(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+    let part = part_of(path);
+    File::create(&part).and_then(|mut file| fill(&mut file)).map_err(|why| {
         // The part is of no use; that it cannot be removed either would hide the first trouble.
-        let _ = fs::remove_file(temporary);
+        let _ = fs::remove_file(&part);
         cannot_write(path, &why)
     })
 }
 
+/// Gives the part that was filled its name.
+fn put_part(path: &Path) -> Result<()> {
+    fs::rename(part_of(path), path).map_err(|why| {
+        let _ = fs::remove_file(part_of(path));
+        cannot_write(path, &why)
+    })
+}
+
+/// The name that the file at `path` has until it is whole.
+fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".part");
+    name.into()
+}
+
+/// Waits until the names in `folder` are on the disk. Not every system can; then they will be soon.
+fn settle(folder: &Path) {
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+}
+
 /// The error of a file that cannot be written.
 fn cannot_write(path: &Path, why: &io::Error) -> Error {
-    Error::file(path, format!("cannot be written: {why}"))
-        .help("what was written before is intact; free some space or choose another folder with --out")
+    let gone = why.kind() == io::ErrorKind::NotFound;
+    let help = match path.parent().filter(|folder| gone && !folder.exists()) {
+        Some(folder) => format!("the folder {} is gone, and with it what was written there", folder.display()),
+        None => "what was written before is intact; free some space or choose another folder with --out".into(),
+    };
+    Error::file(path, format!("cannot be written: {why}")).help(help)
 }

@@ -1,18 +1,37 @@
 //! Checkpoints: all that a run needs to go on to the same bits.
 //!
-//! The file is the magic word, the format's number, the payload's length and its hash (FNV-1a), then the
-//! payload itself (postcard). A file that was cut short or changed is recognised, never half believed.
+//! The file is the magic word, the format's number, the lengths of what follows before and after packing, the hash
+//! (FNV-1a) of both lengths and of what follows; then, packed by zstd, what is known of the run (postcard) and the
+//! simulation's own bytes. A file that was cut short or changed is recognised, never half believed.
+//!
+//! A folder keeps the last two, [`LAST`] and [`PREVIOUS`]: whenever a writer is killed, one of them is whole.
 
-use std::path::Path;
+use std::{
+    fs,
+    io::{self, Read, Write},
+    path::Path,
+};
 
 use serde::{Deserialize, Serialize};
 
-use super::write_lasting;
+use super::{cannot_write, part_of, put_part, settle, write_part};
 use crate::error::{Error, Kind, Result};
 
+/// The last checkpoint, in the run's folder.
+pub const LAST: &str = "checkpoint.bin";
+
+/// The one before.
+pub const PREVIOUS: &str = "checkpoint.previous.bin";
+
+/// What a run that was killed while it wrote one leaves behind.
+pub const PART: &str = "checkpoint.bin.part";
+
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 2;
-const HEADER: usize = 8 + 4 + 8 + 8;
+const FORMAT: u32 = 3;
+
+/// What a file of so many bytes may unfold to at most, per byte. Particles' numbers alone, which do not pack, keep a
+/// true checkpoint below 200.
+const MOST_UNFOLDED: u64 = 1000;
 
 /// What a checkpoint holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +42,8 @@ pub struct Checkpoint {
     pub scene: u64,
     /// Scene keys changed for this run, and their values.
     pub sets: Vec<(String, String)>,
+    /// Simulated time, s.
+    pub time: f64,
     /// Length of each table, bytes, in the order of the probes.
     pub tables: Vec<u64>,
     /// Times of the frames written, s.
@@ -37,89 +58,139 @@ pub struct Checkpoint {
     pub particle_steps: u64,
     /// Wall time of stepping alone, s.
     pub stepping: f64,
-    /// The simulation's own bytes.
+    /// The simulation's own bytes: they lie behind the rest as they are.
+    #[serde(skip)]
     pub state: Vec<u8>,
 }
 
 impl Checkpoint {
-    /// Writes it to `path`, replacing the one before only when whole.
+    /// Writes it to `folder` as [`LAST`]. What was the last becomes [`PREVIOUS`], if it is `good`; one that is not
+    /// must not take the place of one that is, and is replaced.
     ///
     /// # Errors
-    /// `File` if it cannot be written; the one before stays.
-    pub fn write(&self, path: &Path) -> Result<()> {
-        let payload = postcard::to_stdvec(self)
-            .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint cannot be packed: {e}")))?;
-        let mut bytes = Vec::with_capacity(HEADER + payload.len());
-        bytes.extend_from_slice(MAGIC);
-        bytes.extend_from_slice(&FORMAT.to_le_bytes());
-        bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
-        bytes.extend_from_slice(&hash(&payload).to_le_bytes());
-        bytes.extend_from_slice(&payload);
-        write_lasting(path, &bytes)
+    /// `File` if it cannot be written; those before stay.
+    pub fn write(&self, folder: &Path, good: bool) -> Result<()> {
+        let (last, previous) = (folder.join(LAST), folder.join(PREVIOUS));
+        let bytes = self.to_bytes()?;
+        // On the disk under its passing name before the others move: from here on there are two whole ones.
+        write_part(&last, |file| file.write_all(&bytes).and_then(|()| file.sync_all()))?;
+        if good {
+            match fs::rename(&last, &previous) {
+                Err(why) if why.kind() != io::ErrorKind::NotFound => {
+                    let _ = fs::remove_file(part_of(&last));
+                    return Err(cannot_write(&previous, &why));
+                }
+                _ => {}
+            }
+        }
+        put_part(&last)?;
+        settle(folder);
+        Ok(())
+    }
+
+    /// The checkpoint as it lies in a file.
+    ///
+    /// # Errors
+    /// `Restart` if it cannot be packed.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        let cannot =
+            |why: &dyn std::fmt::Display| Error::new(Kind::Restart, format!("the checkpoint cannot be packed: {why}"));
+        let known = postcard::to_stdvec(self).map_err(|why| cannot(&why))?;
+        let pack = || -> io::Result<Vec<u8>> {
+            // More than the fastest level takes longer, and numbers of a flow hardly pack better.
+            let mut packed = zstd::Encoder::new(Vec::new(), 1)?;
+            packed.write_all(&known)?;
+            packed.write_all(&self.state)?;
+            packed.finish()
+        };
+        let packed = pack().map_err(|why| cannot(&why))?;
+        let lengths = [(known.len() + self.state.len()) as u64, packed.len() as u64].map(u64::to_le_bytes).concat();
+        let sum = continued(hash(&lengths), &packed).to_le_bytes();
+        Ok([MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum, &packed].concat())
     }
 
     /// Reads the checkpoint at `path`.
     ///
     /// # Errors
-    /// `Restart` if there is none, or it is no checkpoint, damaged, or of another format or version.
+    /// `Restart` if there is none, or it is no checkpoint, damaged, or of another format or version; `File` if it
+    /// cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
-        let refuse = |why: &str, help: &str| {
-            Err(Error::new(Kind::Restart, format!("{}: {why}", path.display())).help(help.to_string()))
-        };
-        let bytes = match std::fs::read(path) {
-            Ok(bytes) => bytes,
-            Err(why) if why.kind() == std::io::ErrorKind::NotFound => {
-                return refuse(
-                    "there is no checkpoint",
-                    "a run writes one on Ctrl-C, and at an interval if the scene asks for it",
-                );
+        let bytes = fs::read(path).map_err(|why| match why.kind() {
+            io::ErrorKind::NotFound => refused(
+                "there is no checkpoint",
+                "a run writes one on Ctrl-C, and as often as [checkpoint] says, every ten minutes by default",
+            ),
+            _ => Error::file(path, why),
+        });
+        bytes.and_then(|bytes| Self::from_bytes(&bytes)).map_err(|mut error| {
+            if error.kind == Kind::Restart {
+                error.what = format!("{}: {}", path.display(), error.what);
             }
-            Err(why) => return Err(Error::file(path, why)),
-        };
-        let (magic, rest) = bytes.split_at(bytes.len().min(MAGIC.len()));
-        if magic != MAGIC {
-            return refuse(
+            error
+        })
+    }
+
+    /// The checkpoint that lies in a file as `bytes`. Takes no more memory than [`MOST_UNFOLDED`] times theirs.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::read`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        const AFRESH: &str = "start the run afresh with `pontoon run`";
+        const OTHER: &str = "resume with the version that wrote it";
+        let short = || refused("the checkpoint is cut short", AFRESH);
+        let damaged = || refused("the checkpoint is damaged", AFRESH);
+        let Some(rest) = bytes.strip_prefix(MAGIC) else {
+            return Err(refused(
                 "this is no checkpoint of pontoon",
                 "name the folder of a run, as in `pontoon resume runs/raft`",
-            );
-        }
-        let afresh = "start the run afresh with `pontoon run`";
-        let Some((format, rest)) = rest.split_first_chunk::<4>() else {
-            return refuse("the checkpoint is cut short", afresh);
+            ));
         };
+        let (format, rest) = rest.split_first_chunk::<4>().ok_or_else(short)?;
         let format = u32::from_le_bytes(*format);
         if format != FORMAT {
-            return refuse(
-                &format!("the checkpoint has format {format}; this program reads {FORMAT}"),
-                "resume with the version that wrote it",
-            );
+            let what = format!("the checkpoint has format {format}; this program reads {FORMAT}");
+            return Err(refused(&what, OTHER));
         }
-        let Some((length, rest)) = rest.split_first_chunk::<8>() else {
-            return refuse("the checkpoint is cut short", afresh);
-        };
-        let Some((sum, payload)) = rest.split_first_chunk::<8>() else {
-            return refuse("the checkpoint is cut short", afresh);
-        };
-        if payload.len() as u64 != u64::from_le_bytes(*length) {
-            return refuse("the checkpoint is cut short", afresh);
+        let (lengths, rest) = rest.split_first_chunk::<16>().ok_or_else(short)?;
+        let (sum, packed) = rest.split_first_chunk::<8>().ok_or_else(short)?;
+        let [unfolded, length] = [0, 8].map(|at| lengths[at..].first_chunk().map_or(0, |x| u64::from_le_bytes(*x)));
+        if (packed.len() as u64) < length {
+            return Err(short());
         }
-        if hash(payload) != u64::from_le_bytes(*sum) {
-            return refuse("the checkpoint is damaged", afresh);
+        let sound = packed.len() as u64 == length
+            && continued(hash(lengths), packed) == u64::from_le_bytes(*sum)
+            && unfolded <= MOST_UNFOLDED.saturating_mul(length);
+        if !sound {
+            return Err(damaged());
         }
-        let Ok(found) = postcard::from_bytes::<Self>(payload) else {
-            return refuse("the checkpoint is damaged", afresh);
-        };
+        let mut payload = Vec::new();
+        // Memory grows with what really unfolds, never with what a header promises.
+        let read = zstd::Decoder::with_buffer(packed).and_then(|d| d.take(unfolded + 1).read_to_end(&mut payload));
+        if read.is_err() || payload.len() as u64 != unfolded {
+            return Err(damaged());
+        }
+        let (mut found, state) = postcard::take_from_bytes::<Self>(&payload).map_err(|_| damaged())?;
         if found.version != env!("CARGO_PKG_VERSION") {
-            let why = format!("written by pontoon {}, this is {}", found.version, env!("CARGO_PKG_VERSION"));
-            return refuse(&why, "resume with the version that wrote it: another may not go on to the same bits");
+            let what = format!("written by pontoon {}, this is {}", found.version, env!("CARGO_PKG_VERSION"));
+            return Err(refused(&what, &format!("{OTHER}: another may not go on to the same bits")));
         }
+        found.state = state.to_vec();
         Ok(found)
     }
 }
 
+fn refused(what: &str, help: &str) -> Error {
+    Error::new(Kind::Restart, what).help(help)
+}
+
 /// FNV-1a hash of `bytes`.
 pub fn hash(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
+    continued(0xcbf2_9ce4_8422_2325, bytes)
+}
+
+/// The hash of what had the hash `before`, and `bytes` behind it.
+fn continued(before: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(before, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 #[cfg(test)]
@@ -131,6 +202,7 @@ mod tests {
             version: env!("CARGO_PKG_VERSION").into(),
             scene: hash(b"scene"),
             sets: vec![("dp".into(), "0.02".into())],
+            time: 0.25,
             tables: vec![12, 40],
             frames: vec![0.0, 0.1],
             due: vec![3, 1],
@@ -142,6 +214,10 @@ mod tests {
         }
     }
 
+    fn refusal(bytes: &[u8]) -> Option<Kind> {
+        Checkpoint::from_bytes(bytes).err().map(|e| e.kind)
+    }
+
     #[test]
     fn the_hash_is_fnv_1a() {
         assert_eq!(hash(b""), 0xcbf2_9ce4_8422_2325);
@@ -150,23 +226,60 @@ mod tests {
 
     #[test]
     fn a_checkpoint_reads_back_and_every_damage_is_seen() -> Result<()> {
-        let path = std::env::temp_dir().join(format!("pontoon-checkpoint-{}.bin", std::process::id()));
-        example().write(&path)?;
-        assert_eq!(Checkpoint::read(&path)?, example());
-        let good = std::fs::read(&path).map_err(|e| Error::file(&path, e))?;
+        let good = example().to_bytes()?;
+        assert_eq!(Checkpoint::from_bytes(&good)?, example());
         for cut in 0..good.len() {
-            std::fs::write(&path, &good[..cut]).map_err(|e| Error::file(&path, e))?;
-            assert_eq!(Checkpoint::read(&path).err().map(|e| e.kind), Some(Kind::Restart), "cut at {cut}");
+            assert_eq!(refusal(&good[..cut]), Some(Kind::Restart), "cut at {cut}");
         }
         for place in 0..good.len() {
-            let mut bad = good.clone();
-            bad[place] ^= 0x10;
-            std::fs::write(&path, &bad).map_err(|e| Error::file(&path, e))?;
-            assert_eq!(Checkpoint::read(&path).err().map(|e| e.kind), Some(Kind::Restart), "changed at {place}");
+            for bit in 0..8 {
+                let mut bad = good.clone();
+                bad[place] ^= 1 << bit;
+                assert_eq!(refusal(&bad), Some(Kind::Restart), "bit {bit} of byte {place} changed");
+            }
         }
-        let other = Checkpoint { version: "0.0.0".into(), ..example() };
-        other.write(&path)?;
-        assert!(Checkpoint::read(&path).is_err_and(|e| e.what.contains("written by pontoon 0.0.0")));
-        std::fs::remove_file(&path).map_err(|e| Error::file(&path, e))
+        assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(Kind::Restart), "a byte too many");
+        let other = Checkpoint { version: "0.0.0".into(), ..example() }.to_bytes()?;
+        assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.what.contains("written by pontoon 0.0.0")));
+        Ok(())
+    }
+
+    /// A file with a true hash over whatever lengths and payload.
+    fn forged(unfolded: u64, packed: &[u8]) -> Vec<u8> {
+        let lengths = [unfolded, packed.len() as u64].map(u64::to_le_bytes).concat();
+        let sum = continued(hash(&lengths), packed).to_le_bytes();
+        [MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum, packed].concat()
+    }
+
+    #[test]
+    fn a_forged_length_is_refused_before_memory_is_taken() -> io::Result<()> {
+        // 64 MB of nothing in some kB: refused for its ratio, and for a length that is not its own.
+        let bomb = zstd::encode_all(io::repeat(0).take(1 << 26), 1)?;
+        for unfolded in [u64::MAX, 1 << 26, 1 << 40, 1000, 0] {
+            assert_eq!(refusal(&forged(unfolded, &bomb)), Some(Kind::Restart), "{unfolded} bytes promised");
+        }
+        assert_eq!(refusal(&forged(100, b"no zstd at all")), Some(Kind::Restart));
+        // Lists that promise 2⁶⁰ entries.
+        let lists = [&[1, b'x', 7, 0][..], &[0xff; 9], &[1]].concat();
+        assert_eq!(refusal(&forged(lists.len() as u64, &zstd::encode_all(&lists[..], 1)?)), Some(Kind::Restart));
+        Ok(())
+    }
+
+    #[test]
+    fn the_last_two_are_kept_and_a_damaged_one_never_takes_the_place_of_a_good_one() -> Result<()> {
+        let folder = std::env::temp_dir().join(format!("pontoon-checkpoint-{}", std::process::id()));
+        fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
+        let at = |time| Checkpoint { time, ..example() };
+        let time = |name: &str| Checkpoint::read(&folder.join(name)).map(|c| c.time).ok();
+        at(1.0).write(&folder, true)?;
+        assert_eq!([time(LAST), time(PREVIOUS)], [Some(1.0), None]);
+        at(2.0).write(&folder, true)?;
+        assert_eq!([time(LAST), time(PREVIOUS)], [Some(2.0), Some(1.0)]);
+        fs::write(folder.join(LAST), "damaged").map_err(|e| Error::file(&folder, e))?;
+        at(3.0).write(&folder, false)?;
+        assert_eq!([time(LAST), time(PREVIOUS)], [Some(3.0), Some(1.0)]);
+        let none = Checkpoint::read(&folder.join("none")).err().map(|e| e.what).unwrap_or_default();
+        assert!(none.ends_with("there is no checkpoint"), "{none}");
+        fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
     }
 }

@@ -37,13 +37,13 @@ impl Table {
     /// The table at `path` as it was when it had `bytes` bytes; what came after is cut off.
     ///
     /// # Errors
-    /// `Restart` if it is shorter than that or its header names other columns; `File` if it cannot be
+    /// `Restart` if it is shorter than that, has no whole row there or its header names other columns; `File` if it cannot be
     /// opened.
     pub fn resume(path: &Path, columns: &[String], bytes: u64) -> Result<Self> {
         let text = std::fs::read(path).map_err(|e| Error::file(path, e))?;
         let header = format!("t_s,{}\n", columns.join(","));
         let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
-        let Some(kept) = kept.filter(|k| k.starts_with(header.as_bytes())) else {
+        let Some(kept) = kept.filter(|k| k.starts_with(header.as_bytes()) && k.ends_with(b"\n")) else {
             let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
             return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
         };
@@ -148,6 +148,7 @@ mod tests {
         assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
         assert!(Table::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");
         assert!(Table::resume(&path, &columns()[..1], bytes).is_err(), "other columns");
+        assert!(Table::resume(&path, &columns(), bytes - 1).is_err(), "a row that is not whole");
         std::fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
     }
 }

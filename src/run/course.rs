@@ -5,7 +5,7 @@ use std::{path::PathBuf, time::Instant};
 use cpu_time::ProcessTime;
 
 use super::{
-    Body, Origin, Outcome, Progress, Start, Watch, folder,
+    Body, Origin, Outcome, Progress, Start, Watch, folder, kept,
     lock::Lock,
     outputs::{self, Outputs, series_folder},
 };
@@ -24,9 +24,6 @@ use crate::{
     solid::{Dim, HasEngine as _, Role},
 };
 
-/// The checkpoint, in the run's folder.
-pub const CHECKPOINT: &str = "checkpoint.bin";
-
 /// A run in progress.
 pub struct Course<const D: usize> {
     sim: Simulation<D>,
@@ -37,6 +34,10 @@ pub struct Course<const D: usize> {
     /// What the next checkpoint says, but for what changes.
     checkpoint: Checkpoint,
     resumed: bool,
+    /// Whether the last checkpoint in the folder, if there is one, may become the one before.
+    good: bool,
+    /// When the last checkpoint was written, and how long after it the next is due (s).
+    saved: (Instant, f64),
     begun: Instant,
     /// Processor time of the program when the run began, where the system tells.
     begun_cpu: Option<ProcessTime>,
@@ -55,27 +56,49 @@ where
         let probes = outputs::probes(&plan, sim.system())?;
         let checks = outputs::checks(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
-        let warnings = preflight::look(&sim, &plan, still, overlapped, &columns).warnings();
+        let mut warnings = preflight::look(&sim, &plan, still, overlapped, &columns).warnings();
         let text = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(InForce::from).collect();
-        let (folder, mut checkpoint, resumed, lock) = match origin {
+        let (folder, mut checkpoint, resumed, warning, lock) = match origin {
             Origin::Fresh { file, out, sets } => {
                 let folder = folder::create(file, out)?;
                 let lock = Lock::take(&folder)?;
                 folder::keep_scene(file, &text, &folder)?;
-                (folder, first_checkpoint(&text, sets), false, lock)
+                (folder, first_checkpoint(&text, sets), false, None, lock)
             }
-            Origin::Resumed { folder, checkpoint, lock } => (folder.to_owned(), *checkpoint, true, lock),
+            Origin::Resumed { folder, checkpoint, warning, lock } => {
+                (folder.to_owned(), *checkpoint, true, warning, lock)
+            }
         };
+        if resumed {
+            // Before any table is cut back: a state of no use leaves all as it was.
+            sim.restore(&std::mem::take(&mut checkpoint.state))?;
+        }
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint))?;
         if resumed {
-            sim.restore(&std::mem::take(&mut checkpoint.state))?;
             folder::forget_failure(&folder)?;
         }
+        let good = warning.is_none();
+        warnings.extend(warning);
+        warnings.extend(sim.rescued().iter().map(ToString::to_string));
         let (name, version) = Dim::<D>::VERSION;
         let engine = format!("{name} {version}");
         let manifest = Manifest { engine, warnings, values, scene: text, ..first_manifest(&sim, &plan, &checkpoint) };
-        Ok(Self { sim, outputs, checks, manifest, folder, checkpoint, resumed, begun, begun_cpu, _lock: lock })
+        let saved = (Instant::now(), plan.checkpoint_wall);
+        Ok(Self {
+            sim,
+            outputs,
+            checks,
+            manifest,
+            folder,
+            checkpoint,
+            resumed,
+            good,
+            saved,
+            begun,
+            begun_cpu,
+            _lock: lock,
+        })
     }
 }
 
@@ -117,7 +140,9 @@ impl<const D: usize> Course<D> {
             self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
             stepped?;
             self.tell(rescued, watch);
-            let written = self.outputs.look(&self.sim)?;
+            let mut written = self.outputs.look(&self.sim)?;
+            // The clock on the wall decides when the state is kept, never what it is.
+            written.checkpoint |= self.saved.0.elapsed().as_secs_f64() >= self.saved.1;
             if written.checkpoint {
                 self.save()?;
             }
@@ -146,9 +171,12 @@ impl<const D: usize> Course<D> {
     /// Writes the checkpoint.
     fn save(&mut self) -> Result<()> {
         let state = self.sim.save()?;
-        let mut now = Checkpoint { state, wall: self.wall(), cpu: self.cpu(), ..self.checkpoint.clone() };
+        let (time, wall, cpu) = (self.sim.time(), self.wall(), self.cpu());
+        let mut now = Checkpoint { state, time, wall, cpu, ..self.checkpoint.clone() };
         self.outputs.note(&mut now)?;
-        now.write(&self.folder.join(CHECKPOINT))
+        now.write(&self.folder, self.good)?;
+        (self.good, self.saved.0) = (true, Instant::now());
+        Ok(())
     }
 
     /// Keeps what can be kept of a run that cannot go on; the error with where that is.
@@ -167,7 +195,7 @@ impl<const D: usize> Course<D> {
             if reports.iter().all(Result::is_ok) { "everything recorded so far is" } else { "what could be kept is" };
         let mut help = error.help.take().map_or_else(String::new, |help| help + "\n");
         help += &format!("{kept} in {}", self.folder.display());
-        if error.kind == Kind::File && self.folder.join(CHECKPOINT).exists() {
+        if error.kind == Kind::File && kept::any(&self.folder) {
             help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
         }
         error.help(help)
@@ -183,7 +211,7 @@ impl<const D: usize> Course<D> {
         self.manifest.particle_steps = self.checkpoint.particle_steps;
         self.manifest.particle_steps_per_second = now.rate;
         let there = |name: &&str| self.folder.join(name).exists();
-        let fixed = ["frames.pvd", CHECKPOINT, folder::FAILURE, folder::SCENE];
+        let fixed = ["frames.pvd", restart::LAST, restart::PREVIOUS, folder::FAILURE, folder::SCENE];
         let mut files: Vec<String> = self.outputs.tables().collect();
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
         files.push("manifest.json".into());
@@ -223,6 +251,7 @@ fn first_checkpoint(scene: &str, sets: &[(String, String)]) -> Checkpoint {
         version: env!("CARGO_PKG_VERSION").into(),
         scene: restart::hash(scene.as_bytes()),
         sets: sets.to_vec(),
+        time: 0.0,
         tables: vec![],
         frames: vec![],
         due: vec![],

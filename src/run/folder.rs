@@ -5,7 +5,11 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use crate::error::{Error, Kind, Result};
+use crate::{
+    error::{Error, Kind, Result},
+    record::restart,
+    scene::table,
+};
 
 /// The kept scene, in the run's folder.
 pub const SCENE: &str = "scene/scene.toml";
@@ -60,18 +64,17 @@ pub fn create(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
     }
 }
 
-/// Removes the report of an earlier failure from the `folder` of a run that goes on.
+/// Removes the report of an earlier failure and the part of a checkpoint from the `folder` of a run that goes on.
 ///
 /// # Errors
-/// `File` if it cannot be removed.
+/// `File` if one cannot be removed.
 pub fn forget_failure(folder: &Path) -> Result<()> {
-    let path = folder.join(FAILURE);
-    match fs::remove_file(&path) {
+    [FAILURE, restart::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
         Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
             Err(Error::file(&path, format!("cannot be removed: {why}")))
         }
         _ => Ok(()),
-    }
+    })
 }
 
 /// Copies the scene in `file` into the run's `folder`, and the tables beside it that `words` names, the
@@ -89,7 +92,7 @@ pub fn keep_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
     copy(file, &folder.join(SCENE))?;
     named(words)
         .iter()
-        .filter(|name| from.join(name).is_file())
+        .filter(|name| from.join(name).is_file() && table::within(from, &from.join(name)))
         .try_for_each(|name| copy(&from.join(name), &to.join(name)))
 }
 

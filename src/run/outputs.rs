@@ -33,7 +33,7 @@ impl Due {
         if reached < self.next as f64 * self.every {
             return false;
         }
-        self.next = if self.every > 0.0 { (reached / self.every) as u64 + 1 } else { 0 };
+        self.next = if self.every > 0.0 { ((reached / self.every) as u64).saturating_add(1) } else { 0 };
         true
     }
 }
@@ -169,8 +169,11 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub fn note(&self, checkpoint: &mut Checkpoint) -> Result<()> {
+    pub fn note(&mut self, checkpoint: &mut Checkpoint) -> Result<()> {
         self.watched.iter().try_for_each(|w| w.table.sync())?;
+        if let Some((frames, _)) = &mut self.frames {
+            frames.sync()?;
+        }
         checkpoint.tables = self.watched.iter().map(|w| w.table.bytes()).collect();
         checkpoint.frames = self.frames.as_ref().map_or_else(Vec::new, |(frames, _)| frames.times().to_vec());
         checkpoint.due = self.watched.iter().map(|w| w.due.next).collect();
@@ -243,5 +246,8 @@ mod tests {
         assert_eq!(taken, [0.0, 0.1 - 1e-15, 0.2999999999999999, 0.75, 0.8]);
         let mut every_step = Due { every: 0.0, next: 0 };
         assert!(every_step.take(0.0) && every_step.take(1e-6) && every_step.take(2e-6));
+        // More multiples than a number holds: every step, too.
+        let mut hardly = Due { every: 1e-300, next: 0 };
+        assert!(hardly.take(0.0) && hardly.take(1.0) && hardly.take(2.0));
     }
 }

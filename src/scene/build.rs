@@ -5,6 +5,7 @@ use super::{
     FillWords, FrameWords, Frames, Plan, ProbeEntry, ProbeKind, ProbeWords, Scene,
     flow::Flow,
     geometry::{pose, shape, vector, world_bounds},
+    resolve::CHECKPOINT_WALL,
 };
 use crate::{
     error::{Error, Kind, Result},
@@ -47,7 +48,7 @@ pub struct Still {
 
 /// A body of water: where it is and how high it stands.
 pub(super) struct Body<const D: usize> {
-    region: Region<D>,
+    pub(super) region: Region<D>,
     bottom: f64,
     pub(super) level: f64,
     flow: Flow<D>,
@@ -220,6 +221,7 @@ impl Scene {
 
     /// Refuses a scene that asks for more particles than a machine holds, before any is made.
     pub(super) fn affordable<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+        self.near_enough(water)?;
         let (fluid, boundary) = self.counts(water, solids);
         let all = fluid + boundary;
         if all.is_finite() && all <= MOST_PARTICLES {
@@ -258,7 +260,8 @@ impl Scene {
             until: self.until,
             probes: self.probe.iter().map(probe).collect(),
             frames,
-            checkpoint_every: self.checkpoint.as_ref().map(|c| c.every),
+            checkpoint_every: self.checkpoint.as_ref().and_then(|c| c.every),
+            checkpoint_wall: self.checkpoint.as_ref().and_then(|c| c.wall).unwrap_or(CHECKPOINT_WALL),
             checks: self.check_words()?,
             folder: self.origin.folder.clone(),
         })

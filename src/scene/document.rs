@@ -9,6 +9,7 @@ use std::{
     collections::BTreeMap,
     ops::Range,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use serde::Deserialize;
@@ -39,8 +40,12 @@ pub(super) struct Origin {
     pub file: String,
     /// Where the files that the scene names are looked for.
     pub folder: PathBuf,
-    /// Line and column of every key.
-    places: BTreeMap<String, (usize, usize)>,
+    /// The text.
+    text: Arc<str>,
+    /// Where each of its lines begins.
+    lines: Vec<usize>,
+    /// Where every key begins in it.
+    places: BTreeMap<String, usize>,
     /// Keys set on the command line.
     sets: Vec<String>,
     /// Names of the solids, in order, so that a key can say `solid.box` for `solid.2`.
@@ -79,7 +84,8 @@ impl Origin {
         while !self.places.contains_key(above) && above.contains('.') {
             above = above.rsplit_once('.').map_or("", |(parent, _)| parent);
         }
-        error.at(self.file.clone(), self.places.get(above).copied(), self.shown(key))
+        let at = self.places.get(above).map(|&start| line_column(&self.text, start));
+        error.at(self.file.clone(), at, self.shown(key))
     }
 
     /// Who said `key`; `None` if nobody did.
@@ -90,7 +96,7 @@ impl Origin {
         if self.file.is_empty() {
             return None;
         }
-        self.places.get(key).map(|(line, _)| Source::Line(*line))
+        self.places.get(key).map(|start| Source::Line(self.lines.partition_point(|line| line <= start)))
     }
 
     /// `key` with the names of solids in place of their numbers.
@@ -119,7 +125,9 @@ pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, Strin
     walk(root.get_ref(), "", &mut entries);
     let names = names(root.get_ref());
     let mut origin = Origin { file: file.into(), folder: folder.into(), names, ..Origin::default() };
-    origin.places = entries.iter().map(|e| (e.path.clone(), line_column(text, e.key.start))).collect();
+    origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
+    origin.text = text.into();
+    origin.lines = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
     spell_out(root.get_mut());
     for (number, (key, value)) in sets.iter().enumerate() {
         let span = beyond(text, number)..beyond(text, number);

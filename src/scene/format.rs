@@ -218,11 +218,15 @@ pub struct PlaceWords {
 }
 
 /// Checkpoints.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct CheckpointWords {
     /// Simulated time between them, s.
-    pub every: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub every: Option<f64>,
+    /// Wall time between them, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wall: Option<f64>,
 }
 
 /// One `[[check]]`: a column of a probe held against a column of a reference table, or against a formula.

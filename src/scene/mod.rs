@@ -35,9 +35,15 @@ pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 pub use size::Size;
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::Read,
+    path::{Path, PathBuf},
+};
 
 use crate::error::{Error, Result};
+
+/// Most bytes of a scene's text; the longest of those shipped has 3,000.
+const MOST_TEXT: u64 = 1 << 20;
 
 impl Scene {
     /// Reads the scene at `path`, a file or a folder that holds `scene.toml`; `sets` are keys and values
@@ -47,10 +53,17 @@ impl Scene {
     /// `File` if nothing can be read there; `Scene` with line, column and advice if the words are wrong.
     pub fn read(path: &Path, sets: &[(String, String)]) -> Result<Self> {
         let file = if path.is_dir() { path.join("scene.toml") } else { path.to_path_buf() };
-        let text = std::fs::read_to_string(&file).map_err(|e| {
+        let mut text = String::new();
+        let opened = std::fs::File::open(&file);
+        opened.and_then(|opened| opened.take(MOST_TEXT + 1).read_to_string(&mut text)).map_err(|e| {
             Error::file(&file, e)
                 .help("name a scene file, or a folder that holds scene.toml; `pontoon scenes` lists some")
         })?;
+        if text.len() as u64 > MOST_TEXT {
+            return Err(Error::scene(format!("{} has more than {MOST_TEXT} bytes", file.display())).help(
+                "points and motions of that size belong into tables beside the scene, as in { file = \"hull.csv\" }",
+            ));
+        }
         let folder = file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
         document::read(&text, &file.display().to_string(), &folder, sets)
     }

@@ -41,6 +41,9 @@ impl fmt::Display for Source {
 /// Reasons of the defaults that were filled in, by key.
 pub(super) type Reasons = BTreeMap<String, String>;
 
+/// Wall time from one checkpoint to the next where nobody says it, s.
+pub(super) const CHECKPOINT_WALL: f64 = 600.0;
+
 struct Filler(Reasons);
 
 impl Filler {
@@ -170,6 +173,8 @@ impl Scene {
             let fields = FIELDS.map(String::from).to_vec();
             filler.fill("frames.fields", &mut words.fields, fields, "all that there are");
         }
+        let wall = &mut self.checkpoint.get_or_insert_default().wall;
+        filler.fill("checkpoint.wall", wall, CHECKPOINT_WALL, "a run that is killed loses ten minutes at most");
         for (i, check) in self.check.iter_mut().enumerate().filter(|(_, check)| check.formula.is_none()) {
             filler.fill(format!("check.{i}.time"), &mut check.time, "t_s".into(), "the name our own tables have");
             filler.fill(format!("check.{i}.delay"), &mut check.delay, 0.0, "the clocks agree");

@@ -1,6 +1,6 @@
 //! What a run of a scene will take, told from its words: no particle is made.
 
-use super::Scene;
+use super::{Scene, build::Body, geometry::world_bounds};
 use crate::{error::Result, model::Scheme};
 
 /// About how large a run is.
@@ -27,7 +27,30 @@ impl Size {
     }
 }
 
+/// How far from the origin water may be, in supports of the kernel: beyond, differences of places are not exact.
+const FARTHEST: f64 = 1e8;
+
 impl Scene {
+    /// Refuses water so far from the origin that numbers cannot tell its particles' places apart.
+    pub(super) fn near_enough<const D: usize>(&self, water: &[Body<D>]) -> Result<()> {
+        let most = FARTHEST * 2.0 * self.h();
+        let far = |body: &Body<D>| {
+            let bounds = world_bounds(&body.region.shape, &body.region.pose);
+            bounds.min.iter().chain(bounds.max.iter()).map(|x| x.abs()).fold(0.0, f64::max)
+        };
+        match water.iter().map(far).enumerate().find(|(_, far)| *far > most) {
+            Some((i, far)) => {
+                let what = format!("this water is {far:.1e} m from the origin; places are exact up to {most:.1e} m");
+                Err(self.wrong_with(
+                    &format!("water.{i}.fill"),
+                    what,
+                    "move the scene to the origin, or make dp larger",
+                ))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// About how large a run of this scene is.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use crate::{
 /// The file `name` beside the scene in `folder`.
 ///
 /// # Errors
-/// `Scene` if the name leads out of the folder, or no file is there.
+/// `Scene` if the name, or a link, leads out of the folder, or no file is there.
 pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     let path = Path::new(name);
@@ -19,6 +19,10 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
             .help("put the file beside scene.toml and give its name alone"));
     }
     let full = folder.join(path);
+    if !within(folder, &full) {
+        return Err(Error::scene(format!("\"{name}\" is a link that leads out of the scene's folder"))
+            .help("copy the file itself there"));
+    }
     if !full.is_file() {
         let others = neighbours(folder, path);
         let guess = nearest(name, others.iter().map(String::as_str));
@@ -27,6 +31,15 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
             .help("files that a scene names are looked for in the folder of the scene"));
     }
     Ok(full)
+}
+
+/// Whether what is at `full`, links followed, lies in `folder`; of what is not there, nothing leads out.
+pub fn within(folder: &Path, full: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    match (folder.canonicalize(), full.canonicalize()) {
+        (Ok(folder), Ok(full)) => full.starts_with(folder),
+        _ => true,
+    }
 }
 
 /// Names of the files in `folder` that are of the same kind as `path`.

@@ -1,6 +1,8 @@
 //! Holds the words of a scene against one another, before any file is opened: what cannot be meant is
 //! refused with its place.
 
+use std::collections::{HashMap, HashSet};
+
 use super::{
     BoxWords, Frames, ProbeEntry, Scene, WaterWords,
     flexible::FramesWords,
@@ -189,7 +191,8 @@ impl Scene {
             }
         }
         let names: Vec<String> = self.probe_names();
-        match (0..names.len()).find(|&i| names[..i].contains(&names[i])) {
+        let mut seen = HashSet::new();
+        match names.iter().position(|name| !seen.insert(name)) {
             Some(i) => Err(self.wrong_with(
                 &format!("probe.{i}"),
                 format!("two probes are called \"{}\"", names[i]),
@@ -227,7 +230,10 @@ impl Scene {
                 return Err(self.wrong_with("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
             }
         }
-        self.positive("checkpoint.every", self.checkpoint.as_ref().map(|c| c.every))?;
+        if let Some(checkpoint) = &self.checkpoint {
+            self.positive("checkpoint.every", checkpoint.every)?;
+            self.positive("checkpoint.wall", checkpoint.wall)?;
+        }
         self.verify_checks()
     }
 
@@ -235,9 +241,13 @@ impl Scene {
     /// force, and the kind with a number from the second on.
     pub(super) fn probe_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        for (i, probe) in self.probe.iter().enumerate() {
+        // How many of each kind before have no name of their own.
+        let mut nameless: HashMap<&str, usize> = HashMap::new();
+        for probe in &self.probe {
             let kind = kinds(probe).first().copied().unwrap_or("probe");
-            let alike = self.probe[..i].iter().filter(|p| p.name.is_none() && kinds(p).first() == Some(&kind)).count();
+            let before = nameless.entry(kind).or_default();
+            let alike = *before;
+            *before += usize::from(probe.name.is_none());
             let own = match (&probe.name, &probe.motion, &probe.force) {
                 (Some(name), ..) => name.clone(),
                 (None, Some(solid), _) => solid.clone(),

@@ -67,7 +67,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("pressure", "pressure = [0.75, 0.03]"),
     ("frames", "frames = { every = 0.05, fields = [\"velocity\", \"pressure\"] }"),
     ("fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
-    ("checkpoint", "checkpoint = { every = 1.0 }"),
+    ("checkpoint", "checkpoint = { wall = 600.0 }"),
     ("check", "[[check]]\nseries = \"box.heave_m\"\nreference = \"body.csv\"\ncolumn = \"heave_m\""),
     ("series", "series = \"box.heave_m\""),
     ("reference", "reference = \"body.csv\""),

@@ -6,6 +6,9 @@ use crate::{
     space::Vector,
 };
 
+/// Most points of an outline: each of its edges is held against each, and every particle near it against all.
+const MOST_POINTS: usize = 10_000;
+
 impl<const D: usize> Shape<D> {
     /// Whether the shape can exist in `D` dimensions.
     ///
@@ -94,6 +97,10 @@ fn outline<const D: usize>(name: &str, points: &[Vector<D>], least: usize, close
     if n < least {
         return Err(Error::scene(format!("a {name} of {n} points")).help(format!("give at least {least} points")));
     }
+    if n > MOST_POINTS {
+        return Err(Error::scene(format!("a {name} of {n} points; the most is {MOST_POINTS}"))
+            .help("thin it out: what is finer than dp cannot be seen"));
+    }
     if let Some(i) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(
             Error::scene(format!("point {} of a {name} is not a number", i + 1)).help("give finite coordinates")
@@ -175,6 +182,12 @@ mod tests {
         let mut spike = square();
         spike.insert(1, Vector::from([2.0, 0.0]));
         assert!(refusal(Shape::Polygon { points: spike }).contains("crosses itself"));
+    }
+
+    #[test]
+    fn an_outline_of_a_million_points_is_refused_at_once() {
+        let points = (0..1_000_000).map(|i| Vector::from([f64::from(i), 0.0])).collect();
+        assert!(refusal(Shape::<2>::Polyline { points, thickness: 0.1 }).contains("the most is 10000"));
     }
 
     #[test]

@@ -55,6 +55,22 @@ pub(super) fn each_index<const D: usize>(low: &[i64; D], high: &[i64; D], mut vi
     }
 }
 
+/// As [`each_index`], but leaps over most of what lies `layers` or more cells inside the faces: of a large tank that
+/// is nearly all.
+fn each_outer<const D: usize>(low: &[i64; D], high: &[i64; D], layers: i64, mut visit: impl FnMut(&[i64; D])) {
+    let mut rows = *high;
+    rows[0] = low[0];
+    each_index(low, &rows, |row| {
+        let inside = (1..D).all(|i| row[i] - low[i] >= layers && high[i] - row[i] >= layers);
+        let leaps = inside && high[0] - low[0] >= 2 * layers;
+        let mut at = *row;
+        while at[0] <= high[0] {
+            visit(&at);
+            at[0] = if leaps && at[0] == low[0] + layers - 1 { high[0] - layers + 1 } else { at[0] + 1 };
+        }
+    });
+}
+
 /// How many cells of about `dp` divide `length`; at least one.
 fn parts(length: f64, dp: f64) -> i64 {
     ((length / dp).round() as i64).max(1)
@@ -63,7 +79,7 @@ fn parts(length: f64, dp: f64) -> i64 {
 fn box_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
     let n: [i64; D] = std::array::from_fn(|i| parts(size[i], dp));
     let mut skin = Vec::new();
-    each_index(&[0; D], &n.map(|n| n - 1), |at| {
+    each_outer(&[0; D], &n.map(|n| n - 1), layers as i64, |at| {
         let depth = (0..D).map(|i| at[i].min(n[i] - 1 - at[i])).min().unwrap_or(0) as usize;
         if depth < layers {
             let r = Vector::from_fn(|i, _| ((at[i] as f64 + 0.5) / n[i] as f64 - 0.5) * size[i]);
@@ -78,7 +94,7 @@ fn tank_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<Sk
     let layers = layers as i64;
     let high = std::array::from_fn(|i| if i == D - 1 { n[i] - 1 } else { n[i] - 1 + layers });
     let mut skin = Vec::new();
-    each_index(&[-layers; D], &high, |at| {
+    each_outer(&[-layers; D], &high, layers, |at| {
         let depth = (0..D).map(|i| (-at[i]).max(at[i] - (n[i] - 1))).max().unwrap_or(0);
         if depth > 0 {
             let r = Vector::from_fn(|i, _| (at[i] as f64 + 0.5) * size[i] / n[i] as f64);
@@ -287,6 +303,20 @@ mod tests {
         let skin = Shape::Tank { size: Vector::from([1.0, 0.5]), thickness: 0.3 }.skin(0.1, 3);
         assert_eq!(skin.len(), 16 * 3 + 2 * 3 * 5);
         assert_eq!(skin.iter().filter(|p| p.layer == 0).count(), 12 + 2 * 5);
+    }
+
+    #[test]
+    fn a_leap_over_the_inside_misses_no_cell_near_a_face() {
+        for high in [[0, 0], [3, 9], [7, 2], [9, 11]] {
+            let (mut all, mut outer) = (Vec::new(), Vec::new());
+            let near = |at: &[i64; 2]| (0..2).any(|i| at[i] < 2 || high[i] - at[i] < 2);
+            each_index(&[0; 2], &high, |at| all.extend(near(at).then_some(*at)));
+            each_outer(&[0; 2], &high, 2, |at| outer.extend(near(at).then_some(*at)));
+            assert_eq!(all, outer, "in the same order");
+        }
+        // Ten thousand million cells of air, not one of them visited.
+        let tank = Shape::Tank { size: Vector::from([1e5, 1e5]), thickness: 2.0 };
+        assert_eq!(tank.skin(1.0, 1).len(), 300_002);
     }
 
     #[test]

@@ -164,7 +164,7 @@ impl Job {
         let state = match manifest.status {
             Status::Finished => State::Finished,
             Status::Failed => State::Failed(manifest.error.clone().unwrap_or_default()),
-            _ if run::checkpoint(&self.folder).exists() => State::Interrupted,
+            _ if run::has_checkpoint(&self.folder) => State::Interrupted,
             _ => State::Planned,
         };
         let series = run::series_folder(&self.folder);

@@ -11,6 +11,9 @@ use crate::{
     sweep::Sums,
 };
 
+/// No place of a solid is so far away, m; nor is what is not finite.
+const FARTHEST: f64 = 1e100;
+
 /// What of a system must be kept to go on to the same bits.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct SystemState<const D: usize> {
@@ -46,6 +49,7 @@ impl<const D: usize> System<D> {
     /// Goes back to a kept state of the same scene.
     pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
         let real = self.real();
+        let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
         let stress = if self.stress.is_empty() { 0 } else { kept.fluid.len() };
         let same = kept.fluid.len().checked_sub(kept.images.len()) == Some(real)
             && kept.images.iter().all(|&i| (i as usize) < real)
@@ -55,10 +59,25 @@ impl<const D: usize> System<D> {
             && kept.accelerations.len() == self.solids.len()
             && kept.stress.len() == stress
             && kept.built.0.len() == kept.fluid.len()
-            && kept.built.1.len() == kept.kinematics.len();
+            && kept.built.1.len() == kept.kinematics.len()
+            && whole(&kept.fluid)
+            && whole(&kept.skin);
         if !same {
             return Err(Error::new(Kind::Restart, "the checkpoint holds another number of particles")
                 .help("it belongs to another scene: resume in the folder of its own run"));
+        }
+        let (water, poses) = kept.built;
+        let mut skin = kept.skin.r.clone();
+        for (solid, pose) in self.solids.iter().zip(&poses) {
+            for i in solid.skin.clone() {
+                skin[i] = pose.point(&self.local[i]);
+            }
+        }
+        // No run goes on with water outside its domain, but images lie beyond periodic sides.
+        let around = self.domain.grown(self.domain.size().max());
+        let near = water.iter().chain(&kept.fluid.r).all(|x| around.contains(x));
+        if !near || !skin.iter().chain(&kept.skin.r).all(|x| x.amax() < FARTHEST) {
+            return Err(Error::new(Kind::Restart, "the checkpoint holds a particle that is nowhere"));
         }
         (self.fluid, self.skin, self.stress, self.passes) = (kept.fluid, kept.skin, kept.stress, kept.passes);
         self.images.of = kept.images;
@@ -68,13 +87,6 @@ impl<const D: usize> System<D> {
         }
         for (solid, kept) in self.solids.iter_mut().zip(kept.accelerations) {
             (solid.acceleration, solid.whirl) = kept;
-        }
-        let (water, poses) = kept.built;
-        let mut skin = self.skin.r.clone();
-        for (solid, pose) in self.solids.iter().zip(&poses) {
-            for i in solid.skin.clone() {
-                skin[i] = pose.point(&self.local[i]);
-            }
         }
         self.near.build(&water, &skin);
         self.skin_sums.resize(self.near.wet().len(), Sums::zero());

@@ -86,4 +86,16 @@ fn damaged_bytes_are_refused() {
     let mut other = scene(Scheme::Symplectic, Walls::Dbc);
     assert!(other.restore(&kept[..kept.len() / 2]).is_err());
     assert!(other.restore(&[]).is_err());
+    // Eight bytes after eight are made a number that is none, or far too large: told, or of no consequence.
+    for wrong in [f64::NAN, f64::INFINITY, 1e99, -1e15] {
+        for at in (0..kept.len() - 8).step_by(kept.len() / 300) {
+            let mut bytes = kept.clone();
+            bytes[at..at + 8].copy_from_slice(&wrong.to_le_bytes());
+            let _ = other.restore(&bytes);
+        }
+    }
+    // The first place of all, behind the number of particles.
+    let places = kept.windows(8).position(|b| b == sim.system().fluid().r[0][0].to_le_bytes()).unwrap();
+    let far = [&kept[..places], &1e15f64.to_le_bytes(), &kept[places + 8..]].concat();
+    assert!(other.restore(&far).is_err_and(|e| e.what.contains("nowhere")));
 }

@@ -120,6 +120,8 @@ fn values_that_cannot_be_meant_are_refused() {
     wrong("misspelt_velocity", water, &format!("{water}\nvelocty = [0.1, 0.0]"));
     wrong("velocity_of_one", water, &format!("{water}\nvelocity = [0.1]"));
     wrong("velocity_in_time", water, &format!("{water}\nvelocity = [\"sin(t)\", 0.0]"));
+    wrong("water_far_away", "min = [0.0, 0.0], max = [1.0, 0.5]", "min = [1e9, 0.0], max = [1000000001.0, 0.5]");
+    wrong("checkpoints_of_no_wall_time", "[model]", "[checkpoint]\nwall = 0.0\n\n[model]");
     wrong("no_sound", "until     = 1.0", "until     = 1.0\ngravity = [0.0, 0.0]");
 }
 

@@ -6,6 +6,7 @@ mod coupling;
 mod determinism;
 mod errors;
 mod guards;
+mod hostile;
 mod kernels;
 mod lanes;
 mod laws;
