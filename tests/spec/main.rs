@@ -10,7 +10,6 @@ mod hostile;
 mod kernels;
 mod lanes;
 mod laws;
-mod light;
 mod near;
 mod periodic;
 mod preflight;
