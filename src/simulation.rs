@@ -18,7 +18,7 @@ use crate::{
     solid::{Dim, HasEngine as _, Role, SolidSpec},
     space::{Vector, Wedge},
     system::{System, SystemState},
-    time::{Bodies, Interval, Stepper, limit},
+    time::{Bodies, Held, Interval, Light, Stepper, limit},
 };
 
 /// Water and solids moving through time.
@@ -26,8 +26,6 @@ pub struct Simulation<const D: usize> {
     system: System<D>,
     stepper: Stepper<D>,
     bodies: Bodies<D>,
-    /// Longest step that the free bodies allow, s.
-    dt_bodies: f64,
     clock: Clock,
     rescue: Rescue,
     stepping: Duration,
@@ -60,6 +58,7 @@ struct Kept<const D: usize> {
     stepper: Stepper<D>,
     clock: Clock,
     engine: Option<Vec<u8>>,
+    light: Vec<Held>,
     rescued: Vec<Rescued>,
 }
 
@@ -84,19 +83,12 @@ impl<const D: usize> Simulation<D> {
         } else {
             None
         };
-        let dt_bodies = solids
-            .iter()
-            .filter_map(|s| match &s.role {
-                Role::Free(body) => Some(limit::body(&s.shape, body, &medium)),
-                _ => None,
-            })
-            .fold(f64::INFINITY, f64::min);
         let stepper = Stepper::new(&setup.model);
+        let longest = limit::sound(&setup.model);
         let system = System::new(setup)?;
-        let bodies = Bodies::new(engine, 0);
+        let bodies = Bodies::new(engine, Light::find(&system, longest));
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
-        let simulation =
-            Self { system, stepper, bodies, dt_bodies, clock, rescue: Rescue::default(), stepping: Duration::ZERO };
+        let simulation = Self { system, stepper, bodies, clock, rescue: Rescue::default(), stepping: Duration::ZERO };
         simulation.guard()?;
         Ok(simulation)
     }
@@ -170,11 +162,11 @@ impl<const D: usize> Simulation<D> {
         self.guard()
     }
 
-    /// The longest step (s) that the present rates, the bodies and the model allow.
+    /// The longest step (s) that the present rates and the model allow.
     pub fn limit(&self) -> f64 {
         let model = self.system.model();
         let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        water.min(limit::viscous(model)).min(self.dt_bodies).min(model.dt_max) * self.rescue.share(self.clock.time)
+        water.min(limit::viscous(model)).min(model.dt_max) * self.rescue.share(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -244,6 +236,12 @@ impl<const D: usize> Simulation<D> {
         }
     }
 
+    /// Impulse (N s; N s/m in 2-D) that the water has given to free solid number `solid` and that it has yet to get: none but
+    /// of a body lighter than the water that sound sets moving in a step.
+    pub fn withheld(&self, solid: usize) -> Vector<D> {
+        self.bodies.withheld(solid)
+    }
+
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
     pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
         if let Some(engine) = self.bodies.engine_mut() {
@@ -279,7 +277,7 @@ impl<const D: usize> Simulation<D> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
         let rescued = self.rescue.log.clone();
-        let kept = Kept { system, stepper, clock, engine, rescued };
+        let kept = Kept { system, stepper, clock, engine, light: self.bodies.held(), rescued };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
@@ -294,6 +292,9 @@ impl<const D: usize> Simulation<D> {
             (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
             (None, None) => {}
             _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
+        }
+        if !self.bodies.restore(&kept.light) {
+            return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
         self.system.restore(kept.system)?;
         (self.stepper, self.clock, self.rescue.log) = (kept.stepper, kept.clock, kept.rescued);

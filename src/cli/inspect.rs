@@ -147,7 +147,7 @@ fn bodies(bodies: &[Body], dimension: usize) -> String {
     let mass = if dimension == 2 { "mass (kg/m)" } else { "mass (kg)" };
     let heads = ["body", mass, "displaced", "ratio", "draft (m)", "at rest", "GM (m)", "heave (s)", "roll (s)"];
     let mut rows = vec![heads.map(String::from).to_vec()];
-    let mut grain = vec![["body", "thinnest (dp)", "least ratio", "step (s)"].map(String::from).to_vec()];
+    let mut grain = vec![["body", "thinnest (dp)", "least ratio"].map(String::from).to_vec()];
     for body in bodies {
         let mut row = vec![body.name.clone(), three(body.mass_kg), three(body.displaced_kg), three(body.density_ratio)];
         row.push(three(body.draft_m));
@@ -166,8 +166,7 @@ fn bodies(bodies: &[Body], dimension: usize) -> String {
             None => {}
         }
         rows.push(row);
-        let step = format!("{:.2e}", body.dt_s);
-        grain.push(vec![body.name.clone(), three(body.thinnest_dp), three(body.least_ratio), step]);
+        grain.push(vec![body.name.clone(), three(body.thinnest_dp), three(body.least_ratio)]);
     }
     let said = "  heave: without and with an estimate of the water that heaves along; roll: without any\n";
     format!("{}{said}\n{}", table(&rows), table(&grain))

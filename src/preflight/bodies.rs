@@ -6,15 +6,15 @@
 //! waterplane: ½ π ρ₀ (A/2)² in 2-D, ½ (8/3) ρ₀ a³ with π a² = A in 3-D [@newman1977], ch. 4; half, for there is water on one
 //! side only. Nothing is added to I: a real roll is slower.
 //!
-//! The coupling is explicit: with Δt = C h/c₀ a body needs a mass per wetted area above ½ C ρ₀ h. Below it the
-//! bodies' own limit of the step (`time/limit.rs`) holds the run together at the price of ever shorter steps.
+//! With Δt = C h/c₀ an explicit exchange carries a body whose mass per wetted area is above ½ C ρ₀ h. A lighter one answers
+//! with the inertia of the water around it (`time/light.rs`), and its draft is a few tenths of a dp.
 
 use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
 use super::{
-    Finding, Look, Step,
+    Finding, Look,
     faces::Face,
     thickness::thinnest,
     words::{down, three, up},
@@ -52,12 +52,10 @@ pub struct Body {
     pub thinnest_m: f64,
     /// The same over dp.
     pub thinnest_dp: f64,
-    /// Mass per wetted area over ½ C ρ₀ h, –: above 1 the coupling carries it.
+    /// Mass per wetted area over ½ C ρ₀ h, –: below 1 the body answers with the water's inertia.
     pub over_limit: f64,
     /// The density ratio at which that is 1.
     pub least_ratio: f64,
-    /// Its own limit of the step, s.
-    pub dt_s: f64,
 }
 
 /// How a body floats.
@@ -92,14 +90,13 @@ pub struct Tilt {
 
 impl<const D: usize> Look<'_, D> {
     /// The free bodies; `touching`: which solids touch another.
-    pub(super) fn bodies(&self, step: &Step, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<Body> {
+    pub(super) fn bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<Body> {
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
             let Role::Free(body) = &solid.spec.role else { continue };
-            let dt = step.bodies_s.iter().find(|(name, _)| *name == solid.spec.name).map_or(f64::INFINITY, |x| x.1);
-            let found = self.body(solid, body, &self.faces[i], dt);
+            let found = self.body(solid, body, &self.faces[i]);
             self.floats(&found, touching[i], findings);
-            self.carried(&found, step, findings);
+            self.carried(&found, findings);
             bodies.push(found);
         }
         self.slender(&bodies, findings);
@@ -122,7 +119,7 @@ impl<const D: usize> Look<'_, D> {
         findings.push(Finding::note("slender_body", what, mend));
     }
 
-    fn body(&self, solid: &Solid<D>, body: &FreeBody<D>, faces: &[Face<D>], dt_s: f64) -> Body {
+    fn body(&self, solid: &Solid<D>, body: &FreeBody<D>, faces: &[Face<D>]) -> Body {
         let (model, shape, pose) = (self.system.model(), &solid.spec.shape, &solid.kinematics.pose);
         let volume = shape.volume().volume;
         let rest = self.at_rest(solid, body);
@@ -143,7 +140,6 @@ impl<const D: usize> Look<'_, D> {
             thinnest_dp: thinnest_m / model.dp,
             over_limit: body.mass / least,
             least_ratio: least / (model.rho0 * volume),
-            dt_s,
         }
     }
 
@@ -249,7 +245,7 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// What is to be said of whether the particles carry a body.
-    fn carried(&self, body: &Body, step: &Step, findings: &mut Vec<Finding>) {
+    fn carried(&self, body: &Body, findings: &mut Vec<Finding>) {
         let (model, name) = (self.system.model(), &body.name);
         let density = body.density_ratio * model.rho0;
         let reach = model.reach();
@@ -265,23 +261,17 @@ impl<const D: usize> Look<'_, D> {
         }
         if body.over_limit < 1.0 {
             let what = format!(
-                "\"{name}\" is too light for particles of this size: {} kg/m³, and below {} kg/m³ the water that a step \
-                 accelerates outweighs it",
+                "\"{name}\" is lighter than the water that a step sets moving with it, {} kg/m³ for {} kg/m³: it answers with \
+                 that water's inertia, and its draft may be a dp off",
                 three(density),
                 three(body.least_ratio * model.rho0)
             );
             let mend = format!(
-                "density = {}, or dp = {}",
+                "density = {} would not need it, nor dp = {}",
                 up(body.least_ratio * model.rho0),
                 down(model.dp * body.over_limit)
             );
-            findings.push(Finding::warning("too_light", what, mend));
-        }
-        let short = body.dt_s / step.sound_s;
-        if short < 0.95 {
-            let what = format!("\"{name}\" shortens the step to {} of what sound allows", three(short));
-            let mend = format!("density = {} would not", up(density / (short * short)));
-            findings.push(Finding::note("short_step", what, mend));
+            findings.push(Finding::note("light_body", what, mend));
         }
     }
 

@@ -130,7 +130,7 @@ pub fn look<const D: usize>(
     let step = look.step();
     let size = look.size(&step, columns, overlapped, &mut findings);
     let gaps = look.gaps(&mut findings);
-    let bodies = look.bodies(&step, &gaps.touching, &mut findings);
+    let bodies = look.bodies(&gaps.touching, &mut findings);
     look.walls(&mut findings);
     look.probes(&sound, &mut findings);
     let waves = look.waves(&mut findings);

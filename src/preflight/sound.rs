@@ -54,7 +54,7 @@ impl Sound {
 pub struct Step {
     /// The longest step: the least of those below. Impacts shorten it further.
     pub dt_s: f64,
-    /// What binds it: `sound`, `gravity`, `viscosity`, `dt_max` or the name of a body.
+    /// What binds it: `sound`, `gravity`, `viscosity` or `dt_max`.
     pub bound_by: String,
     /// By sound, CFL h/c₀.
     pub sound_s: f64,
@@ -64,8 +64,6 @@ pub struct Step {
     pub viscosity_s: Option<f64>,
     /// By the model's `dt_max`; absent without one.
     pub dt_max_s: Option<f64>,
-    /// By the free bodies: half of 2/ω_b of each.
-    pub bodies_s: Vec<(String, f64)>,
     /// Steps to the end at dt: there will be some more.
     pub steps: f64,
     /// Force passes a step.
@@ -140,27 +138,18 @@ impl<const D: usize> Look<'_, D> {
 
     /// How long a step may be.
     pub(super) fn step(&self) -> Step {
-        let (model, medium) = (self.system.model(), self.system.medium());
+        let model = self.system.model();
         let finite = |x: f64| (x > 0.0 && x.is_finite()).then_some(x);
         let sound_s = model.cfl * model.h / model.c0;
         let gravity_s = finite(model.cfl * (model.h / self.system.gravity().norm()).sqrt());
         let (viscosity_s, dt_max_s) = (finite(limit::viscous(model)), finite(model.dt_max));
-        let bodies_s: Vec<(String, f64)> = self
-            .solids()
-            .iter()
-            .filter_map(|s| match &s.spec.role {
-                Role::Free(body) => Some((s.spec.name.clone(), limit::body(&s.spec.shape, body, medium))),
-                _ => None,
-            })
-            .collect();
         let others = [("gravity", gravity_s), ("viscosity", viscosity_s), ("dt_max", dt_max_s)];
         let mut all = vec![("sound".to_string(), sound_s)];
         all.extend(others.into_iter().filter_map(|(what, dt)| Some((what.to_string(), dt?))));
-        all.extend(bodies_s.iter().map(|(name, dt)| (format!("\"{name}\""), *dt)));
         let (bound_by, dt_s) =
             all.into_iter().fold((String::new(), f64::INFINITY), |least, x| if x.1 < least.1 { x } else { least });
         let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1 } else { 2 };
         let steps = (self.until() / dt_s).ceil();
-        Step { dt_s, bound_by, sound_s, gravity_s, viscosity_s, dt_max_s, bodies_s, steps, passes }
+        Step { dt_s, bound_by, sound_s, gravity_s, viscosity_s, dt_max_s, steps, passes }
     }
 }

@@ -35,6 +35,9 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Adds the user's `force` (N) at the world point `at` (m) of a free solid, in the next step only.
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>);
 
+    /// What the pushes that wait for the next step come to on a free solid.
+    fn pushed(&self, solid: usize) -> Load<D>;
+
     /// Sets the velocity of the centre of mass (m/s) and the spin (rad/s) of a free solid.
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>);
 

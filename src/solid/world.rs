@@ -99,11 +99,11 @@ impl World {
     fn load(&mut self, loads: &[Load<D>]) -> std::result::Result<(), EngineFault<D>> {
         assert_eq!(loads.len(), self.bodies.len(), "every solid needs a load");
         let mut total = loads.to_vec();
-        for (solid, force, at) in self.pushes.drain(..) {
-            let centre = from_point(self.world.bodies[self.bodies[solid]].center_of_mass());
-            total[solid].force += force;
-            total[solid].torque = total[solid].torque + Wedge::torque(&(at - centre), &force);
+        for (solid, load) in total.iter_mut().enumerate() {
+            let push = self.pushed(solid);
+            (load.force, load.torque) = (load.force + push.force, load.torque + push.torque);
         }
+        self.pushes.clear();
         for (solid, load) in total.iter().enumerate() {
             if !self.body(solid).is_dynamic() {
                 continue;
@@ -195,6 +195,15 @@ impl Engine<D> for World {
 
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>) {
         self.pushes.push((solid, *force, *at));
+    }
+
+    fn pushed(&self, solid: usize) -> Load<D> {
+        let centre = from_point(self.body(solid).center_of_mass());
+        let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
+        self.pushes.iter().filter(|push| push.0 == solid).fold(none, |sum, (_, force, at)| Load {
+            force: sum.force + force,
+            torque: sum.torque + Wedge::torque(&(at - centre), force),
+        })
     }
 
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::Interval;
+use super::{Held, Interval, Light};
 use crate::{
     error::{Error, Fault, Result},
     solid::{Engine, EngineFault, Kinematics, Load, Role, Solid},
@@ -13,19 +13,36 @@ use crate::{
 /// The rigid-body side of a run. A scene without free bodies has no engine and steps none.
 pub struct Bodies<const D: usize> {
     engine: Option<Box<dyn Engine<D>>>,
+    light: Vec<Light<D>>,
     steps: u64,
     spent: Duration,
 }
 
 impl<const D: usize> Bodies<D> {
-    /// The bodies that `engine` moves, after `steps` steps.
-    pub fn new(engine: Option<Box<dyn Engine<D>>>, steps: u64) -> Self {
-        Self { engine, steps, spent: Duration::ZERO }
+    /// The bodies that `engine` moves, at the start, those of them that are `light` with care.
+    pub(crate) fn new(engine: Option<Box<dyn Engine<D>>>, light: Vec<Light<D>>) -> Self {
+        Self { engine, light, steps: 0, spent: Duration::ZERO }
+    }
+
+    /// What of the light bodies must be kept to go on to the same bits.
+    pub(crate) fn held(&self) -> Vec<Held> {
+        self.light.iter().map(Light::held).collect()
+    }
+
+    /// Goes back to what was kept; says whether it is of these bodies.
+    pub(crate) fn restore(&mut self, held: &[Held]) -> bool {
+        self.light.iter_mut().zip(held).for_each(|(light, held)| light.restore(*held));
+        self.light.len() == held.len()
     }
 
     /// Time spent in the engine so far.
     pub fn spent(&self) -> Duration {
         self.spent
+    }
+
+    /// Impulse (N s) that the water has given to `solid` and that it has yet to get.
+    pub(crate) fn withheld(&self, solid: usize) -> Vector<D> {
+        self.light.iter().find(|light| light.solid == solid).map_or_else(Vector::zeros, Light::withheld)
     }
 
     /// The engine, if there are free bodies.
@@ -63,11 +80,18 @@ impl<const D: usize> Bodies<D> {
                 let mass = if let Role::Free(body) = &solid.spec.role { body.mass } else { 0.0 };
                 Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight }
             };
-            let loads: Vec<_> = system.solids.iter().map(weighed).collect();
+            let mut loads: Vec<_> = system.solids.iter().map(weighed).collect();
+            for light in &mut self.light {
+                light.share(system, over.dt, &engine.pushed(light.solid), &mut loads[light.solid]);
+            }
+            let before: Vec<_> = self.light.iter().map(|light| engine.kinematics(light.solid)).collect();
             let step = self.steps;
             let start = Instant::now();
             engine.step(over.dt, &loads, &targets).map_err(|fault| stopped(system, fault, step, over.t))?;
             self.spent += start.elapsed();
+            for (light, before) in self.light.iter_mut().zip(&before) {
+                light.learn(system, over.dt, before, &engine.kinematics(light.solid));
+            }
         }
         self.steps += 1;
         let engine = self.engine.as_deref();

@@ -1,9 +1,8 @@
-//! How long a step may be:  Δt = CFL·min( √(h/|f|), h/(c₀ + h max|v_ab·r_ab|/(r² + η²)) ),  with a viscosity ν₀
-//! Δt ≤ h²/(8 ν₀),  and with free bodies  Δt ≤ ½·2/ω_b.
+//! How long a step may be:  Δt = CFL·min( √(h/|f|), h/(c₀ + h max|v_ab·r_ab|/(r² + η²)) ),  and with a viscosity ν₀
+//! Δt ≤ h²/(8 ν₀).
 //!
-//! f is the whole acceleration, gravity too; √(h/|f|) is what eq. (14) of the paper means by h/√|f|.
-//! ω_b is the frequency of a body on the water's compressibility: every boundary particle of the outer
-//! layer is a spring of stiffness ρ₀ c₀² dpᴰ⁻²  (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
+//! f is the whole acceleration, gravity too; √(h/|f|) is what eq. (14) of the paper means by h/√|f|. Free bodies do not
+//! shorten it: see `time/light.rs`.
 
 use crate::{
     law::Medium,
@@ -14,8 +13,10 @@ use crate::{
     system::Peaks,
 };
 
-/// Share of the stability limit 2/ω_b that a step may take.
-const BODY_SHARE: f64 = 0.5;
+/// The longest step (s) that sound alone allows, CFL h/c₀.
+pub fn sound(model: &Model) -> f64 {
+    (model.cfl * model.h / model.c0).min(model.dt_max)
+}
 
 /// The longest step (s) that the water allows; eq. (14) of [@pirkhalili2023], [@monaghan1992].
 pub fn water<const D: usize>(peaks: &Peaks, medium: &Medium<D>, cfl: f64) -> f64 {
@@ -34,13 +35,9 @@ pub fn viscous(model: &Model) -> f64 {
     model.h * model.h / (8.0 * nu0)
 }
 
-/// The longest step (s) that a free body allows: half of 2/ω_b.
-pub fn body<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &Medium<D>) -> f64 {
-    BODY_SHARE * 2.0 / stiffest(shape, body, medium)
-}
-
-/// ω_b (1/s), the highest frequency of a body held by water all around: the larger of the largest
-/// translational and the largest rotational one.
+/// ω_b (1/s), the highest frequency of a body on the compressibility of water all around: the larger of the largest
+/// translational and the largest rotational one. Every boundary particle of the outer layer is a spring of stiffness
+/// ρ₀ c₀² dpᴰ⁻² (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
 pub fn stiffest<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &Medium<D>) -> f64 {
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);

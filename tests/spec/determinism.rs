@@ -18,7 +18,7 @@ const BOTH: [(Scheme, Walls); 3] = [
     (Scheme::Symplectic, Walls::Settling),
 ];
 
-/// A dam break onto two floats that collide, beside a paddle, with every term that remembers something.
+/// A dam break onto two floats that collide, one as light as foam, beside a paddle, with every term that remembers something.
 fn scene(scheme: Scheme, walls: Walls) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
@@ -27,7 +27,7 @@ fn scene(scheme: Scheme, walls: Walls) -> Simulation<2> {
     model.shifting = Shifting::AwayFromFixed(Shift::default());
     let mut water = rig::lattice([0.1, 0.0], [0.5, 0.3], dp);
     water.extend(rig::lattice([0.6, 0.0], [0.8, 0.1], dp));
-    let mut second = rig::float(Shape::Ball { radius: 0.06 }, [1.16, 0.17], 400.0);
+    let mut second = rig::float(Shape::Ball { radius: 0.06 }, [1.16, 0.17], 30.0);
     second.name = "second".into();
     let paddle = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.02*sin(9*t)").unwrap()));
     let paddle_shape = Shape::Box { size: Vector::from([0.08, 0.6]) };

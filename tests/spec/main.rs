@@ -10,6 +10,7 @@ mod hostile;
 mod kernels;
 mod lanes;
 mod laws;
+mod light;
 mod near;
 mod periodic;
 mod preflight;

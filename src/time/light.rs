@@ -1,0 +1,196 @@
+//! Bodies lighter than the water that sound sets moving in a step.
+//!
+//! A wet boundary particle of the outer layer is a spring of stiffness k = ρ₀ c₀² dpᴰ⁻² along its normal n (a column of
+//! water dp long on a face dpᴰ⁻¹). A body of mass matrix M on all of them, K = Σ k J Jᵀ with J = (n, arm ∧ n), takes up its
+//! load step by step as it should while λ = Δt² max eig(M⁻¹K) is small: a step adds λ/4 of the energy of that mode, more
+//! than the body radiates into the water if λ is not. Beyond that the body answers with the inertia of the water that goes
+//! with it, Z = θ Δt² K, θ = 1/Λ − 1/λ, so that it never has more than λ = Λ:
+//!
+//!   (M + Z) Δv = Δt (W + C) + s S,      S ← S + Δt (W + C) − M Δv,      s = 1 − exp(−Δt/τ),  τ = 10 h/c₀
+//!
+//! W is the load of water, weight and pushes, C that of contacts and joints (a mean over τ), S the impulse withheld so far. It is
+//! handed on within τ, so that in motions slower than sound Z has no part, M Δv = Δt (W + C), and momentum is kept: what the
+//! water lost the body has, or will have. Λ/λ > 1 leaves all as it is.
+
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+use super::limit;
+use crate::{
+    solid::{FreeBody, Kinematics, Load, Role, Solid},
+    space::{Matrix, Vector, Wedge},
+    system::System,
+};
+
+/// Λ, the largest λ that a body is left with, –.
+const STIFFEST: f64 = 0.5;
+
+/// τ over h/c₀, –.
+const TIME: f64 = 10.0;
+
+/// Translations along the axes, then turns about them; the last three stay 0 in 2-D.
+type Six = SVector<f64, 6>;
+type Square = SMatrix<f64, 6, 6>;
+
+/// A free body that may need the inertia of the water around it.
+pub struct Light<const D: usize> {
+    /// Its number among the solids.
+    pub(super) solid: usize,
+    /// Its outer boundary particles, in order, and their normals in its frame.
+    outer: Vec<(u32, Vector<D>)>,
+    held: Held,
+    /// Load (N, N m) of the present step but for contacts and joints.
+    given: Six,
+}
+
+/// What of it must be kept to go on to the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Held {
+    /// Impulse withheld, S (N s, N m s).
+    withheld: Six,
+    /// Load of contacts and joints, C (N, N m).
+    contacts: Six,
+}
+
+impl<const D: usize> Light<D> {
+    /// The free solids that steps up to `dt` (s) can be too long for, were they wet all around.
+    pub(crate) fn find(system: &System<D>, dt: f64) -> Vec<Self> {
+        let medium = system.medium();
+        let light = |(_, solid): &(usize, &Solid<D>)| match &solid.spec.role {
+            Role::Free(body) => (limit::stiffest(&solid.spec.shape, body, medium) * dt).powi(2) > STIFFEST,
+            _ => false,
+        };
+        let outer = |solid: &Solid<D>| {
+            let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
+            let of = |i: usize| (i as u32, pose.local(&system.skin().r[i]));
+            let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
+            let all = solid.skin.clone().map(of).filter(near_face);
+            all.map(|(i, r)| (i, shape.outward(&r, 0.05 * medium.dp))).collect()
+        };
+        let held = Held { withheld: Six::zeros(), contacts: Six::zeros() };
+        let make = |(i, solid)| Self { solid: i, outer: outer(solid), held, given: Six::zeros() };
+        system.solids().iter().enumerate().filter(light).map(make).collect()
+    }
+
+    /// What must be kept to go on to the same bits.
+    pub(crate) fn held(&self) -> Held {
+        self.held
+    }
+
+    /// Impulse that it has yet to get, N s.
+    pub(super) fn withheld(&self) -> Vector<D> {
+        linear(&self.held.withheld)
+    }
+
+    /// Goes back to what was kept.
+    pub(crate) fn restore(&mut self, held: Held) {
+        self.held = held;
+    }
+
+    /// Replaces `load`, that of the water, weighed, in a step `dt` (s), by what the body is to be given; the engine adds
+    /// weight and `push`.
+    pub(super) fn share(&mut self, system: &System<D>, dt: f64, push: &Load<D>, load: &mut Load<D>) {
+        let solid = &system.solids()[self.solid];
+        let Role::Free(body) = &solid.spec.role else { return };
+        let added = Load { force: push.force + system.gravity() * body.mass, torque: push.torque };
+        let mut whole = six(load) + six(&added);
+        lock(body, |i| whole[i] = 0.0);
+        let (mass, water) = (mass(solid, body), self.springs(system, body) * (dt * dt));
+        let share = settled(system, dt);
+        let (total, withheld) = (whole + self.held.contacts, self.held.withheld);
+        let both = (mass + water * theta(&mass, &water)).cholesky();
+        let impulse = both.map_or(total * dt, |both| mass * both.solve(&(total * dt + withheld * share)));
+        self.held.withheld += total * dt - impulse;
+        // Momentum withheld is carried along: its moment about the origin must not change.
+        let carried = Wedge::torque(&solid.kinematics.velocity, &linear(&withheld)) * -dt;
+        self.held.withheld += six(&Load { force: Vector::zeros(), torque: carried });
+        lock(body, |i| self.held.withheld[i] = 0.0);
+        self.given = impulse / dt - self.held.contacts;
+        let given = self.given - six(&added);
+        *load = Load { force: linear(&given), torque: angular::<D>(&given) };
+    }
+
+    /// Learns from the motion over the step that began as `before` what contacts and joints did.
+    pub(super) fn learn(&mut self, system: &System<D>, dt: f64, before: &Kinematics<D>, after: &Kinematics<D>) {
+        let solid = &system.solids()[self.solid];
+        let Role::Free(body) = &solid.spec.role else { return };
+        let change = Load {
+            force: (after.velocity - before.velocity) / dt,
+            torque: (after.spin + before.spin * -1.0) * (1.0 / dt),
+        };
+        let mut contacts = mass(solid, body) * six(&change) - self.given;
+        lock(body, |i| contacts[i] = 0.0);
+        self.held.contacts += (contacts - self.held.contacts) * settled(system, dt);
+    }
+
+    /// K of the springs that are wet now, N/m, N and N m.
+    fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> Square {
+        let solid = &system.solids()[self.solid];
+        let (medium, turn) = (system.medium(), &solid.kinematics.pose.rotation);
+        let mut wet = system.near.wet().iter().copied().skip_while(|&i| (i as usize) < solid.skin.start).peekable();
+        let mut sum = Square::zeros();
+        for (i, normal) in &self.outer {
+            while wet.next_if(|w| w < i).is_some() {}
+            if wet.peek() == Some(i) {
+                let (arm, normal) = (system.skin.r[*i as usize] - solid.kinematics.centre, turn * normal);
+                let along = six(&Load { force: normal, torque: Wedge::torque(&arm, &normal) });
+                sum += along * along.transpose();
+            }
+        }
+        lock(body, |i| {
+            sum.row_mut(i).fill(0.0);
+            sum.column_mut(i).fill(0.0);
+        });
+        sum * (medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2))
+    }
+}
+
+/// θ: how much of the water's inertia Δt² K goes with a body of mass matrix M, –.
+fn theta(mass: &Square, water: &Square) -> f64 {
+    let Some(root) = mass.cholesky().and_then(|c| c.l().try_inverse()) else { return 0.0 };
+    let stiffest = (root * water * root.transpose()).symmetric_eigenvalues().max();
+    if stiffest > STIFFEST { 1.0 / STIFFEST - 1.0 / stiffest } else { 0.0 }
+}
+
+/// The part (–) of what is withheld that a step `dt` (s) hands on.
+fn settled<const D: usize>(system: &System<D>, dt: f64) -> f64 {
+    let medium = system.medium();
+    1.0 - (-dt * medium.c0 / (TIME * medium.h)).exp()
+}
+
+/// Mass and inertia in the world's axes.
+fn mass<const D: usize>(solid: &Solid<D>, body: &FreeBody<D>) -> Square {
+    let mut all = Square::identity();
+    let turn = &solid.kinematics.pose.rotation;
+    let inertia: Matrix<D> = if D == 2 { body.inertia } else { turn * body.inertia * turn.transpose() };
+    for i in 0..D {
+        all[(i, i)] = body.mass;
+    }
+    for i in 0..Wedge::<D>::COMPONENTS {
+        for j in 0..Wedge::<D>::COMPONENTS {
+            all[(D + i, D + j)] = inertia[(i, j)];
+        }
+    }
+    all
+}
+
+/// Calls `visit` with the places of the motions that are locked.
+fn lock<const D: usize>(body: &FreeBody<D>, mut visit: impl FnMut(usize)) {
+    let turns = body.locked_rotations.iter().take(Wedge::<D>::COMPONENTS);
+    body.locked_translations.iter().chain(turns).enumerate().filter(|(_, locked)| **locked).for_each(|(i, _)| visit(i));
+}
+
+fn six<const D: usize>(load: &Load<D>) -> Six {
+    let both = load.force.iter().copied().chain(load.torque.axial());
+    let mut all = Six::zeros();
+    all.iter_mut().zip(both).for_each(|(to, x)| *to = x);
+    all
+}
+
+fn linear<const D: usize>(six: &Six) -> Vector<D> {
+    Vector::from_fn(|i, _| six[i])
+}
+
+fn angular<const D: usize>(six: &Six) -> Wedge<D> {
+    Wedge::from_axial(&six.as_slice()[D..D + Wedge::<D>::COMPONENTS])
+}
