@@ -85,8 +85,8 @@ impl<const D: usize> Simulation<D> {
         };
         let stepper = Stepper::new(&setup.model);
         let longest = limit::sound(&setup.model);
-        let system = System::new(setup)?;
-        let bodies = Bodies::new(engine, Light::find(&system, longest));
+        let mut system = System::new(setup)?;
+        let bodies = Bodies::new(engine, Light::find(&mut system, longest));
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let simulation = Self { system, stepper, bodies, clock, rescue: Rescue::default(), stepping: Duration::ZERO };
         simulation.guard()?;

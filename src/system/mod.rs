@@ -44,6 +44,10 @@ pub struct System<const D: usize> {
     local: Vec<Vector<D>>,
     /// To which densities (kg/m³) they settle; empty unless they do.
     goals: Vec<f64>,
+    /// Whether somebody asks how deep in the water they are.
+    pub(crate) feels: bool,
+    /// How much of the kernel's support of each wet one is full of water, Σ V_f W, –; empty unless somebody asks.
+    pub(crate) immersed: Vec<f64>,
     /// Outward normals in their solids' frames, and depths (m) below the face; empty unless water sticks to the face.
     faces: Vec<(Vector<D>, f64)>,
     /// The velocities (m/s) that they show the water; empty if those are their own.
@@ -146,6 +150,8 @@ impl<const D: usize> System<D> {
             skin,
             local,
             goals: Vec::new(),
+            feels: false,
+            immersed: Vec::new(),
             faces,
             shown: Vec::new(),
             boxes,
@@ -276,6 +282,29 @@ impl<const D: usize> System<D> {
             if extra.held > 0.0 { Vector::zeros() } else { shift.close(extra, v.norm(), dt, &self.medium) }
         });
         Some(shifts.collect())
+    }
+
+    /// Gives the water nearest to `solid` the `impulse` (N s), in equal shares.
+    pub(crate) fn give_back(&mut self, solid: usize, impulse: &Vector<D>) {
+        if impulse.norm_squared() == 0.0 {
+            return;
+        }
+        let real = self.real();
+        let skin = Bounds::around(&self.skin.r[self.solids[solid].skin.clone()]);
+        let mut reach = self.model.reach();
+        loop {
+            let near = skin.grown(reach);
+            let these: Vec<usize> = (0..real).filter(|&i| near.contains(&self.fluid.r[i])).collect();
+            if !these.is_empty() {
+                let share = impulse / (these.len() as f64 * self.particle_mass());
+                these.into_iter().for_each(|i| self.fluid.v[i] += share);
+                return;
+            }
+            reach *= 2.0;
+            if !reach.is_finite() {
+                return;
+            }
+        }
     }
 
     /// Places the skins of all solids.

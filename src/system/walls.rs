@@ -56,13 +56,16 @@ impl<const D: usize> System<D> {
     /// walls settle to that, and the velocity to show it, if it sticks to the face.
     pub(super) fn aim(&mut self) {
         let (settling, sticks) = (self.model.walls == Walls::Settling, self.model.slip == Slip::None);
-        if !settling && !sticks {
+        if !settling && !sticks && !self.feels {
             return;
         }
         let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
         let input = Input { near, water: fluid, skin, shown: &skin.v, stress, marks, medium, state };
         let mut fits = vec![Fit::all(0.0); input.near.wet().len()];
         sweep.fits(&input, sticks, &mut fits);
+        if self.feels {
+            self.immersed = fits.iter().map(|fit| fit.weight).collect();
+        }
         if settling {
             self.aim_at(&fits);
         }

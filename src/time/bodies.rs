@@ -81,9 +81,12 @@ impl<const D: usize> Bodies<D> {
                 Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight }
             };
             let mut loads: Vec<_> = system.solids.iter().map(weighed).collect();
+            let mut left = Vec::new();
             for light in &mut self.light {
-                light.share(system, over.dt, &engine.pushed(light.solid), &mut loads[light.solid]);
+                let push = engine.pushed(light.solid);
+                left.push((light.solid, light.share(system, over.dt, &push, &mut loads[light.solid])));
             }
+            left.into_iter().for_each(|(solid, impulse)| system.give_back(solid, &impulse));
             let before: Vec<_> = self.light.iter().map(|light| engine.kinematics(light.solid)).collect();
             let step = self.steps;
             let start = Instant::now();

@@ -28,6 +28,9 @@ const STIFFEST: f64 = 0.5;
 /// τ over h/c₀, –.
 const TIME: f64 = 10.0;
 
+/// Σ V_f W from which on a boundary particle is held by the water as under its surface, –: a face under water has more.
+const FULL: f64 = 0.25;
+
 /// Translations along the axes, then turns about them; the last three stay 0 in 2-D.
 type Six = SVector<f64, 6>;
 type Square = SMatrix<f64, 6, 6>;
@@ -50,11 +53,19 @@ pub struct Held {
     withheld: Six,
     /// Load of contacts and joints, C (N, N m).
     contacts: Six,
+    /// How much water holds the body, the trace of K, N/m.
+    grip: f64,
 }
 
 impl<const D: usize> Light<D> {
     /// The free solids that steps up to `dt` (s) can be too long for, were they wet all around.
-    pub(crate) fn find(system: &System<D>, dt: f64) -> Vec<Self> {
+    pub(crate) fn find(system: &mut System<D>, dt: f64) -> Vec<Self> {
+        let found = Self::among(system, dt);
+        system.feels = !found.is_empty();
+        found
+    }
+
+    fn among(system: &System<D>, dt: f64) -> Vec<Self> {
         let medium = system.medium();
         let light = |(_, solid): &(usize, &Solid<D>)| match &solid.spec.role {
             Role::Free(body) => (limit::stiffest(&solid.spec.shape, body, medium) * dt).powi(2) > STIFFEST,
@@ -67,7 +78,7 @@ impl<const D: usize> Light<D> {
             let all = solid.skin.clone().map(of).filter(near_face);
             all.map(|(i, r)| (i, shape.outward(&r, 0.05 * medium.dp))).collect()
         };
-        let held = Held { withheld: Six::zeros(), contacts: Six::zeros() };
+        let held = Held { withheld: Six::zeros(), contacts: Six::zeros(), grip: 0.0 };
         let make = |(i, solid)| Self { solid: i, outer: outer(solid), held, given: Six::zeros() };
         system.solids().iter().enumerate().filter(light).map(make).collect()
     }
@@ -87,15 +98,26 @@ impl<const D: usize> Light<D> {
         self.held = held;
     }
 
+    /// What is withheld from a body that leaves the water is that water's: returns the share of it, N s, and forgets it.
+    fn leave(&mut self, grip: f64) -> Vector<D> {
+        let stays = if grip < self.held.grip { grip / self.held.grip } else { 1.0 };
+        let left = self.held.withheld * (1.0 - stays);
+        self.held.grip = grip;
+        self.held.withheld -= left;
+        linear(&left)
+    }
+
     /// Replaces `load`, that of the water, weighed, in a step `dt` (s), by what the body is to be given; the engine adds
     /// weight and `push`.
-    pub(super) fn share(&mut self, system: &System<D>, dt: f64, push: &Load<D>, load: &mut Load<D>) {
+    pub(super) fn share(&mut self, system: &System<D>, dt: f64, push: &Load<D>, load: &mut Load<D>) -> Vector<D> {
         let solid = &system.solids()[self.solid];
-        let Role::Free(body) = &solid.spec.role else { return };
+        let Role::Free(body) = &solid.spec.role else { return Vector::zeros() };
         let added = Load { force: push.force + system.gravity() * body.mass, torque: push.torque };
         let mut whole = six(load) + six(&added);
         lock(body, |i| whole[i] = 0.0);
-        let (mass, water) = (mass(solid, body), self.springs(system, body) * (dt * dt));
+        let springs = self.springs(system, body);
+        let left = self.leave((0..D).map(|i| springs[(i, i)]).sum());
+        let (mass, water) = (mass(solid, body), springs * (dt * dt));
         let share = settled(system, dt);
         let (total, withheld) = (whole + self.held.contacts, self.held.withheld);
         let both = (mass + water * theta(&mass, &water)).cholesky();
@@ -108,6 +130,7 @@ impl<const D: usize> Light<D> {
         self.given = impulse / dt - self.held.contacts;
         let given = self.given - six(&added);
         *load = Load { force: linear(&given), torque: angular::<D>(&given) };
+        left
     }
 
     /// Learns from the motion over the step that began as `before` what contacts and joints did.
@@ -127,14 +150,16 @@ impl<const D: usize> Light<D> {
     fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> Square {
         let solid = &system.solids()[self.solid];
         let (medium, turn) = (system.medium(), &solid.kinematics.pose.rotation);
-        let mut wet = system.near.wet().iter().copied().skip_while(|&i| (i as usize) < solid.skin.start).peekable();
+        let wet = system.near.wet();
+        let mut k = wet.partition_point(|&i| (i as usize) < solid.skin.start);
         let mut sum = Square::zeros();
         for (i, normal) in &self.outer {
-            while wet.next_if(|w| w < i).is_some() {}
-            if wet.peek() == Some(i) {
+            k += wet[k..].iter().take_while(|w| *w < i).count();
+            if wet.get(k) == Some(i) {
+                let immersed = (system.immersed[k] / FULL).min(1.0);
                 let (arm, normal) = (system.skin.r[*i as usize] - solid.kinematics.centre, turn * normal);
                 let along = six(&Load { force: normal, torque: Wedge::torque(&arm, &normal) });
-                sum += along * along.transpose();
+                sum += along * along.transpose() * immersed;
             }
         }
         lock(body, |i| {
