@@ -74,7 +74,11 @@ pub fn stress(args: StressArgs) -> Result<u8> {
     let wrong = |entry: &&Entry| entry.verdict().is_some_and(|(outcome, _)| outcome == Outcome::Wrong);
     ledger.entries.iter().filter(wrong).for_each(|entry| say(&line(entry)));
     say(&format!("processor time {}\n{}\n", duration(ledger.seconds()), ledger.file().display()));
-    say(&format!("{} pictures, as {}\n", pictures.len(), pictures.first().map_or(String::new(), |p| p.display().to_string())));
+    say(&format!(
+        "{} pictures, as {}\n",
+        pictures.len(),
+        pictures.first().map_or(String::new(), |p| p.display().to_string())
+    ));
     Ok(if stop.load(Ordering::Relaxed) {
         complain("interrupted: the same command goes on\n");
         130

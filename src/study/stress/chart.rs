@@ -53,7 +53,8 @@ pub(super) fn picture(map: &Map, entries: &[&Entry]) -> String {
     if let Some(y) = &map.y {
         svg += &text(LEFT, bottom + 58, "start", 13, &format!("↓ {}", label(&y.label, &y.unit)));
     }
-    for (k, outcome) in [Outcome::Right, Outcome::Stopped, Outcome::Wrong, Outcome::Unfinished].into_iter().enumerate() {
+    for (k, outcome) in [Outcome::Right, Outcome::Stopped, Outcome::Wrong, Outcome::Unfinished].into_iter().enumerate()
+    {
         let (sign, colour) = look(Some(outcome));
         let of = |entry: &&&Entry| entry.verdict().is_some_and(|(found, _)| found == outcome);
         let said = format!("{sign} {} {}", entries.iter().filter(of).count(), name(outcome));

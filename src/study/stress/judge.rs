@@ -3,7 +3,8 @@
 //! | figure | what | why it must be small |
 //! |---|---|---|
 //! | `energy` | (E(t) − E(0) − W(t)) / scale, the most | nothing makes energy but the work W of driven solids |
-//! | `walls` | deepest water or body inside a solid, dp | what is there is on its way through |
+//! | `walls` | deepest water inside a solid, dp | what is there is on its way through |
+//! | `bodies` | deepest face of a free body inside another solid, dp | the same |
 //! | `outside` | water beside or below a tank | it went through |
 //! | `momentum` | ‖P(t) − P(0) − M g t‖ / scale, the most | nothing outside acts on a free system |
 //! | `quiet` | largest speed over the second half, over √(g depth) | still water stays still |
@@ -90,12 +91,11 @@ pub enum Outcome {
 impl Judge {
     /// Names and bounds of all that is asked.
     pub fn bounds(&self) -> Vec<(String, f64)> {
-        let plain = [("energy", &self.energy), ("walls", &self.walls), ("quiet", &self.quiet), ("momentum", &self.momentum)];
+        let plain =
+            [("energy", &self.energy), ("walls", &self.walls), ("quiet", &self.quiet), ("momentum", &self.momentum)];
         let mut all: Vec<(String, f64)> =
             plain.iter().filter_map(|(name, bound)| Some((name.to_string(), bound.as_ref()?.within))).collect();
-        if self.walls.is_some() {
-            all.push(("outside".into(), 0.0));
-        }
+        all.extend(self.walls.iter().flat_map(|bound| [("bodies".into(), bound.within), ("outside".into(), 0.0)]));
         all.extend(self.draft.iter().map(|of| (draft(&of.solid), of.within)));
         all.extend(self.motion.iter().map(|course| (motion(course), course.within)));
         all
@@ -246,7 +246,8 @@ mod tests {
         let of = Of { solid: "box".into(), within: 0.5, why: String::new() };
         let judge = Judge { energy: bound(0.1), walls: bound(0.5), draft: vec![of], ..Judge::default() };
         let figures = |energy: f64, outside: f64| {
-            let all = [("energy", energy), ("walls", 0.5), ("outside", outside), ("draft of box", 0.4)];
+            let all =
+                [("energy", energy), ("walls", 0.5), ("bodies", 0.0), ("outside", outside), ("draft of box", 0.4)];
             Figures::from(all.map(|(name, x)| (name.to_string(), x)))
         };
         assert!(judge.missed(&figures(0.1, 0.0)).is_empty());

@@ -91,9 +91,9 @@ impl<'a, const D: usize> Measure<'a, D> {
     fn look(&mut self, sim: &Simulation<D>) -> Result<()> {
         self.books.enter(energies(&self.energy, sim));
         let (judge, system) = (&self.case.judge, sim.system());
-        let (deepest, outside) = walls(system);
-        self.note("walls", deepest);
-        self.note("outside", outside as f64);
+        for (name, figure) in ["walls", "bodies", "outside"].into_iter().zip(walls(system)) {
+            self.note(name, figure);
+        }
         if judge.momentum.is_some() {
             let pushed = system.gravity() * (masses(system) * sim.time());
             let off = (momentum(system) - self.momentum.0 - pushed).norm();
@@ -159,7 +159,8 @@ fn momentum<const D: usize>(system: &System<D>) -> Vector<D> {
 /// Σ m |v| of water and free bodies, kg m/s.
 fn moving<const D: usize>(system: &System<D>) -> f64 {
     let water: f64 = system.fluid().v.iter().map(|v| v.norm()).sum();
-    free(system).fold(water * system.particle_mass(), |sum, (solid, mass)| sum + solid.kinematics.velocity.norm() * mass)
+    free(system)
+        .fold(water * system.particle_mass(), |sum, (solid, mass)| sum + solid.kinematics.velocity.norm() * mass)
 }
 
 /// Free solids and their masses.
@@ -170,10 +171,11 @@ fn free<const D: usize>(system: &System<D>) -> impl Iterator<Item = (&Solid<D>, 
     })
 }
 
-/// How deep (dp) water or the face of a free body lies inside another solid, and how much water has left a tank but over its rim.
-fn walls<const D: usize>(system: &System<D>) -> (f64, usize) {
+/// How deep (dp) water lies inside a solid, how deep the face of a free body inside another solid, and how much water has
+/// left a tank but over its rim.
+fn walls<const D: usize>(system: &System<D>) -> [f64; 3] {
     let (dp, skin) = (system.model().dp, system.skin());
-    let (mut deepest, mut outside) = (0.0, 0);
+    let [mut deepest, mut pressed, mut outside] = [0.0; 3];
     for (i, solid) in system.solids().iter().enumerate() {
         let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
         let depth = |r: &Vector<D>| -shape.signed_distance(&pose.local(r)) / dp;
@@ -181,7 +183,7 @@ fn walls<const D: usize>(system: &System<D>) -> (f64, usize) {
         for (k, body) in system.solids().iter().enumerate() {
             if k != i && matches!(body.spec.role, Role::Free(_)) {
                 // Its outermost boundary particles lie half a dp behind its face.
-                deepest = skin.r[body.skin.clone()].iter().map(|r| depth(r) + 0.5).fold(deepest, worse);
+                pressed = skin.r[body.skin.clone()].iter().map(|r| depth(r) + 0.5).fold(pressed, worse);
             }
         }
         if let Shape::Tank { size, thickness } = shape {
@@ -190,8 +192,8 @@ fn walls<const D: usize>(system: &System<D>) -> (f64, usize) {
                 let below = x[D - 1] < -thickness;
                 below || (x[D - 1] < size[D - 1] && (0..D - 1).any(|i| x[i] < -thickness || x[i] > size[i] + thickness))
             };
-            outside += system.fluid().r.iter().filter(beside).count();
+            outside += system.fluid().r.iter().filter(beside).count() as f64;
         }
     }
-    (deepest, outside)
+    [deepest, pressed, outside]
 }
