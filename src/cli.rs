@@ -8,6 +8,7 @@ mod inspect;
 mod progress;
 mod report;
 mod shelf;
+mod stress;
 mod study;
 mod validate;
 
@@ -108,6 +109,20 @@ has finished is not run again; after Ctrl-C the same command goes on.
 Exit codes: 0 all bounds are kept; 1 a run failed; 2 something in the command or a file is wrong;
 3 a bound is missed; 130 interrupted.")]
     Validate(validate::ValidateArgs),
+    /// Run maps of hard cases and judge each by physics: right, stopped with a reason, or wrong
+    #[command(after_help = "\
+Examples:
+  pontoon stress --list               what there is
+  pontoon stress --quick              the ends of every axis: some minutes
+  pontoon stress                      everything
+  pontoon stress float courant        two maps
+  pontoon stress --maps my-maps.toml  maps of your own
+Cases run in memory, several side by side, each on one thread. Results are in DIR/stress.json, whole
+after every case, and a picture of each map in DIR/MAP.svg. A case that has been run with the same
+scene by the same version is not run again; Ctrl-C stops after the cases in hand.
+Exit codes: 0 none is wrong; 2 something in the command or a file is wrong; 3 a case is wrong;
+130 interrupted.")]
+    Stress(stress::StressArgs),
     /// List the scenes that come with the program
     Scenes,
     /// Time standard works on this machine: particle-steps per second, where a step goes, memory
@@ -201,6 +216,7 @@ fn obey(command: Command) -> Result<u8> {
         }
         Command::Validate(args) => validate::validate(args),
         Command::Study(args) => study::study(args),
+        Command::Stress(args) => stress::stress(args),
         Command::Bench(args) => {
             say(&bench::bench(&args)?);
             Ok(0)
@@ -235,13 +251,18 @@ fn command_line() -> String {
 
 /// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
 fn stopper() -> Result<Arc<AtomicBool>> {
+    stopper_saying("stopping after this step, with a checkpoint; Ctrl-C again stops at once, without")
+}
+
+/// As [`stopper`], in these words.
+fn stopper_saying(words: &'static str) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = flag.clone();
     let handler = move || {
         if raised.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        complain("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n");
+        complain(&format!("\n{words}\n"));
     };
     ctrlc::set_handler(handler).map_err(|why| Error::new(Kind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
     Ok(flag)

@@ -197,6 +197,8 @@ fn help_and_lists_teach() {
     shows(&["resume", "--help"], &["pontoon resume runs/raft"]);
     shows(&["study", "--help"], &["--dp", "--vary", "--dry-run", "Examples:", "study.html"]);
     shows(&["validate", "--help"], &["--quick", "--full", "--list", "Examples:", "validation.html"]);
+    shows(&["stress", "--help"], &["--quick", "--list", "--maps", "Examples:", "stress.json"]);
+    shows(&["stress", "--list"], &["float", "courant", "impact-water", "cases"]);
     shows(&["scenes"], &["raft", "still-tank", "flume-box", "column", "dam-break", "buoyancy-3d", "pontoon run NAME"]);
     shows(&["inspect", "raft", "--dp", "0.02"], &["particles", "paddle", "driven", "scene line", "--set", "default: "]);
     assert_eq!(fs::read_dir(&desk.0).unwrap().count(), 0, "none of these writes anything");
@@ -238,6 +240,85 @@ fn a_run_prints_its_warnings_and_keeps_them_in_the_manifest_and_no_notes() {
     let warnings = desk.manifest("a")["warnings"].clone();
     assert_eq!(warnings.as_array().map(Vec::len), Some(1), "{warnings}");
     assert!(warnings[0].as_str().is_some_and(|w| w.contains("7.83 m/s")), "{warnings}");
+}
+
+/// Three cases that are known to be right, to stop, and to miss a bound that nothing can keep.
+const PLANTED: &str = r#"
+[judge.energy]
+within = 0.05
+why    = "Nothing makes energy."
+
+[part]
+tank = """
+dimension = 2
+dp        = 0.02
+until     = 0.1
+water     = [{ fill = { box = { min = [0.0, 0.0], max = [0.2, 0.2] } } }]
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [${0.2*y}, 0.4] } }"""
+
+[[map]]
+name  = "collapse"
+about = "A column collapses, soundly and with a step far too long."
+x     = { label = "Courant number", unit = "–", values = [0.4, 6.0] }
+y     = { label = "room", unit = "columns", values = [2] }
+scene = '''
+${tank}
+[time]
+cfl = ${x}'''
+
+[[map]]
+name  = "still"
+about = "Still water that is asked to be stiller than still."
+x     = { label = "α", unit = "–", values = [0.02] }
+y     = { label = "room", unit = "columns", values = [1] }
+scene = '''
+${tank}
+[model]
+viscosity = { artificial = { alpha = ${x} } }'''
+
+[map.judge.quiet]
+within = -1.0
+why    = "No speed is below 0: planted."
+"#;
+
+#[test]
+fn stress_tells_right_stopped_and_wrong_and_runs_nothing_twice() {
+    let desk = Desk::new("stress");
+    fs::write(desk.path("maps.toml"), PLANTED).unwrap();
+    let words = ["stress", "--maps", "maps.toml", "--out", "s", "--threads", "2"];
+    let said = desk.pontoon(&words);
+    assert_eq!(said.code, Some(3), "{}\n{}", said.out, said.err);
+    for word in ["still 0.02, 1: wrong: quiet ", "> -1", "all", "s/stress.json"] {
+        assert!(said.out.contains(word), "\"{word}\" is not in:\n{}", said.out);
+    }
+    let kept: serde_json::Value = serde_json::from_str(&desk.read("s/stress.json")).unwrap();
+    assert_eq!(kept["counts"], serde_json::json!({ "right": 1, "stopped": 1, "wrong": 1 }));
+    let stopped = kept["trials"].as_array().unwrap().iter().find(|row| row["outcome"] == "stopped").unwrap();
+    assert_eq!(stopped["values"][0], "6.0");
+    assert!(stopped["end"]["stopped"].as_str().is_some_and(|why| why.contains("of water particle ")), "{stopped}");
+    let picture = desk.read("s/collapse.svg");
+    assert!(["●", "■", "Courant number, –", "</svg>"].iter().all(|sign| picture.contains(sign)), "{picture}");
+
+    // Another bound is judged from what was measured; another scene is run.
+    fs::write(desk.path("maps.toml"), PLANTED.replace("-1.0", "1.0")).unwrap();
+    let said = desk.pontoon(&[&words[..], &["--dry-run"]].concat());
+    assert!(said.out.contains("still 0.02, 1: right") && said.out.contains("3 cases, 0 to be run"), "{}", said.out);
+    assert_eq!(desk.pontoon(&words).code, Some(0));
+    fs::write(desk.path("maps.toml"), PLANTED.replace("0.02]", "0.03]")).unwrap();
+    assert!(desk.pontoon(&[&words[..], &["--dry-run"]].concat()).out.contains("3 cases, 1 to be run"));
+
+    let tell = |from: &str, to: &str, words: &[&str]| {
+        fs::write(desk.path("maps.toml"), PLANTED.replace(from, to)).unwrap();
+        desk.pontoon(&["stress", "--maps", "maps.toml", "--out", "t"]).refused(2, words);
+    };
+    tell("cfl = ${x}", "cfl = ${x", &["collapse at 0.4, 2", "not closed"]);
+    tell("cfl = ${x}", "clf = ${x}", &["collapse at 0.4, 2", "did you mean \"cfl\"?"]);
+    tell("quiet]", "quite]", &["maps.toml:", "quite"]);
+    desk.pontoon(&["stress", "flaot"]).refused(2, &["there is no map \"flaot\"", "did you mean \"float\"?"]);
+    assert!(!desk.path("t").exists());
 }
 
 #[cfg(unix)]

@@ -2,7 +2,7 @@
 //!
 //! A [`Job`] is one run in a folder of its own; it is skipped where it has been run, and goes on where it was
 //! interrupted. [`Grid`] makes the jobs of `pontoon study`, [`Case`] those of `pontoon validate`; rows, orders
-//! and pages say what came out.
+//! and pages say what came out. [`stress`] makes and judges many short runs in memory.
 
 mod cases;
 mod estimate;
@@ -13,6 +13,7 @@ mod page;
 mod plot;
 mod rows;
 mod sheet;
+pub mod stress;
 mod validation;
 
 pub use cases::{Case, Extent, cases, find};

@@ -1,0 +1,106 @@
+//! `pontoon stress`: maps of hard cases, each judged by physics.
+
+use std::{path::PathBuf, sync::atomic::Ordering};
+
+use clap::Args;
+use pontoon::{
+    error::{Error, Kind, Result},
+    study::stress::{Entry, Ledger, Map, Outcome, choose, maps, said},
+};
+
+use super::{
+    complain,
+    report::{duration, table},
+    say, stopper_saying,
+};
+
+/// Maps and how they are run.
+#[derive(Args)]
+pub struct StressArgs {
+    /// Maps of `--list` [default: all; if quick, all but the slow ones]
+    #[arg(value_name = "MAP")]
+    names: Vec<String>,
+    /// The ends of every axis alone: some minutes
+    #[arg(long)]
+    quick: bool,
+    /// Maps of your own in place of the program's
+    #[arg(long, value_name = "FILE")]
+    maps: Option<PathBuf>,
+    /// Cases that run side by side [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Folder for results
+    #[arg(long, value_name = "DIR", default_value = "stress")]
+    out: PathBuf,
+    /// List the maps; run nothing
+    #[arg(long)]
+    list: bool,
+    /// Say which cases would be run; run nothing
+    #[arg(long)]
+    dry_run: bool,
+    /// Say nothing but errors, the table and what is wrong
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Runs the maps, or lists them.
+pub fn stress(args: StressArgs) -> Result<u8> {
+    let all = maps(args.maps.as_deref())?;
+    if args.list {
+        say(&listed(&all));
+        return Ok(0);
+    }
+    if args.threads == Some(0) {
+        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+    }
+    let mut ledger = Ledger::open(choose(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
+    let due = ledger.entries.iter().filter(|entry| entry.trial.is_none()).count();
+    if args.dry_run {
+        ledger.entries.iter().for_each(|entry| say(&line(entry)));
+        say(&format!("{} cases, {due} to be run\n", ledger.entries.len()));
+        return Ok(0);
+    }
+    let stop = stopper_saying("stopping after the cases in hand; Ctrl-C again stops at once, without them")?;
+    let threads = args.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, |n| n.get()));
+    let mut done = 0;
+    ledger.work(threads, &stop, |entry| {
+        done += 1;
+        if !args.quiet {
+            complain(&format!("{done}/{due} {}", line(entry)));
+        }
+    })?;
+    let pictures = ledger.write()?;
+    say(&format!("\n{}", table(&ledger.table())));
+    let wrong = |entry: &&Entry| entry.verdict().is_some_and(|(outcome, _)| outcome == Outcome::Wrong);
+    ledger.entries.iter().filter(wrong).for_each(|entry| say(&line(entry)));
+    say(&format!("processor time {}\n{}\n", duration(ledger.seconds()), ledger.file().display()));
+    say(&format!(
+        "{} pictures, as {}\n",
+        pictures.len(),
+        pictures.first().map_or(String::new(), |p| p.display().to_string())
+    ));
+    Ok(if stop.load(Ordering::Relaxed) {
+        complain("interrupted: the same command goes on\n");
+        130
+    } else if ledger.entries.iter().any(|entry| wrong(&entry)) {
+        3
+    } else {
+        0
+    })
+}
+
+/// A case in a line.
+fn line(entry: &Entry) -> String {
+    format!("{} {}\n", entry.case.map, said(entry))
+}
+
+/// The list of maps.
+fn listed(all: &[Map]) -> String {
+    let mut rows = vec![["map", "cases", "along", "about"].map(String::from).to_vec()];
+    rows.extend(all.iter().map(|map| {
+        let axes: Vec<&str> = std::iter::once(&map.x).chain(&map.y).map(|axis| axis.label.as_str()).collect();
+        vec![map.name.clone(), map.count().to_string(), axes.join(" × "), map.about.clone()]
+    }));
+    let sum: usize = all.iter().map(Map::count).sum();
+    format!("{}\n{sum} cases; run one map with: pontoon stress MAP; without a name all are run\n", table(&rows))
+}

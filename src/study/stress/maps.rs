@@ -1,0 +1,302 @@
+//! The maps of `pontoon stress`: `scenes/stress.toml`, compiled into the program, or a file of the user's.
+//!
+//! A map is a scene with holes, `${…}`, and one or two axes that fill them. A hole is a formula of `x` and `y`, the
+//! values along the axes; or a word, `${x}`, where the axis has words; or the name of a text of `[part]`.
+
+use std::{collections::BTreeMap, path::Path};
+
+use serde::Deserialize;
+
+use super::judge::{Bound, Course, Judge, Of};
+use crate::{
+    error::{Error, Kind, Result, nearest},
+    record::restart::hash,
+    scene::Scene,
+    solid::Field,
+};
+
+const TEXT: &str = include_str!("../../../scenes/stress.toml");
+const NAME: &str = "stress.toml";
+
+/// How deep parts may hold one another.
+const DEEPEST: usize = 8;
+
+/// A family of cases along one or two axes.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Map {
+    /// Its name.
+    pub name: String,
+    /// What it asks, in a sentence.
+    pub about: String,
+    /// What is varied along the columns of its picture.
+    pub x: Axis,
+    /// What is varied along its rows.
+    pub y: Option<Axis>,
+    scene: String,
+    #[serde(default)]
+    judge: Judge,
+    /// Whether it is too long for `--quick`.
+    #[serde(default)]
+    slow: bool,
+    #[serde(skip)]
+    parts: BTreeMap<String, String>,
+    #[serde(skip)]
+    always: Judge,
+}
+
+/// What is varied, and its values.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// What it is, in words.
+    pub label: String,
+    /// Its unit.
+    pub unit: String,
+    /// Numbers or words.
+    values: Vec<toml::Value>,
+}
+
+/// One run of a map.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The map.
+    pub map: String,
+    /// Its column and row.
+    pub place: [usize; 2],
+    /// Its values, in words.
+    pub values: Vec<String>,
+    /// The scene, every hole filled.
+    pub scene: Scene,
+    /// What it is judged by.
+    pub judge: Judge,
+    /// What makes it another than any other case or version: a run of the same key is not run again.
+    pub key: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    judge: Judge,
+    #[serde(default)]
+    part: BTreeMap<String, String>,
+    map: Vec<Map>,
+}
+
+/// All maps: those of `file`, or those that come with the program.
+///
+/// # Errors
+/// `File` if it cannot be read; `Scene` if it is no list of maps.
+pub fn maps(file: Option<&Path>) -> Result<Vec<Map>> {
+    let Some(path) = file else { return read(TEXT, NAME) };
+    let text = std::fs::read_to_string(path)
+        .map_err(|why| Error::file(path, why).help("name a file of [[map]] entries; docs/stability.md shows one"))?;
+    read(&text, &path.display().to_string())
+}
+
+fn read(text: &str, name: &str) -> Result<Vec<Map>> {
+    let File { judge, part, map } = toml::from_str(text).map_err(|e| {
+        let line = e.span().map(|span| text[..span.start].matches('\n').count() + 1);
+        Error::scene(e.message().to_string()).at(name, line.map(|line| (line, 1)), "")
+    })?;
+    let whole = |map: Map| Map { parts: part.clone(), always: judge.clone(), ..map };
+    let all: Vec<Map> = map.into_iter().map(whole).collect();
+    match (0..all.len()).find(|&i| all[..i].iter().any(|map| map.name == all[i].name)) {
+        Some(i) => Err(Error::scene(format!("two maps are called {:?}", all[i].name)).at(name, None, "map.name")),
+        None => Ok(all),
+    }
+}
+
+/// The maps of `all` called `names`, or all; of the quick ones those that are not slow.
+///
+/// # Errors
+/// `Usage` if there is no such map: names the nearest.
+pub fn choose(all: Vec<Map>, names: &[String], quick: bool) -> Result<Vec<Map>> {
+    if names.is_empty() {
+        return Ok(all.into_iter().filter(|map| !(quick && map.slow)).collect());
+    }
+    let map = |name: &String| {
+        all.iter().find(|map| map.name == *name).cloned().ok_or_else(|| {
+            let list = "`pontoon stress --list` lists all";
+            let help = match nearest(name, all.iter().map(|map| map.name.as_str())) {
+                Some(near) => format!("did you mean {near:?}? {list}"),
+                None => list.into(),
+            };
+            Error::new(Kind::Usage, format!("there is no map {name:?}")).help(help)
+        })
+    };
+    names.iter().map(map).collect()
+}
+
+impl Axis {
+    /// Its values, in words.
+    pub fn words(&self) -> Vec<String> {
+        self.values.iter().map(word).collect()
+    }
+}
+
+impl Map {
+    /// How many cases it has.
+    pub fn count(&self) -> usize {
+        self.x.values.len() * self.y.as_ref().map_or(1, |y| y.values.len())
+    }
+
+    /// Its cases, row by row; if `quick`, those at the ends of its axes alone.
+    ///
+    /// # Errors
+    /// `Scene` if a hole cannot be filled or the scene is none: names map and values.
+    pub fn cases(&self, quick: bool) -> Result<Vec<Case>> {
+        let ends = |n: usize| (0..n).filter(|&i| !quick || i == 0 || i + 1 == n).collect::<Vec<_>>();
+        let rows = self.y.as_ref().map_or(1, |y| y.values.len());
+        let places = ends(rows).into_iter().flat_map(|j| ends(self.x.values.len()).into_iter().map(move |i| [i, j]));
+        places.map(|place| self.case(place)).collect()
+    }
+
+    fn case(&self, place: [usize; 2]) -> Result<Case> {
+        let y = self.y.as_ref().map(|y| &y.values[place[1]]);
+        let values: Vec<&toml::Value> = std::iter::once(&self.x.values[place[0]]).chain(y).collect();
+        let words: Vec<String> = values.iter().map(|value| word(value)).collect();
+        let here = |error: Error| error.at(NAME, None, format!("{} at {}", self.name, words.join(", ")));
+        let fill = |text: &str| self.filled(text, &values, 0).map_err(here);
+        let scene = Scene::parse(&fill(&self.scene)?, Path::new(""), &[]).map_err(|mut error| {
+            error.what = format!("map {} at {}: {}", self.name, words.join(", "), error.what);
+            error
+        })?;
+        let judge = self.judge.clone().over(&self.always);
+        let course = |course: Course| Ok(Course { formula: fill(&course.formula)?, ..course });
+        let judge = Judge { motion: judge.motion.into_iter().map(course).collect::<Result<_>>()?, ..judge };
+        let text = format!("{}\n{}\n{}", scene.to_toml()?, judge.asks(), env!("CARGO_PKG_VERSION"));
+        let key = format!("{:016x}", hash(text.as_bytes()));
+        Ok(Case { map: self.name.clone(), place, values: words, scene, judge, key })
+    }
+
+    /// `text` with its holes filled.
+    fn filled(&self, text: &str, values: &[&toml::Value], depth: usize) -> Result<String> {
+        if depth > DEEPEST {
+            return Err(Error::scene("a part holds itself"));
+        }
+        let mut whole = String::new();
+        let mut rest = text;
+        while let Some((before, after)) = rest.split_once("${") {
+            let Some((hole, after)) = after.split_once('}') else {
+                return Err(Error::scene("a hole \"${\" is not closed").help("write  ${2*x}"));
+            };
+            whole += before;
+            whole += &self.fill(hole.trim(), values, depth)?;
+            rest = after;
+        }
+        Ok(whole + rest)
+    }
+
+    fn fill(&self, hole: &str, values: &[&toml::Value], depth: usize) -> Result<String> {
+        let named = ["x", "y"].iter().position(|name| *name == hole).and_then(|i| values.get(i));
+        if let Some(toml::Value::String(word)) = named {
+            return Ok(word.clone());
+        }
+        if let Some(part) = self.parts.get(hole) {
+            return self.filled(part, values, depth + 1);
+        }
+        let number = |i: usize| values.get(i).and_then(|value| number(value)).unwrap_or(f64::NAN);
+        let value = Field::<2>::parse(hole)?.at(&[number(0), number(1)].into());
+        if !value.is_finite() {
+            let help = "a formula of x and y, the numbers along the axes, or the name of a part";
+            return Err(Error::scene(format!("the hole \"{hole}\" is {value}")).help(help));
+        }
+        // Products of decimal numbers are not to carry their round-off into lattices.
+        Ok(format!("{:?}", format!("{value:.12e}").parse::<f64>().unwrap_or(value)))
+    }
+}
+
+impl Judge {
+    /// This judge, with what it does not say itself from `other`.
+    fn over(self, other: &Self) -> Self {
+        let bound = |own: Option<Bound>, other: &Option<Bound>| own.or_else(|| other.clone());
+        let list = |own: Vec<Of>, other: &Vec<Of>| if own.is_empty() { other.clone() } else { own };
+        Self {
+            energy: bound(self.energy, &other.energy),
+            walls: bound(self.walls, &other.walls),
+            quiet: bound(self.quiet, &other.quiet),
+            momentum: bound(self.momentum, &other.momentum),
+            draft: list(self.draft, &other.draft),
+            motion: if self.motion.is_empty() { other.motion.clone() } else { self.motion },
+        }
+    }
+}
+
+fn word(value: &toml::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), String::from)
+}
+
+fn number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|n| n as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TINY: &str = r#"
+        [part]
+        tank = "name = \"tank\"\nfixed = true\nshape = { tank = { size = [${0.02*x}, 0.3] } }"
+        [[map]]
+        name = "tiny"
+        about = "A tank."
+        x = { label = "width", unit = "dp", values = [10, 20, 30] }
+        y = { label = "kernel", unit = "", values = ["wendland", "cubic"] }
+        scene = '''
+        dimension = 2
+        dp = 0.02
+        until = 0.1
+        model = { kernel = "${y}" }
+        water = [{ fill = { box = { min = [0, 0], max = [${0.02*x}, 0.1] } } }]
+        [[solid]]
+        ${tank}
+        '''"#;
+
+    #[test]
+    fn the_holes_of_a_scene_are_filled_with_formulae_words_and_parts() -> Result<()> {
+        let map = read(TINY, "tiny")?.remove(0);
+        let cases = map.cases(false)?;
+        assert_eq!((cases.len(), map.count(), map.cases(true)?.len()), (6, 6, 4));
+        let text = cases[5].scene.to_toml()?;
+        assert!(text.contains("cubic") && text.contains("0.6"), "{text}");
+        assert_eq!(cases[5].values, ["30", "cubic"]);
+        assert!((0..6).all(|i| cases[..i].iter().all(|case| case.key != cases[i].key)), "each has its own key");
+        Ok(())
+    }
+
+    #[test]
+    fn a_hole_that_cannot_be_filled_is_told_with_its_map() -> Result<()> {
+        for (from, to, said) in
+            [("${y}", "${1/0}", "is inf"), ("${y}", "${ypsilon}", "not known"), ("${y}", "${y", "not closed")]
+        {
+            let map = read(&TINY.replace(from, to), "tiny")?.remove(0);
+            let error = map.cases(false).err().map(|e| e.to_string()).unwrap_or_default();
+            assert!(error.contains(said) && error.contains("tiny"), "{error}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn every_case_of_the_program_can_be_built_or_is_refused_in_words() -> Result<()> {
+        let all = maps(None)?;
+        let cases = all.iter().map(|map| map.cases(false)).collect::<Result<Vec<_>>>()?.concat();
+        assert!(cases.len() >= 200, "{} cases: the matrix is to have 200", cases.len());
+        for case in &cases {
+            assert!(case.judge.energy.is_some() && case.judge.walls.is_some(), "{}", case.map);
+            case.scene.plan().map_err(|e| e.at(case.map.clone(), None, ""))?;
+        }
+        for map in &all {
+            assert!(map.about.ends_with('.'), "{}: {:?}", map.name, map.about);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_map_that_is_not_there_names_the_nearest() -> Result<()> {
+        let error = choose(maps(None)?, &["flaot".to_string()], false).err();
+        assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"float\"?")));
+        Ok(())
+    }
+}

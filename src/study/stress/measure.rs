@@ -1,0 +1,199 @@
+//! What of a running simulation the judge wants to know: followed step by step, never touched.
+
+use super::{
+    Case,
+    judge::{Books, Energies, Figures, draft, motion, worse},
+};
+use crate::{
+    error::Result,
+    probe::{Energy, Motion, Probe, find_solid},
+    shape::Shape,
+    simulation::Simulation,
+    solid::{Formula, Kinematics, Role, Solid, hydrostatics::equilibrium_height},
+    space::{Vector, Wedge},
+    system::System,
+};
+
+/// How often a run is looked at: an excess of energy that comes and goes lasts for many sound crossings.
+const LOOKS: f64 = 200.0;
+
+/// Follows one run.
+pub(super) struct Measure<'a, const D: usize> {
+    case: &'a Case,
+    energy: Energy,
+    books: Books,
+    courses: Vec<(Motion<D>, usize, Formula)>,
+    before: Vec<Kinematics<D>>,
+    /// Momentum (kg m/s) at the start, and what moves: Σ m |v| then.
+    momentum: (Vector<D>, f64),
+    depth: f64,
+    level: f64,
+    next: f64,
+    figures: Figures,
+}
+
+impl<'a, const D: usize> Measure<'a, D> {
+    /// Begins with the simulation at its start; `level` is the height of the still water, m.
+    pub(super) fn new(case: &'a Case, sim: &Simulation<D>, level: f64) -> Result<Self> {
+        let system = sim.system();
+        let energy = Energy::new(system);
+        let mut courses = Vec::new();
+        for course in &case.judge.motion {
+            let probe = Motion::new(system, &course.solid)?;
+            let columns = Probe::<D>::columns(&probe);
+            let Some(column) = columns.iter().position(|name| *name == course.column) else {
+                let what = format!("a motion has no column {:?}; it has {}", course.column, columns.join(", "));
+                return Err(crate::Error::scene(what));
+            };
+            courses.push((probe, column, Formula::parse(&course.formula)?));
+        }
+        let lowest = system.fluid().r.iter().map(|r| r[D - 1]).fold(f64::INFINITY, f64::min);
+        let lift = masses(system) * system.gravity().norm() * system.model().dp;
+        let mut measure = Self {
+            case,
+            books: Books::open(energies(&energy, sim), lift),
+            energy,
+            courses,
+            before: Vec::new(),
+            momentum: (momentum(system), moving(system)),
+            depth: level - lowest + 0.5 * system.model().dp,
+            level,
+            next: 0.0,
+            figures: Figures::new(),
+        };
+        measure.remember(sim);
+        measure.look(sim)?;
+        Ok(measure)
+    }
+
+    /// Told after each step, of length `dt` (s).
+    pub(super) fn step(&mut self, sim: &Simulation<D>, dt: f64) -> Result<()> {
+        self.books.work(self.before.iter().zip(sim.system().solids()).map(|(then, now)| work(then, now, dt)).sum());
+        self.remember(sim);
+        let until = self.case.scene.until;
+        if sim.time() < self.next && sim.time() < until {
+            return Ok(());
+        }
+        self.next = sim.time() + until / LOOKS;
+        self.look(sim)
+    }
+
+    /// What was found.
+    pub(super) fn figures(mut self) -> Figures {
+        self.figures.insert("energy".into(), self.books.share());
+        self.figures
+    }
+
+    fn remember(&mut self, sim: &Simulation<D>) {
+        self.before = sim.system().solids().iter().map(|solid| solid.kinematics).collect();
+    }
+
+    fn look(&mut self, sim: &Simulation<D>) -> Result<()> {
+        self.books.enter(energies(&self.energy, sim));
+        let (judge, system) = (&self.case.judge, sim.system());
+        for (name, figure) in ["walls", "bodies", "outside"].into_iter().zip(walls(system)) {
+            self.note(name, figure);
+        }
+        if judge.momentum.is_some() {
+            let pushed = system.gravity() * (masses(system) * sim.time());
+            let off = (momentum(system) - self.momentum.0 - pushed).norm();
+            self.note("momentum", off / self.momentum.1.max(pushed.norm()).max(f64::MIN_POSITIVE));
+        }
+        let courses = self.courses.iter().zip(&judge.motion).map(|((probe, column, formula), course)| {
+            let off = probe.look(sim)[*column] - formula.at(sim.time()).0;
+            (motion(course), off.abs())
+        });
+        for (name, off) in courses.collect::<Vec<_>>() {
+            self.note(&name, off);
+        }
+        if sim.time() < 0.5 * self.case.scene.until {
+            return Ok(());
+        }
+        if judge.quiet.is_some() {
+            let fastest = system.fluid().v.iter().map(|v| v.norm()).fold(0.0, worse);
+            self.note("quiet", fastest / (system.gravity().norm() * self.depth).sqrt());
+        }
+        for of in &judge.draft {
+            let solid = &system.solids()[find_solid(system, &of.solid)?];
+            let Role::Free(body) = &solid.spec.role else { continue };
+            let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+            let off = equilibrium_height(shape, pose, body.mass, system.model().rho0, self.level)?;
+            self.note(&draft(&of.solid), off.abs() / system.model().dp);
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, name: &str, figure: f64) {
+        let entry = self.figures.entry(name.into()).or_insert(0.0);
+        *entry = worse(*entry, figure);
+    }
+}
+
+fn energies<const D: usize>(probe: &Energy, sim: &Simulation<D>) -> Energies {
+    // The columns of the probe: water's kinetic, potential, compression; bodies' kinetic, potential; their sum.
+    let row = probe.look(sim);
+    Energies { kinetic: row[0] + row[3], potential: row[1] + row[4], compression: row[2] }
+}
+
+/// What a driven solid does to the water in a step (J): minus the water's load along its mean motion. The load is that of the
+/// step's last pass, in its middle where there are two.
+fn work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
+    let Role::Driven(_) = &now.spec.role else { return 0.0 };
+    let velocity = (then.velocity + now.kinematics.velocity) * 0.5;
+    let spin: Wedge<D> = (then.spin + now.kinematics.spin) * 0.5;
+    -dt * (now.load.force.dot(&velocity) + now.load.torque.power(&spin))
+}
+
+/// Mass of water and free bodies, kg.
+fn masses<const D: usize>(system: &System<D>) -> f64 {
+    let bodies: f64 = free(system).map(|(_, mass)| mass).sum();
+    system.particle_mass() * system.fluid().len() as f64 + bodies
+}
+
+/// Momentum of water and free bodies, kg m/s.
+fn momentum<const D: usize>(system: &System<D>) -> Vector<D> {
+    let water: Vector<D> = system.fluid().v.iter().sum();
+    free(system).fold(water * system.particle_mass(), |sum, (solid, mass)| sum + solid.kinematics.velocity * mass)
+}
+
+/// Σ m |v| of water and free bodies, kg m/s.
+fn moving<const D: usize>(system: &System<D>) -> f64 {
+    let water: f64 = system.fluid().v.iter().map(|v| v.norm()).sum();
+    free(system)
+        .fold(water * system.particle_mass(), |sum, (solid, mass)| sum + solid.kinematics.velocity.norm() * mass)
+}
+
+/// Free solids and their masses.
+fn free<const D: usize>(system: &System<D>) -> impl Iterator<Item = (&Solid<D>, f64)> {
+    system.solids().iter().filter_map(|solid| match &solid.spec.role {
+        Role::Free(body) => Some((solid, body.mass)),
+        _ => None,
+    })
+}
+
+/// How deep (dp) water lies inside a solid, how deep the face of a free body inside another solid, and how much water has
+/// left a tank but over its rim.
+fn walls<const D: usize>(system: &System<D>) -> [f64; 3] {
+    let (dp, skin) = (system.model().dp, system.skin());
+    let [mut deepest, mut pressed, mut outside] = [0.0; 3];
+    for (i, solid) in system.solids().iter().enumerate() {
+        let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+        let depth = |r: &Vector<D>| -shape.signed_distance(&pose.local(r)) / dp;
+        deepest = system.fluid().r.iter().map(depth).fold(deepest, worse);
+        for (k, body) in system.solids().iter().enumerate() {
+            if k != i && matches!(body.spec.role, Role::Free(_)) {
+                // Its outermost boundary particles lie half a dp behind its face.
+                pressed = skin.r[body.skin.clone()].iter().map(|r| depth(r) + 0.5).fold(pressed, worse);
+            }
+        }
+        if let Shape::Tank { size, thickness } = shape {
+            let beside = |r: &&Vector<D>| {
+                let x = pose.local(r);
+                let below = x[D - 1] < -thickness;
+                below || (x[D - 1] < size[D - 1] && (0..D - 1).any(|i| x[i] < -thickness || x[i] > size[i] + thickness))
+            };
+            outside += system.fluid().r.iter().filter(beside).count() as f64;
+        }
+    }
+    [deepest, pressed, outside]
+}

@@ -1,0 +1,156 @@
+//! One case run in memory, on one thread, within a budget, whatever happens in it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use cpu_time::ThreadTime;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Case,
+    judge::{Figures, Outcome},
+    measure::Measure,
+};
+use crate::{
+    error::{Error, Kind, Result},
+    model::Dimension,
+    run::pool,
+    simulation::Simulation,
+    solid::Dim,
+};
+
+/// Water and wet boundary particles × force passes that a case may take: about half a minute of a slow processor in 2-D, two
+/// in 3-D. In particles, not seconds, so that every machine cuts the same cases.
+pub const BUDGET: f64 = 1.5e8;
+
+/// What came out of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// The map.
+    pub map: String,
+    /// The values along its axes.
+    pub values: Vec<String>,
+    /// What makes it another than any other.
+    pub key: String,
+    /// How it ended.
+    pub end: End,
+    /// What was measured.
+    pub figures: Figures,
+    /// Simulated time reached, s.
+    pub time_s: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Water particles.
+    pub water: usize,
+    /// Processor time, s.
+    pub cpu_s: f64,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum End {
+    /// At its end.
+    Reached,
+    /// The budget was used up.
+    Cut,
+    /// It could not go on, for the reason said.
+    Stopped(String),
+    /// It was refused before the first step, for the reason said.
+    Refused(String),
+    /// The program panicked.
+    Panicked(String),
+}
+
+impl Trial {
+    /// Runs `case`.
+    ///
+    /// # Errors
+    /// `Usage` if its thread cannot be started. That the run fails is no error: the trial says so.
+    pub fn of(case: &Case) -> Result<Self> {
+        let mut trial = Self {
+            map: case.map.clone(),
+            values: case.values.clone(),
+            key: case.key.clone(),
+            end: End::Reached,
+            figures: Figures::new(),
+            time_s: 0.0,
+            steps: 0,
+            water: 0,
+            cpu_s: 0.0,
+        };
+        let pool = pool(Some(1))?;
+        let attempt = || {
+            let begun = ThreadTime::now();
+            // What is left of a run that panicked is thrown away whole; only numbers already written are kept.
+            let end = catch_unwind(AssertUnwindSafe(|| match case.scene.dimension {
+                2 => trial.attempt::<2>(case),
+                _ => trial.attempt::<3>(case),
+            }));
+            trial.end = match end {
+                Ok(Ok(end)) => end,
+                Ok(Err(error)) if error.kind == Kind::Fault => End::Stopped(said(&error)),
+                Ok(Err(error)) => End::Refused(said(&error)),
+                Err(panic) => End::Panicked(words(panic.as_ref())),
+            };
+            trial.cpu_s = begun.elapsed().as_secs_f64();
+        };
+        pool.install(attempt);
+        Ok(trial)
+    }
+
+    /// How it is to be taken: `missed` is what of its figures misses a bound.
+    pub fn outcome(&self, missed: &[String]) -> Outcome {
+        match &self.end {
+            End::Panicked(_) => Outcome::Wrong,
+            End::Stopped(_) | End::Refused(_) => Outcome::Stopped,
+            _ if !missed.is_empty() => Outcome::Wrong,
+            End::Cut => Outcome::Unfinished,
+            End::Reached => Outcome::Right,
+        }
+    }
+
+    fn attempt<const D: usize>(&mut self, case: &Case) -> Result<End>
+    where
+        Dim<D>: Dimension<D>,
+    {
+        let built = case.scene.build::<D>()?;
+        let level = built.setup.levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut sim = Simulation::new(built.setup)?;
+        self.water = sim.system().fluid().len();
+        let mut measure = Measure::new(case, &sim, level)?;
+        let (mut spent, mut passes) = (0.0, sim.passes());
+        let end = loop {
+            if sim.time() >= case.scene.until {
+                break Ok(End::Reached);
+            }
+            if spent > BUDGET {
+                break Ok(End::Cut);
+            }
+            let before = sim.time();
+            if let Err(error) = sim.step_to(case.scene.until) {
+                break Err(error);
+            }
+            measure.step(&sim, sim.time() - before)?;
+            spent += ((sim.passes() - passes) as f64) * (self.water + sim.system().wet()) as f64;
+            passes = sim.passes();
+        };
+        (self.time_s, self.steps) = (sim.time(), sim.steps());
+        self.figures = measure.figures();
+        if matches!(end, Ok(End::Cut)) {
+            // Of what belongs to the second half or the end nothing is known.
+            let asked = case.judge.bounds();
+            asked.into_iter().for_each(|(name, _)| _ = self.figures.entry(name).or_insert(0.0));
+        }
+        end
+    }
+}
+
+/// An error in one line.
+fn said(error: &Error) -> String {
+    error.what.lines().next().unwrap_or_default().into()
+}
+
+fn words(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|s| s.to_string()).or_else(|| panic.downcast_ref::<String>().cloned());
+    text.unwrap_or_else(|| "panicked without words".into())
+}
