@@ -43,6 +43,9 @@ pub struct Map {
     parts: BTreeMap<String, String>,
     #[serde(skip)]
     always: Judge,
+    /// The file that it is from, for messages.
+    #[serde(skip)]
+    file: String,
 }
 
 /// What is varied, and its values.
@@ -100,7 +103,7 @@ fn read(text: &str, name: &str) -> Result<Vec<Map>> {
         let line = e.span().map(|span| text[..span.start].matches('\n').count() + 1);
         Error::scene(e.message().to_string()).at(name, line.map(|line| (line, 1)), "")
     })?;
-    let whole = |map: Map| Map { parts: part.clone(), always: judge.clone(), ..map };
+    let whole = |map: Map| Map { parts: part.clone(), always: judge.clone(), file: name.into(), ..map };
     let all: Vec<Map> = map.into_iter().map(whole).collect();
     match (0..all.len()).find(|&i| all[..i].iter().any(|map| map.name == all[i].name)) {
         Some(i) => Err(Error::scene(format!("two maps are called {:?}", all[i].name)).at(name, None, "map.name")),
@@ -157,7 +160,7 @@ impl Map {
         let y = self.y.as_ref().map(|y| &y.values[place[1]]);
         let values: Vec<&toml::Value> = std::iter::once(&self.x.values[place[0]]).chain(y).collect();
         let words: Vec<String> = values.iter().map(|value| word(value)).collect();
-        let here = |error: Error| error.at(NAME, None, format!("{} at {}", self.name, words.join(", ")));
+        let here = |error: Error| error.at(self.file.clone(), None, format!("{} at {}", self.name, words.join(", ")));
         let fill = |text: &str| self.filled(text, &values, 0).map_err(here);
         let scene = Scene::parse(&fill(&self.scene)?, Path::new(""), &[]).map_err(|mut error| {
             error.what = format!("map {} at {}: {}", self.name, words.join(", "), error.what);
@@ -269,7 +272,7 @@ mod tests {
     #[test]
     fn a_hole_that_cannot_be_filled_is_told_with_its_map() -> Result<()> {
         for (from, to, said) in
-            [("${y}", "${1/0}", "is inf"), ("${y}", "${ypsilon}", "not known"), ("${y}", "${y", "not closed")]
+            [("${y}", "${1/0}", "is inf"), ("${y}", "${ypsilon}", "not known"), ("${tank}", "${tank", "not closed")]
         {
             let map = read(&TINY.replace(from, to), "tiny")?.remove(0);
             let error = map.cases(false).err().map(|e| e.to_string()).unwrap_or_default();
