@@ -109,6 +109,7 @@ impl<const D: usize> Simulation<D> {
     pub fn step_to(&mut self, end: f64) -> Result<()> {
         let start = Instant::now();
         if self.rescue.due(self.clock.steps) {
+            self.rescue.make_room();
             self.rescue.keep(self.clock.steps, self.clock.time, self.save()?);
         }
         let outcome = self.advance(end).or_else(|error| self.go_back(error));

@@ -51,7 +51,7 @@ pub struct Disk {
     pub frames: usize,
     /// All frames.
     pub frames_bytes: f64,
-    /// A checkpoint.
+    /// A checkpoint, before it is packed.
     pub checkpoint_bytes: f64,
 }
 
@@ -104,7 +104,9 @@ impl<const D: usize> Look<'_, D> {
         let skin = particle + (2.0 * d + 2.0) * number;
         // A frame is put together as numbers, as text and as the file's text.
         let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * picture(frames).0.max(picture(frames).1));
-        fluid * water + boundary * skin + system.list_bytes() as f64 + fluid.max(boundary) * picture
+        // States to go back to: two, and what it takes to make one.
+        let states = 3.0 * (fluid * (particle + d * number) + boundary * particle);
+        fluid * water + boundary * skin + states + system.list_bytes() as f64 + fluid.max(boundary) * picture
     }
 
     fn disk(&self, step: &Step, columns: &[usize]) -> Disk {

@@ -57,11 +57,16 @@ impl Rescue {
         !self.off && (self.kept.is_empty() || steps.is_multiple_of(EVERY))
     }
 
-    /// Keeps the state `bytes` of `steps` steps and `time` (s).
-    pub(super) fn keep(&mut self, steps: u64, time: f64, bytes: Vec<u8>) {
+    /// Makes room for another state: at most two are in memory at a time.
+    pub(super) fn make_room(&mut self) {
         if self.kept.len() == 2 {
             self.kept.remove(0);
         }
+    }
+
+    /// Keeps the state `bytes` of `steps` steps and `time` (s).
+    pub(super) fn keep(&mut self, steps: u64, time: f64, mut bytes: Vec<u8>) {
+        bytes.shrink_to_fit();
         self.kept.push((steps, time, bytes));
     }
 
@@ -95,6 +100,7 @@ mod tests {
         let mut rescue = Rescue::default();
         assert!(rescue.due(0));
         for step in [0, 500, 1000] {
+            rescue.make_room();
             rescue.keep(step, step as f64 * 1e-3, vec![(step / 500) as u8]);
         }
         assert!(rescue.due(1500) && !rescue.due(1501));

@@ -1,10 +1,10 @@
 //! Bodies lighter than the water that goes with them: foam, shells, plates.
 
 use pontoon::{
-    model::{Diffusion, Model, Sweeping, Viscosity, Walls},
+    model::{Model, Sweeping, Walls},
     shape::Shape,
     simulation::Simulation,
-    solid::{FreeBody, Role},
+    solid::Role,
     space::{Pose, Vector},
 };
 
@@ -23,63 +23,53 @@ fn submerged(shape: Shape<2>, ratio: f64) -> Simulation<2> {
     rig::simulation(model, water, 0.6, vec![rig::tank([0.8, 0.8], dp), body])
 }
 
-/// Mean upward acceleration (m/s²) of the body from 30 to 70 ms: before, the sound that the start sends out has to come back
-/// from bed and walls.
-fn acceleration(mut sim: Simulation<2>) -> f64 {
-    let mut speed = |time: f64| {
-        while sim.time() < time {
-            sim.step_to(time).unwrap();
-        }
-        sim.system().solids()[1].kinematics.velocity[1]
-    };
-    (-speed(0.03) + speed(0.07)) / 0.04
+/// Rise (m) of the body in `time` (s).
+fn rise(mut sim: Simulation<2>, time: f64) -> f64 {
+    while sim.time() < time {
+        sim.step_to(time).unwrap();
+    }
+    sim.system().solids()[1].kinematics.centre[1] - 0.3
 }
 
 #[test]
 fn a_body_lighter_than_water_starts_upwards_with_its_added_mass() {
-    // A plate B = 16 dp broad drags ¼π B² of water, a box of 16 × 10 dp 1.47 times that (Brennen 1982, between plate and
-    // square): a = (1 − ratio) g A/(added area + ratio A). The bed 0.3 m below, the surface 0.3 m above and a face at half a
-    // dp: 15 %. An explicit exchange, at half the step that just does not blow up, is ten times too fast.
-    for (size, of_plate) in [([0.16, 0.02], 1.0), ([0.16, 0.1], 1.47)] {
+    // A box B = 16 dp broad drags κ ¼π B² of water, κ = 1.16 if it is an eighth as thick and 1.41 if 0.6 as thick, between
+    // the 1 of a plate and the 1.51 of a square (Brennen 1982): a = (1 − ratio) g A/(κ ¼π B² + ratio A). In 80 ms it goes a
+    // tenth of its depth at most. The surface above, the bed below and a face at half a dp: 15 %. An explicit exchange, at
+    // half the step that just does not blow up, is four times too fast for the box and twenty for the plate at ratio 0.01.
+    let time = 0.08;
+    for (size, of_plate) in [([0.16, 0.02], 1.16), ([0.16, 0.1], 1.41)] {
         for ratio in [0.01, 0.05, 0.2] {
             let area = size[0] * size[1];
             let added = of_plate * 0.25 * std::f64::consts::PI * size[0] * size[0];
-            let exact = (1.0 - ratio) * G * area / (added + ratio * area);
-            let found = acceleration(submerged(Shape::Box { size: Vector::from(size) }, ratio));
-            assert!((found / exact - 1.0).abs() < 0.15, "{size:?}, ratio {ratio}: {found} m/s², exact {exact} m/s²");
+            let exact = 0.5 * (1.0 - ratio) * G * area / (added + ratio * area) * time * time;
+            let found = rise(submerged(Shape::Box { size: Vector::from(size) }, ratio), time);
+            assert!((found / exact - 1.0).abs() < 0.15, "{size:?}, ratio {ratio}: {found} m, exact {exact} m");
         }
     }
 }
 
 #[test]
-fn a_light_piston_goes_with_the_sound_that_it_makes() {
-    // Pushed with F, it goes at F/(ρ c A) (1 − exp(−t/T)), T = M/(ρ c A), until the echo is back after 2H/c. T is a quarter
-    // of a step. 3 %: density and speed of sound vary by 1 %, and the front of the wave is dp wide.
-    let (dp, c0, ratio) = (0.01, 20.0, 0.01);
-    let (breadth, depth, thick) = (0.1, 1.0, 0.04);
-    let mut model = Model::water(2, dp, 1.0);
-    (model.gravity, model.c0, model.viscosity) = (vec![0.0, 0.0], c0, Viscosity::None);
-    (model.diffusion, model.walls) = (Diffusion::None, Walls::Dbc);
-    let shape = Shape::Box { size: Vector::from([breadth, thick]) };
-    let mut body = FreeBody::from_density(&shape, 1000.0 * ratio);
-    (body.locked_translations, body.locked_rotations[0]) = ([true, false], true);
-    let piston =
-        rig::solid("piston", shape, Pose::at(Vector::from([0.5 * breadth, depth + 0.5 * thick])), Role::Free(body));
-    let water = rig::lattice([0.0, 0.0], [breadth, depth], dp);
-    let mut sim = rig::simulation(model, water, -1.0, vec![rig::tank([breadth, depth + 0.2], dp), piston]);
-    let force = Vector::from([0.0, -1000.0 * c0 * breadth * 0.02]);
-    let (mut sum, mut count) = (0.0, 0);
-    while sim.time() < 1.8 * depth / c0 {
-        let at = sim.system().solids()[1].kinematics.centre;
-        sim.push(1, &force, &at);
+fn a_sheet_of_foam_comes_to_rest_on_the_water() {
+    // Let fall 1 dp on water it is at rest after a second: 5 mm/s, a third of a per cent of √(g depth). It should not hop at
+    // all, and hops by a dp (docs/stability.md): 2 dp. A tenth of a dp of draft cannot be seen by particles: within 1.5 dp of it.
+    let (dp, thick) = (0.01, 0.02);
+    let water = rig::lattice([0.0, 0.0], [0.8, 0.3], dp);
+    let float = rig::float(Shape::Box { size: Vector::from([0.16, thick]) }, [0.4, 0.3 + dp + 0.5 * thick], 10.0);
+    let mut sim = rig::simulation(Model::water(2, dp, 0.3), water, 0.3, vec![rig::tank([0.8, 0.5], dp), float]);
+    let (mut highest, mut fastest) = (0.0_f64, 0.0_f64);
+    while sim.time() < 1.5 {
         sim.step().unwrap();
-        if sim.time() > 0.6 * depth / c0 {
-            sum += sim.system().solids()[1].kinematics.velocity[1];
-            count += 1;
+        let now = sim.system().solids()[1].kinematics;
+        highest = highest.max(now.centre[1]);
+        if sim.time() > 1.0 {
+            fastest = fastest.max(now.velocity.norm());
         }
     }
-    let speed = sum / f64::from(count);
-    assert!((speed / -0.02 - 1.0).abs() < 0.03, "{speed} m/s where sound allows -0.02");
+    let rests = sim.system().solids()[1].kinematics.centre[1] - 0.5 * thick - 0.3;
+    assert!(highest < 0.3 + 3.0 * dp + 0.5 * thick, "it hopped to {highest} m");
+    assert!(fastest < 5e-3, "{fastest} m/s");
+    assert!(rests.abs() < 1.5 * dp, "its lower face rests {rests} m above the water");
 }
 
 #[test]

@@ -228,7 +228,7 @@ fn water_that_solids_take_is_told() {
 
 #[test]
 fn what_comes_first_is_a_warning_and_a_run_is_told_nothing_else() {
-    let found = with(&[("solid.box.free.density", "20.0"), ("solid.box.at", "{ x = 1.0, bottom = 0.5 }")]);
+    let found = with(&[("model.c0_factor", "5"), ("solid.box.at", "{ x = 1.0, bottom = 0.5 }")]);
     assert!(found.findings.is_sorted_by_key(|f| f.severity), "{:?}", found.findings);
     let warnings = found.warnings();
     assert!(!warnings.is_empty() && warnings.len() < found.findings.len(), "{warnings:?}");
@@ -280,6 +280,8 @@ fn a_run_writes_as_much_as_was_told() {
     // Frames have a head each; rows are as long as their numbers happen to be.
     near(told.frames_bytes, bytes("frames"), 0.05);
     near(told.tables_bytes, bytes("series"), 0.2);
-    near(told.checkpoint_bytes, std::fs::metadata(out.join("checkpoint.bin")).unwrap().len() as f64, 0.05);
+    // A checkpoint is packed; how well hangs on the flow.
+    let packed = std::fs::metadata(out.join("checkpoint.bin")).unwrap().len() as f64 / told.checkpoint_bytes;
+    assert!((0.6..1.0).contains(&packed), "{packed} of what was told");
     std::fs::remove_dir_all(&out).unwrap();
 }

@@ -115,7 +115,8 @@ impl Trial {
     {
         let built = case.scene.build::<D>()?;
         let level = built.setup.levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut sim = Simulation::new(built.setup)?;
+        // A rescue would move the border that is asked for.
+        let mut sim = Simulation::new(built.setup)?.without_rescue();
         self.water = sim.system().fluid().len();
         let mut measure = Measure::new(case, &sim, level)?;
         let (mut spent, mut passes) = (0.0, sim.passes());
