@@ -184,7 +184,7 @@ where
 }
 
 /// The error of a scene in a dimension that this program was built without.
-fn not_built(dimension: usize) -> Error {
+pub(crate) fn not_built(dimension: usize) -> Error {
     Error::new(Kind::Usage, format!("this program was built without the {dimension}-D engine"))
         .help(format!("build it with the feature dim{dimension}: cargo build --release --features dim{dimension}"))
 }

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    run::pool,
+    run::{not_built, pool},
     simulation::Simulation,
     solid::Dim,
 };
@@ -83,8 +83,11 @@ impl Trial {
             let begun = ThreadTime::now();
             // What is left of a run that panicked is thrown away whole; only numbers already written are kept.
             let end = catch_unwind(AssertUnwindSafe(|| match case.scene.dimension {
+                #[cfg(feature = "dim2")]
                 2 => trial.attempt::<2>(case),
-                _ => trial.attempt::<3>(case),
+                #[cfg(feature = "dim3")]
+                3 => trial.attempt::<3>(case),
+                other => Err(not_built(other)),
             }));
             trial.end = match end {
                 Ok(Ok(end)) => end,
