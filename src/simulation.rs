@@ -124,9 +124,9 @@ impl<const D: usize> Simulation<D> {
         }
         match self.rescue.answer(&error.what, self.clock.steps, self.clock.time) {
             Some(good) => {
-                let log = std::mem::take(&mut self.rescue.log);
+                let rescue = std::mem::take(&mut self.rescue);
                 self.restore(&good)?;
-                self.rescue.log = log;
+                self.rescue = rescue;
                 Ok(())
             }
             None => Err(error),
@@ -298,7 +298,8 @@ impl<const D: usize> Simulation<D> {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
         self.system.restore(kept.system)?;
-        (self.stepper, self.clock, self.rescue.log) = (kept.stepper, kept.clock, kept.rescued);
+        (self.stepper, self.clock) = (kept.stepper, kept.clock);
+        self.rescue.begin_again(kept.rescued);
         Ok(())
     }
 }

@@ -57,6 +57,11 @@ impl Rescue {
         !self.off && (self.kept.is_empty() || steps.is_multiple_of(EVERY))
     }
 
+    /// Forgets the states kept, of another course of the run; `log` is what happened before.
+    pub(super) fn begin_again(&mut self, log: Vec<Rescued>) {
+        (self.kept, self.log) = (Vec::new(), log);
+    }
+
     /// Makes room for another state: at most two are in memory at a time.
     pub(super) fn make_room(&mut self) {
         if self.kept.len() == 2 {
