@@ -14,6 +14,7 @@ use crate::{
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps},
+        wall::Barrier,
     },
     near::Near,
     solid::{Dim, HasEngine},
@@ -290,20 +291,21 @@ struct Make<'a, const D: usize> {
 impl<const D: usize> Make<'_, D> {
     fn with_kernel<K: kernel::Kernel + 'static, P: Term<D> + 'static>(&self, kernel: K, base: P) -> Box<dyn Sweep<D>> {
         let damped = || kernel.damped(&self.medium);
+        let held = (base, Barrier::new(kernel, &self.medium));
         // Which part of the viscosity acts between water and solids.
         let beside = if self.model.slip == Slip::Free { 0.0 } else { 1.0 };
         match self.model.viscosity {
-            Viscosity::None => self.with_viscosity(kernel, base, base),
+            Viscosity::None => self.with_viscosity(kernel, base, held),
             Viscosity::Artificial(v) => {
                 let wall = Artificial { alpha: v.alpha * beside };
-                self.with_viscosity(kernel, (base, v.term(&self.medium)), (base, wall.term(&self.medium)))
+                self.with_viscosity(kernel, (base, v.term(&self.medium)), (held, wall.term(&self.medium)))
             }
             Viscosity::Laminar(v) => {
                 let wall = Laminar { nu0: v.nu0 * beside };
                 self.with_viscosity(
                     kernel,
                     (base, v.term(&self.units, damped())),
-                    (base, wall.term(&self.units, damped())),
+                    (held, wall.term(&self.units, damped())),
                 )
             }
             Viscosity::Sps(v) => {
@@ -311,17 +313,17 @@ impl<const D: usize> Make<'_, D> {
                 self.with_viscosity(
                     kernel,
                     (base, v.terms(&self.units, damped())),
-                    (base, wall.terms(&self.units, damped())),
+                    (held, wall.terms(&self.units, damped())),
                 )
             }
         }
     }
 
-    fn with_viscosity<K: kernel::Kernel + 'static, P: Term<D> + 'static>(
+    fn with_viscosity<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
         &self,
         kernel: K,
-        inner: P,
-        wall: P,
+        inner: T,
+        wall: W,
     ) -> Box<dyn Sweep<D>> {
         match self.model.shifting {
             Shifting::None => self.with_shifting(kernel, inner, wall),

@@ -4,7 +4,7 @@ mod rescue;
 
 use std::time::{Duration, Instant};
 
-pub use crate::system::Setup;
+pub use crate::system::{Escape, Limits, Lost, Setup};
 pub use rescue::Rescued;
 
 use rayon::prelude::*;
@@ -28,6 +28,8 @@ pub struct Simulation<const D: usize> {
     bodies: Bodies<D>,
     clock: Clock,
     rescue: Rescue,
+    /// Particles taken out, and when, s.
+    lost: Vec<(f64, Lost<D>)>,
     stepping: Duration,
 }
 
@@ -60,6 +62,7 @@ struct Kept<const D: usize> {
     engine: Option<Vec<u8>>,
     light: Vec<Held>,
     rescued: Vec<Rescued>,
+    lost: Vec<(f64, Lost<D>)>,
 }
 
 impl<const D: usize> Simulation<D> {
@@ -88,7 +91,8 @@ impl<const D: usize> Simulation<D> {
         let mut system = System::new(setup)?;
         let bodies = Bodies::new(engine, Light::find(&mut system, longest));
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
-        let simulation = Self { system, stepper, bodies, clock, rescue: Rescue::default(), stepping: Duration::ZERO };
+        let (rescue, lost, stepping) = (Rescue::default(), Vec::new(), Duration::ZERO);
+        let simulation = Self { system, stepper, bodies, clock, rescue, lost, stepping };
         simulation.guard()?;
         Ok(simulation)
     }
@@ -144,9 +148,15 @@ impl<const D: usize> Simulation<D> {
         &self.rescue.log
     }
 
+    /// The particles that left the domain and were taken out ([`Escape::Remove`]), and when that was seen (s).
+    pub fn lost(&self) -> &[(f64, Lost<D>)] {
+        &self.lost
+    }
+
     fn advance(&mut self, end: f64) -> Result<()> {
         if let Some(renewal) = self.system.renew() {
             self.stepper.follow(&renewal, self.system.medium().rho0);
+            self.lost.extend(renewal.lost.into_iter().map(|lost| (self.clock.time, lost)));
         }
         self.system.rates();
         let allowed = self.limit();
@@ -278,7 +288,7 @@ impl<const D: usize> Simulation<D> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
         let rescued = self.rescue.log.clone();
-        let kept = Kept { system, stepper, clock, engine, light: self.bodies.held(), rescued };
+        let kept = Kept { system, stepper, clock, engine, light: self.bodies.held(), rescued, lost: self.lost.clone() };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
@@ -298,7 +308,7 @@ impl<const D: usize> Simulation<D> {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
         self.system.restore(kept.system)?;
-        (self.stepper, self.clock) = (kept.stepper, kept.clock);
+        (self.stepper, self.clock, self.lost) = (kept.stepper, kept.clock, kept.lost);
         self.rescue.begin_again(kept.rescued);
         Ok(())
     }

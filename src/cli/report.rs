@@ -94,6 +94,10 @@ pub fn ended(outcome: &Outcome) -> String {
         ],
         vec!["speed".into(), format!("{} particle-steps/s", short(manifest.particle_steps_per_second))],
     ]);
+    if manifest.removed > 0 {
+        let what = if manifest.removed == 1 { "particle" } else { "particles" };
+        let _ = writeln!(text, "\n{} water {what} left the domain and went: removed.csv", manifest.removed);
+    }
     if !outcome.bodies.is_empty() {
         let _ = write!(text, "\n{}", bodies(&outcome.bodies));
     }

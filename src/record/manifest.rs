@@ -26,6 +26,9 @@ pub struct Manifest {
     pub threads: usize,
     /// How many particles of each sort.
     pub particles: Count,
+    /// Water particles that left the domain and were taken out.
+    #[serde(default)]
+    pub removed: usize,
     /// Steps done.
     pub steps: u64,
     /// Simulated time, s.

@@ -2,6 +2,7 @@
 
 pub mod frame;
 pub mod manifest;
+pub mod removed;
 pub mod restart;
 pub mod table;
 

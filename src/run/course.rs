@@ -17,7 +17,7 @@ use crate::{
     record::{
         Checkpoint, Manifest,
         manifest::{Count, InForce, Machine, Status},
-        restart, write_whole,
+        removed, restart, write_whole,
     },
     scene::{Built, Plan, Resolved, Scene},
     simulation::Simulation,
@@ -36,6 +36,8 @@ pub struct Course<const D: usize> {
     resumed: bool,
     /// Whether the last checkpoint in the folder, if there is one, may become the one before.
     good: bool,
+    /// How many removed particles are listed.
+    listed: usize,
     /// When the last checkpoint was written, and how long after it the next is due (s).
     saved: (Instant, f64),
     begun: Instant,
@@ -94,6 +96,7 @@ where
             checkpoint,
             resumed,
             good,
+            listed: 0,
             saved,
             begun,
             begun_cpu,
@@ -147,6 +150,7 @@ impl<const D: usize> Course<D> {
                 self.save()?;
             }
             if written.checkpoint || written.frame {
+                self.list_removed()?;
                 self.update();
                 self.manifest.write(&self.folder)?;
             }
@@ -154,9 +158,11 @@ impl<const D: usize> Course<D> {
         }
         if self.sim.time() < until {
             self.save()?;
+            self.list_removed()?;
             return Ok(Status::Interrupted);
         }
         self.outputs.finish(&self.sim)?;
+        self.list_removed()?;
         Ok(Status::Finished)
     }
 
@@ -166,6 +172,16 @@ impl<const D: usize> Course<D> {
             watch.rescued(how);
             self.manifest.warnings.push(how.to_string());
         }
+    }
+
+    /// Lists the particles that were removed, if that is news.
+    fn list_removed(&mut self) -> Result<()> {
+        let lost = self.sim.lost();
+        if lost.len() != self.listed {
+            removed::write(&self.folder, lost)?;
+            self.listed = lost.len();
+        }
+        Ok(())
     }
 
     /// Writes the checkpoint.
@@ -185,6 +201,7 @@ impl<const D: usize> Course<D> {
         if let Some(fault) = &error.fault {
             // Whatever of this fails, the fault itself is what the user must hear.
             reports.push(self.outputs.last_frame(&self.sim));
+            reports.push(self.list_removed());
             let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
             reports.push(write_whole(&self.folder.join(folder::FAILURE), &text));
         }
@@ -204,6 +221,7 @@ impl<const D: usize> Course<D> {
     /// Brings the manifest's figures up to date.
     fn update(&mut self) {
         let now = self.progress();
+        self.manifest.removed = self.sim.lost().len();
         self.manifest.steps = now.steps;
         self.manifest.simulated_s = now.time;
         self.manifest.wall_s = now.wall;
@@ -211,7 +229,7 @@ impl<const D: usize> Course<D> {
         self.manifest.particle_steps = self.checkpoint.particle_steps;
         self.manifest.particle_steps_per_second = now.rate;
         let there = |name: &&str| self.folder.join(name).exists();
-        let fixed = ["frames.pvd", restart::LAST, restart::PREVIOUS, folder::FAILURE, folder::SCENE];
+        let fixed = ["frames.pvd", restart::LAST, restart::PREVIOUS, removed::REMOVED, folder::FAILURE, folder::SCENE];
         let mut files: Vec<String> = self.outputs.tables().collect();
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
         files.push("manifest.json".into());
@@ -272,6 +290,7 @@ fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: 
         engine: String::new(),
         threads: rayon::current_num_threads(),
         particles: Count { fluid: sim.system().fluid().len(), boundary: sim.system().skin().len() },
+        removed: 0,
         steps: 0,
         simulated_s: 0.0,
         until_s: plan.until,

@@ -91,7 +91,10 @@ impl Scene {
         scene.affordable(&water, &solids)?;
         let regions: Vec<Region<D>> =
             water.iter().map(|b| Region { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
-        let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> = solids.iter().map(|s| (&s.shape, &s.pose)).collect();
+        // A driven solid starts where its law says.
+        let starts: Vec<Pose<D>> = solids.iter().map(|s| s.start().pose).collect();
+        let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
+            solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
         let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| scene.origin.place(e, "water"))?;
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
             filled.r.retain(|x| water.iter().any(|body| body.holds(x) && x[D - 1] < body.level));
@@ -110,7 +113,8 @@ impl Scene {
         if let Some(part) = scene.scatter {
             scatter(&mut filled.r, part * scene.dp);
         }
-        let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, domain, periodic };
+        let limits = scene.limits();
+        let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, domain, periodic, limits };
         let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
         let still = Still { level: still_level, depth: still_level - bottom };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })

@@ -54,7 +54,26 @@ impl Scene {
             restitution: words.restitution.unwrap_or_default(),
         };
         spec.check().map_err(|e| self.origin.place(e, key))?;
+        self.heavy_enough(key, &spec)?;
         Ok(spec)
+    }
+
+    /// Refuses a free body under gravity that weighs less than half a water particle: it would ride on single particles.
+    fn heavy_enough<const D: usize>(&self, key: &str, spec: &SolidSpec<D>) -> Result<()> {
+        let (rho0, heavy) = (self.model.rho0.unwrap_or_default(), self.gravity.iter().flatten().any(|g| *g != 0.0));
+        let Role::Free(body) = &spec.role else { return Ok(()) };
+        let least = 0.5 * rho0 * self.dp.powi(D as i32);
+        if !heavy || body.mass >= least {
+            return Ok(());
+        }
+        let part = 0.5 * body.mass / least;
+        let what = format!("\"{}\" weighs {part:.2} of a water particle: no draft could come of that", spec.name);
+        let dp = 0.99 * self.dp * (body.mass / least).powf(1.0 / D as f64);
+        Err(self.wrong_with(
+            &format!("{key}.free"),
+            what,
+            format!("half of one is the least: write  dp = {dp:.2e}  or less"),
+        ))
     }
 
     fn motion<const D: usize>(&self, key: &str, words: &DrivenWords) -> Result<Motion<D>> {

@@ -11,6 +11,7 @@ use super::{
     document::Origin,
     flexible::{FieldWords, Frames},
     flow::PeriodicWords,
+    guard::GuardWords,
 };
 use crate::{
     model::{Diffusion, Kernel, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
@@ -42,6 +43,9 @@ pub struct Scene {
     /// Periodic sides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<PeriodicWords>,
+    /// What the guards let pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub guard: Option<GuardWords>,
     /// Bodies of water.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub water: Vec<WaterWords>,
@@ -285,6 +289,7 @@ impl Scene {
             scatter: None,
             domain: None,
             periodic: None,
+            guard: None,
             water: Vec::new(),
             solid: Vec::new(),
             model: ModelWords::default(),

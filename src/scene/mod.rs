@@ -12,6 +12,7 @@ pub mod flexible;
 pub mod flow;
 pub mod format;
 mod geometry;
+mod guard;
 pub mod resolve;
 mod sets;
 pub mod shipped;
@@ -31,6 +32,7 @@ pub use format::{
     BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,
 };
 pub(crate) use geometry::world_bounds;
+pub use guard::GuardWords;
 pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 pub use size::Size;

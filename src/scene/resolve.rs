@@ -44,10 +44,16 @@ pub(super) type Reasons = BTreeMap<String, String>;
 /// Wall time from one checkpoint to the next where nobody says it, s.
 pub(super) const CHECKPOINT_WALL: f64 = 600.0;
 
-struct Filler(Reasons);
+pub(super) struct Filler(Reasons);
 
 impl Filler {
-    fn fill<T>(&mut self, key: impl Into<String>, slot: &mut Option<T>, value: T, reason: impl Into<String>) {
+    pub(super) fn fill<T>(
+        &mut self,
+        key: impl Into<String>,
+        slot: &mut Option<T>,
+        value: T,
+        reason: impl Into<String>,
+    ) {
         if slot.is_none() {
             *slot = Some(value);
             self.0.insert(key.into(), reason.into());
@@ -82,6 +88,7 @@ impl Scene {
         let usual = Model::water(scene.dimension, scene.dp, 1.0);
         filler.fill("gravity", &mut scene.gravity, usual.gravity.clone(), "the earth's, down the last axis");
         scene.fill_laws(&mut filler, &usual);
+        scene.fill_guard(&mut filler);
         scene.fill_solids(&mut filler);
         scene.fill_records(&mut filler);
         Ok((scene, filler.0))
@@ -262,7 +269,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 16] = [
+const ORDER: [&str; 17] = [
     "title",
     "dimension",
     "dp",
@@ -271,6 +278,7 @@ const ORDER: [&str; 16] = [
     "scatter",
     "domain",
     "periodic",
+    "guard",
     "water",
     "solid",
     "model",

@@ -11,6 +11,9 @@ use super::{
 };
 use crate::error::{Error, Result, nearest};
 
+/// Largest Courant number: still water round a float stays still at 0.8, and boils at 1.0 without another sign.
+const CFL_MAX: f64 = 0.8;
+
 /// Fields that a frame can hold.
 pub(super) const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
 
@@ -70,6 +73,7 @@ impl Scene {
             self.corners("domain", domain)?;
         }
         self.verify_periodic()?;
+        self.verify_guard()?;
         if self.water.is_empty() {
             return Err(self.wrong("water", "the scene has no water"));
         }
@@ -132,12 +136,19 @@ impl Scene {
             return both("c0", "c0_factor", "give one: c0 = c0_factor · √(g · depth)");
         }
         let reach = 2.0 * self.h() / self.dp;
-        if !(1.6..=12.0).contains(&reach) {
+        if !(1.9..=12.0).contains(&reach) {
             let key = if model.c_h.is_some() { "model.c_h" } else { "model.h_over_dp" };
-            let what = format!("the kernel would reach {reach:.2} dp; sums over neighbours need 1.6 to 12");
+            let what = format!("the kernel would reach {reach:.2} dp; sums over neighbours need 1.9 to 12");
             return Err(self.wrong_with(key, what, "write  h_over_dp = 1.7"));
         }
-        Ok(())
+        match time.cfl {
+            Some(cfl) if cfl > CFL_MAX => {
+                let what =
+                    format!("a Courant number of {cfl}: above {CFL_MAX} water boils, often without another sign");
+                Err(self.wrong_with("time.cfl", what, "write  cfl = 0.4; with Verlet  cfl = 0.2"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Smoothing length h, m.

@@ -2,7 +2,8 @@
 //!
 //! A cell inside a solid goes; of the cells that a face cuts so many go that along each side of the solid as much
 //! water is gone as it displaces. Where a solid then does not fit the lattice, the water around it is packed: it leaves no gap
-//! to the face and comes no nearer to it than half a dp. Where everything fits, the lattice stays exact.
+//! to the face and comes no nearer to it than half a dp. Where everything fits, the lattice stays exact. A gap between two
+//! solids that is too narrow for a row of particles stays dry.
 
 use super::{
     Shape,
@@ -75,6 +76,11 @@ pub fn fill<const D: usize>(regions: &[Region<D>], solids: &[(&Shape<D>, &Pose<D
         });
     }
     fit(&mut filled.r, &home, &lattices, &mut obstacles, dp);
+    if obstacles.iter().any(Obstacle::is_misfit) {
+        let before = filled.r.len();
+        filled.r.retain(|x| !obstacles.iter().any(|o| o.cramps(x)));
+        filled.overlapped += before - filled.r.len();
+    }
     Ok(filled)
 }
 
@@ -270,6 +276,16 @@ mod tests {
         let filled = fill(&[pool([2.0, 2.0, 2.0])], &[(&ball, &at)], 0.1).unwrap();
         assert!((filled.overlapped as f64 - 268.1).abs() < 8.0, "{}", filled.overlapped);
         fits(&filled, &ball, &at, 0.1);
+    }
+
+    #[test]
+    fn a_gap_too_narrow_for_a_row_of_particles_stays_dry() {
+        let tank = Shape::Tank { size: Vector::from([2.1, 5.0]), thickness: 0.4 };
+        let (block, at) = (Shape::Box { size: Vector::from([2.0, 1.0]) }, Pose::at(Vector::from([1.05, 1.5])));
+        let filled = fill(&[pool([2.1, 3.0])], &[(&tank, &Pose::identity()), (&block, &at)], 0.1).unwrap();
+        // Half a dp is left on either side: water would lie a quarter of dp from both faces.
+        assert!(filled.r.iter().all(|x| x[1] <= 1.0 || x[1] >= 2.0));
+        assert!(filled.r.len() >= 2 * 10 * 21 - 21, "what is below and above stays: {}", filled.r.len());
     }
 
     #[test]

@@ -15,6 +15,8 @@ const ZONE: f64 = 6.0;
 const LAYERS: usize = 2;
 /// The widest gap, beyond half a dp, between a face and its water that is let be, dp.
 const GAP: f64 = 0.1;
+/// Least distance of packed water from a face, dp: what lies nearer is squeezed between two of them.
+const NARROW: f64 = 0.35;
 
 /// A solid in the way of the water.
 pub(super) struct Obstacle<'a, const D: usize> {
@@ -95,6 +97,16 @@ impl<'a, const D: usize> Obstacle<'a, D> {
             let is_above = n[D - 1] < -0.5;
             self.misfit = n.amax() > 1.0 - 1e-6 && (!is_above || in_water(&(x - n * self.dp)));
         }
+    }
+
+    /// Whether water on the lattice does not fit it.
+    pub fn is_misfit(&self) -> bool {
+        self.misfit
+    }
+
+    /// Whether the water point `x` lies so near to the face that it can only be in a gap too narrow for a row of particles.
+    pub fn cramps(&self, x: &Vector<D>) -> bool {
+        self.close.contains(x) && self.distance(x) < NARROW * self.dp
     }
 
     /// Puts `x` back to half a dp from the face if it is nearer. Returns how far (m) it may then go without

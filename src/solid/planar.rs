@@ -24,6 +24,9 @@ use crate::{
 
 const D: usize = 2;
 
+/// A spin in the engine's terms.
+type Angular = f64;
+
 /// Names the engine that wrote a state.
 const ENGINE: &str = "rapier2d-f64 0.36.1";
 

@@ -24,6 +24,9 @@ use crate::{
 
 const D: usize = 3;
 
+/// A spin in the engine's terms.
+type Angular = Point;
+
 /// Names the engine that wrote a state.
 const ENGINE: &str = "rapier3d-f64 0.36.1";
 

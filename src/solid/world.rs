@@ -2,12 +2,15 @@
 //! (`rapier`) and gives what differs.
 //!
 //! Settings after measurements with this version: one solver iteration, because more of them freeze the
-//! load over sub-steps and feed energy into what oscillates; contacts as critically damped springs of
-//! min(0.05/dt, 1000) Hz, which sink g/(2πf)²; no contact recycling, which leaves small bodies hanging on
-//! ledges; no sleep; no continuous detection, since a step of the water moves no body through a wall.
-//! Colliders have the true faces (no contact skin), friction and restitution of a pair are the means of
-//! both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh
+//! load over sub-steps and feed energy into what oscillates, but where bodies of unlike mass are about to touch,
+//! whose contacts more of them stiffen; contacts as critically damped springs of min(0.05/dt, 1000) Hz for each
+//! iteration, which sink g/(2πf)² under the lighter body's weight; no contact recycling, which leaves small
+//! bodies hanging on ledges; no sleep; no continuous detection, since a step of the water moves no body
+//! through a wall. Bodies that bounce do so in `impact`, not by the springs. Colliders have the true faces
+//! (no contact skin), friction and restitution of a pair are the means of both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh
 //! nothing.
+
+mod impact;
 
 use std::collections::BTreeMap;
 
@@ -18,7 +21,9 @@ use super::rapier::{
     parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
     pipeline::PhysicsWorld,
 };
-use super::{D, ENGINE, from_angular, from_rotation, lock, mass_properties, parts, to_angular, to_rotation, tune};
+use super::{
+    Angular, D, ENGINE, from_angular, from_rotation, lock, mass_properties, parts, to_angular, to_rotation, tune,
+};
 use crate::{
     error::{Error, Result},
     shape::Shape,
@@ -35,16 +40,27 @@ const OVERLAP_MAX: f64 = 0.05;
 /// Damping ratio of a contact, –: critical.
 const CONTACT_DAMPING: f64 = 1.0;
 
+/// Most iterations: a contact 4096 times as stiff.
+const ITERATIONS_MAX: usize = 64;
+
 /// A world of rigid bodies in this dimension.
 pub(in crate::solid) struct World {
     world: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
+    restitution: Vec<f64>,
+    /// Iterations of a step in which bodies may touch.
+    iterations: usize,
+    /// Who bounced in the last step, with the impulse, N s.
+    met: Vec<Met>,
     /// A tenth of the thinnest free body, m: contacts are foreseen from there.
     reach: f64,
-    /// The dt for which the contacts' stiffness was last set, s; 0 before the first step.
+    /// The time of an iteration for which the contacts' stiffness was last set, s; 0 before the first step.
     tuned_for: f64,
     pushes: Vec<Push>,
 }
+
+/// Two solids and the impulse (N s) with which they bounced off each other at a point.
+type Met = (usize, usize, f64);
 
 /// A user's force (N) on a solid at a world point (m).
 type Push = (usize, Vector<D>, Vector<D>);
@@ -73,7 +89,9 @@ impl World {
         let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
         settle(&mut world, reach);
         let bodies = (0..solids.len()).map(|i| insert(&mut world, i, &solids[i], &start[i], &all_parts[i])).collect();
-        Ok(Self { world, bodies, reach, tuned_for: 0.0, pushes: Vec::new() })
+        let restitution = solids.iter().map(|solid| solid.restitution).collect();
+        let (iterations, met, pushes) = (iterations(solids), Vec::new(), Vec::new());
+        Ok(Self { world, bodies, restitution, iterations, met, reach, tuned_for: 0.0, pushes })
     }
 
     fn body(&self, solid: usize) -> &RigidBody {
@@ -87,12 +105,20 @@ impl World {
         let parameters = &mut self.world.integration_parameters;
         parameters.dt = dt;
         parameters.normalized_prediction_distance = self.reach.max(2.0 * fastest * dt);
-        if !(0.5..=2.0).contains(&(dt / self.tuned_for)) {
-            let softness = SpringCoefficients::new((0.05 / dt).min(1000.0), CONTACT_DAMPING);
+        let iterations = parameters.num_solver_iterations as f64;
+        if !(0.5..=2.0).contains(&(dt / iterations / self.tuned_for)) {
+            let softness = SpringCoefficients::new((0.05 / dt).min(1000.0) * iterations, CONTACT_DAMPING);
             parameters.contact_softness = softness;
             parameters.static_contact_softness = softness;
-            self.tuned_for = dt;
+            self.tuned_for = dt / iterations;
         }
+    }
+
+    /// Chooses the next step's iterations: a change of them jolts what presses, so it comes while nothing touches yet.
+    fn foresee(&mut self) {
+        let near =
+            self.world.narrow_phase.contact_pairs().any(|pair| pair.manifolds().iter().any(|m| !m.points.is_empty()));
+        self.world.integration_parameters.num_solver_iterations = if near { self.iterations } else { 1 };
     }
 
     /// Replaces the forces on the free bodies by `loads` and the pushes.
@@ -189,7 +215,10 @@ impl Engine<D> for World {
         self.load(loads)?;
         self.drive(driven)?;
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
+        let pair = |a: usize, b: usize| 0.5 * (self.restitution[a] + self.restitution[b]);
+        self.met = impact::rebound(&mut self.world, dt, pair);
         self.world.step();
+        self.foresee();
         self.examine(&before)
     }
 
@@ -214,6 +243,9 @@ impl Engine<D> for World {
 
     fn contacts(&self) -> Vec<(usize, usize, f64)> {
         let mut forces = BTreeMap::new();
+        for &(a, b, impulse) in &self.met {
+            *forces.entry((a, b)).or_insert(0.0) += impulse / self.world.integration_parameters.dt;
+        }
         for pair in self.world.narrow_phase.contact_pairs() {
             let force = pair.total_impulse_magnitude() / self.world.integration_parameters.dt;
             if force > 0.0 {
@@ -225,7 +257,7 @@ impl Engine<D> for World {
     }
 
     fn save(&self) -> Result<Vec<u8>> {
-        postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.pushes)).map_err(restart)
+        postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.met, &self.pushes)).map_err(restart)
     }
 
     fn restore(&mut self, bytes: &[u8]) -> Result<()> {
@@ -233,16 +265,29 @@ impl Engine<D> for World {
         if engine != ENGINE {
             return Err(restart(format!("they were written by {engine}, this is {ENGINE}")));
         }
-        let (world, tuned_for, pushes): (PhysicsWorld, f64, Vec<Push>) = postcard::from_bytes(rest).map_err(restart)?;
+        let (world, tuned_for, met, pushes): (PhysicsWorld, f64, Vec<Met>, Vec<Push>) =
+            postcard::from_bytes(rest).map_err(restart)?;
         let same = world.bodies.len() == self.bodies.len()
             && self.bodies.iter().all(|&h| world.bodies.contains(h))
             && pushes.iter().all(|push| push.0 < self.bodies.len());
         if !same {
             return Err(restart(format!("{} solids, where the scene has {}", world.bodies.len(), self.bodies.len())));
         }
-        (self.world, self.tuned_for, self.pushes) = (world, tuned_for, pushes);
+        (self.world, self.tuned_for, self.met, self.pushes) = (world, tuned_for, met, pushes);
         Ok(())
     }
+}
+
+/// Iterations that keep contacts as firm under the heaviest of the free solids as under the lightest: a contact yields to what
+/// lies on the lighter body with 1/n².
+fn iterations(solids: &[SolidSpec<D>]) -> usize {
+    let masses = solids.iter().filter_map(|solid| match &solid.role {
+        Role::Free(body) => Some(body.mass),
+        _ => None,
+    });
+    let (lightest, heaviest) = masses.fold((f64::INFINITY, 0.0_f64), |(a, b), mass| (a.min(mass), b.max(mass)));
+    let wanted = (heaviest / lightest).sqrt() / 1.5;
+    if wanted > 1.0 { (wanted.ceil() as usize).next_power_of_two().min(ITERATIONS_MAX) } else { 1 }
 }
 
 /// Settings that hold for the whole run.
@@ -282,7 +327,7 @@ fn insert(
             .density(0.0)
             .contact_skin(0.0)
             .friction(solid.friction)
-            .restitution(solid.restitution)
+            .restitution(0.0)
             .user_data(index as u128);
         world.insert_collider(collider, Some(handle));
     }

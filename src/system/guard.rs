@@ -1,17 +1,87 @@
-//! The valid range of a water particle, how far the water has moved, and who leaves the range first.
+//! The valid range of a water particle, how far the water has moved, who leaves the range first, and who is taken out.
+
+use std::fmt;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::System;
 use crate::{
-    particles::PER_TASK,
+    particles::{PER_TASK, Particles as Fluid},
     space::{Bounds, Vector},
 };
+
+/// The valid range of a water particle. Scene words `[guard]`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Largest speed over c₀, –.
+    pub speed: f64,
+    /// Smallest and largest density over ρ₀, –.
+    pub density: [f64; 2],
+    /// What becomes of a particle outside the domain.
+    pub escape: Escape,
+}
+
+/// What becomes of a particle that leaves the domain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Escape {
+    /// It stops the run.
+    Stop,
+    /// It is taken out, and listed with its last state.
+    Remove,
+}
+
+impl Default for Limits {
+    /// Half of c₀, where the density is off by an eighth and the water is no longer weakly compressible; half of ρ₀ and half as
+    /// much again; a particle that leaves stops the run.
+    fn default() -> Self {
+        Self { speed: 0.5, density: [0.5, 1.5], escape: Escape::Stop }
+    }
+}
+
+/// A particle that left the domain and was taken out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lost<const D: usize> {
+    /// Its number.
+    pub id: u32,
+    /// Its last place, m.
+    pub r: Vector<D>,
+    /// Its last velocity, m/s.
+    pub v: Vector<D>,
+    /// Its last density, kg/m³.
+    pub rho: f64,
+    /// The side by which it left, and so its likely way: "over a wall".
+    pub way: Way,
+}
+
+/// How a particle is likely to have left the domain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Way {
+    /// By the top: thrown up.
+    Up,
+    /// By a side, higher than the water stood at the start: over a wall.
+    Over,
+    /// By the bottom, or by a side lower than that: through a gap or a wall that is too thin.
+    Through,
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Up => "thrown up out of the domain",
+            Self::Over => "splashed over a wall",
+            Self::Through => "went through a wall or a gap",
+        })
+    }
+}
 
 /// What a step looks at while it moves a particle.
 #[derive(Clone, Copy)]
 pub(crate) struct Guard<const D: usize> {
-    c2: f64,
+    speed2: f64,
+    rho: [f64; 2],
+    /// Everywhere, if those that leave the domain are taken out.
     domain: Bounds<D>,
 }
 
@@ -41,7 +111,8 @@ impl<const D: usize> Guard<D> {
     #[inline(always)]
     pub(crate) fn see(&self, then: &Vector<D>, r: &Vector<D>, v: &Vector<D>, rho: f64) -> Seen {
         // Whatever is not finite fails one of these comparisons.
-        let valid = v.norm_squared() <= self.c2 && rho > 0.0 && rho < f64::INFINITY && self.domain.contains(r);
+        let [least, most] = self.rho;
+        let valid = v.norm_squared() <= self.speed2 && rho >= least && rho <= most && self.domain.contains(r);
         Seen { moved2: (r - then).norm_squared(), valid }
     }
 }
@@ -49,7 +120,12 @@ impl<const D: usize> Guard<D> {
 impl<const D: usize> System<D> {
     /// What looks at the water while it is moved.
     pub(crate) fn guard(&self) -> Guard<D> {
-        Guard { c2: self.medium.c0 * self.medium.c0, domain: self.domain }
+        let Limits { speed, density, escape } = self.limits;
+        let domain = match escape {
+            Escape::Stop => self.domain,
+            Escape::Remove => Bounds { min: Vector::repeat(f64::MIN), max: Vector::repeat(f64::MAX) },
+        };
+        Guard { speed2: (speed * self.medium.c0).powi(2), rho: density.map(|x| x * self.medium.rho0), domain }
     }
 
     /// Looks at all water now.
@@ -64,17 +140,17 @@ impl<const D: usize> System<D> {
         if self.seen.valid {
             return None;
         }
-        let limit2 = self.medium.c0 * self.medium.c0;
+        let Guard { speed2, rho: [least, most], domain } = self.guard();
         let bad = |i: usize| {
             let (r, v, rho) = (&self.fluid.r[i], &self.fluid.v[i], self.fluid.rho[i]);
             let finite = r.iter().chain(v.iter()).all(|x| x.is_finite()) && rho.is_finite();
             if !finite {
                 Some(("non-finite state", NON_FINITE))
-            } else if v.norm_squared() > limit2 {
-                Some(("speed above the speed of sound", TOO_FAST))
-            } else if rho <= 0.0 {
-                Some(("density at or below zero", TOO_FAST))
-            } else if !self.domain.contains(r) {
+            } else if v.norm_squared() > speed2 {
+                Some(("speed too near to that of sound (guard.speed)", TOO_FAST))
+            } else if !(least..=most).contains(&rho) {
+                Some(("density out of bounds (guard.density)", TOO_FAST))
+            } else if !domain.contains(r) {
                 Some(("escape from the domain", ESCAPED))
             } else {
                 None
@@ -83,11 +159,41 @@ impl<const D: usize> System<D> {
         let i = (0..self.fluid.len()).into_par_iter().with_min_len(PER_TASK).find_first(|&i| bad(i).is_some())?;
         bad(i).map(|(what, cause)| (i, what, cause))
     }
+
+    /// Takes those water particles out of `order` that have left the domain, if that is what becomes of them.
+    pub(super) fn dismiss(&self, order: &mut Vec<u32>) -> Vec<Lost<D>> {
+        let Fluid { r, v, rho, id } = &self.fluid;
+        let mut lost = Vec::new();
+        if self.limits.escape == Escape::Remove {
+            order.retain(|&i| {
+                let i = i as usize;
+                let inside = self.domain.contains(&r[i]);
+                if !inside {
+                    let way = self.way(&r[i]);
+                    lost.push(Lost { id: id[i], r: r[i], v: v[i], rho: rho[i], way });
+                }
+                inside
+            });
+        }
+        lost
+    }
+
+    /// How a particle at `x` (m), outside the domain, is likely to have come there.
+    fn way(&self, x: &Vector<D>) -> Way {
+        let up = D - 1;
+        if x[up] > self.domain.max[up] {
+            Way::Up
+        } else if x[up] > self.top {
+            Way::Over
+        } else {
+            Way::Through
+        }
+    }
 }
 
 const NON_FINITE: &str = "Usual cause: two particles or bodies pressed into one another at the start, or a time step \
     too long for a very light body. Try a smaller time.cfl, and look at the last frame.";
 const TOO_FAST: &str = "Usual cause: a speed of sound too low for this flow, or a body that starts inside water. Raise \
-    model.c0 (or model.c0_factor), or lower time.cfl.";
+    model.c0 (or model.c0_factor), or lower time.cfl; or allow more in [guard].";
 const ESCAPED: &str = "Usual cause: splash over a wall, or a wall thinner than the kernel's support. Make the walls \
-    higher or thicker, or set domain.min and domain.max wider.";
+    higher or thicker, or set domain.min and domain.max wider; or let such particles go:  [guard] escape = \"remove\".";

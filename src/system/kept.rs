@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::System;
+use super::{Escape, System};
 use crate::{
     error::{Error, Kind, Result},
     particles::Particles,
@@ -48,10 +48,11 @@ impl<const D: usize> System<D> {
 
     /// Goes back to a kept state of the same scene.
     pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
-        let real = self.real();
         let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
         let stress = if self.stress.is_empty() { 0 } else { kept.fluid.len() };
-        let same = kept.fluid.len().checked_sub(kept.images.len()) == Some(real)
+        let Some(real) = kept.fluid.len().checked_sub(kept.images.len()) else { return Err(other()) };
+        let all = if self.limits.escape == Escape::Remove { real <= self.count } else { real == self.count };
+        let same = all
             && kept.images.iter().all(|&i| (i as usize) < real)
             && kept.skin.len() == self.skin.len()
             && kept.kinematics.len() == self.solids.len()
@@ -63,8 +64,7 @@ impl<const D: usize> System<D> {
             && whole(&kept.fluid)
             && whole(&kept.skin);
         if !same {
-            return Err(Error::new(Kind::Restart, "the checkpoint holds another number of particles")
-                .help("it belongs to another scene: resume in the folder of its own run"));
+            return Err(other());
         }
         let (water, poses) = kept.built;
         let mut skin = kept.skin.r.clone();
@@ -94,4 +94,9 @@ impl<const D: usize> System<D> {
         self.look();
         Ok(())
     }
+}
+
+fn other() -> Error {
+    Error::new(Kind::Restart, "the checkpoint holds another number of particles")
+        .help("it belongs to another scene: resume in the folder of its own run")
 }

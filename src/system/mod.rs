@@ -9,6 +9,7 @@ mod view;
 mod walls;
 
 pub(crate) use guard::Seen;
+pub use guard::{Escape, Limits, Lost};
 pub(crate) use kept::SystemState;
 use periodic::Images;
 pub use periodic::Periodic;
@@ -22,8 +23,12 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    law::{Extra, Medium, state::State, wall::Slip},
-    model::{Dimension, Model, Viscosity},
+    law::{
+        Extra, Medium,
+        state::State,
+        wall::{Cover, Slip},
+    },
+    model::{Dimension, Model, Viscosity, Walls},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
     solid::{Dim, Load, Solid, skin},
@@ -42,14 +47,18 @@ pub struct System<const D: usize> {
     pub(crate) skin: Particles<D>,
     /// Places of the boundary particles in their solids' frames, m.
     local: Vec<Vector<D>>,
-    /// To which densities (kg/m³) they settle; empty unless they do.
-    goals: Vec<f64>,
+    /// To which densities (kg/m³) they settle, and with which part to more; empty unless they do.
+    goals: Vec<(f64, f64)>,
+    /// What tells how far water fills what they see of it.
+    cover: Cover,
     /// Whether somebody asks how deep in the water they are.
     pub(crate) feels: bool,
     /// How much of the kernel's support of each wet one is full of water, Σ V_f W, –; empty unless somebody asks.
     pub(crate) immersed: Vec<f64>,
-    /// Outward normals in their solids' frames, and depths (m) below the face; empty unless water sticks to the face.
-    faces: Vec<(Vector<D>, f64)>,
+    /// How deep they lie below the face, m; empty unless they settle or water sticks to the face.
+    depths: Vec<f64>,
+    /// Outward normals in their solids' frames; empty unless water sticks to the face.
+    normals: Vec<Vector<D>>,
     /// The velocities (m/s) that they show the water; empty if those are their own.
     shown: Vec<Vector<D>>,
     /// The box around each solid's skin in its own frame, m.
@@ -58,6 +67,10 @@ pub struct System<const D: usize> {
     built: Option<Vec<Pose<D>>>,
     pub(crate) solids: Vec<Solid<D>>,
     domain: Bounds<D>,
+    limits: Limits,
+    /// Height of the highest water at the start, m, and number of water particles then.
+    top: f64,
+    count: usize,
     images: Images<D>,
     /// Stress of the water from the last pass, m²/s²; empty unless the viscosity has one.
     stress: Vec<Matrix<D>>,
@@ -75,11 +88,13 @@ pub struct System<const D: usize> {
 }
 
 /// How arrays of particles must change when new lists are made.
-pub(crate) struct Renewal {
+pub(crate) struct Renewal<const D: usize> {
     /// New order of the water: `order[new] = old`.
     pub(crate) order: Vec<u32>,
     /// Boundary particles that have lost all their water.
     pub(crate) dried: Vec<u32>,
+    /// Particles that were taken out.
+    pub(crate) lost: Vec<Lost<D>>,
 }
 
 impl<const D: usize> System<D> {
@@ -89,7 +104,7 @@ impl<const D: usize> System<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let Setup { model, water, levels, velocity, pressure, solids: specs, domain, periodic } = setup;
+        let Setup { model, water, levels, velocity, pressure, solids: specs, domain, periodic, limits } = setup;
         let (medium, reach) = (model.medium::<D>(), model.reach());
         let state = State::new(medium.c0, medium.gamma);
         // Depth along g: the level is a height on the last axis.
@@ -102,8 +117,9 @@ impl<const D: usize> System<D> {
         v.resize(water.len(), Vector::zeros());
         let id = (0..water.len() as u32).collect();
         let fluid = Particles { r: water, v, rho, id };
+        let (top, count) = (fluid.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max), fluid.len());
         let (mut skin, mut local, mut solids) = (Particles::default(), Vec::new(), Vec::new());
-        let mut faces = Vec::new();
+        let (mut depths, mut normals) = (Vec::new(), Vec::new());
         for spec in specs {
             let kinematics = spec.start();
             let first = skin.len();
@@ -111,9 +127,11 @@ impl<const D: usize> System<D> {
                 skin.push(kinematics.pose.point(&point.r), medium.rho0);
                 local.push(point.r);
             }
+            if model.slip == Slip::None || model.walls == Walls::Settling {
+                depths.par_extend(local[first..].par_iter().map(|r| -spec.shape.signed_distance(r)));
+            }
             if model.slip == Slip::None {
-                let face = |r: &Vector<D>| (spec.shape.outward(r, 0.05 * model.dp), -spec.shape.signed_distance(r));
-                faces.extend(local[first..].iter().map(face));
+                normals.par_extend(local[first..].par_iter().map(|r| spec.shape.outward(r, 0.05 * model.dp)));
             }
             if skin.len() == first {
                 return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
@@ -126,6 +144,7 @@ impl<const D: usize> System<D> {
         let everything = Bounds::around(&fluid.r).union(&Bounds::around(&skin.r));
         let domain = domain.unwrap_or_else(|| everything.grown(everything.size().max() + reach));
         let boxes = solids.iter().map(|s: &Solid<D>| Bounds::around(&local[s.skin.clone()])).collect();
+        let cover = Cover::new(|r2| model.kernel_value(r2, D) * medium.volume0(), model.dp, reach, D);
         let mut system = Self {
             sweep: Dim::<D>::sweep(&model),
             near: Near::new(reach, model.dp, model.sweep.level()),
@@ -150,13 +169,18 @@ impl<const D: usize> System<D> {
             skin,
             local,
             goals: Vec::new(),
+            cover,
             feels: false,
             immersed: Vec::new(),
-            faces,
+            depths,
+            normals,
             shown: Vec::new(),
             boxes,
             solids,
             domain,
+            limits,
+            top,
+            count,
             images: Images::new(periodic, reach),
         };
         system.place_all();
@@ -169,14 +193,14 @@ impl<const D: usize> System<D> {
 
     /// Sorts the water along the columns and makes new neighbour lists, if they are due; returns what whoever keeps
     /// arrays of particles must follow.
-    pub(crate) fn renew(&mut self) -> Option<Renewal> {
+    pub(crate) fn renew(&mut self) -> Option<Renewal<D>> {
         if !self.due() {
             return None;
         }
         let start = Instant::now();
-        let order = self.reorder();
+        let (order, lost) = self.reorder();
         self.listing += start.elapsed();
-        Some(Renewal { order, dried: self.lists() })
+        Some(Renewal { order, dried: self.lists(), lost })
     }
 
     /// Makes new lists within a step if they are due, the water left in its order.

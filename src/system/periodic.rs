@@ -4,7 +4,7 @@
 //! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
 //! counts the water leaves images out. Solids have none: they reach beyond the sides as far as the images do.
 
-use super::{System, permute};
+use super::{Lost, System, permute};
 use crate::{
     error::{Error, Result},
     model::Model,
@@ -90,12 +90,14 @@ impl<const D: usize> System<D> {
         self.fluid.len() - self.images.of.len()
     }
 
-    /// Wraps the water round the periodic sides, sorts it along the columns and puts new images at its end; returns the order:
-    /// `order[new] = old`, for an image that of what it mirrors.
-    pub(super) fn reorder(&mut self) -> Vec<u32> {
+    /// Wraps the water round the periodic sides, takes out what is to be, sorts it along the columns and puts new images at its
+    /// end; returns the order, `order[new] = old`, for an image that of what it mirrors, and what was taken out.
+    pub(super) fn reorder(&mut self) -> (Vec<u32>, Vec<Lost<D>>) {
         let real = self.real();
         self.images.wrap(&mut self.fluid.r[..real]);
         let mut order = self.near.order(&self.fluid.r[..real]);
+        let lost = self.dismiss(&mut order);
+        let real = order.len();
         let mut images = Vec::new();
         if self.images.any() {
             let sorted: Vec<Vector<D>> = order.iter().map(|&i| self.fluid.r[i as usize]).collect();
@@ -112,7 +114,7 @@ impl<const D: usize> System<D> {
         }
         self.images.of = images.into_iter().map(|(of, _)| of).collect();
         self.sums.resize(self.fluid.len(), Sums::zero());
-        order
+        (order, lost)
     }
 
     /// Gives the images the rates of what they mirror.

@@ -1,6 +1,9 @@
 //! What a simulation starts from.
 
-use super::periodic::{self, Periodic};
+use super::{
+    guard::Limits,
+    periodic::{self, Periodic},
+};
 use crate::{
     error::{Error, Result},
     model::Model,
@@ -27,13 +30,15 @@ pub struct Setup<const D: usize> {
     pub domain: Option<Bounds<D>>,
     /// Which sides are periodic.
     pub periodic: Periodic<D>,
+    /// The valid range of a water particle.
+    pub limits: Limits,
 }
 
 impl<const D: usize> Setup<D> {
     /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
     pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
         let (velocity, pressure, periodic) = (Vec::new(), Vec::new(), [None; D]);
-        Self { model, water, levels, solids, velocity, pressure, domain: None, periodic }
+        Self { model, water, levels, solids, velocity, pressure, domain: None, periodic, limits: Limits::default() }
     }
 
     /// Refuses a setup whose constants have no meaning.

@@ -47,8 +47,9 @@ impl<const D: usize> System<D> {
         let settled = settled(dt, h, c0);
         for (k, &i) in self.near.wet().iter().enumerate() {
             let i = i as usize;
-            let own = Dbc.close(rho(k, i, self.skin.rho[i]), rho0);
-            self.skin.rho[i] = self.goals.get(i).map_or(own, |goal| own + (goal - own) * settled);
+            let (goal, cover) = self.goals.get(i).copied().unwrap_or((rho0, 0.0));
+            let own = Dbc.close(rho(k, i, self.skin.rho[i]), goal.min(rho0));
+            self.skin.rho[i] = own + (goal - own) * if goal > own { settled * cover } else { settled };
         }
     }
 
@@ -76,14 +77,17 @@ impl<const D: usize> System<D> {
 
     /// Makes goals of the pressures of `fits`, one for each wet boundary particle.
     fn aim_at(&mut self, fits: &[Fit<f64, D>]) {
-        let density = |(&i, fit): (&u32, &Fit<f64, D>)| {
+        let goal = |(&i, fit): (&u32, &Fit<f64, D>)| {
             let i = i as usize;
-            let pull = self.medium.gravity - self.owner(i).acceleration_at(&self.skin.r[i]);
-            self.medium.rho0 * (1.0 + self.state.excess(fit.close(&pull)))
+            let owner = self.owner(i);
+            let pull = self.medium.gravity - owner.acceleration_at(&self.skin.r[i]);
+            let depth = self.depths[i];
+            let density = self.medium.rho0 * (1.0 + self.state.excess(fit.close(&pull, depth)));
+            (density, self.cover.part(fit.weight, depth))
         };
         let wet = self.near.wet();
-        let goals: Vec<f64> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(density).collect();
-        self.goals.resize(self.skin.len(), self.medium.rho0);
+        let goals: Vec<(f64, f64)> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(goal).collect();
+        self.goals.resize(self.skin.len(), (self.medium.rho0, 0.0));
         for (&i, goal) in wet.iter().zip(goals) {
             self.goals[i as usize] = goal;
         }
@@ -93,9 +97,8 @@ impl<const D: usize> System<D> {
     fn show(&mut self, fits: &[Fit<f64, D>]) {
         let velocity = |(&i, fit): (&u32, &Fit<f64, D>)| {
             let i = i as usize;
-            let (normal, depth) = self.faces[i];
-            let normal = self.owner(i).kinematics.pose.rotation * normal;
-            sticking(fit, self.skin.v[i], &normal, depth)
+            let normal = self.owner(i).kinematics.pose.rotation * self.normals[i];
+            sticking(fit, self.skin.v[i], &normal, self.depths[i])
         };
         let wet = self.near.wet();
         let shown: Vec<Vector<D>> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(velocity).collect();

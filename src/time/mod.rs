@@ -47,7 +47,7 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// Follows the particles to new lists in water of reference density `rho0` (kg/m³).
-    pub(crate) fn follow(&mut self, renewal: &Renewal, rho0: f64) {
+    pub(crate) fn follow(&mut self, renewal: &Renewal<D>, rho0: f64) {
         if let Self::Verlet(verlet) = self {
             verlet.follow(renewal, rho0);
         }

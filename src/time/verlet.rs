@@ -65,7 +65,7 @@ impl<const D: usize> Verlet<D> {
     }
 
     /// Follows the water into a new order; the dried boundary particles are at `rho0` (kg/m³).
-    pub(crate) fn follow(&mut self, renewal: &Renewal, rho0: f64) {
+    pub(crate) fn follow(&mut self, renewal: &Renewal<D>, rho0: f64) {
         permute(&mut self.v_before, &renewal.order);
         permute(&mut self.rho_before, &renewal.order);
         if !self.skin_rho_before.is_empty() {

@@ -1,6 +1,11 @@
 //! Guards: what they see, and what a run does about it.
 
-use pontoon::{error::Kind, model::Model, simulation::Simulation, space::Vector};
+use pontoon::{
+    error::Kind,
+    model::Model,
+    simulation::{Escape, Limits, Setup, Simulation},
+    space::{Bounds, Vector},
+};
 
 use crate::rig;
 
@@ -66,4 +71,75 @@ fn a_healthy_run_is_not_changed_by_a_bit() {
     steps(&mut without, 600);
     assert!(with.rescued().is_empty());
     assert!(with.save().unwrap() == without.save().unwrap());
+}
+
+/// A block of water that falls out of a domain whose sides are a metre away, with these limits.
+fn falling(limits: Limits) -> Simulation<2> {
+    let dp = 0.02;
+    let water = rig::lattice([0.0, 0.0], [0.1, 0.1], dp);
+    let levels = vec![0.1; water.len()];
+    let mut setup = Setup::new(Model::water(2, dp, 10.0), water, levels, vec![]);
+    setup.domain = Some(Bounds { min: Vector::from([-1.0, -0.05]), max: Vector::from([1.1, 1.0]) });
+    setup.limits = limits;
+    Simulation::new(setup).expect("a sound setup").without_rescue()
+}
+
+#[test]
+fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
+    let mut stops = falling(Limits::default());
+    let error = (0..10_000).find_map(|_| stops.step().err()).expect("the water falls out");
+    assert!(error.to_string().contains("escape from the domain"), "{error}");
+    let mut goes_on = falling(Limits { escape: Escape::Remove, ..Limits::default() });
+    while goes_on.system().fluid().len() > 5 {
+        goes_on.step().expect("those that leave are taken out");
+    }
+    // Twenty of twenty-five are gone, each listed once, below the domain, on its way down.
+    let lost = goes_on.lost();
+    assert_eq!(lost.len(), 25 - goes_on.system().fluid().len());
+    let mut ids: Vec<u32> =
+        lost.iter().map(|(_, lost)| lost.id).chain(goes_on.system().fluid().id.iter().copied()).collect();
+    ids.sort_unstable();
+    assert!(ids.iter().copied().eq(0..25), "{ids:?}");
+    for (t, lost) in lost {
+        assert!(*t > 0.0 && lost.r[1] < -0.05 && lost.v[1] < 0.0, "{t} {lost:?}");
+        assert!(lost.way.to_string().contains("through"), "{lost:?}");
+    }
+}
+
+#[test]
+fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
+    let limits = Limits { escape: Escape::Remove, ..Limits::default() };
+    let mut whole = falling(limits);
+    while whole.lost().is_empty() {
+        whole.step().unwrap();
+    }
+    let kept = whole.save().unwrap();
+    let mut again = falling(limits);
+    again.restore(&kept).unwrap();
+    for sim in [&mut whole, &mut again] {
+        (0..50).for_each(|_| sim.step().unwrap());
+    }
+    assert!(whole.save().unwrap() == again.save().unwrap());
+}
+
+#[test]
+fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
+    for (limits, word) in [
+        (Limits { density: [0.9, 1.1], ..Limits::default() }, "guard.density"),
+        (Limits { speed: 0.1, ..Limits::default() }, "guard.speed"),
+    ] {
+        let plant = |sim: &mut Simulation<2>| {
+            let c0 = sim.system().model().c0;
+            match word {
+                "guard.density" => sim.set_water_density(|_| 1150.0),
+                _ => sim.set_water_velocity(|_| Vector::from([0.2 * c0, 0.0])),
+            }
+        };
+        let (mut narrow, mut usual) = (falling(limits), falling(Limits::default()));
+        plant(&mut narrow);
+        plant(&mut usual);
+        let error = narrow.step().expect_err("outside what the scene allows");
+        assert!(error.to_string().contains(word), "{error}");
+        usual.step().expect("inside what is usual");
+    }
 }

@@ -10,7 +10,7 @@ use pontoon::{
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
-        wall::{Fit, settled, sticking},
+        wall::{Barrier, Cover, Fit, settled, sticking},
     },
     model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
     space::Vector,
@@ -227,10 +227,56 @@ fn fit(p: impl Fn(&Vector<3>) -> f64) -> Fit<f64, 3> {
 fn the_pressure_of_water_that_moves_with_a_wall_is_extrapolated_to_it_exactly() {
     let pull = Vector::from([1.0, -2.0, -9.81]);
     // ∇P = ρ₀ (g − a): linear.
-    let p = fit(|r| 7.0 + pull.dot(r)).close(&pull);
+    let p = fit(|r| 7.0 + pull.dot(r)).close(&pull, 0.01);
     assert!((p - 7.0).abs() < 1e-12, "{p}");
-    assert_eq!(fit(|r| pull.dot(r) - 1.0).close(&pull), 0.0, "a wall does not suck");
-    assert_eq!(Fit::<f64, 3>::all(0.0).close(&pull), 0.0, "no water, no pressure");
+    assert_eq!(Fit::<f64, 3>::all(0.0).close(&pull, 0.01), 0.0, "no water, no pressure");
+}
+
+#[test]
+fn a_face_is_never_sucked_at() {
+    let (g, deep) = (Vector::from([0.0, 0.0, -9.81]), 0.004);
+    let at = |below: f64, p: f64| {
+        let mut fit = Fit::all(0.0);
+        fit.add(0.3, p, 1.0, [0.0, 0.0, below]);
+        fit.close(&g, deep)
+    };
+    // Water 6 mm below the particle under no pressure: the face 4 mm below it has less than none, and is given none.
+    assert!((at(0.006, 0.0) + 9.81 * deep).abs() < 1e-15);
+    // With 0.03 m²/s² it has 0.03 − g · 2 mm.
+    assert!((at(0.006, 0.03) - (0.03 - 9.81 * 0.006)).abs() < 1e-15);
+    // Above a bed the particle has at least none itself.
+    assert_eq!(at(-0.006, -1.0), 0.0);
+}
+
+#[test]
+fn a_wall_settles_where_water_is_before_it_and_neither_beside_spray_nor_in_a_film() {
+    let (dp, h) = (0.01, 0.017);
+    let kernel = Wendland::new(h, 2);
+    let cover = Cover::new(|r2: f64| kernel.w(r2) * dp * dp, dp, 2.0 * h, 2);
+    for depth in [0.5 * dp, 1.5 * dp] {
+        let rows = |n: i32| -> f64 {
+            let row = |j: i32| depth + (f64::from(j) + 0.5) * dp;
+            (0..n)
+                .flat_map(|j| (-4..=4).map(move |i| (i, j)))
+                .fold(0.0, |sum, (i, j)| sum + kernel.w((f64::from(i) * dp).powi(2) + row(j).powi(2)) * dp * dp)
+        };
+        assert!((cover.part(rows(4), depth) - 1.0).abs() < 1e-6, "a half space of water");
+        assert_eq!(cover.part(rows(1), depth), 0.0, "a film of one row");
+        assert_eq!(cover.part(kernel.w((depth + 0.5 * dp).powi(2)) * dp * dp, depth), 0.0, "a particle of spray");
+    }
+}
+
+#[test]
+fn the_barrier_is_felt_by_none_but_what_is_pressed_into_a_face() {
+    let (medium, mut dice) = (medium(), Dice(7));
+    let barrier = Barrier::new(Wendland::new(medium.h, 3), &medium);
+    for _ in 0..200 {
+        let [ab, _] = pair(&mut dice);
+        let near = ab.r2.sqrt() < 0.75 * medium.dp;
+        let push = barrier.along_r(&ab, 0.0);
+        // Along −∂W, which is positive: apart.
+        assert!(if near { push < 0.0 } else { push == 0.0 }, "{push} at {} dp", ab.r2.sqrt() / medium.dp);
+    }
 }
 
 #[test]

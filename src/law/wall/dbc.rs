@@ -1,14 +1,14 @@
 //! Dynamic boundary particles: they obey continuity as water does, but not momentum, and their density is
-//! kept at ρ₀ or above, so that a wall never sucks.
+//! kept from falling below a least one, ρ₀ unless the wall settles, so that a wall never sucks.
 
 /// Dynamic boundary condition [@crespo2007].
 #[derive(Clone, Copy, Debug)]
 pub struct Dbc;
 
 impl Dbc {
-    /// The density (kg/m³) that a boundary particle of density `rho` shows.
+    /// The density (kg/m³) that a boundary particle of density `rho` shows, `least` being that at which its face bears nothing.
     #[inline(always)]
-    pub fn close(&self, rho: f64, rho0: f64) -> f64 {
-        rho.max(rho0)
+    pub fn close(&self, rho: f64, least: f64) -> f64 {
+        rho.max(least)
     }
 }

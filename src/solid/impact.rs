@@ -1,0 +1,210 @@
+//! Impacts: bodies that meet part with e times the speed at which they met, at every point of contact at once.
+//!
+//! Newton's law (Principia, 1687) with Coulomb friction, v_n⁺ = −e v_n⁻ and |J_t| ≤ μ J_n, before the step in which they would touch;
+//! where friction and restitution together would make energy, friction is left out. The engine's own contacts are springs
+//! without restitution, which hold what rests. Compiled for each dimension as part of the world: `super` names the engine.
+
+use super::{Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
+
+/// How far ahead touching is foreseen, in steps: loads change the speed meanwhile.
+const AHEAD: f64 = 1.5;
+
+/// Slowest impact, over what gravity adds to a speed in a step: slower ones are what rests.
+const SLOWEST: f64 = 4.0;
+
+/// Sweeps over all points at most; a flat face takes some tens.
+const SWEEPS: usize = 400;
+
+/// A point at which two bodies are about to touch.
+struct Touch {
+    bodies: [RigidBodyHandle; 2],
+    at: Point,
+    /// From the first to the second.
+    normal: Point,
+    /// Speed at which they meet, negative, m/s.
+    meeting: f64,
+    restitution: f64,
+    friction: f64,
+    /// Speed that a unit of impulse along the normal gives, 1/kg.
+    response: f64,
+    /// Impulses so far, N s.
+    along: f64,
+    across: Point,
+}
+
+/// Lets the bodies of `world` that are to touch in a step `dt` (s) part again. `restitution` of the pair of two colliders' owners.
+/// Gives who met, with the impulse (N s).
+pub(super) fn rebound(
+    world: &mut PhysicsWorld,
+    dt: f64,
+    restitution: impl Fn(usize, usize) -> f64,
+) -> Vec<(usize, usize, f64)> {
+    let mut met = Vec::new();
+    let mut touches = find(world, dt, restitution, &mut met);
+    if touches.is_empty() {
+        return Vec::new();
+    }
+    let before = Motions::of(world, &touches);
+    solve(world, &mut touches);
+    if before.energy(world) > before.energy * (1.0 + 1e-12) {
+        before.put_back(world);
+        for touch in &mut touches {
+            (touch.friction, touch.along, touch.across) = (0.0, 0.0, Point::ZERO);
+        }
+        solve(world, &mut touches);
+    }
+    met.iter().zip(&touches).map(|(&(a, b), touch)| (a, b, touch.along)).collect()
+}
+
+/// The points of all pairs of which one is to touch at speed, and in `met` whose they are.
+fn find(
+    world: &PhysicsWorld,
+    dt: f64,
+    restitution: impl Fn(usize, usize) -> f64,
+    met: &mut Vec<(usize, usize)>,
+) -> Vec<Touch> {
+    let slowest = SLOWEST * world.gravity.length() * dt;
+    let mut touches = Vec::new();
+    for pair in world.narrow_phase.contact_pairs() {
+        let colliders = [&world.colliders[pair.collider1], &world.colliders[pair.collider2]];
+        let owners = colliders.map(|c| c.user_data as usize);
+        let e = restitution(owners[0], owners[1]);
+        let (Some(first), Some(second)) = (colliders[0].parent(), colliders[1].parent()) else { continue };
+        if e == 0.0 {
+            continue;
+        }
+        let (bodies, friction) = ([first, second], 0.5 * (colliders[0].friction() + colliders[1].friction()));
+        let (mut close, mut struck) = (Vec::new(), false);
+        for manifold in pair.manifolds() {
+            let poses = [
+                colliders[0].position() * manifold.subshape_pos1().copied().unwrap_or(Frame::IDENTITY),
+                colliders[1].position() * manifold.subshape_pos2().copied().unwrap_or(Frame::IDENTITY),
+            ];
+            let normal = poses[0].rotation * manifold.local_n1;
+            for point in &manifold.points {
+                let (p1, p2) = (poses[0] * point.local_p1, poses[1] * point.local_p2);
+                let (gap, at) = ((p2 - p1).dot(normal), 0.5 * (p1 + p2));
+                let meeting = parting(world, bodies, at).dot(normal);
+                struck |= meeting < -slowest && gap + AHEAD * meeting * dt < 0.0;
+                if meeting < 0.0 && gap + 2.0 * AHEAD * meeting * dt < 0.0 {
+                    let (along, across) = (0.0, Point::ZERO);
+                    close.push(Touch {
+                        bodies,
+                        at,
+                        normal,
+                        meeting,
+                        restitution: e,
+                        friction,
+                        response: 0.0,
+                        along,
+                        across,
+                    });
+                }
+            }
+        }
+        if struck {
+            met.extend(close.iter().map(|_| (owners[0].min(owners[1]), owners[0].max(owners[1]))));
+            touches.extend(close);
+        }
+    }
+    touches
+}
+
+/// Velocity (m/s) of the second body less that of the first at a point.
+fn parting(world: &PhysicsWorld, [a, b]: [RigidBodyHandle; 2], at: Point) -> Point {
+    world.bodies[b].velocity_at_point(at) - world.bodies[a].velocity_at_point(at)
+}
+
+/// Gives both bodies of a touch the `impulse` (N s), the first its opposite.
+fn give(world: &mut PhysicsWorld, touch: &Touch, impulse: Point) {
+    let [a, b] = touch.bodies;
+    world.bodies[a].apply_impulse_at_point(-impulse, touch.at, false);
+    world.bodies[b].apply_impulse_at_point(impulse, touch.at, false);
+}
+
+/// The speed along `direction` that a unit of impulse along it gives at a touch, 1/kg.
+fn response(world: &mut PhysicsWorld, touch: &Touch, direction: Point) -> f64 {
+    let held = touch.bodies.map(|body| (world.bodies[body].linvel(), world.bodies[body].angvel()));
+    let before = parting(world, touch.bodies, touch.at);
+    give(world, touch, direction);
+    let gained = (parting(world, touch.bodies, touch.at) - before).dot(direction);
+    for (body, (velocity, spin)) in touch.bodies.into_iter().zip(held) {
+        set(world, body, velocity, spin);
+    }
+    gained
+}
+
+fn set(world: &mut PhysicsWorld, body: RigidBodyHandle, velocity: Point, spin: Angular) {
+    if world.bodies[body].is_dynamic() {
+        world.bodies[body].set_linvel(velocity, false);
+        world.bodies[body].set_angvel(spin, false);
+    }
+}
+
+/// Finds the impulses, one point after the other until nothing changes any more, and gives them.
+fn solve(world: &mut PhysicsWorld, touches: &mut [Touch]) {
+    for touch in touches.iter_mut() {
+        touch.response = response(world, touch, touch.normal);
+    }
+    for _ in 0..SWEEPS {
+        let mut change: f64 = 0.0;
+        for touch in touches.iter_mut() {
+            let wanted = -touch.restitution * touch.meeting;
+            let lacks = wanted - parting(world, touch.bodies, touch.at).dot(touch.normal);
+            let along = (touch.along + lacks / touch.response).max(0.0);
+            change = change.max((along - touch.along).abs() * touch.response / wanted);
+            give(world, touch, touch.normal * (along - touch.along));
+            touch.along = along;
+            if touch.friction > 0.0 {
+                rub(world, touch);
+            }
+        }
+        if change < 1e-10 {
+            break;
+        }
+    }
+}
+
+/// Lets friction stop the sliding at a touch, as far as the impulse along the normal allows.
+fn rub(world: &mut PhysicsWorld, touch: &mut Touch) {
+    let velocity = parting(world, touch.bodies, touch.at);
+    let sliding = velocity - touch.normal * velocity.dot(touch.normal);
+    let speed = sliding.length();
+    if speed <= 1e-12 * touch.meeting.abs() {
+        return;
+    }
+    let stop = touch.across - sliding / response(world, touch, sliding / speed);
+    let most = touch.friction * touch.along;
+    let across = if stop.length() > most { stop * (most / stop.length()) } else { stop };
+    give(world, touch, across - touch.across);
+    touch.across = across;
+}
+
+/// The velocities of the bodies that take part, and their energy, J.
+struct Motions {
+    bodies: Vec<(RigidBodyHandle, Point, Angular)>,
+    energy: f64,
+}
+
+impl Motions {
+    fn of(world: &PhysicsWorld, touches: &[Touch]) -> Self {
+        let mut handles: Vec<_> = touches.iter().flat_map(|touch| touch.bodies).collect();
+        handles.sort_by_key(|handle| handle.into_raw_parts());
+        handles.dedup();
+        handles.retain(|&handle| world.bodies[handle].is_dynamic());
+        let motion = |handle: RigidBodyHandle| (handle, world.bodies[handle].linvel(), world.bodies[handle].angvel());
+        let mut motions = Self { bodies: handles.into_iter().map(motion).collect(), energy: 0.0 };
+        motions.energy = motions.energy(world);
+        motions
+    }
+
+    fn energy(&self, world: &PhysicsWorld) -> f64 {
+        self.bodies.iter().map(|(handle, ..)| world.bodies[*handle].kinetic_energy()).sum()
+    }
+
+    fn put_back(&self, world: &mut PhysicsWorld) {
+        for &(body, velocity, spin) in &self.bodies {
+            set(world, body, velocity, spin);
+        }
+    }
+}
