@@ -1,9 +1,11 @@
 //! What the engine promises, in both dimensions.
 
+use std::sync::Arc;
+
 use super::{Dim, Engine, Formula, FreeBody, HasEngine, Law, Load, Motion, Role, SolidSpec};
 use crate::{
     error::{Kind, Result},
-    shape::Shape,
+    shape::{Contact, Mesh, Shape},
     space::{Matrix, Pose, Vector, Wedge},
 };
 
@@ -304,5 +306,63 @@ fn every_shape_is_felt_at_its_true_face() {
     for (shape, at, face) in deep {
         let height = settled(shape.clone(), at, face);
         assert!((height - face).abs() < 20e-6, "{shape:?}: {height} for {face}");
+    }
+}
+
+/// A block around the origin as a mesh; with `notch` its top has a groove along y, down to the middle.
+fn meshed(size: [f64; 3], notch: bool, contact: Contact) -> Shape<3> {
+    let [x, y, z] = size.map(|s| 0.5 * s);
+    let mut outline = vec![[-x, -z], [x, -z], [x, z], [-x, z]];
+    if notch {
+        outline.splice(3..3, [[0.3 * x, z], [0.3 * x, 0.0], [-0.3 * x, 0.0], [-0.3 * x, z]]);
+    }
+    let n = outline.len() as u32;
+    let at = |y: f64| outline.iter().map(move |p| Vector::from([p[0], y, p[1]]));
+    let points: Vec<Vector<3>> = at(-y).chain(at(y)).collect();
+    // Along the outline counter-clockwise seen from −y: the left end as it stands, the right one reversed.
+    let flat: &[[u32; 3]] = if notch {
+        &[[0, 1, 5], [0, 5, 6], [0, 6, 7], [5, 1, 4], [1, 2, 3], [1, 3, 4]]
+    } else {
+        &[[0, 1, 2], [0, 2, 3]]
+    };
+    let ends = flat.iter().flat_map(|&[a, b, c]| [[a, b, c], [a + n, c + n, b + n]]);
+    let sides = (0..n).map(|i| (i, (i + 1) % n)).flat_map(|(a, b)| [[a, b + n, b], [a, a + n, b + n]]);
+    let mesh = Mesh::new(&points, &ends.chain(sides).collect::<Vec<_>>()).unwrap();
+    Shape::Mesh { mesh: Arc::new(mesh), contact }
+}
+
+#[test]
+fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
+    let size = [0.4, 0.4, 0.2];
+    for contact in [Contact::Fitting, Contact::Surface, Contact::Hull] {
+        let height = settled(meshed(size, false, contact), [0.03, 0.02, 0.0], 0.1);
+        assert!((height - 0.1).abs() < 20e-6, "{contact:?}: {height}");
+    }
+    let height = settled(meshed(size, true, Contact::Fitting), [0.0, 0.02, 0.0], 0.0);
+    assert!(height.abs() < 20e-6, "a ball lies in the groove: {height}");
+    let height = settled(meshed(size, true, Contact::Hull), [0.0, 0.02, 0.0], 0.1);
+    assert!((height - 0.1).abs() < 20e-6, "the hull has no groove: {height}");
+}
+
+#[test]
+fn a_moving_mesh_stands_on_its_hull_or_its_parts_and_is_saved_with_them() {
+    let size = [0.1, 0.1, 0.1];
+    for (shape, off) in [
+        (meshed(size, false, Contact::Fitting), 20e-6),
+        (meshed(size, true, Contact::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
+    ] {
+        let seabed = solid("seabed", meshed([1.0, 1.0, 1.0], false, Contact::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
+        let solids = [seabed, solid("body", shape, [0.0, 0.0, 0.055], Role::Free(light()))];
+        let (mut first, mut second) = (engine(&solids, down()).unwrap(), engine(&solids, down()).unwrap());
+        let run = |engine: &mut Box<dyn Engine<3>>, n: usize| {
+            (0..n).for_each(|_| engine.step(1e-4, &idle(2), &[None, None]).unwrap());
+            engine.kinematics(1)
+        };
+        let whole = run(&mut first, 2000);
+        assert!((whole.pose.position[2] - 0.05).abs() < off, "{}", whole.pose.position[2]);
+        run(&mut second, 700);
+        let mut third = engine(&solids, down()).unwrap();
+        third.restore(&second.save().unwrap()).unwrap();
+        assert_eq!(run(&mut third, 1300), whole, "the same bits after a restart");
     }
 }
