@@ -15,6 +15,9 @@ use tree::Tree;
 /// Most facets of a mesh: far more than particles can feel.
 pub const MOST_FACETS: usize = 500_000;
 
+/// The longest mesh, m: what is longer is in another unit.
+const LARGEST: f64 = 1e6;
+
 /// The closed surface of a solid in space, as triangles that are counter-clockwise seen from outside.
 #[derive(Clone)]
 pub struct Mesh {
@@ -62,6 +65,11 @@ impl Mesh {
                 .help(format!("corners are counted from 0, and there are {}", points.len())));
         }
         let (points, facets) = joined(points, facets);
+        let size = Bounds::around(&points).size().max();
+        if size > LARGEST {
+            return Err(Error::scene(format!("a mesh {size:.1e} m long; the most is {LARGEST:.0e} m"))
+                .help("in which unit is the file? Write, say,  unit = \"mm\""));
+        }
         whole::closed(&points, &facets)?;
         let volume = moments(&points, &facets).volume;
         let bounds = Bounds::around(&points);

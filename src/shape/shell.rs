@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::{Shape, SkinPoint, cells::spaced, pack};
-use crate::space::{Bounds, Vector};
+use crate::space::Vector;
 
 /// Edge of the cells, dp: eight candidates for each point.
 const GRAIN: f64 = 0.5;
@@ -33,7 +33,7 @@ pub(super) fn shell_skin<const D: usize>(shape: &Shape<D>, dp: f64, layers: usiz
     let grain = GRAIN * dp;
     let doublings = (bounds.size().max() / grain).log2().ceil().max(0.0) as i32;
     let middle = (bounds.min + bounds.max) * 0.5;
-    let found = walk(shape, &bounds, &middle, grain * 2f64.powi(doublings), grain, layers as f64 * dp);
+    let found = walk(shape, &middle, grain * 2f64.powi(doublings), grain, layers as f64 * dp);
     let wanted = counts(shape, &found, dp, layers);
     let layer = |(k, wanted): (usize, f64)| {
         let depth = (k as f64 + 0.5) * dp;
@@ -52,14 +52,7 @@ pub(super) fn shell_skin<const D: usize>(shape: &Shape<D>, dp: f64, layers: usiz
 
 /// The small cells no deeper than `depth` (m), by halving a cube of edge `edge` (m) about `middle` wherever it may hold
 /// some.
-fn walk<const D: usize>(
-    shape: &Shape<D>,
-    bounds: &Bounds<D>,
-    middle: &Vector<D>,
-    edge: f64,
-    grain: f64,
-    depth: f64,
-) -> Found<D> {
+fn walk<const D: usize>(shape: &Shape<D>, middle: &Vector<D>, edge: f64, grain: f64, depth: f64) -> Found<D> {
     let distance = shape.signed_distance(middle);
     let reach = 0.5 * edge * (D as f64).sqrt();
     let mut found = Found { deepest: distance, ..Found::default() };
@@ -77,7 +70,7 @@ fn walk<const D: usize>(
     let child = |corner: usize| {
         let side = |i: usize| if corner >> i & 1 == 1 { 0.25 } else { -0.25 };
         let at = Vector::from_fn(|i, _| middle[i] + side(i) * edge);
-        walk(shape, bounds, &at, 0.5 * edge, grain, depth)
+        walk(shape, &at, 0.5 * edge, grain, depth)
     };
     let parts: Vec<Found<D>> = match edge > 16.0 * grain {
         true => (0..1usize << D).into_par_iter().map(child).collect(),

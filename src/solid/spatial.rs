@@ -8,11 +8,16 @@ mod world;
 
 pub(super) use world::World;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use rapier::{
     dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder},
     geometry::{SharedShape, TriMeshFlags},
     math::{Matrix as Square, Pose as Frame, Rotation, Vector as Point},
-    parry::{mass_properties::MassProperties, transformation::vhacd::VHACDParameters},
+    parry::{
+        mass_properties::MassProperties,
+        transformation::vhacd::{VHACD, VHACDParameters},
+    },
 };
 
 use crate::{
@@ -93,28 +98,37 @@ fn parts(shape: &Shape<D>, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
 /// What other bodies touch of a mesh.
 fn mesh_parts(mesh: &Mesh, contact: Contact, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     let points: Vec<Point> = mesh.points().iter().map(world::to_point).collect();
-    let facets = mesh.facets();
-    let no_parts = |why: &dyn std::fmt::Display| {
-        Error::scene(format!("the mesh cannot be made touchable: {why}"))
-            .help("write  contact = \"none\"  beside the file's name if nothing is to touch it, or thin the mesh out")
+    let solid = mesh.volume().volume;
+    let hull = || SharedShape::convex_hull(&points).map(|part| vec![(Frame::IDENTITY, part)]);
+    let convex = |hull: &[(Frame, SharedShape)]| {
+        hull.iter().map(|(_, part)| part.mass_properties(1.0).mass()).sum::<f64>() <= NEARLY_CONVEX * solid
     };
-    let hull = || SharedShape::convex_hull(&points).ok_or_else(|| no_parts(&"it has no convex hull"));
-    let alone = |part: SharedShape| vec![(Frame::IDENTITY, part)];
-    match contact {
-        Contact::None => Ok(Vec::new()),
-        Contact::Surface | Contact::Fitting if fixed || contact == Contact::Surface => {
-            SharedShape::trimesh_with_flags(points, facets.to_vec(), TriMeshFlags::FIX_INTERNAL_EDGES)
-                .map(alone)
-                .map_err(|why| no_parts(&why))
-        }
-        Contact::Hull => hull().map(alone),
-        Contact::Fitting if hull()?.mass_properties(1.0).mass() <= NEARLY_CONVEX * mesh.volume().volume => {
-            hull().map(alone)
-        }
-        Contact::Surface | Contact::Fitting | Contact::Decomposition => {
-            let parts = SharedShape::convex_decomposition_with_params(&points, facets, &VHACDParameters::default());
-            let parts: Vec<_> = parts.as_compound().map_or_else(Vec::new, |all| all.shapes().to_vec());
-            if parts.is_empty() { Err(no_parts(&"no convex part was found")) } else { Ok(parts) }
-        }
-    }
+    let make = || match contact {
+        Contact::None => Some(Vec::new()),
+        Contact::Surface => surface(&points, mesh),
+        Contact::Fitting if fixed => surface(&points, mesh),
+        Contact::Hull => hull(),
+        Contact::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
+        Contact::Decomposition => cut(&points, mesh),
+    };
+    // parry asserts what it hopes of points that lie nearly in a plane.
+    catch_unwind(AssertUnwindSafe(make)).ok().flatten().ok_or_else(|| {
+        Error::scene("the mesh cannot be made touchable: parry finds no hull or parts of it")
+            .help("write  contact = \"none\"  beside the file's name if nothing is to touch it, or thin the mesh out")
+    })
+}
+
+/// Every facet, smooth across their edges.
+fn surface(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+    let all = SharedShape::trimesh_with_flags(points.to_vec(), mesh.facets().to_vec(), flags).ok()?;
+    Some(vec![(Frame::IDENTITY, all)])
+}
+
+/// Convex parts (V-HACD), each the hull of the surface that it holds.
+fn cut(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
+    let parts = VHACD::decompose(&VHACDParameters::default(), points, mesh.facets(), true);
+    let corners = parts.voxel_parts().iter().map(|part| part.compute_primitive_intersections(points, mesh.facets()));
+    let hulls: Vec<_> = corners.filter_map(|part| SharedShape::convex_hull(&part)).collect();
+    (!hulls.is_empty()).then(|| hulls.into_iter().map(|part| (Frame::IDENTITY, part)).collect())
 }

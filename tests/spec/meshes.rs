@@ -121,7 +121,7 @@ fn files_that_are_no_solid_are_refused_in_words() {
     };
     says(
         "file = \"open.stl\"",
-        &["the mesh is open: 3 edges", "(0.0000, 0.0000, 0.0000)", "scene.toml, line 8", "fill the holes"],
+        &["the mesh is open: 3 edges", "(0.0000, 0.0000, 0.0000)", "scene.toml:8", "fill the holes"],
     );
     says("file = \"inside_out.stl\"", &["inside out", "flip = true"]);
     assert!(mesh("file = \"inside_out.stl\", flip = true", &folder).is_ok());
