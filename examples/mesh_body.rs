@@ -2,7 +2,7 @@
 //!
 //! A Wigley hull displaces 4/9 L B T below its waterline. The scene `wigley` gives it the mass of so much water.
 //!
-//! `cargo run --release --example mesh_body`, about half a minute.
+//! `cargo run --release --example mesh_body`, about a minute.
 
 use std::path::Path;
 
