@@ -1,5 +1,7 @@
 //! A solid given by the triangles of its surface: checked to be one, measured exactly.
 
+#[cfg(feature = "dim3")]
+mod through;
 mod tree;
 mod whole;
 

@@ -15,7 +15,7 @@ mod with_parry {
     };
     use rayon::prelude::*;
 
-    use super::super::{Mesh, whole};
+    use super::super::{Mesh, through};
     use crate::{
         error::{Error, Result},
         space::Vector,
@@ -69,7 +69,7 @@ mod with_parry {
                 let around = self.0.triangle(a as u32).local_aabb();
                 let near = self.0.bvh().leaves(|node| node.aabb().intersects(&around)).take(MOST_NEAR);
                 let mut later = near.map(|b| b as usize).filter(|b| *b > a && apart(a, *b));
-                later.find(|&b| whole::cross(&mesh.corners(a), &mesh.corners(b))).map(|b| (a, b))
+                later.find(|&b| through::cross(&mesh.corners(a), &mesh.corners(b))).map(|b| (a, b))
             })
         }
     }
