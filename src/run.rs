@@ -18,7 +18,7 @@ mod lock;
 pub(crate) mod outputs;
 
 pub(crate) use folder::{same_tables, scene_file};
-pub use inspect::{Inspection, Report, SeriesColumns, SolidCount, Timing, inspect};
+pub use inspect::{Inspection, MeshFacts, Report, SeriesColumns, SolidCount, Timing, inspect};
 pub(crate) use kept::any as has_checkpoint;
 pub(crate) use lock::Lock;
 pub(crate) use outputs::series_folder;

@@ -56,6 +56,7 @@ fn page(report: &Report) -> String {
         rows.extend(report.solids.iter().map(|s| vec![s.name.clone(), s.role.into(), s.particles.to_string()]));
         let _ = write!(text, "\n{}", table(&rows));
     }
+    text += &meshes(report);
     if !report.series.is_empty() {
         let mut rows = vec![["series", "columns"].map(String::from).to_vec()];
         rows.extend(report.series.iter().map(|s| vec![s.name.clone(), s.columns.join(" ")]));
@@ -118,6 +119,21 @@ fn facts(report: &Report) -> Vec<Vec<String>> {
         row("waves", format!("{high}, by \"{}\": stroke {stroke} m, period {period} s", wave.solid));
     }
     rows
+}
+
+/// The meshes among the solids, as their files have them.
+fn meshes(report: &Report) -> String {
+    let list = |x: &[f64]| x.iter().map(|x| three(*x)).collect::<Vec<_>>().join(", ");
+    let mut rows =
+        vec![["mesh", "facets", "volume (m³)", "surface (m²)", "size (m)", "centroid (m)"].map(String::from).to_vec()];
+    rows.extend(report.solids.iter().filter_map(|s| {
+        let mesh = s.mesh.as_ref()?;
+        let (volume, surface) = (three(mesh.volume_m3), three(mesh.surface_m2));
+        // A centroid in the middle is there to round-off.
+        let centroid: Vec<f64> = mesh.centroid_m.iter().map(|x| 1e-9 * (x * 1e9).round() + 0.0).collect();
+        Some(vec![s.name.clone(), mesh.facets.to_string(), volume, surface, list(&mesh.size_m), list(&centroid)])
+    }));
+    if rows.len() > 1 { format!("\n{}", table(&rows)) } else { String::new() }
 }
 
 /// Who said a value, without the reason of a default.

@@ -11,8 +11,10 @@ use crate::{
     preflight::{self, Finding, Preflight},
     record::manifest::InForce,
     scene::{Built, Scene},
+    shape::Shape,
     simulation::Simulation,
     solid::Dim,
+    space::Vector,
 };
 
 /// How long a timing lasts at most, s: no step is begun after it.
@@ -60,6 +62,34 @@ pub struct SolidCount {
     pub role: &'static str,
     /// Number of its boundary particles.
     pub particles: usize,
+    /// What it is as a mesh, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshFacts>,
+}
+
+/// A solid from a mesh, measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeshFacts {
+    /// Number of its facets.
+    pub facets: usize,
+    /// Its volume, m³.
+    pub volume_m3: f64,
+    /// Its surface, m².
+    pub surface_m2: f64,
+    /// Its centroid in the file's frame, m.
+    pub centroid_m: Vec<f64>,
+    /// The edges of the box around it, m.
+    pub size_m: Vec<f64>,
+}
+
+impl MeshFacts {
+    fn of<const D: usize>(shape: &Shape<D>) -> Option<Self> {
+        let Shape::Mesh { mesh, .. } = shape else { return None };
+        let (facets, volume) = (mesh.facets().len(), mesh.volume());
+        let list = |x: &Vector<3>| x.iter().copied().collect();
+        let (centroid_m, size_m) = (list(&volume.centroid), list(&mesh.bounds().size()));
+        Some(Self { facets, volume_m3: volume.volume, surface_m2: mesh.surface(), centroid_m, size_m })
+    }
 }
 
 /// The file of a probe.
@@ -114,6 +144,7 @@ where
         name: s.spec.name.clone(),
         role: preflight::role(&s.spec.role),
         particles: s.skin.len(),
+        mesh: MeshFacts::of(&s.spec.shape),
     });
     let solids = solids.collect();
     let series = plan.probes.iter().zip(&probes);

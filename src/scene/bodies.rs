@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::flexible::{Draft, LineWords, Numbers};
+use super::flexible::{Draft, LineWords, Numbers, Touch, Unit};
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,8 +78,30 @@ pub enum ShapeWords {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         thickness: Option<f64>,
     },
+    /// A solid by its surface, from a file; 3-D only.
+    Mesh(MeshWords),
     /// Several shapes as one solid.
     Compound(Vec<PartWords>),
+}
+
+/// A closed surface in a file beside the scene: STL or OBJ.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshWords {
+    /// Name of the file.
+    pub file: String,
+    /// Factor on its lengths, –; 1 if not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+    /// Unit of its lengths; m if not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// `true`: its facets are turned round, for a surface that is inside out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flip: Option<bool>,
+    /// What other bodies touch; fitting if not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Touch>,
 }
 
 /// A coordinate direction.
@@ -276,6 +298,11 @@ impl ShapeWords {
     /// A tank of inner edge lengths `size` (m).
     pub fn tank(size: impl Into<Vec<f64>>) -> Self {
         Self::Tank { size: size.into(), thickness: None }
+    }
+
+    /// The solid in the mesh `file` (STL or OBJ, in m), beside the scene.
+    pub fn mesh(file: impl Into<String>) -> Self {
+        Self::Mesh(MeshWords { file: file.into(), ..MeshWords::default() })
     }
 
     /// A polygon through `points` (m), counter-clockwise.

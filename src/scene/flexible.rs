@@ -174,15 +174,71 @@ impl<'de> Deserialize<'de> for Numbers {
     }
 }
 
-/// A line: its points, or a table with the columns `x_m` and `y_m`; as a wall it may have a thickness.
+/// The unit of lengths in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Unit {
+    /// Metres.
+    #[default]
+    M,
+    /// Centimetres.
+    Cm,
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    In,
+    /// Feet.
+    Ft,
+}
+
+impl Unit {
+    /// Its length, m.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::M => 1.0,
+            Self::Cm => 0.01,
+            Self::Mm => 0.001,
+            Self::In => 0.0254,
+            Self::Ft => 0.3048,
+        }
+    }
+}
+
+/// What of a mesh other bodies touch: see [`crate::shape::Contact`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Touch {
+    /// What fits its role and form.
+    #[default]
+    Fitting,
+    /// Every facet.
+    Surface,
+    /// The convex hull.
+    Hull,
+    /// Convex parts.
+    Decomposition,
+    /// Nothing.
+    None,
+}
+
+/// A line: its points, a table with the columns `x_m` and `y_m`, or a drawing; as a wall it may have a thickness.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LineWords {
     /// Points, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<Vec<Vec<f64>>>,
-    /// A table of points, beside the scene.
+    /// A table of points, or a drawing (.svg), beside the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// The outline's id in the drawing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
+    /// Factor on the drawing's lengths, –; 1 if not said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+    /// Unit of the drawing's lengths; m if not said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
     /// Thickness of a wall, m; as many dp as the kernel reaches if not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
@@ -193,6 +249,11 @@ impl LineWords {
     pub fn through<const N: usize>(points: [[f64; 2]; N]) -> Self {
         Self { points: Some(points.iter().map(|p| p.to_vec()).collect()), ..Self::default() }
     }
+
+    /// Whether its points are the outline of a drawing.
+    pub(super) fn is_drawing(&self) -> bool {
+        self.file.as_ref().is_some_and(|name| name.to_ascii_lowercase().ends_with(".svg"))
+    }
 }
 
 impl<'de> Deserialize<'de> for LineWords {
@@ -202,6 +263,9 @@ impl<'de> Deserialize<'de> for LineWords {
         struct Table {
             points: Option<Vec<Vec<f64>>>,
             file: Option<String>,
+            id: Option<String>,
+            scale: Option<f64>,
+            unit: Option<Unit>,
             thickness: Option<f64>,
         }
         struct Words;
@@ -215,8 +279,9 @@ impl<'de> Deserialize<'de> for LineWords {
                 Ok(LineWords { points: Some(points), ..LineWords::default() })
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LineWords, A::Error> {
-                let Table { points, file, thickness } = Table::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(LineWords { points, file, thickness })
+                let Table { points, file, id, scale, unit, thickness } =
+                    Table::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(LineWords { points, file, id, scale, unit, thickness })
             }
         }
         deserializer.deserialize_any(Words)

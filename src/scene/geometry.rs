@@ -1,11 +1,17 @@
 //! From words to shapes and poses. Lengths of vectors and defaults have been seen to before.
 
-use super::{AtWords, Axis, LineWords, Scene, ShapeWords, table};
+use std::sync::Arc;
+
+use super::{AtWords, Axis, LineWords, MeshWords, Scene, ShapeWords, Touch, drawing, mesh, table};
+
 use crate::{
     error::Result,
-    shape::Shape,
+    shape::{Contact, Shape},
     space::{Bounds, Pose, Vector},
 };
+
+/// How far the straight lines in place of a drawing's curves may leave them, dp: a hundredth of what particles see.
+const FLAT: f64 = 0.01;
 
 /// The vector of the numbers `x`; as many as there are are taken.
 pub(super) fn vector<const D: usize>(x: &[f64]) -> Vector<D> {
@@ -30,6 +36,7 @@ pub(super) fn shape<const D: usize>(scene: &Scene, words: &ShapeWords) -> Result
             Shape::Polyline { points: points(scene, words)?, thickness: thickness(words.thickness) }
         }
         ShapeWords::Tank { size, thickness: given } => Shape::Tank { size: vector(size), thickness: thickness(*given) },
+        ShapeWords::Mesh(words) => solid(scene, words)?,
         ShapeWords::Compound(parts) => {
             let part = |part: &super::PartWords| {
                 let inner = self::shape(scene, &part.shape)?;
@@ -43,11 +50,30 @@ pub(super) fn shape<const D: usize>(scene: &Scene, words: &ShapeWords) -> Result
     Ok(shape)
 }
 
+fn solid<const D: usize>(scene: &Scene, words: &MeshWords) -> Result<Shape<D>> {
+    let path = table::beside(&scene.origin.folder, &words.file)?;
+    let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
+    let mesh = mesh::read(&path, unit, words.flip.unwrap_or(false))?;
+    let contact = match words.contact.unwrap_or_default() {
+        Touch::Fitting => Contact::Fitting,
+        Touch::Surface => Contact::Surface,
+        Touch::Hull => Contact::Hull,
+        Touch::Decomposition => Contact::Decomposition,
+        Touch::None => Contact::None,
+    };
+    Ok(Shape::Mesh { mesh: Arc::new(mesh), contact })
+}
+
 fn points<const D: usize>(scene: &Scene, words: &LineWords) -> Result<Vec<Vector<D>>> {
     if let Some(points) = &words.points {
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
     let path = table::beside(&scene.origin.folder, words.file.as_deref().unwrap_or(""))?;
+    if words.is_drawing() {
+        let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
+        let points = drawing::outline(&path, words.id.as_deref(), unit, FLAT * scene.dp)?;
+        return Ok(points.iter().map(|p| vector(p)).collect());
+    }
     let columns = table::columns(&path, &["x_m", "y_m"])?;
     Ok(columns[0].iter().zip(&columns[1]).map(|(&x, &y)| vector(&[x, y])).collect())
 }
@@ -93,6 +119,10 @@ fn reach<const D: usize>(shape: &Shape<D>, n: &Vector<D>) -> f64 {
             0.5 * n[*axis].abs() * length + radius * (1.0 - n[*axis] * n[*axis]).max(0.0).sqrt()
         }
         Shape::Polygon { points } => points.iter().map(|p| p.dot(n)).fold(f64::NEG_INFINITY, f64::max),
+        Shape::Mesh { mesh, .. } => {
+            let along = |p: &Vector<3>| (0..D).map(|i| p[i] * n[i]).sum();
+            mesh.points().iter().map(along).fold(f64::NEG_INFINITY, f64::max)
+        }
         Shape::Compound(parts) => parts
             .iter()
             .map(|(pose, part)| pose.position.dot(n) + reach(part, &(pose.rotation.transpose() * n)))

@@ -8,11 +8,13 @@ pub mod build;
 mod build_solids;
 mod checks;
 mod document;
+mod drawing;
 pub mod flexible;
 pub mod flow;
 pub mod format;
 mod geometry;
 mod guard;
+mod mesh;
 pub mod resolve;
 mod sets;
 pub mod shipped;
@@ -23,10 +25,10 @@ mod verify;
 mod wording;
 
 pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
-pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, PartWords, ShapeWords, SolidWords};
+pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWords, PartWords, ShapeWords, SolidWords};
 pub use build::{Built, Still};
 pub use document::Source;
-pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers};
+pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Touch, Unit};
 pub use flow::PeriodicWords;
 pub use format::{
     BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,

@@ -3,7 +3,8 @@
 use std::{collections::BTreeMap, fmt};
 
 use super::{
-    AtWords, Axis, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, document::Source, verify::FIELDS,
+    AtWords, Axis, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, Touch, Unit, document::Source,
+    verify::FIELDS,
 };
 use crate::{
     error::Result,
@@ -310,6 +311,18 @@ impl Sheet {
             }
             ShapeWords::Tank { thickness, .. } => {
                 filler.fill(format!("{key}.tank.thickness"), thickness, self.thickness, thick);
+            }
+            ShapeWords::Mesh(words) => {
+                let key = format!("{key}.mesh");
+                filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the file's own size");
+                filler.fill(format!("{key}.unit"), &mut words.unit, Unit::M, "neither STL nor OBJ tells its unit");
+                let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
+                filler.fill(format!("{key}.contact"), &mut words.contact, Touch::Fitting, why);
+            }
+            ShapeWords::Polygon(words) if words.is_drawing() => {
+                let key = format!("{key}.polygon");
+                filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the drawing's own size");
+                filler.fill(format!("{key}.unit"), &mut words.unit, Unit::M, "a unit of the drawing is a metre");
             }
             ShapeWords::Compound(parts) => {
                 for (i, part) in parts.iter_mut().enumerate() {

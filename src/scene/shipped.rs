@@ -46,5 +46,6 @@ pub fn shipped() -> &'static [Shipped] {
         scene!("flume-box", "flap.csv", "body.csv", "elevation_1.csv", "elevation_2.csv"),
         scene!("column", "force.csv", "velocity.csv"),
         scene!("column-gate", "force.csv"),
+        scene!("wigley", "wigley.obj", "seabed.stl"),
     ]
 }

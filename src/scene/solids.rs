@@ -194,6 +194,7 @@ pub(super) fn shape(scene: &Scene, key: &str, words: &ShapeWords) -> Result<()> 
         ShapeWords::Polygon(words) => {
             only(2, "polygon", "in 3-D, boxes, balls, cylinders and capsules can be put together as a compound")?;
             line(scene, &format!("{key}.polygon"), words)?;
+            drawing(scene, &format!("{key}.polygon"), words)?;
             match words.thickness {
                 Some(_) => Err(scene.wrong(&format!("{key}.polygon"), "a polygon is solid: it has no thickness")),
                 None => Ok(()),
@@ -201,11 +202,19 @@ pub(super) fn shape(scene: &Scene, key: &str, words: &ShapeWords) -> Result<()> 
         }
         ShapeWords::Polyline(words) => {
             only(2, "polyline", "in 3-D, walls are boxes or a tank")?;
-            line(scene, &format!("{key}.polyline"), words)
+            line(scene, &format!("{key}.polyline"), words)?;
+            match words.is_drawing() {
+                true => Err(scene.wrong(&format!("{key}.polyline.file"), "a drawing is a closed outline: a polygon")),
+                false => drawing(scene, &format!("{key}.polyline"), words),
+            }
         }
         ShapeWords::Tank { size, thickness } => {
             scene.positive(&format!("{key}.tank.thickness"), *thickness)?;
             sizes(&format!("{key}.tank"), size)
+        }
+        ShapeWords::Mesh(words) => {
+            only(3, "mesh", "in 2-D an outline is a polygon:  shape = { polygon = { file = \"hull.svg\" } }")?;
+            scene.positive(&format!("{key}.mesh.scale"), words.scale)
         }
         ShapeWords::Compound(parts) => {
             let key = format!("{key}.compound");
@@ -226,6 +235,16 @@ fn line(scene: &Scene, key: &str, words: &LineWords) -> Result<()> {
         (Some(points), None) => points.iter().try_for_each(|p| scene.vector(key, p)),
         (None, Some(_)) => Ok(()),
         _ => Err(scene.wrong(key, format!("a {} has either points or a file of points", last(key)))),
+    }
+}
+
+/// Refuses words of a drawing where there is none.
+fn drawing(scene: &Scene, key: &str, words: &LineWords) -> Result<()> {
+    scene.positive(&format!("{key}.scale"), words.scale)?;
+    let words_of_one = [("id", words.id.is_some()), ("scale", words.scale.is_some()), ("unit", words.unit.is_some())];
+    match words_of_one.iter().find(|(_, given)| *given && !words.is_drawing()) {
+        Some((word, _)) => Err(scene.wrong(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"))),
+        None => Ok(()),
     }
 }
 

@@ -35,6 +35,8 @@ impl<const D: usize> Shape<D> {
                 sizes("the size of a tank", size)?;
                 positive("the thickness of a tank's walls", *thickness)
             }
+            Shape::Mesh { .. } if D == 3 => Ok(()), // was checked when it was made
+            Shape::Mesh { .. } => Err(Error::scene("a mesh is a 3-D shape").help("in 2-D use a polygon")),
             Shape::Compound(parts) => compound(parts),
         }
     }
@@ -89,9 +91,8 @@ fn compound<const D: usize>(parts: &[(crate::space::Pose<D>, Shape<D>)]) -> Resu
 /// What polygons (closed) and polylines (open) have in common.
 fn outline<const D: usize>(name: &str, points: &[Vector<D>], least: usize, closed: bool) -> Result<()> {
     if D != 2 {
-        return Err(
-            Error::scene(format!("a {name} is a 2-D shape")).help("in 3-D use boxes, balls, cylinders, capsules")
-        );
+        return Err(Error::scene(format!("a {name} is a 2-D shape"))
+            .help("in 3-D use boxes, balls, cylinders, capsules, meshes"));
     }
     let n = points.len();
     if n < least {

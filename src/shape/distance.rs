@@ -24,6 +24,7 @@ impl<const D: usize> Shape<D> {
             Shape::Polygon { points } => to_polygon(x, points),
             Shape::Polyline { points, thickness } => to_wall(x, points, *thickness),
             Shape::Tank { size, thickness } => to_tank(x, size, *thickness),
+            Shape::Mesh { mesh, .. } => mesh.distance(&in_space(x)).0,
             Shape::Compound(parts) => {
                 parts.iter().map(|(pose, part)| part.signed_distance(&pose.local(x))).fold(f64::INFINITY, f64::min)
             }
@@ -31,8 +32,12 @@ impl<const D: usize> Shape<D> {
     }
 
     /// The direction in which the signed distance grows at `x` (m, own frame), unit length: the outward
-    /// normal of the nearest face. By central differences over `step` (m).
+    /// normal of the nearest face. By central differences over `step` (m), of a mesh exact.
     pub(crate) fn outward(&self, x: &Vector<D>, step: f64) -> Vector<D> {
+        if let Shape::Mesh { mesh, .. } = self {
+            let n = mesh.distance(&in_space(x)).1;
+            return Vector::from_fn(|i, _| n[i]);
+        }
         let mut n = Vector::<D>::zeros();
         for i in 0..D {
             let mut e = Vector::zeros();
@@ -41,6 +46,11 @@ impl<const D: usize> Shape<D> {
         }
         n.try_normalize(1e-9 * step).unwrap_or_else(Vector::zeros)
     }
+}
+
+/// A point of space, whatever `D`.
+fn in_space<const D: usize>(x: &Vector<D>) -> Vector<3> {
+    Vector::from_fn(|i, _| if i < D { x[i] } else { 0.0 })
 }
 
 fn to_box<const N: usize>(x: &Vector<N>, half: &Vector<N>) -> f64 {

@@ -12,7 +12,7 @@ use super::{
 use crate::space::{Bounds, Pose, Vector};
 
 /// A piece of surface: an edge in 2-D, the solid on its left; in 3-D a triangle, counter-clockwise from outside.
-type Facet<const D: usize> = [Vector<D>; D];
+pub(super) type Facet<const D: usize> = [Vector<D>; D];
 
 /// Edges of a full circle. Scaled to the exact volume, they leave 1e-5 of it in doubt at any level.
 const ROUND: usize = 256;
@@ -73,6 +73,7 @@ impl<const D: usize> Shape<D> {
                 }));
                 all
             }
+            Shape::Mesh { mesh, .. } => mesh.triangles(),
             Shape::Ball { .. } | Shape::Compound(_) => Vec::new(), // have their own way in `below`
         }
     }

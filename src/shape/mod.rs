@@ -9,14 +9,19 @@ mod distance;
 mod draught;
 pub mod fill;
 mod fit;
+pub mod mesh;
 mod moments;
 mod offset;
 mod pack;
+mod shell;
 mod skin;
+
+use std::sync::Arc;
 
 use crate::space::{Matrix, Pose, Vector};
 
 pub use fill::{Filled, Region, fill};
+pub use mesh::{Contact, Mesh};
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +43,8 @@ pub enum Shape<const D: usize> {
     /// An open-topped tank: bottom and side walls `thickness` thick around the inner box from the
     /// origin to `size`.
     Tank { size: Vector<D>, thickness: f64 },
+    /// A solid by the facets of its surface, and what of it other bodies touch; 3-D only.
+    Mesh { mesh: Arc<Mesh>, contact: Contact },
     /// Several shapes as one solid, each at its pose; they must not overlap.
     Compound(Vec<(Pose<D>, Shape<D>)>),
 }

@@ -25,6 +25,10 @@ impl<const D: usize> Shape<D> {
             Shape::Polygon { points } => Bounds::around(points),
             Shape::Polyline { points, thickness } => Bounds::around(&wall_outline(points, *thickness)),
             Shape::Tank { size, thickness } => tank_outside(size, *thickness),
+            Shape::Mesh { mesh, .. } => {
+                let Bounds { min, max } = mesh.bounds();
+                Bounds { min: Vector::from_fn(|i, _| min[i]), max: Vector::from_fn(|i, _| max[i]) }
+            }
             Shape::Compound(parts) => {
                 parts.iter().map(|(pose, part)| part.bounds_at(pose)).fold(Bounds::empty(), |a, b| a.union(&b))
             }
@@ -66,6 +70,11 @@ impl<const D: usize> Shape<D> {
                 let hollow = Bounds { min: Vector::zeros(), max: *size };
                 sum([(1.0, middle(&outside), solid(outside.size())), (-1.0, middle(&hollow), solid(*size))])
             }
+            Shape::Mesh { mesh, .. } => {
+                let Volume { volume, centroid, second_moment } = mesh.volume();
+                let second_moment = Matrix::from_fn(|i, j| second_moment[(i, j)]);
+                Volume { volume, centroid: Vector::from_fn(|i, _| centroid[i]), second_moment }
+            }
             Shape::Compound(parts) => sum(parts.iter().map(|(pose, part)| (1.0, *pose, part.volume()))),
         }
     }
@@ -85,6 +94,7 @@ impl<const D: usize> Shape<D> {
                 let sides: f64 = (0..D - 1).map(|i| 2.0 * size.product() / size[i]).sum();
                 Shape::Box { size: tank_outside(size, *thickness).size() }.surface() + sides
             }
+            Shape::Mesh { mesh, .. } => mesh.surface(),
             Shape::Compound(parts) => parts.iter().map(|(_, part)| part.surface()).sum(),
         }
     }

@@ -6,6 +6,7 @@ use super::{
     Shape, SkinPoint,
     cells::spaced,
     offset::{polygon_skin, wall_skin},
+    shell::shell_skin,
 };
 use crate::space::{Pose, Vector};
 
@@ -17,7 +18,7 @@ impl<const D: usize> Shape<D> {
     ///
     /// Layer k lies (k + ½) dp inside the face. A box is divided into cells, round(size/dp) along each edge,
     /// so that one whose size is a multiple of dp reproduces the lattice; round shapes get rings and shells,
-    /// outlines parallel curves. A tank's layers go outwards into its walls, as many as are asked for.
+    /// outlines parallel curves, meshes even places on surfaces of equal depth. A tank's layers go outwards into its walls, as many as are asked for.
     /// A polygon or a tip thinner than dp has no room for a particle half a dp inside and gets none there.
     pub fn skin(&self, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
         let layers = layers.min(u8::MAX as usize);
@@ -29,6 +30,7 @@ impl<const D: usize> Shape<D> {
             Shape::Capsule { length, radius, axis } => capsule_skin(*length, *radius, *axis, dp, layers),
             Shape::Polygon { points } => polygon_skin(points, dp, layers),
             Shape::Polyline { points, .. } => wall_skin(points, dp, layers),
+            Shape::Mesh { .. } => shell_skin(self, dp, layers),
             Shape::Compound(parts) => return compound_skin(parts, dp, layers),
         };
         thinned(points, APART * dp)

@@ -61,7 +61,7 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
 fn tune(_parameters: &mut IntegrationParameters) {}
 
 /// Convex parts of the shapes that only a plane has, in the shape's frame.
-fn parts(shape: &Shape<D>) -> Result<Vec<(Frame, SharedShape)>> {
+fn parts(shape: &Shape<D>, _fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     let convex = match shape {
         Shape::Polygon { points } => convex_parts(points),
         Shape::Polyline { points, thickness } => strip(points, *thickness),

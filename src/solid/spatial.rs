@@ -8,16 +8,21 @@ mod world;
 
 pub(super) use world::World;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use rapier::{
     dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder},
-    geometry::SharedShape,
+    geometry::{SharedShape, TriMeshFlags},
     math::{Matrix as Square, Pose as Frame, Rotation, Vector as Point},
-    parry::mass_properties::MassProperties,
+    parry::{
+        mass_properties::MassProperties,
+        transformation::vhacd::{VHACD, VHACDParameters},
+    },
 };
 
 use crate::{
     error::{Error, Result},
-    shape::Shape,
+    shape::{Contact, Mesh, Shape},
     solid::FreeBody,
     space::{Matrix, Wedge},
 };
@@ -29,6 +34,9 @@ type Angular = Point;
 
 /// Names the engine that wrote a state.
 const ENGINE: &str = "rapier3d-f64 0.36.1";
+
+/// Up to so much of a mesh's volume its hull stands for it in contacts, –.
+const NEARLY_CONVEX: f64 = 1.01;
 
 fn to_angular(wedge: &Wedge<D>) -> Point {
     Point::new(wedge.0[(2, 1)], wedge.0[(0, 2)], wedge.0[(1, 0)])
@@ -78,13 +86,52 @@ fn tune(parameters: &mut IntegrationParameters) {
 }
 
 /// Parts of the shapes that only space has, in the shape's frame.
-fn parts(shape: &Shape<D>) -> Result<Vec<(Frame, SharedShape)>> {
+fn parts(shape: &Shape<D>, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     match shape {
         Shape::Cylinder { length, radius, axis } => {
             let turn = Rotation::from_rotation_arc(Point::Y, Point::AXES[*axis]);
             Ok(vec![(Frame::from_rotation(turn), SharedShape::cylinder(0.5 * length, *radius))])
         }
+        Shape::Mesh { mesh, contact } => mesh_parts(mesh, *contact, fixed),
         _ => Err(Error::scene("polygons and polylines are shapes of the plane")
-            .help("use a box, ball, capsule, cylinder, tank or a compound of these in 3-D")),
+            .help("use a box, ball, capsule, cylinder, tank, mesh or a compound of these in 3-D")),
     }
+}
+
+/// What other bodies touch of a mesh.
+fn mesh_parts(mesh: &Mesh, contact: Contact, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
+    let points: Vec<Point> = mesh.points().iter().map(world::to_point).collect();
+    let solid = mesh.volume().volume;
+    let hull = || SharedShape::convex_hull(&points).map(|part| vec![(Frame::IDENTITY, part)]);
+    let convex = |hull: &[(Frame, SharedShape)]| {
+        hull.iter().map(|(_, part)| part.mass_properties(1.0).mass()).sum::<f64>() <= NEARLY_CONVEX * solid
+    };
+    let make = || match contact {
+        Contact::None => Some(Vec::new()),
+        Contact::Surface => surface(&points, mesh),
+        Contact::Fitting if fixed => surface(&points, mesh),
+        Contact::Hull => hull(),
+        Contact::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
+        Contact::Decomposition => cut(&points, mesh),
+    };
+    // parry asserts what it hopes of points that lie nearly in a plane.
+    catch_unwind(AssertUnwindSafe(make)).ok().flatten().ok_or_else(|| {
+        Error::scene("the mesh cannot be made touchable: parry finds no hull or parts of it")
+            .help("write  contact = \"none\"  beside the file's name if nothing is to touch it, or thin the mesh out")
+    })
+}
+
+/// Every facet, smooth across their edges.
+fn surface(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+    let all = SharedShape::trimesh_with_flags(points.to_vec(), mesh.facets().to_vec(), flags).ok()?;
+    Some(vec![(Frame::IDENTITY, all)])
+}
+
+/// Convex parts (V-HACD), each the hull of the surface that it holds.
+fn cut(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
+    let parts = VHACD::decompose(&VHACDParameters::default(), points, mesh.facets(), true);
+    let corners = parts.voxel_parts().iter().map(|part| part.compute_primitive_intersections(points, mesh.facets()));
+    let hulls: Vec<_> = corners.filter_map(|part| SharedShape::convex_hull(&part)).collect();
+    (!hulls.is_empty()).then(|| hulls.into_iter().map(|part| (Frame::IDENTITY, part)).collect())
 }

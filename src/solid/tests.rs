@@ -1,9 +1,13 @@
 //! What the engine promises, in both dimensions.
 
+use std::sync::Arc;
+
+mod contact;
+
 use super::{Dim, Engine, Formula, FreeBody, HasEngine, Law, Load, Motion, Role, SolidSpec};
 use crate::{
     error::{Kind, Result},
-    shape::Shape,
+    shape::{Contact, Mesh, Shape},
     space::{Matrix, Pose, Vector, Wedge},
 };
 
@@ -307,113 +311,60 @@ fn every_shape_is_felt_at_its_true_face() {
     }
 }
 
-/// A cube of 0.1 m that flies at a wall with 1 m/s, flat, 1 cm off its middle, both of restitution `e`: where it is after
-/// 0.2 s, how fast it is then, and its spin.
-fn bounced<const D: usize>(e: f64) -> (f64, Vector<D>, Wedge<D>)
-where
-    Dim<D>: HasEngine<D>,
-{
-    let mut velocity = Vector::zeros();
-    velocity[0] = 1.0;
-    let (mut wall, mut start) = ([0.0; D], [0.0; D]);
-    (wall[0], wall[1], start[0]) = (0.65, 0.01, 0.0);
-    let mut solids = [
-        solid("wall", cube(1.0), wall, Role::Fixed),
-        solid("cube", cube(0.1), start, Role::Free(FreeBody { velocity, ..light() })),
-    ];
-    solids.iter_mut().for_each(|solid| solid.restitution = e);
-    let mut engine = engine(&solids, Vector::zeros()).unwrap();
-    for _ in 0..200 {
-        engine.step(1e-3, &idle(2), &[None, None]).unwrap();
+/// A block around the origin as a mesh; with `notch` its top has a groove along y, down to the middle.
+fn meshed(size: [f64; 3], notch: bool, contact: Contact) -> Shape<3> {
+    let [x, y, z] = size.map(|s| 0.5 * s);
+    let mut outline = vec![[-x, -z], [x, -z], [x, z], [-x, z]];
+    if notch {
+        outline.splice(3..3, [[0.3 * x, z], [0.3 * x, 0.0], [-0.3 * x, 0.0], [-0.3 * x, z]]);
     }
-    let now = engine.kinematics(1);
-    (now.pose.position[0], now.velocity, now.spin)
-}
-
-fn bounces<const D: usize>()
-where
-    Dim<D>: HasEngine<D>,
-{
-    for e in [0.2, 0.5, 1.0] {
-        let (x, velocity, spin) = bounced::<D>(e);
-        // Newton's law to round-off; it turns back up to a step and a half before the wall 0.1 m away.
-        assert!((velocity[0] + e).abs() < 1e-9 && spin.0.norm() < 1e-7, "{e}: {velocity} {spin:?}");
-        assert!((x - (0.1 - 0.1 * e)).abs() < 3.1e-3, "{e}: at {x} m");
-    }
-}
-
-#[test]
-fn a_cube_bounces_with_its_restitution_and_does_not_turn() {
-    bounces::<2>();
-    bounces::<3>();
-}
-
-fn collides<const D: usize>()
-where
-    Dim<D>: HasEngine<D>,
-{
-    let mut velocity = Vector::zeros();
-    (velocity[0], velocity[D - 1]) = (2.0, 0.3);
-    let (mut left, mut right) = ([0.0; D], [0.0; D]);
-    (left[0], right[0], right[D - 1]) = (-0.2, 0.0, 0.04);
-    let heavy = FreeBody { mass: 60.0, ..light() };
-    let mut solids = [
-        solid("striking", cube(0.1), left, Role::Free(FreeBody { velocity, ..light() })),
-        solid("struck", cube(0.1), right, Role::Free(heavy)),
-    ];
-    solids.iter_mut().for_each(|solid| solid.restitution = 0.8);
-    let mut engine = engine(&solids, Vector::zeros()).unwrap();
-    let bodies = [light::<D>(), heavy];
-    let measure = |engine: &dyn Engine<D>| {
-        let (mut momentum, mut energy) = (Vector::zeros(), 0.0);
-        for (i, body) in bodies.iter().enumerate() {
-            let now = engine.kinematics(i);
-            let spin = now.spin.axial();
-            momentum += now.velocity * body.mass;
-            // The bodies have hardly turned about more than one axis, so that their inertia is as at the start.
-            let turning = (0..Wedge::<D>::COMPONENTS).map(|k| body.inertia[(k, k)] * spin[k] * spin[k]).sum::<f64>();
-            energy += 0.5 * (body.mass * now.velocity.norm_squared() + turning);
-        }
-        (momentum, energy)
+    let n = outline.len() as u32;
+    let at = |y: f64| outline.iter().map(move |p| Vector::from([p[0], y, p[1]]));
+    let points: Vec<Vector<3>> = at(-y).chain(at(y)).collect();
+    // Along the outline counter-clockwise seen from −y: the left end as it stands, the right one reversed.
+    let flat: &[[u32; 3]] = if notch {
+        &[[0, 1, 5], [0, 5, 6], [0, 6, 7], [5, 1, 4], [1, 2, 3], [1, 3, 4]]
+    } else {
+        &[[0, 1, 2], [0, 2, 3]]
     };
-    let before = measure(&*engine);
-    for _ in 0..200 {
-        engine.step(1e-3, &idle(2), &[None, None]).unwrap();
-    }
-    let after = measure(&*engine);
-    assert!((after.0 - before.0).norm() < 1e-10 * before.0.norm(), "momentum {before:?} {after:?}");
-    assert!(after.1 < before.1 && engine.kinematics(1).velocity[0] > 0.05, "energy {before:?} {after:?}");
+    let ends = flat.iter().flat_map(|&[a, b, c]| [[a, b, c], [a + n, c + n, b + n]]);
+    let sides = (0..n).map(|i| (i, (i + 1) % n)).flat_map(|(a, b)| [[a, b + n, b], [a, a + n, b + n]]);
+    let mesh = Mesh::new(&points, &ends.chain(sides).collect::<Vec<_>>()).unwrap();
+    Shape::Mesh { mesh: Arc::new(mesh), contact }
 }
 
 #[test]
-fn a_collision_keeps_momentum_and_makes_no_energy() {
-    collides::<2>();
-    collides::<3>();
-}
-
-/// How far the upper of two cubes on a floor, `ratio` times as heavy as the lower, sinks in 0.5 s of steps of 1 ms.
-fn stack_sinks<const D: usize>(ratio: f64) -> f64
-where
-    Dim<D>: HasEngine<D>,
-{
-    let heavy = FreeBody { mass: 2.0 * ratio, inertia: light::<D>().inertia * ratio, ..light() };
-    let solids = [
-        floor(),
-        solid("lower", cube(0.1), at_height(0.05), Role::Free(light())),
-        solid("upper", cube(0.1), at_height(0.15), Role::Free(heavy)),
-    ];
-    let mut engine = engine(&solids, down()).unwrap();
-    for _ in 0..500 {
-        engine.step(1e-3, &idle(3), &[None; 3]).unwrap();
+fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
+    let size = [0.4, 0.4, 0.2];
+    for contact in [Contact::Fitting, Contact::Surface, Contact::Hull] {
+        let height = settled(meshed(size, false, contact), [0.03, 0.02, 0.0], 0.1);
+        assert!((height - 0.1).abs() < 20e-6, "{contact:?}: {height}");
     }
-    0.15 - engine.kinematics(2).pose.position[D - 1]
+    let height = settled(meshed(size, true, Contact::Fitting), [0.0, 0.02, 0.0], 0.0);
+    assert!(height.abs() < 20e-6, "a ball lies in the groove: {height}");
+    let height = settled(meshed(size, true, Contact::Hull), [0.0, 0.02, 0.0], 0.1);
+    assert!((height - 0.1).abs() < 20e-6, "the hull has no groove: {height}");
 }
 
 #[test]
-fn a_light_box_bears_one_ten_thousand_times_as_heavy() {
-    // Two contacts that are let sink by a hundredth of dp, here 0.1 mm, each; the bound is a tenth of dp, which a user sees.
-    for ratio in [1.0, 100.0, 1e4] {
-        let sinks = [stack_sinks::<2>(ratio), stack_sinks::<3>(ratio)];
-        assert!(sinks.iter().all(|sink| (0.0..1e-3).contains(sink)), "{ratio}: {sinks:?}");
+fn a_moving_mesh_stands_on_its_hull_or_its_parts_and_is_saved_with_them() {
+    let size = [0.1, 0.1, 0.1];
+    for (shape, off) in [
+        (meshed(size, false, Contact::Fitting), 20e-6),
+        (meshed(size, true, Contact::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
+    ] {
+        let seabed = solid("seabed", meshed([1.0, 1.0, 1.0], false, Contact::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
+        let solids = [seabed, solid("body", shape, [0.0, 0.0, 0.055], Role::Free(light()))];
+        let (mut first, mut second) = (engine(&solids, down()).unwrap(), engine(&solids, down()).unwrap());
+        let run = |engine: &mut Box<dyn Engine<3>>, n: usize| {
+            (0..n).for_each(|_| engine.step(1e-4, &idle(2), &[None, None]).unwrap());
+            engine.kinematics(1)
+        };
+        let whole = run(&mut first, 2000);
+        assert!((whole.pose.position[2] - 0.05).abs() < off, "{}", whole.pose.position[2]);
+        run(&mut second, 700);
+        let mut third = engine(&solids, down()).unwrap();
+        third.restore(&second.save().unwrap()).unwrap();
+        assert_eq!(run(&mut third, 1300), whole, "the same bits after a restart");
     }
 }

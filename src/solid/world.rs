@@ -80,7 +80,8 @@ impl World {
         for solid in solids {
             solid.check_role()?;
             let mut parts = Parts::new();
-            collect(&solid.shape, &Pose::identity(), &mut parts)?;
+            let fixed = matches!(solid.role, Role::Fixed);
+            collect(&solid.shape, &Pose::identity(), fixed, &mut parts)?;
             all_parts.push(parts);
         }
         refuse_overlap(solids, start, &all_parts, OVERLAP_MAX * dp)?;
@@ -335,8 +336,8 @@ fn insert(
     handle
 }
 
-/// Adds the convex parts of `shape`, posed in the solid's frame.
-fn collect(shape: &Shape<D>, pose: &Pose<D>, found: &mut Parts) -> Result<()> {
+/// Adds the convex parts of `shape`, posed in the solid's frame; of a mesh that is `fixed` its surface.
+fn collect(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut Parts) -> Result<()> {
     let frame = to_frame(pose);
     let mut cuboid = |min: Vector<D>, max: Vector<D>| {
         let centre = Frame::from_translation(to_point(&(0.5 * (min + max))));
@@ -364,11 +365,11 @@ fn collect(shape: &Shape<D>, pose: &Pose<D>, found: &mut Parts) -> Result<()> {
         }
         Shape::Compound(inner) => {
             for (place, shape) in inner {
-                collect(shape, &pose.then(place), found)?;
+                collect(shape, &pose.then(place), fixed, found)?;
             }
         }
-        Shape::Cylinder { .. } | Shape::Polygon { .. } | Shape::Polyline { .. } => {
-            found.extend(parts(shape)?.into_iter().map(|(inner, part)| (frame * inner, part)));
+        Shape::Cylinder { .. } | Shape::Polygon { .. } | Shape::Polyline { .. } | Shape::Mesh { .. } => {
+            found.extend(parts(shape, fixed)?.into_iter().map(|(inner, part)| (frame * inner, part)));
         }
     }
     Ok(())

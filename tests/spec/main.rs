@@ -11,6 +11,7 @@ mod kernels;
 mod lanes;
 mod laws;
 mod light;
+mod meshes;
 mod near;
 mod periodic;
 mod preflight;

@@ -10,12 +10,13 @@ use pontoon::{
 };
 
 /// Scenes that are run coarser here: their own spacing takes minutes.
-const COARSER: [(&str, &str); 5] = [
+const COARSER: [(&str, &str); 6] = [
     ("added-mass-3d", "0.04"),
     ("buoyancy-3d", "0.04"),
     ("column", "0.04"),
     ("column-gate", "0.04"),
     ("flume-box", "0.02"),
+    ("wigley", "0.045"),
 ];
 
 fn home() -> PathBuf {
