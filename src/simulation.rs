@@ -1,6 +1,7 @@
 //! A running simulation: limit, step, check; no files.
 
 mod rescue;
+mod tied;
 
 use std::time::{Duration, Instant};
 
@@ -15,7 +16,10 @@ use rescue::Rescue;
 use crate::{
     error::{Error, Fault, Kind, Result},
     model::Dimension,
-    solid::{Dim, HasEngine as _, Role, SolidSpec},
+    solid::{
+        Dim, HasEngine as _, Role, SolidSpec,
+        rig::{Rig, RigState},
+    },
     space::{Vector, Wedge},
     system::{System, SystemState},
     time::{Bodies, Held, Interval, Light, Stepper, limit},
@@ -59,6 +63,7 @@ struct Kept<const D: usize> {
     clock: Clock,
     engine: Option<Vec<u8>>,
     light: Vec<Held>,
+    rig: RigState<D>,
     rescued: Vec<Rescued>,
 }
 
@@ -77,16 +82,17 @@ impl<const D: usize> Simulation<D> {
             solid.check()?;
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
+        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
         let engine = if solids.iter().any(|s| free(&s)) {
-            let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-            Some(Dim::<D>::engine(solids, &start, &medium.gravity, dp)?)
+            Some(Dim::<D>::engine(solids, &start, &setup.links, &medium.gravity, dp)?)
         } else {
             None
         };
+        let rig = Rig::new(&setup.links, start);
         let stepper = Stepper::new(&setup.model);
         let longest = limit::sound(&setup.model);
         let mut system = System::new(setup)?;
-        let bodies = Bodies::new(engine, Light::find(&mut system, longest));
+        let bodies = Bodies::new(engine, Light::find(&mut system, longest), rig);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let simulation = Self { system, stepper, bodies, clock, rescue: Rescue::default(), stepping: Duration::ZERO };
         simulation.guard()?;
@@ -163,11 +169,12 @@ impl<const D: usize> Simulation<D> {
         self.guard()
     }
 
-    /// The longest step (s) that the present rates and the model allow.
+    /// The longest step (s) that the present rates, the springs and the model allow.
     pub fn limit(&self) -> f64 {
         let model = self.system.model();
         let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        water.min(limit::viscous(model)).min(model.dt_max) * self.rescue.share(self.clock.time)
+        let springs = self.bodies.limit(&self.system, self.clock.time);
+        water.min(limit::viscous(model)).min(model.dt_max).min(springs) * self.rescue.share(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -278,7 +285,8 @@ impl<const D: usize> Simulation<D> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
         let rescued = self.rescue.log.clone();
-        let kept = Kept { system, stepper, clock, engine, light: self.bodies.held(), rescued };
+        let kept =
+            Kept { system, stepper, clock, engine, light: self.bodies.held(), rig: self.bodies.rig().save(), rescued };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
@@ -294,7 +302,7 @@ impl<const D: usize> Simulation<D> {
             (None, None) => {}
             _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
         }
-        if !self.bodies.restore(&kept.light) {
+        if !self.bodies.restore(&kept.light) || !self.bodies.rig_mut().restore(kept.rig) {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
         self.system.restore(kept.system)?;

@@ -110,7 +110,8 @@ impl Scene {
         if let Some(part) = scene.scatter {
             scatter(&mut filled.r, part * scene.dp);
         }
-        let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, domain, periodic };
+        let links = crate::solid::Links::default();
+        let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, links, domain, periodic };
         let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
         let still = Still { level: still_level, depth: still_level - bottom };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })

@@ -9,6 +9,10 @@
 //! both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh
 //! nothing.
 
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "ties.rs"]
+mod ties;
+
 use std::collections::BTreeMap;
 
 use super::rapier::{
@@ -16,18 +20,22 @@ use super::rapier::{
     geometry::{ColliderBuilder, ColliderHandle, SharedShape},
     math::{Pose as Frame, Vector as Point},
     parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
-    pipeline::PhysicsWorld,
+    pipeline::{ActiveHooks, PhysicsWorld},
 };
-use super::{D, ENGINE, from_angular, from_rotation, lock, mass_properties, parts, to_angular, to_rotation, tune};
+use super::{
+    D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, parts, to_angular, to_rotation,
+    tune,
+};
 use crate::{
     error::{Error, Result},
     shape::Shape,
     solid::{
-        Kinematics, Load, Role, SolidSpec,
+        Kinematics, Links, Load, Mobility, Role, SolidSpec,
         engine::{Engine, EngineFault, restart},
     },
     space::{Pose, Vector, Wedge},
 };
+use ties::Ties;
 
 /// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
 const OVERLAP_MAX: f64 = 0.05;
@@ -44,10 +52,11 @@ pub(in crate::solid) struct World {
     /// The dt for which the contacts' stiffness was last set, s; 0 before the first step.
     tuned_for: f64,
     pushes: Vec<Push>,
+    ties: Ties,
 }
 
-/// A user's force (N) on a solid at a world point (m).
-type Push = (usize, Vector<D>, Vector<D>);
+/// A load on a solid in the next step.
+type Push = (usize, Load<D>);
 
 /// A solid's convex parts in its own frame.
 type Parts = Vec<(Frame, SharedShape)>;
@@ -56,10 +65,12 @@ impl World {
     pub(in crate::solid) fn new(
         solids: &[SolidSpec<D>],
         start: &[Kinematics<D>],
+        links: &Links<D>,
         gravity: &Vector<D>,
         dp: f64,
     ) -> Result<Self> {
         assert_eq!(solids.len(), start.len(), "every solid needs a start");
+        links.check(solids)?;
         let mut all_parts = Vec::new();
         for solid in solids {
             solid.check_role()?;
@@ -67,13 +78,16 @@ impl World {
             collect(&solid.shape, &Pose::identity(), &mut parts)?;
             all_parts.push(parts);
         }
-        refuse_overlap(solids, start, &all_parts, OVERLAP_MAX * dp)?;
+        refuse_overlap(solids, start, &all_parts, links, OVERLAP_MAX * dp)?;
         let mut world = PhysicsWorld { gravity: to_point(gravity), ..PhysicsWorld::default() };
         let free = solids.iter().zip(&all_parts).filter(|(solid, _)| matches!(solid.role, Role::Free(_)));
         let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
         settle(&mut world, reach);
-        let bodies = (0..solids.len()).map(|i| insert(&mut world, i, &solids[i], &start[i], &all_parts[i])).collect();
-        Ok(Self { world, bodies, reach, tuned_for: 0.0, pushes: Vec::new() })
+        let hooks = if links.contacts.is_empty() { ActiveHooks::empty() } else { ActiveHooks::all() };
+        let insert = |i: usize| insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
+        let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
+        let ties = Ties::new(&mut world, &bodies, links, start);
+        Ok(Self { world, bodies, reach, tuned_for: 0.0, pushes: Vec::new(), ties })
     }
 
     fn body(&self, solid: usize) -> &RigidBody {
@@ -189,21 +203,29 @@ impl Engine<D> for World {
         self.load(loads)?;
         self.drive(driven)?;
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
-        self.world.step();
+        self.ties.tighten(&mut self.world, dt);
+        match self.ties.pairs.is_empty() {
+            true => self.world.step(),
+            false => self.world.step_with_events(&self.ties.pairs, &()),
+        }
         self.examine(&before)
     }
 
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>) {
-        self.pushes.push((solid, *force, *at));
+        let torque = Wedge::torque(&(at - from_point(self.body(solid).center_of_mass())), force);
+        self.pushes.push((solid, Load { force: *force, torque }));
+    }
+
+    fn burden(&mut self, solid: usize, load: &Load<D>) {
+        self.pushes.push((solid, *load));
     }
 
     fn pushed(&self, solid: usize) -> Load<D> {
-        let centre = from_point(self.body(solid).center_of_mass());
         let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
-        self.pushes.iter().filter(|push| push.0 == solid).fold(none, |sum, (_, force, at)| Load {
-            force: sum.force + force,
-            torque: sum.torque + Wedge::torque(&(at - centre), force),
-        })
+        self.pushes
+            .iter()
+            .filter(|push| push.0 == solid)
+            .fold(none, |sum, (_, load)| Load { force: sum.force + load.force, torque: sum.torque + load.torque })
     }
 
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
@@ -224,6 +246,22 @@ impl Engine<D> for World {
         forces.into_iter().map(|((a, b), force)| (a, b, force)).collect()
     }
 
+    fn mobility(&self, solid: usize) -> Mobility<D> {
+        let mass = self.body(solid).mass_properties();
+        Mobility {
+            linear: from_point(mass.effective_inv_mass),
+            angular: inverse_inertia(&mass.effective_world_inv_inertia),
+        }
+    }
+
+    fn impulses(&self, joint: usize) -> Vec<f64> {
+        self.ties.impulses(&self.world, joint)
+    }
+
+    fn rope_impulse(&self, rope: usize) -> f64 {
+        self.ties.rope(&self.world, rope)
+    }
+
     fn save(&self) -> Result<Vec<u8>> {
         postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.pushes)).map_err(restart)
     }
@@ -234,7 +272,8 @@ impl Engine<D> for World {
             return Err(restart(format!("they were written by {engine}, this is {ENGINE}")));
         }
         let (world, tuned_for, pushes): (PhysicsWorld, f64, Vec<Push>) = postcard::from_bytes(rest).map_err(restart)?;
-        let same = world.bodies.len() == self.bodies.len()
+        let same = world.bodies.len() == self.world.bodies.len()
+            && world.impulse_joints.len() == self.world.impulse_joints.len()
             && self.bodies.iter().all(|&h| world.bodies.contains(h))
             && pushes.iter().all(|push| push.0 < self.bodies.len());
         if !same {
@@ -266,6 +305,7 @@ fn insert(
     solid: &SolidSpec<D>,
     start: &Kinematics<D>,
     parts: &Parts,
+    hooks: ActiveHooks,
 ) -> RigidBodyHandle {
     let builder = match &solid.role {
         Role::Fixed => RigidBodyBuilder::fixed(),
@@ -283,6 +323,7 @@ fn insert(
             .contact_skin(0.0)
             .friction(solid.friction)
             .restitution(solid.restitution)
+            .active_hooks(hooks)
             .user_data(index as u128);
         world.insert_collider(collider, Some(handle));
     }
@@ -336,11 +377,17 @@ fn thickness(parts: &Parts) -> f64 {
 }
 
 /// Refuses a free solid that starts deeper than `allowed` (m) inside another.
-fn refuse_overlap(solids: &[SolidSpec<D>], start: &[Kinematics<D>], parts: &[Parts], allowed: f64) -> Result<()> {
+fn refuse_overlap(
+    solids: &[SolidSpec<D>],
+    start: &[Kinematics<D>],
+    parts: &[Parts],
+    links: &Links<D>,
+    allowed: f64,
+) -> Result<()> {
     let free = |i: usize| matches!(solids[i].role, Role::Free(_));
     for a in 0..solids.len() {
         for b in a + 1..solids.len() {
-            if !(free(a) || free(b)) {
+            if !(free(a) || free(b)) || !links.touch(a, b) {
                 continue;
             }
             let (frame_a, frame_b) = (to_frame(&start[a].pose), to_frame(&start[b].pose));

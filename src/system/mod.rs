@@ -26,7 +26,7 @@ use crate::{
     model::{Dimension, Model, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
-    solid::{Dim, Load, Solid, skin},
+    solid::{Dim, Links, Load, Solid, skin},
     space::{Bounds, Matrix, Pose, Vector, Wedge},
     sweep::{Input, Output, Sums, Sweep},
 };
@@ -57,6 +57,7 @@ pub struct System<const D: usize> {
     /// Where the solids were when the lists were made, if they were.
     built: Option<Vec<Pose<D>>>,
     pub(crate) solids: Vec<Solid<D>>,
+    links: Links<D>,
     domain: Bounds<D>,
     images: Images<D>,
     /// Stress of the water from the last pass, m²/s²; empty unless the viscosity has one.
@@ -89,7 +90,7 @@ impl<const D: usize> System<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let Setup { model, water, levels, velocity, pressure, solids: specs, domain, periodic } = setup;
+        let Setup { model, water, levels, velocity, pressure, solids: specs, links, domain, periodic } = setup;
         let (medium, reach) = (model.medium::<D>(), model.reach());
         let state = State::new(medium.c0, medium.gamma);
         // Depth along g: the level is a height on the last axis.
@@ -156,6 +157,7 @@ impl<const D: usize> System<D> {
             shown: Vec::new(),
             boxes,
             solids,
+            links,
             domain,
             images: Images::new(periodic, reach),
         };

@@ -4,7 +4,7 @@ use super::periodic::{self, Periodic};
 use crate::{
     error::{Error, Result},
     model::Model,
-    solid::SolidSpec,
+    solid::{Links, SolidSpec},
     space::{Bounds, Vector},
 };
 
@@ -23,6 +23,8 @@ pub struct Setup<const D: usize> {
     pub pressure: Vec<f64>,
     /// The solids.
     pub solids: Vec<SolidSpec<D>>,
+    /// What ties them.
+    pub links: Links<D>,
     /// Where particles may be; by default everything at the start, with its own largest extent around it.
     pub domain: Option<Bounds<D>>,
     /// Which sides are periodic.
@@ -32,8 +34,8 @@ pub struct Setup<const D: usize> {
 impl<const D: usize> Setup<D> {
     /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
     pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
-        let (velocity, pressure, periodic) = (Vec::new(), Vec::new(), [None; D]);
-        Self { model, water, levels, solids, velocity, pressure, domain: None, periodic }
+        let (velocity, pressure, links) = (Vec::new(), Vec::new(), Links::default());
+        Self { model, water, levels, solids, links, velocity, pressure, domain: None, periodic: [None; D] }
     }
 
     /// Refuses a setup whose constants have no meaning.
@@ -70,6 +72,7 @@ impl<const D: usize> Setup<D> {
         if let Some(i) = self.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
             return Err(Error::scene(format!("water particle {i} has no finite place")));
         }
+        self.links.check(&self.solids)?;
         periodic::check(&self.periodic, m, &self.solids)
     }
 }
