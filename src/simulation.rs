@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 pub use crate::system::Setup;
 pub use rescue::Rescued;
+pub(crate) use tied::find;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

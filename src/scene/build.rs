@@ -82,6 +82,7 @@ impl Scene {
         let still_level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
         let model = scene.laws(&water)?;
         let solids = scene.solids::<D>(still_level)?;
+        let links = scene.links(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             scene.inside(domain, &water, &solids)?;
@@ -110,7 +111,6 @@ impl Scene {
         if let Some(part) = scene.scatter {
             scatter(&mut filled.r, part * scene.dp);
         }
-        let links = crate::solid::Links::default();
         let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, links, domain, periodic };
         let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
         let still = Still { level: still_level, depth: still_level - bottom };
@@ -291,6 +291,9 @@ fn kind(probe: &ProbeEntry) -> ProbeKind {
     match probe {
         ProbeEntry { motion: Some(solid), .. } => ProbeKind::Motion { solid: solid.clone() },
         ProbeEntry { force: Some(solid), .. } => ProbeKind::Force { solid: solid.clone() },
+        ProbeEntry { joint: Some(joint), .. } => ProbeKind::Joint { joint: joint.clone() },
+        ProbeEntry { spring: Some(spring), .. } => ProbeKind::Spring { spring: spring.clone() },
+        ProbeEntry { rope: Some(rope), .. } => ProbeKind::Rope { rope: rope.clone() },
         ProbeEntry { elevation: Some(place), .. } => {
             ProbeKind::Elevation { at: [Some(place.x), place.y].into_iter().flatten().collect() }
         }

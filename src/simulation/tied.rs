@@ -55,7 +55,7 @@ pub(crate) fn find<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a s
     names.clone().position(|known| known == name).ok_or_else(|| {
         let help = match nearest(name, names.clone()) {
             Some(near) => format!("did you mean {near:?}?"),
-            None => format!("known: {}", names.collect::<Vec<_>>().join(", ")),
+            None => format!("the {kind}s are: {}", names.collect::<Vec<_>>().join(", ")),
         };
         Error::scene(format!("there is no {kind} called {name:?}")).help(help)
     })

@@ -163,7 +163,9 @@ pub fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]
 
 fn check_contact<const D: usize>(pair: &ContactSpec, solids: &[SolidSpec<D>]) -> Result<()> {
     let [a, b] = pair.between;
-    check_ends("a contact", [Some(a), Some(b)], solids)?;
+    if a == b || a.max(b) >= solids.len() {
+        return Err(Error::scene("a contact is not between two solids that are there").help("give the numbers of two"));
+    }
     let friction = pair.friction.is_none_or(|x| x >= 0.0 && x.is_finite());
     if !friction || !pair.restitution.is_none_or(|x| (0.0..=1.0).contains(&x)) {
         let help = "friction is 0 or more, restitution 0 to 1";

@@ -441,24 +441,23 @@ fn springs_swing_with_their_period_and_mooring_lines_never_push() {
 
 #[test]
 fn a_damped_spring_settles_whatever_its_damping() {
-    for damping in [200.0, 1e3, 1e7] {
+    for damping in [200.0, 600.0, 2000.0, 1e7] {
         let solids = vec![bar::<2>("box", 0.2, point(0.0, 0.0), true)];
         let weight = body(&solids[0]).mass * G;
         let ends = [End { solid: Some(0), at: point(0.0, 0.05) }, End { solid: None, at: point(0.0, 1.0) }];
-        let spec = SpringSpec {
-            name: "line".into(),
-            ends,
-            stiffness: 2000.0,
-            damping,
-            length: None,
-            tension_only: true,
-        };
+        let spec =
+            SpringSpec { name: "line".into(), ends, stiffness: 2000.0, damping, length: None, tension_only: true };
         let mut air = Air::new(solids, Links { springs: vec![spec], ..Links::default() }, G);
         let limit = air.rig.limit(&*air.engine, &air.now());
         assert!((limit - 0.2 / 10.0).abs() < 1e-12, "damping does not shorten the step: {limit}");
         air.run(1e-3, 20.0);
         let reading = air.rig.spring(0);
         let sag = (reading.length - 0.95) / (weight / 2000.0);
+        if damping == 1e7 {
+            // Far too stiff for the step, it creeps down, and never faster than the weight gathers speed in a step.
+            assert!(0.0 < sag && sag < 1.0 && air.now()[0].velocity[1].abs() < 1.01 * G * 1e-3, "{reading:?}");
+            continue;
+        }
         assert!((sag - 1.0).abs() < 1e-6 && (reading.tension / weight - 1.0).abs() < 1e-6, "{damping}: {reading:?}");
     }
 }
