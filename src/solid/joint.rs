@@ -4,14 +4,12 @@
 //!
 //!   F = F₀ + k (x* − x) + c (v* − ẋ)
 //!
-//! with x and ẋ as they would be at the end of the step under F alone (the pair as easy to move as its locks leave it, g = J M⁻¹ Jᵀ),
-//! so that no k and no c is too stiff for a step:
-//!
-//!   F = (F₀ + k (x* − x − Δt ẋ) + c (v* − ẋ)) / (1 + Δt (c + Δt k) g)
+//! The damping is taken at the rate at the step's end under itself alone, on a pair as easy to move as its locks leave it,
+//! g = J M⁻¹ Jᵀ: c (v* − ẋ)/(1 + Δt c g), so that no c is too stiff for a step. The stiffness bounds the step as a spring's does.
 
 use serde::{Deserialize, Serialize};
 
-use super::rows::{Mobility, Row};
+use super::rows::{Mobility, Row, part};
 use crate::{
     solid::{Engine, Kinematics, Law},
     space::{Matrix, Pose, Vector, Wedge},
@@ -155,9 +153,8 @@ impl Drive {
         if kind == JointKind::Hinge {
             off -= std::f64::consts::TAU * (off / std::f64::consts::TAU).round();
         }
-        let (k, c) = (self.stiffness, self.damping);
-        let force = self.force + k * (off - dt * rate) + c * (self.velocity - rate);
-        (force / (1.0 + dt * (c + dt * k) * g)).clamp(-self.strongest, self.strongest)
+        let damped = self.damping * (self.velocity - rate) / (1.0 + dt * self.damping * g);
+        (self.force + self.stiffness * off + damped).clamp(-self.strongest, self.strongest)
     }
 }
 
@@ -218,7 +215,7 @@ impl<const D: usize> Joint<D> {
 
     /// The rows of its locks in the order of the engine: turns first. In 3-D the engine measures a turn by the quaternion between
     /// the frames, so its row is half of the axis, turned half-way from one frame to the other.
-    pub(super) fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<Row<D>> {
+    fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<Row<D>> {
         let [first, second] = self.sits(ends);
         let (straight, turns) = locked::<D>(self.spec.kind);
         let mut rows = Vec::new();
@@ -241,6 +238,20 @@ impl<const D: usize> Joint<D> {
     /// The angle of a hinge; 0 of any other joint.
     fn position_or_none(&self, ends: &[Kinematics<D>; 2]) -> f64 {
         if self.spec.kind == JointKind::Hinge { self.position(ends) } else { 0.0 }
+    }
+
+    /// The rows of its locks, and after them that of its coordinate less what the locks do of it; and how many locks there are.
+    pub(super) fn rows(&self, ends: &[Kinematics<D>; 2], mobility: &[Mobility<D>; 2]) -> (Vec<Row<D>>, usize) {
+        let mut rows = self.locks(ends);
+        let locks = rows.len();
+        rows.extend(self.free(ends));
+        part(&mut rows, locks, mobility);
+        (rows, locks)
+    }
+
+    /// What drives it at time `t` (s): a program's `set`, or its own motor.
+    pub(super) fn drive(&self, set: Option<Drive>, t: f64) -> Option<Drive> {
+        set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.at(t)))
     }
 
     /// The force of its motor, N or N m, over a step of `dt` (s).

@@ -7,7 +7,7 @@ use super::{
     joint::{Drive, Joint},
     links::Links,
     mooring::{Elastic, Line, RopeSpec, SpringSpec, start_length},
-    rows::{Row, part},
+    rows::{Mobility, Row},
 };
 use crate::{
     solid::{Engine, Kinematics, Load},
@@ -119,11 +119,8 @@ impl<const D: usize> Rig<D> {
         self.rows.clear();
         for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
             let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
-            let (mut rows, free) = (joint.locks(&ends), joint.free(&ends));
-            let locks = rows.len();
-            rows.extend(free);
-            part(&mut rows, locks, &mobility);
-            let drive = set.or_else(|| joint.spec.motor.as_ref().map(|motor| motor.at(t + 0.5 * dt)));
+            let ((rows, _), free) = (joint.rows(&ends, &mobility), joint.free(&ends));
+            let drive = joint.drive(*set, t + 0.5 * dt);
             if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
                 let ease = own.with(own, &mobility);
                 reading.motor = joint.force(&drive, &ends, free.rate(&ends), ease, dt);
@@ -172,20 +169,33 @@ impl<const D: usize> Rig<D> {
         }
     }
 
-    /// The longest step (s) that the springs allow where the solids are now.
+    /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s).
     ///
     /// ω² is at most the largest, over all solids, of Σ k A (A + B) over the springs of the solid, with A² and B² the ease of its own
     /// and of the other end (Gershgorin's bound, solid by solid).
-    pub(crate) fn limit(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>]) -> f64 {
+    pub(crate) fn limit(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>], t: f64) -> f64 {
         let mut squares = vec![0.0; solids.len()];
+        let mut stiffen = |ends: [Option<usize>; 2], row: &Row<D>, mobility: &[Mobility<D>; 2], stiffness: f64| {
+            let own = row.ease(mobility).map(f64::sqrt);
+            for (solid, ease) in ends.iter().zip(own) {
+                if let Some(solid) = solid {
+                    squares[*solid] += stiffness * ease * (own[0] + own[1]);
+                }
+            }
+        };
+        for (joint, (set, _)) in self.joints.iter().zip(&self.state.joints) {
+            let Some(drive) = joint.drive(*set, t).filter(|drive| drive.stiffness > 0.0) else { continue };
+            let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
+            if let (rows, locks) = joint.rows(&ends, &mobility)
+                && let Some(row) = rows.get(locks)
+            {
+                stiffen(joint.spec.between, row, &mobility, drive.stiffness);
+            }
+        }
         for (spring, (elastic, _)) in self.springs.iter().zip(&self.state.springs) {
             let (ends, mobility) = (spring.line.ends(solids), spring.line.mobility(engine));
-            let Some(row) = spring.line.along(&ends).1 else { continue };
-            let own = row.ease(&mobility).map(f64::sqrt);
-            for (solid, ease) in spring.line.solids().iter().zip(own) {
-                if let Some(solid) = solid {
-                    squares[*solid] += elastic.stiffness * ease * (own[0] + own[1]);
-                }
+            if let Some(row) = spring.line.along(&ends).1 {
+                stiffen(spring.line.solids(), &row, &mobility, elastic.stiffness);
             }
         }
         SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt()

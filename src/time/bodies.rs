@@ -38,7 +38,7 @@ impl<const D: usize> Bodies<D> {
     /// The longest step (s) that the springs allow.
     pub(crate) fn limit(&self, system: &System<D>, t: f64) -> f64 {
         match self.engine.as_deref().filter(|_| !self.rig.is_empty()) {
-            Some(engine) => self.rig.limit(engine, &whereabouts(system, engine, t)),
+            Some(engine) => self.rig.limit(engine, &whereabouts(system, engine, t), t),
             None => f64::INFINITY,
         }
     }

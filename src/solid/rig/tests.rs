@@ -410,7 +410,7 @@ where
     let mut air = Air::new(solids.clone(), links, 0.0);
     // Two equal masses: ω² = 2 k/m.
     let omega = (800.0 / m).sqrt();
-    let limit = air.rig.limit(&*air.engine, &air.now());
+    let limit = air.rig.limit(&*air.engine, &air.now(), air.t);
     assert!((limit * omega - 0.2).abs() < 1e-9, "the bound is exact for a pair: {limit}");
     let period = air.period(0.5 * limit, 5, |air| air.rig.spring(0).length - 0.7);
     // (0.1)²/24 too fast at half of the longest step.
@@ -448,7 +448,7 @@ fn a_damped_spring_settles_whatever_its_damping() {
         let spec =
             SpringSpec { name: "line".into(), ends, stiffness: 2000.0, damping, length: None, tension_only: true };
         let mut air = Air::new(solids, Links { springs: vec![spec], ..Links::default() }, G);
-        let limit = air.rig.limit(&*air.engine, &air.now());
+        let limit = air.rig.limit(&*air.engine, &air.now(), air.t);
         assert!((limit - 0.2 / 10.0).abs() < 1e-12, "damping does not shorten the step: {limit}");
         air.run(1e-3, 20.0);
         let reading = air.rig.spring(0);
