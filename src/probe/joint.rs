@@ -44,7 +44,7 @@ impl<const D: usize> Probe<D> for Joint {
         let own = match self.kind {
             JointKind::Hinge => ["angle_deg", "rate_radps", "motor_Nm"],
             JointKind::Slider => ["position_m", "rate_mps", "motor_N"],
-            JointKind::Fixed | JointKind::Ball => return columns,
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => return columns,
         };
         let [position, rate, motor] = own.map(String::from);
         let motor = [motor, "power_W".into(), "absorbed_J".into()].map(|name| name + wide);
@@ -58,7 +58,7 @@ impl<const D: usize> Probe<D> for Joint {
         let position = match self.kind {
             JointKind::Hinge => now.position.to_degrees(),
             JointKind::Slider => now.position,
-            JointKind::Fixed | JointKind::Ball => return row,
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => return row,
         };
         row.extend([position, now.rate, now.motor, now.power(), now.absorbed]);
         row

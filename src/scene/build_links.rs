@@ -1,13 +1,13 @@
 //! From words to ties: joints, springs, ropes, forces and contacts of the solids that were built.
 
 use super::{
-    ForceWords, FrameOf, JointKindWords, JointWords, MotorWords, Scene, ValueWords, build_solids::Unit,
+    ForceWords, FrameOf, JointKindWords, JointWords, MotorWords, Scene, SolidWords, ValueWords, build_solids::Unit,
     geometry::vector,
 };
 use crate::{
     error::{Error, Result},
     solid::{
-        ContactSpec, End, ForceSpec, JointKind, JointSpec, Law, Links, Motor, RopeSpec, SolidSpec, SpringSpec,
+        ContactSpec, End, ForceSpec, Hold, JointKind, JointSpec, Law, Links, Motor, RopeSpec, SolidSpec, SpringSpec,
         links::{check_force, check_rope, check_spring},
     },
 };
@@ -67,6 +67,8 @@ impl Scene {
                 restitution: words.restitution,
             }));
         }
+        let release = |(solid, words): (usize, &SolidWords)| Some(Hold { solid, until: words.free.as_ref()?.release? });
+        links.holds = self.solid.iter().enumerate().filter_map(release).collect();
         Ok(links)
     }
 
@@ -81,6 +83,7 @@ impl Scene {
             JointKindWords::Slider => JointKind::Slider,
             JointKindWords::Fixed => JointKind::Fixed,
             JointKindWords::Ball => JointKind::Ball,
+            JointKindWords::Tow => JointKind::Tow,
         };
         let axis = vector(words.axis.as_ref().or(words.along.as_ref()).map_or(&[], |x| x));
         let mut joint = JointSpec::new(&words.name, kind, between, vector(&words.at), axis);

@@ -22,7 +22,7 @@ pub struct JointWords {
     /// Direction of the axis of a hinge; 3-D only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<Vec<f64>>,
-    /// Direction of a slider.
+    /// Direction of a slider or a tow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<Vec<f64>>,
     /// Least and greatest value from the start, m or rad.
@@ -54,6 +54,8 @@ pub enum JointKindWords {
     /// Turning any way; 3-D only.
     #[serde(alias = "spherical")]
     Ball,
+    /// All but moving along a line.
+    Tow,
 }
 
 /// A motor, brake or power take-off: F = F₀ + k (x* − x) + c (v* − ẋ).

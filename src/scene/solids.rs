@@ -97,6 +97,11 @@ impl Scene {
                 self.vector(&format!("{key}.{word}"), vector)?;
             }
         }
+        self.positive(&format!("{key}.release"), words.release)?;
+        if words.release.is_some() && (words.velocity.is_some() || words.spin.is_some()) {
+            let what = "what is held at first starts at rest, with neither velocity nor spin";
+            return Err(self.wrong(&format!("{key}.release"), what));
+        }
         let three = self.dimension == 3;
         let spin_fits = match &words.spin {
             None => true,

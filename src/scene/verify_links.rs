@@ -105,13 +105,15 @@ impl Scene {
             let help = "in 2-D  kind = \"hinge\"  turns freely about its point";
             return Err(self.wrong_with(&format!("{key}.kind"), "a plane has no ball joint", help));
         }
-        let needs = [("axis", &joint.axis, hinge && three), ("along", &joint.along, slider)];
+        let along = slider || joint.kind == JointKindWords::Tow;
+        let needs = [("axis", &joint.axis, hinge && three), ("along", &joint.along, along)];
         for (word, vector, needed) in needs {
             let key = format!("{key}.{word}");
             match vector {
                 None if needed => return Err(self.wrong(&key, format!("{word} is missing: which way?"))),
                 Some(_) if !needed => {
-                    let help = "a slider has  along, a hinge in 3-D has  axis; no other joint has a direction";
+                    let help =
+                        "a slider and a tow have  along, a hinge in 3-D has  axis; no other joint has a direction";
                     return Err(self.wrong_with(&key, format!("{word} has no meaning here"), help));
                 }
                 Some(vector) => {

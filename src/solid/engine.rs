@@ -48,6 +48,9 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// normal forces (N) at their contact points.
     fn contacts(&self) -> Vec<(usize, usize, f64)>;
 
+    /// Holds a free solid still, or lets it go as it was made.
+    fn hold(&mut self, solid: usize, held: bool);
+
     /// How easily a solid is moved now.
     fn mobility(&self, solid: usize) -> Mobility<D>;
 

@@ -26,6 +26,8 @@ pub enum JointKind {
     Fixed,
     /// Turning any way; 3-D.
     Ball,
+    /// All but moving along a line: the second solid is towed along it.
+    Tow,
 }
 
 /// A joint as it is to be made.
@@ -39,7 +41,7 @@ pub struct JointSpec<const D: usize> {
     pub between: [Option<usize>; 2],
     /// The world point at which it sits at the start, m.
     pub at: Vector<D>,
-    /// Direction of a slider, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero.
+    /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero.
     pub axis: Vector<D>,
     /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
     pub limits: Option<[f64; 2]>,
@@ -199,7 +201,7 @@ impl<const D: usize> Joint<D> {
                 let (turn, i, j) = (first.rotation.transpose() * second.rotation, D - 2, D - 1);
                 (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
             }
-            JointKind::Fixed | JointKind::Ball => 0.0,
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => 0.0,
         }
     }
 
@@ -209,7 +211,7 @@ impl<const D: usize> Joint<D> {
         match self.spec.kind {
             JointKind::Slider => Some(Row::along(first.rotation.column(0).into(), &second.position, ends)),
             JointKind::Hinge => Some(Row::about(turning(&first.rotation.column(0).into()))),
-            JointKind::Fixed | JointKind::Ball => None,
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => None,
         }
     }
 
@@ -281,6 +283,10 @@ pub(super) fn locked<const D: usize>(kind: JointKind) -> ([bool; D], [bool; 3]) 
         JointKind::Slider => straight[0] = false,
         JointKind::Fixed => {}
         JointKind::Ball => turns = [false; 3],
+        JointKind::Tow => {
+            straight = std::array::from_fn(|i| i == 0);
+            turns = [false; 3];
+        }
     }
     (straight, turns)
 }

@@ -19,8 +19,26 @@ pub struct Links<const D: usize> {
     pub ropes: Vec<RopeSpec<D>>,
     /// Forces and torques after a law of time.
     pub forces: Vec<ForceSpec<D>>,
+    /// Free solids that are held still at first.
+    pub holds: Vec<Hold>,
     /// Pairs of solids that touch otherwise than their own friction and restitution say, or not at all.
     pub contacts: Vec<ContactSpec>,
+}
+
+/// A free solid that is held still, whatever pushes it, until it is let go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Number of the solid.
+    pub solid: usize,
+    /// When it is let go, s.
+    pub until: f64,
+}
+
+impl Hold {
+    /// Whether it still holds at time `t` (s); a few last bits too early count as let go.
+    pub(super) fn holds(&self, t: f64) -> bool {
+        t < self.until * (1.0 - 1e-12)
+    }
 }
 
 /// How two solids touch.
@@ -43,6 +61,7 @@ impl<const D: usize> Links<D> {
             && self.springs.is_empty()
             && self.ropes.is_empty()
             && self.forces.is_empty()
+            && self.holds.is_empty()
             && self.contacts.is_empty()
     }
 
@@ -62,6 +81,7 @@ impl<const D: usize> Links<D> {
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
         self.forces.iter().try_for_each(|force| check_force(force, solids))?;
+        self.holds.iter().try_for_each(|hold| check_hold(hold, solids))?;
         self.contacts.iter().try_for_each(|pair| check_contact(pair, solids))
     }
 
@@ -78,14 +98,19 @@ impl<const D: usize> Links<D> {
             return refuse("has no finite place", "its place is a point of the world at the start, m");
         }
         let axis = joint.axis.norm();
-        let needed = joint.kind == JointKind::Slider || (joint.kind == JointKind::Hinge && D == 3);
+        let moves = matches!(joint.kind, JointKind::Hinge | JointKind::Slider);
+        let needed =
+            matches!(joint.kind, JointKind::Slider | JointKind::Tow) || (joint.kind == JointKind::Hinge && D == 3);
         if needed && !(axis > 1e-12 && axis.is_finite()) {
-            return refuse("has no axis", "a slider moves along a direction, a hinge in 3-D turns about an axis");
+            return refuse(
+                "has no axis",
+                "a slider moves and a tow holds along a direction, a hinge in 3-D turns about an axis",
+            );
         }
         if D == 2 && joint.kind == JointKind::Ball {
             return refuse("is a ball joint, and a plane has none", "in 2-D a hinge turns freely about its point");
         }
-        if !needed && joint.kind != JointKind::Hinge && (joint.limits.is_some() || joint.motor.is_some()) {
+        if !moves && (joint.limits.is_some() || joint.motor.is_some()) {
             return refuse("has no coordinate to limit or to drive", "only a hinge or a slider has limits and a motor");
         }
         if let Some([min, max]) = joint.limits {
@@ -159,6 +184,17 @@ pub fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]
         return Err(Error::scene(format!("{who} is not finite at t = 0")).help("check its formula or table"));
     }
     Ok(())
+}
+
+fn check_hold<const D: usize>(hold: &Hold, solids: &[SolidSpec<D>]) -> Result<()> {
+    check_ends("a hold", [Some(hold.solid), None], solids)?;
+    let still = |body: &super::FreeBody<D>| body.velocity.norm() == 0.0 && body.spin.0.norm() == 0.0;
+    let fine = matches!(&solids[hold.solid].role, Role::Free(body) if still(body));
+    if fine && hold.until.is_finite() {
+        return Ok(());
+    }
+    Err(Error::scene(format!("\"{}\" cannot be held until {} s", solids[hold.solid].name, hold.until))
+        .help("what is held at first starts at rest, without velocity or spin, and is let go at a time, s"))
 }
 
 fn check_contact<const D: usize>(pair: &ContactSpec, solids: &[SolidSpec<D>]) -> Result<()> {

@@ -24,7 +24,7 @@ pub use engine::{Dim, Engine, EngineFault, HasEngine};
 pub use force::ForceSpec;
 pub use formula::{Field, Formula};
 pub use joint::{Drive, JointKind, JointSpec, Motor};
-pub use links::{ContactSpec, Links};
+pub use links::{ContactSpec, Hold, Links};
 pub use mooring::{Elastic, End, RopeSpec, SpringSpec};
 pub use rig::{JointReading, LineReading};
 pub use rows::Mobility;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     force::ForceSpec,
     joint::{Drive, Joint},
-    links::Links,
+    links::{Hold, Links},
     mooring::{Elastic, Line, RopeSpec, SpringSpec, start_length},
     rows::{Mobility, Row},
 };
@@ -70,6 +70,7 @@ pub(crate) struct Rig<const D: usize> {
     springs: Vec<Spring<D>>,
     ropes: Vec<Line<D>>,
     forces: Vec<ForceSpec<D>>,
+    holds: Vec<Hold>,
     /// Rows of each joint's locks and of its coordinate in the present step.
     rows: Vec<Vec<Row<D>>>,
     state: RigState<D>,
@@ -98,6 +99,7 @@ impl<const D: usize> Rig<D> {
             springs: links.springs.iter().map(made).collect(),
             ropes: links.ropes.iter().map(|r| Line::new(&r.ends, &start)).collect(),
             forces: links.forces.clone(),
+            holds: links.holds.clone(),
             rows: Vec::new(),
             state: RigState {
                 joints: vec![(None, none); links.joints.len()],
@@ -110,12 +112,19 @@ impl<const D: usize> Rig<D> {
 
     /// Whether there is nothing that acts.
     pub(crate) fn is_empty(&self) -> bool {
-        self.joints.is_empty() && self.springs.is_empty() && self.ropes.is_empty() && self.forces.is_empty()
+        self.joints.is_empty()
+            && self.springs.is_empty()
+            && self.ropes.is_empty()
+            && self.forces.is_empty()
+            && self.holds.is_empty()
     }
 
     /// Puts motors, springs and forces on the engine's solids for the step from `t` (s) on, `dt` (s) long, in which they start as
     /// `solids` says.
     pub(crate) fn act(&mut self, engine: &mut dyn Engine<D>, solids: &[Kinematics<D>], t: f64, dt: f64) {
+        for hold in &self.holds {
+            engine.hold(hold.solid, hold.holds(t));
+        }
         self.rows.clear();
         for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
             let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
@@ -169,7 +178,8 @@ impl<const D: usize> Rig<D> {
         }
     }
 
-    /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s).
+    /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s), and that
+    /// goes no further than where one is let go.
     ///
     /// ω² is at most the largest, over all solids, of Σ k A (A + B) over the springs of the solid, with A² and B² the ease of its own
     /// and of the other end (Gershgorin's bound, solid by solid).
@@ -198,7 +208,8 @@ impl<const D: usize> Rig<D> {
                 stiffen(spring.line.solids(), &row, &mobility, elastic.stiffness);
             }
         }
-        SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt()
+        let let_go = self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t);
+        let_go.fold(f64::INFINITY, f64::min).min(SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt())
     }
 
     /// What joint number `i` felt in the last step.

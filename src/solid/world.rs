@@ -16,7 +16,7 @@ mod ties;
 use std::collections::BTreeMap;
 
 use super::rapier::{
-    dynamics::{RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
+    dynamics::{LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
     geometry::{ColliderBuilder, ColliderHandle, SharedShape},
     math::{Pose as Frame, Vector as Point},
     parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
@@ -53,6 +53,8 @@ pub(in crate::solid) struct World {
     tuned_for: f64,
     pushes: Vec<Push>,
     ties: Ties,
+    /// What of each solid is locked when it is not held.
+    locks: Vec<LockedAxes>,
 }
 
 /// A load on a solid in the next step.
@@ -87,7 +89,8 @@ impl World {
         let insert = |i: usize| insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
         let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
         let ties = Ties::new(&mut world, &bodies, links, start);
-        Ok(Self { world, bodies, reach, tuned_for: 0.0, pushes: Vec::new(), ties })
+        let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
+        Ok(Self { world, bodies, reach, tuned_for: 0.0, pushes: Vec::new(), ties, locks })
     }
 
     fn body(&self, solid: usize) -> &RigidBody {
@@ -244,6 +247,15 @@ impl Engine<D> for World {
             }
         }
         forces.into_iter().map(|((a, b), force)| (a, b, force)).collect()
+    }
+
+    fn hold(&mut self, solid: usize, held: bool) {
+        let body = &mut self.world.bodies[self.bodies[solid]];
+        if held {
+            body.set_linvel(Point::ZERO, true);
+            body.set_angvel(to_angular(&Wedge::zero()), true);
+        }
+        body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
     }
 
     fn mobility(&self, solid: usize) -> Mobility<D> {

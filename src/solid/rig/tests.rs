@@ -7,8 +7,8 @@ use crate::{
     error::Result,
     shape::Shape,
     solid::{
-        ContactSpec, Dim, Drive, Elastic, End, Engine, ForceSpec, Formula, FreeBody, HasEngine, JointKind, JointSpec,
-        Kinematics, Law, Links, Load, Motion, Motor, Role, RopeSpec, SolidSpec, SpringSpec,
+        ContactSpec, Dim, Drive, Elastic, End, Engine, ForceSpec, Formula, FreeBody, HasEngine, Hold, JointKind,
+        JointSpec, Kinematics, Law, Links, Load, Motion, Motor, Role, RopeSpec, SolidSpec, SpringSpec,
     },
     space::{Pose, Vector, Wedge},
 };
@@ -553,6 +553,36 @@ fn a_box_slides_above_the_angle_of_friction_and_sticks_below() {
     }
     let apart = ContactSpec { touch: false, ..pair(0.0) };
     assert!((slides(Some(apart)) / G - 1.0).abs() < 1e-9, "falls through");
+}
+
+#[test]
+fn a_towed_body_goes_with_its_carriage_and_is_free_in_all_else() {
+    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.2*t^2").unwrap()));
+    let carriage = SolidSpec { role: Role::Driven(motion), ..bar::<2>("carriage", 0.2, point(0.0, 1.0), true) };
+    let mut solids = vec![carriage, bar("model", 0.4, point(0.1, 0.0), true)];
+    let Role::Free(model) = &mut solids[1].role else { panic!() };
+    model.spin = Wedge::from_axial(&[0.7]);
+    let tow = JointSpec::new("tow", JointKind::Tow, [Some(0), Some(1)], point(0.1, 0.0), Vector::from([1.0, 0.0]));
+    let mut air = Air::new(solids, joined(tow), G);
+    air.run(1e-4, 1.0);
+    let (now, m) = (air.now()[1], body(&air.solids[1]).mass);
+    // First order in the step: ½ g t Δt of the fall.
+    assert!((now.centre - Vector::from([0.3, -0.5 * G])).norm() < 1e-3, "{now:?}");
+    assert!((now.spin.axial()[0] - 0.7).abs() < 1e-9 && (now.velocity[0] - 0.4).abs() < 1e-3);
+    let reading = air.rig.joint(0);
+    assert!((reading.force - Vector::from([0.4 * m, 0.0])).norm() < 1e-2 * m, "it is towed with m a: {reading:?}");
+}
+
+#[test]
+fn a_held_body_stays_until_it_is_let_go() {
+    let solids = vec![bar::<2>("stone", 0.2, point(0.0, 0.0), true)];
+    let mut air = Air::new(solids, Links { holds: vec![Hold { solid: 0, until: 0.5 }], ..Links::default() }, G);
+    air.engine.push(0, &Vector::from([50.0, 0.0]), &Vector::from([0.0, 0.3]));
+    air.run(1e-3, 0.4999);
+    assert_eq!((air.now()[0].velocity, air.now()[0].centre), (Vector::zeros(), Vector::zeros()));
+    assert!((air.rig.limit(&*air.engine, &air.now(), 0.4999) - 1e-4).abs() < 1e-12, "no step goes past the letting go");
+    air.run(1e-3, 1.5);
+    assert!((air.now()[0].velocity - Vector::from([0.0, -G])).norm() < 1e-2, "{:?}", air.now()[0]);
 }
 
 fn restores<const D: usize>()
