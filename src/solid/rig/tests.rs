@@ -288,9 +288,10 @@ where
     let drive = Motor { velocity: Some(Law::constant(-1.5)), ..Motor::damping(1e9) };
     let mut air = pendulum::<D>(Some(drive.clone()));
     air.run(1e-3, 4.0);
-    // Stiffer than any step: it still keeps the pace, past half a turn too.
+    // Stiffer than any step, and past half a turn.
     let turned = air.rig.joint(0).position;
-    assert!((air.rig.joint(0).rate + 1.5).abs() < 1e-2, "{D}-D: {:?}", air.rig.joint(0));
+    // As fast as it should but for what the weight gathers in a step.
+    assert!((air.rig.joint(0).rate + 1.5).abs() < 1e-3 * m * G * 0.2 / i, "{D}-D: {:?}", air.rig.joint(0));
     assert!((turned - (TAU - 6.0)).abs() < 1e-2, "{D}-D: {turned}");
     // One that is too weak does not lift the bar.
     let mut air = pendulum::<D>(Some(Motor { strongest: 0.1 * m * G * 0.2, ..drive }));
