@@ -174,8 +174,8 @@ impl<const D: usize> Simulation<D> {
     pub fn limit(&self) -> f64 {
         let model = self.system.model();
         let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        let springs = self.bodies.limit(&self.system, self.clock.time);
-        water.min(limit::viscous(model)).min(model.dt_max).min(springs) * self.rescue.share(self.clock.time)
+        let ties = self.spring_limit().min(self.bodies.rig().let_go(self.clock.time));
+        water.min(limit::viscous(model)).min(model.dt_max).min(ties) * self.rescue.share(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.

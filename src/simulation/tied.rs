@@ -23,6 +23,11 @@ impl<const D: usize> Simulation<D> {
         find("spring", name, self.system.links().springs.iter().map(|spring| spring.name.as_str()))
     }
 
+    /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
+    pub fn spring_limit(&self) -> f64 {
+        self.bodies.limit(&self.system, self.clock.time)
+    }
+
     /// What joint number `joint` felt in the last step.
     pub fn joint(&self, joint: usize) -> JointReading<D> {
         self.bodies.rig().joint(joint)

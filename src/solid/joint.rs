@@ -322,3 +322,6 @@ fn frame<const D: usize>(axis: &Vector<D>) -> Matrix<D> {
     }
     all
 }
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+mod tests;

@@ -229,7 +229,7 @@ fn check_ends<const D: usize>(who: &str, ends: [Option<usize>; 2], solids: &[Sol
         return Err(Error::scene(format!("{who} ties a solid to itself")).help("name two solids, or one and the world"));
     }
     let free = |&i: &usize| matches!(solids[i].role, Role::Free(_));
-    if ends.iter().flatten().any(|i| free(i)) {
+    if ends.iter().flatten().any(free) {
         return Ok(());
     }
     let names: Vec<&str> = ends.iter().flatten().map(|&i| solids[i].name.as_str()).collect();

@@ -112,3 +112,6 @@ impl Elastic {
 pub(super) fn start_length<const D: usize>(ends: &[End<D>; 2]) -> f64 {
     (ends[1].at - ends[0].at).norm()
 }
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+mod tests;

@@ -178,8 +178,7 @@ impl<const D: usize> Rig<D> {
         }
     }
 
-    /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s), and that
-    /// goes no further than where one is let go.
+    /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s).
     ///
     /// ω² is at most the largest, over all solids, of Σ k A (A + B) over the springs of the solid, with A² and B² the ease of its own
     /// and of the other end (Gershgorin's bound, solid by solid).
@@ -208,8 +207,12 @@ impl<const D: usize> Rig<D> {
                 stiffen(spring.line.solids(), &row, &mobility, elastic.stiffness);
             }
         }
-        let let_go = self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t);
-        let_go.fold(f64::INFINITY, f64::min).min(SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt())
+        SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt()
+    }
+
+    /// How long (s) from time `t` (s) on until the next solid is let go; no step goes past that.
+    pub(crate) fn let_go(&self, t: f64) -> f64 {
+        self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
     }
 
     /// What joint number `i` felt in the last step.
@@ -264,4 +267,4 @@ fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], lo
 }
 
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
-mod tests;
+pub(in crate::solid) mod tests;

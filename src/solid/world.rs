@@ -10,6 +10,9 @@
 //! nothing.
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "colliders.rs"]
+mod colliders;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "ties.rs"]
 mod ties;
 
@@ -17,24 +20,22 @@ use std::collections::BTreeMap;
 
 use super::rapier::{
     dynamics::{LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
-    geometry::{ColliderBuilder, ColliderHandle, SharedShape},
+    geometry::{ColliderBuilder, ColliderHandle},
     math::{Pose as Frame, Vector as Point},
-    parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, parts, to_angular, to_rotation,
-    tune,
+    D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular, to_rotation, tune,
 };
 use crate::{
-    error::{Error, Result},
-    shape::Shape,
+    error::Result,
     solid::{
         Kinematics, Links, Load, Mobility, Role, SolidSpec,
         engine::{Engine, EngineFault, restart},
     },
     space::{Pose, Vector, Wedge},
 };
+use colliders::{Parts, collect, refuse_overlap, thickness};
 use ties::Ties;
 
 /// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
@@ -59,9 +60,6 @@ pub(in crate::solid) struct World {
 
 /// A load on a solid in the next step.
 type Push = (usize, Load<D>);
-
-/// A solid's convex parts in its own frame.
-type Parts = Vec<(Frame, SharedShape)>;
 
 impl World {
     pub(in crate::solid) fn new(
@@ -341,85 +339,6 @@ fn insert(
     }
     world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
     handle
-}
-
-/// Adds the convex parts of `shape`, posed in the solid's frame.
-fn collect(shape: &Shape<D>, pose: &Pose<D>, found: &mut Parts) -> Result<()> {
-    let frame = to_frame(pose);
-    let mut cuboid = |min: Vector<D>, max: Vector<D>| {
-        let centre = Frame::from_translation(to_point(&(0.5 * (min + max))));
-        found.push((frame * centre, SharedShape::new(Cuboid::new(to_point(&(0.5 * (max - min)))))));
-    };
-    match shape {
-        Shape::Box { size } => cuboid(-0.5 * size, 0.5 * size),
-        Shape::Tank { size, thickness } => {
-            let (low, mut high) = (Vector::repeat(-thickness), size.add_scalar(*thickness));
-            high[D - 1] = size[D - 1];
-            for axis in 0..D {
-                let (mut min, mut max) = (low, high);
-                max[axis] = 0.0;
-                cuboid(min, max);
-                if axis < D - 1 {
-                    (min[axis], max[axis]) = (size[axis], high[axis]);
-                    cuboid(min, max);
-                }
-            }
-        }
-        Shape::Ball { radius } => found.push((frame, SharedShape::ball(*radius))),
-        Shape::Capsule { length, radius, axis } => {
-            let end = Point::AXES[*axis] * (0.5 * length);
-            found.push((frame, SharedShape::capsule(-end, end, *radius)));
-        }
-        Shape::Compound(inner) => {
-            for (place, shape) in inner {
-                collect(shape, &pose.then(place), found)?;
-            }
-        }
-        Shape::Cylinder { .. } | Shape::Polygon { .. } | Shape::Polyline { .. } => {
-            found.extend(parts(shape)?.into_iter().map(|(inner, part)| (frame * inner, part)));
-        }
-    }
-    Ok(())
-}
-
-/// Smallest edge of the box around the parts, m.
-fn thickness(parts: &Parts) -> f64 {
-    let boxes = parts.iter().map(|(frame, part)| part.compute_aabb(frame));
-    boxes.reduce(|a, b| a.merged(&b)).map_or(f64::INFINITY, |whole| whole.extents().min_element())
-}
-
-/// Refuses a free solid that starts deeper than `allowed` (m) inside another.
-fn refuse_overlap(
-    solids: &[SolidSpec<D>],
-    start: &[Kinematics<D>],
-    parts: &[Parts],
-    links: &Links<D>,
-    allowed: f64,
-) -> Result<()> {
-    let free = |i: usize| matches!(solids[i].role, Role::Free(_));
-    for a in 0..solids.len() {
-        for b in a + 1..solids.len() {
-            if !(free(a) || free(b)) || !links.touch(a, b) {
-                continue;
-            }
-            let (frame_a, frame_b) = (to_frame(&start[a].pose), to_frame(&start[b].pose));
-            let mut depth: f64 = 0.0;
-            for (inner_a, part_a) in &parts[a] {
-                for (inner_b, part_b) in &parts[b] {
-                    let touch = contact(&(frame_a * *inner_a), &**part_a, &(frame_b * *inner_b), &**part_b, 0.0);
-                    depth = touch.ok().flatten().map_or(depth, |touch| depth.max(-touch.dist));
-                }
-            }
-            if depth > allowed {
-                let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
-                let (inner, outer) = (&solids[inner].name, &solids[outer].name);
-                let help = "move one of them by that much or more, or make it smaller";
-                return Err(Error::scene(format!("\"{inner}\" starts {depth:.5} m inside \"{outer}\""))
-                    .help(format!("{help}; {allowed:.5} m (0.05 dp) is let pass")));
-            }
-        }
-    }
-    Ok(())
 }
 
 pub(super) fn to_point(x: &Vector<D>) -> Point {

@@ -35,7 +35,7 @@ impl<const D: usize> Bodies<D> {
         &mut self.rig
     }
 
-    /// The longest step (s) that the springs allow.
+    /// The longest step (s) that springs and motors allow at time `t` (s).
     pub(crate) fn limit(&self, system: &System<D>, t: f64) -> f64 {
         match self.engine.as_deref().filter(|_| !self.rig.is_empty()) {
             Some(engine) => self.rig.limit(engine, &whereabouts(system, engine, t), t),
