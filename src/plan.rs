@@ -50,6 +50,21 @@ pub enum ProbeKind {
         /// The solid's name.
         solid: String,
     },
+    /// What a joint carries, and how it moves.
+    Joint {
+        /// The joint's name.
+        joint: String,
+    },
+    /// Length and tension of a spring.
+    Spring {
+        /// The spring's name.
+        spring: String,
+    },
+    /// Length and tension of a rope.
+    Rope {
+        /// The rope's name.
+        rope: String,
+    },
     /// Height of the free surface above a place.
     Elevation {
         /// Horizontal coordinates, m: D − 1 of them.

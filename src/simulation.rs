@@ -1,11 +1,13 @@
 //! A running simulation: limit, step, check; no files.
 
 mod rescue;
+mod tied;
 
 use std::time::{Duration, Instant};
 
 pub use crate::system::{Escape, Limits, Lost, Setup};
 pub use rescue::Rescued;
+pub(crate) use tied::find;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -15,7 +17,10 @@ use rescue::Rescue;
 use crate::{
     error::{Error, Fault, Kind, Result},
     model::Dimension,
-    solid::{Dim, HasEngine as _, Role, SolidSpec},
+    solid::{
+        Dim, HasEngine as _, Role, SolidSpec,
+        rig::{Rig, RigState},
+    },
     space::{Vector, Wedge},
     system::{System, SystemState},
     time::{Bodies, Held, Interval, Light, Stepper, limit},
@@ -61,6 +66,7 @@ struct Kept<const D: usize> {
     clock: Clock,
     engine: Option<Vec<u8>>,
     light: Vec<Held>,
+    rig: RigState<D>,
     rescued: Vec<Rescued>,
     lost: Vec<(f64, Lost<D>)>,
 }
@@ -80,16 +86,17 @@ impl<const D: usize> Simulation<D> {
             solid.check()?;
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
+        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
         let engine = if solids.iter().any(|s| free(&s)) {
-            let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-            Some(Dim::<D>::engine(solids, &start, &medium.gravity, dp)?)
+            Some(Dim::<D>::engine(solids, &start, &setup.links, &medium.gravity, dp)?)
         } else {
             None
         };
+        let rig = Rig::new(&setup.links, start);
         let stepper = Stepper::new(&setup.model);
         let longest = limit::sound(&setup.model);
         let mut system = System::new(setup)?;
-        let bodies = Bodies::new(engine, Light::find(&mut system, longest));
+        let bodies = Bodies::new(engine, Light::find(&mut system, longest), rig);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (Rescue::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rescue, lost, stepping };
@@ -173,11 +180,12 @@ impl<const D: usize> Simulation<D> {
         self.guard()
     }
 
-    /// The longest step (s) that the present rates and the model allow.
+    /// The longest step (s) that the present rates, the springs and the model allow.
     pub fn limit(&self) -> f64 {
         let model = self.system.model();
         let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        water.min(limit::viscous(model)).min(model.dt_max) * self.rescue.share(self.clock.time)
+        let ties = self.spring_limit().min(self.bodies.rig().let_go(self.clock.time));
+        water.min(limit::viscous(model)).min(model.dt_max).min(ties) * self.rescue.share(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -288,7 +296,8 @@ impl<const D: usize> Simulation<D> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
         let rescued = self.rescue.log.clone();
-        let kept = Kept { system, stepper, clock, engine, light: self.bodies.held(), rescued, lost: self.lost.clone() };
+        let (light, rig, lost) = (self.bodies.held(), self.bodies.rig().save(), self.lost.clone());
+        let kept = Kept { system, stepper, clock, engine, light, rig, rescued, lost };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
@@ -304,7 +313,7 @@ impl<const D: usize> Simulation<D> {
             (None, None) => {}
             _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
         }
-        if !self.bodies.restore(&kept.light) {
+        if !self.bodies.restore(&kept.light) || !self.bodies.rig_mut().restore(kept.rig) {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
         self.system.restore(kept.system)?;

@@ -127,7 +127,7 @@ pub fn look<const D: usize>(
     let look = Look { system, plan, still, g, faces };
     let mut findings = Vec::new();
     let sound = look.sound(&mut findings);
-    let step = look.step();
+    let step = look.step(sim.spring_limit(), &mut findings);
     let size = look.size(&step, columns, overlapped, &mut findings);
     let gaps = look.gaps(&mut findings);
     let bodies = look.bodies(&gaps.touching, &mut findings);

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{
     Finding, Look, faces,
-    words::{three, up},
+    words::{down, three, up},
 };
 use crate::{
     law::wall::Slip,
@@ -54,7 +54,7 @@ impl Sound {
 pub struct Step {
     /// The longest step: the least of those below. Impacts shorten it further.
     pub dt_s: f64,
-    /// What binds it: `sound`, `gravity`, `viscosity` or `dt_max`.
+    /// What binds it: `sound`, `gravity`, `viscosity`, `springs` or `dt_max`.
     pub bound_by: String,
     /// By sound, CFL h/c₀.
     pub sound_s: f64,
@@ -62,6 +62,8 @@ pub struct Step {
     pub gravity_s: Option<f64>,
     /// By viscosity, h²/(8 ν₀); absent without one.
     pub viscosity_s: Option<f64>,
+    /// By springs and stiff motors; absent without any.
+    pub springs_s: Option<f64>,
     /// By the model's `dt_max`; absent without one.
     pub dt_max_s: Option<f64>,
     /// Steps to the end at dt: there will be some more.
@@ -136,20 +138,28 @@ impl<const D: usize> Look<'_, D> {
         (format!("\"{name}\" at the start"), start)
     }
 
-    /// How long a step may be.
-    pub(super) fn step(&self) -> Step {
+    /// How long a step may be; `springs`: as far as they go, s.
+    pub(super) fn step(&self, springs: f64, findings: &mut Vec<Finding>) -> Step {
         let model = self.system.model();
         let finite = |x: f64| (x > 0.0 && x.is_finite()).then_some(x);
         let sound_s = model.cfl * model.h / model.c0;
         let gravity_s = finite(model.cfl * (model.h / self.system.gravity().norm()).sqrt());
         let (viscosity_s, dt_max_s) = (finite(limit::viscous(model)), finite(model.dt_max));
-        let others = [("gravity", gravity_s), ("viscosity", viscosity_s), ("dt_max", dt_max_s)];
+        let springs_s = finite(springs);
+        let others = [("gravity", gravity_s), ("viscosity", viscosity_s), ("springs", springs_s), ("dt_max", dt_max_s)];
         let mut all = vec![("sound".to_string(), sound_s)];
         all.extend(others.into_iter().filter_map(|(what, dt)| Some((what.to_string(), dt?))));
         let (bound_by, dt_s) =
             all.into_iter().fold((String::new(), f64::INFINITY), |least, x| if x.1 < least.1 { x } else { least });
+        let slower = sound_s / dt_s;
+        if bound_by == "springs" && slower > 2.0 {
+            let what =
+                format!("springs or motors are so stiff that the run takes {} times as many steps", three(slower));
+            let mend = format!("{} of the stiffness is soft enough; a rope costs no steps", down(slower.powi(-2)));
+            findings.push(Finding::warning("stiff_spring", what, mend));
+        }
         let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1 } else { 2 };
         let steps = (self.until() / dt_s).ceil();
-        Step { dt_s, bound_by, sound_s, gravity_s, viscosity_s, dt_max_s, steps, passes }
+        Step { dt_s, bound_by, sound_s, gravity_s, viscosity_s, springs_s, dt_max_s, steps, passes }
     }
 }

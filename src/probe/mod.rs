@@ -7,6 +7,8 @@ mod elevation;
 mod energy;
 mod force;
 mod front;
+mod joint;
+mod line;
 mod motion;
 mod pressure;
 mod velocity;
@@ -15,13 +17,15 @@ pub use elevation::Elevation;
 pub use energy::Energy;
 pub use force::Force;
 pub use front::Front;
+pub use joint::Joint;
+pub use line::Line;
 pub use motion::Motion;
 pub use pressure::Pressure;
 pub use velocity::Velocity;
 
 use crate::{
-    error::{Error, Kind, Result, nearest},
-    simulation::Simulation,
+    error::{Error, Kind, Result},
+    simulation::{Simulation, find},
     space::Vector,
     system::System,
 };
@@ -54,14 +58,7 @@ const fn axes<const D: usize>() -> &'static [&'static str] {
 /// # Errors
 /// `Scene` if there is none: says the nearest name, or all of them.
 pub fn find_solid<const D: usize>(system: &System<D>, name: &str) -> Result<usize> {
-    system.solid(name).ok_or_else(|| {
-        let names: Vec<&str> = system.solids().iter().map(|s| s.spec.name.as_str()).collect();
-        let help = match nearest(name, names.iter().copied()) {
-            Some(near) => format!("did you mean {near:?}?"),
-            None => format!("the solids are: {}", names.join(", ")),
-        };
-        Error::scene(format!("there is no solid called {name:?}")).help(help)
-    })
+    find("solid", name, system.solids().iter().map(|s| s.spec.name.as_str()))
 }
 
 /// A point of `D` components from as many numbers.

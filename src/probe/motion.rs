@@ -72,7 +72,7 @@ impl<const D: usize> Probe<D> for Motion<D> {
 }
 
 /// The angle (deg) that differs from `now` by whole turns and lies nearest to `before`.
-fn unwrapped(before: f64, now: f64) -> f64 {
+pub(super) fn unwrapped(before: f64, now: f64) -> f64 {
     now - 360.0 * ((now - before) / 360.0).round()
 }
 

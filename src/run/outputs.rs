@@ -203,6 +203,9 @@ fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dy
     Ok(match &words.what {
         ProbeKind::Motion { solid } => Box::new(probe::Motion::new(system, solid)?),
         ProbeKind::Force { solid } => Box::new(probe::Force::new(system, solid)?),
+        ProbeKind::Joint { joint } => Box::new(probe::Joint::new(system, joint)?),
+        ProbeKind::Spring { spring } => Box::new(probe::Line::spring(system, spring)?),
+        ProbeKind::Rope { rope } => Box::new(probe::Line::rope(system, rope)?),
         ProbeKind::Elevation { at } => Box::new(probe::Elevation::new(system, at)?),
         ProbeKind::Velocity { at } => Box::new(probe::Velocity::new(at)?),
         ProbeKind::Pressure { at } => Box::new(probe::Pressure::new(at)?),

@@ -222,6 +222,9 @@ pub struct FreeWords {
     /// Spin at the start, rad/s: a number in 2-D, a vector in 3-D.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spin: Option<Numbers>,
+    /// When it is let go, s: until then it is held still.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub release: Option<f64>,
     /// Motions that are locked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub locked: Vec<Lock>,

@@ -82,6 +82,7 @@ impl Scene {
         let still_level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
         let model = scene.laws(&water)?;
         let solids = scene.solids::<D>(still_level)?;
+        let links = scene.links(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             scene.inside(domain, &water, &solids)?;
@@ -114,8 +115,9 @@ impl Scene {
             scatter(&mut filled.r, part * scene.dp);
         }
         let limits = scene.limits();
-        let setup = Setup { model, water: filled.r, levels, velocity, pressure, solids, domain, periodic, limits };
         let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
+        let water = filled.r;
+        let setup = Setup { model, water, levels, velocity, pressure, solids, links, domain, periodic, limits };
         let still = Still { level: still_level, depth: still_level - bottom };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
     }
@@ -294,6 +296,9 @@ fn kind(probe: &ProbeEntry) -> ProbeKind {
     match probe {
         ProbeEntry { motion: Some(solid), .. } => ProbeKind::Motion { solid: solid.clone() },
         ProbeEntry { force: Some(solid), .. } => ProbeKind::Force { solid: solid.clone() },
+        ProbeEntry { joint: Some(joint), .. } => ProbeKind::Joint { joint: joint.clone() },
+        ProbeEntry { spring: Some(spring), .. } => ProbeKind::Spring { spring: spring.clone() },
+        ProbeEntry { rope: Some(rope), .. } => ProbeKind::Rope { rope: rope.clone() },
         ProbeEntry { elevation: Some(place), .. } => {
             ProbeKind::Elevation { at: [Some(place.x), place.y].into_iter().flatten().collect() }
         }

@@ -91,7 +91,8 @@ impl Scene {
         Ok(Motion::hinge(centre, &axis, law))
     }
 
-    fn law(&self, key: &str, words: &LawWords, unit: Unit) -> Result<Law> {
+    /// The law that `words` say in this unit.
+    pub(super) fn law(&self, key: &str, words: &LawWords, unit: Unit) -> Result<Law> {
         let place = |word: &str, e: Error| self.origin.place(e, &format!("{key}.{word}"));
         if let Some(text) = &words.formula {
             let formula = Formula::parse(text).map_err(|e| place("formula", e))?;
@@ -114,7 +115,7 @@ impl Scene {
 
 /// The unit in which a law is written.
 #[derive(Clone, Copy, PartialEq)]
-enum Unit {
+pub(super) enum Unit {
     Metres,
     Radians,
     Degrees,

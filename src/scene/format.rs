@@ -12,6 +12,7 @@ use super::{
     flexible::{FieldWords, Frames},
     flow::PeriodicWords,
     guard::GuardWords,
+    links::{ContactWords, ForceWords, JointWords, RopeWords, SpringWords},
 };
 use crate::{
     model::{Diffusion, Kernel, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
@@ -52,6 +53,21 @@ pub struct Scene {
     /// Solids.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub solid: Vec<SolidWords>,
+    /// Joints between them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joint: Vec<JointWords>,
+    /// Springs and mooring lines.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spring: Vec<SpringWords>,
+    /// Ropes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rope: Vec<RopeWords>,
+    /// Forces after a law of time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub force: Vec<ForceWords>,
+    /// Pairs that touch in their own way.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contact: Vec<ContactWords>,
     /// The chosen laws.
     #[serde(default)]
     pub model: ModelWords,
@@ -193,6 +209,15 @@ pub struct ProbeEntry {
     /// Force and torque on the solid of this name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<String>,
+    /// What the joint of this name carries, and how it moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint: Option<String>,
+    /// Length and tension of the spring of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spring: Option<String>,
+    /// Length and tension of the rope of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rope: Option<String>,
     /// Surface elevation at a place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elevation: Option<PlaceWords>,
@@ -292,6 +317,11 @@ impl Scene {
             guard: None,
             water: Vec::new(),
             solid: Vec::new(),
+            joint: Vec::new(),
+            spring: Vec::new(),
+            rope: Vec::new(),
+            force: Vec::new(),
+            contact: Vec::new(),
             model: ModelWords::default(),
             time: TimeWords::default(),
             probe: Vec::new(),
@@ -350,5 +380,15 @@ impl ProbeEntry {
     /// Force and torque on the solid of this name.
     pub fn force(solid: impl Into<String>) -> Self {
         Self { force: Some(solid.into()), ..Self::default() }
+    }
+
+    /// What the joint of this name carries, and how it moves.
+    pub fn joint(joint: impl Into<String>) -> Self {
+        Self { joint: Some(joint.into()), ..Self::default() }
+    }
+
+    /// Length and tension of the spring of this name.
+    pub fn spring(spring: impl Into<String>) -> Self {
+        Self { spring: Some(spring.into()), ..Self::default() }
     }
 }

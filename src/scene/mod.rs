@@ -1,10 +1,11 @@
 //! What the user says: the words of a scene, read, checked and made into a simulation.
 //!
-//! [`format`] and [`bodies`] are the words, [`document`] reads them from TOML, `verify`, `solids` and `checks`
+//! [`format`], [`bodies`] and [`links`] are the words, [`document`] reads them from TOML, `verify`, `solids` and `checks`
 //! hold them against one another, [`resolve`] fills in the defaults, [`build`] opens the files that they name.
 
 pub mod bodies;
 pub mod build;
+mod build_links;
 mod build_solids;
 mod checks;
 mod document;
@@ -15,13 +16,16 @@ pub mod format;
 mod geometry;
 mod guard;
 mod mesh;
+pub mod links;
 pub mod resolve;
 mod sets;
 pub mod shipped;
 mod size;
 mod solids;
 pub mod table;
+pub mod values;
 mod verify;
+mod verify_links;
 mod wording;
 
 pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
@@ -35,9 +39,11 @@ pub use format::{
 };
 pub(crate) use geometry::world_bounds;
 pub use guard::GuardWords;
+pub use links::{ContactWords, ForceWords, FrameOf, JointKindWords, JointWords, MotorWords, RopeWords, SpringWords};
 pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 pub use size::Size;
+pub use values::{ValueWords, ValuesWords};
 
 use std::{
     io::Read,

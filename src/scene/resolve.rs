@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fmt};
 
 use super::{
-    AtWords, Axis, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, Touch, Unit, document::Source,
+    AtWords, Axis, FrameOf, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, Touch, Unit, document::Source,
     verify::FIELDS,
 };
 use crate::{
@@ -91,6 +91,7 @@ impl Scene {
         scene.fill_laws(&mut filler, &usual);
         scene.fill_guard(&mut filler);
         scene.fill_solids(&mut filler);
+        scene.fill_links(&mut filler);
         scene.fill_records(&mut filler);
         Ok((scene, filler.0))
     }
@@ -160,10 +161,39 @@ impl Scene {
                 ("angle_deg", &mut driven.angle_deg),
             ];
             for (word, law) in laws {
-                if let Some(law @ LawWords { file: Some(_), .. }) = law {
-                    let key = format!("{key}.driven.{word}");
-                    filler.fill(format!("{key}.time"), &mut law.time, "t_s".into(), "the name our own tables have");
-                    filler.fill(format!("{key}.scale"), &mut law.scale, 1.0, "as in the table");
+                if let Some(law) = law {
+                    fill_law(filler, &format!("{key}.driven.{word}"), law);
+                }
+            }
+        }
+    }
+
+    fn fill_links(&mut self, filler: &mut Filler) {
+        for (i, joint) in self.joint.iter_mut().enumerate() {
+            let key = format!("joint.{i}");
+            filler.fill(format!("{key}.contacts"), &mut joint.contacts, false, "what is jointed may overlap");
+            for (word, value) in joint.motor.iter_mut().flat_map(|motor| motor.laws_mut()) {
+                fill_law(filler, &format!("{key}.motor.{word}"), &mut value.0);
+            }
+        }
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        for (i, spring) in self.spring.iter_mut().enumerate() {
+            let key = format!("spring.{i}");
+            filler.fill(format!("{key}.damping"), &mut spring.damping, 0.0, "a spring without loss");
+            let length = apart(&spring.from, &spring.to);
+            filler.fill(format!("{key}.length"), &mut spring.length, length, "as it starts");
+            filler.fill(format!("{key}.tension_only"), &mut spring.tension_only, false, "it pushes as it pulls");
+        }
+        for (i, rope) in self.rope.iter_mut().enumerate() {
+            let length = apart(&rope.from, &rope.to);
+            filler.fill(format!("rope.{i}.length"), &mut rope.length, length, "as it starts");
+        }
+        for (i, force) in self.force.iter_mut().enumerate() {
+            let key = format!("force.{i}");
+            filler.fill(format!("{key}.frame"), &mut force.frame, FrameOf::World, "as wind, not as a thruster");
+            for (word, values) in [("force", &mut force.force), ("torque", &mut force.torque)] {
+                for value in values.iter_mut().flat_map(|values| values.components_mut()) {
+                    fill_law(filler, &format!("{key}.{word}"), &mut value.0);
                 }
             }
         }
@@ -270,7 +300,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 17] = [
+const ORDER: [&str; 22] = [
     "title",
     "dimension",
     "dp",
@@ -282,6 +312,11 @@ const ORDER: [&str; 17] = [
     "guard",
     "water",
     "solid",
+    "joint",
+    "spring",
+    "rope",
+    "force",
+    "contact",
     "model",
     "time",
     "probe",
@@ -289,6 +324,14 @@ const ORDER: [&str; 17] = [
     "checkpoint",
     "check",
 ];
+
+/// Fills in what a law that is a table does not say.
+fn fill_law(filler: &mut Filler, key: &str, law: &mut LawWords) {
+    if law.file.is_some() {
+        filler.fill(format!("{key}.time"), &mut law.time, "t_s".into(), "the name our own tables have");
+        filler.fill(format!("{key}.scale"), &mut law.scale, 1.0, "as in the table");
+    }
+}
 
 /// What a shape needs to know of the scene for its defaults.
 struct Sheet {

@@ -25,6 +25,7 @@ macro_rules! scene {
 pub fn shipped() -> &'static [Shipped] {
     &[
         scene!("raft"),
+        scene!("hinged-raft"),
         scene!("still-tank"),
         scene!("still-wedge"),
         scene!("still-tank-3d"),

@@ -21,13 +21,8 @@ impl Scene {
                 at(self, &format!("{key}.at"), words, true)?;
             }
             self.role(&key, solid)?;
-            for (word, x, most) in [("friction", solid.friction, 10.0), ("restitution", solid.restitution, 1.0)] {
-                if x.is_some_and(|x| !(0.0..=most).contains(&x)) {
-                    let help = format!("{word} is a number from 0 to {most}");
-                    let what = format!("{word} cannot be {}", x.unwrap_or_default());
-                    return Err(self.wrong_with(&format!("{key}.{word}"), what, help));
-                }
-            }
+            self.within(&format!("{key}.friction"), solid.friction, 10.0)?;
+            self.within(&format!("{key}.restitution"), solid.restitution, 1.0)?;
         }
         Ok(())
     }
@@ -84,13 +79,7 @@ impl Scene {
             }
         }
         let key = format!("{key}.{}", laws[0].0);
-        match (&law.formula, &law.file) {
-            (Some(_), None) if law.column.is_none() && law.scale.is_none() && law.time.is_none() => Ok(()),
-            (Some(_), None) => Err(self.wrong(&key, "column, time and scale belong to a file, not to a formula")),
-            (None, Some(_)) if law.column.is_some() => Ok(()),
-            (None, Some(_)) => Err(self.wrong(&key, "which column of the file?")),
-            _ => Err(self.wrong(&key, "a law is either a formula or a file with a column")),
-        }
+        self.one_law(&key, law)
     }
 
     fn free(&self, key: &str, words: &FreeWords) -> Result<()> {
@@ -107,6 +96,11 @@ impl Scene {
             if let Some(vector) = vector {
                 self.vector(&format!("{key}.{word}"), vector)?;
             }
+        }
+        self.positive(&format!("{key}.release"), words.release)?;
+        if words.release.is_some() && (words.velocity.is_some() || words.spin.is_some()) {
+            let what = "what is held at first starts at rest, with neither velocity nor spin";
+            return Err(self.wrong(&format!("{key}.release"), what));
         }
         let three = self.dimension == 3;
         let spin_fits = match &words.spin {

@@ -79,6 +79,7 @@ impl Scene {
         }
         self.water.iter().enumerate().try_for_each(|(i, water)| self.verify_water(&format!("water.{i}"), water))?;
         self.verify_solids()?;
+        self.verify_links()?;
         self.verify_laws()?;
         self.verify_probes()?;
         self.verify_records()
@@ -166,8 +167,8 @@ impl Scene {
             self.positive(&format!("{key}.every"), probe.every)?;
             if kinds(probe).len() != 1 {
                 let what = format!("a probe looks at one thing; this one at {}", said(&kinds(probe)));
-                let help =
-                    "one of motion, force, elevation, velocity, pressure, front, energy; a [[probe]] section for each";
+                let help = "one of motion, force, joint, spring, rope, elevation, velocity, pressure, front, energy; a [[probe]] \
+                     section for each";
                 return Err(self.wrong_with(&key, what, help));
             }
             for (word, solid) in [("motion", &probe.motion), ("force", &probe.force)] {
@@ -175,6 +176,7 @@ impl Scene {
                     self.known_solid(&format!("{key}.{word}"), name)?;
                 }
             }
+            self.known_ties(&key, probe)?;
             for (word, at) in [("velocity", &probe.velocity), ("pressure", &probe.pressure)] {
                 if let Some(at) = at {
                     self.vector(&format!("{key}.{word}"), at)?;
@@ -213,7 +215,7 @@ impl Scene {
         }
     }
 
-    fn known_solid(&self, key: &str, name: &str) -> Result<()> {
+    pub(super) fn known_solid(&self, key: &str, name: &str) -> Result<()> {
         if self.solid.iter().any(|solid| solid.name == name) {
             return Ok(());
         }
@@ -263,6 +265,10 @@ impl Scene {
                 (Some(name), ..) => name.clone(),
                 (None, Some(solid), _) => solid.clone(),
                 (None, None, Some(solid)) => format!("{solid}_force"),
+                _ if probe.joint.is_some() || probe.spring.is_some() || probe.rope.is_some() => {
+                    let ties = [&probe.joint, &probe.spring, &probe.rope];
+                    ties.into_iter().flatten().next().cloned().unwrap_or_default()
+                }
                 _ if alike == 0 => kind.to_string(),
                 _ => format!("{kind}_{}", alike + 1),
             };
@@ -277,6 +283,9 @@ fn kinds(probe: &ProbeEntry) -> Vec<&'static str> {
     let given = [
         ("motion", probe.motion.is_some()),
         ("force", probe.force.is_some()),
+        ("joint", probe.joint.is_some()),
+        ("spring", probe.spring.is_some()),
+        ("rope", probe.rope.is_some()),
         ("elevation", probe.elevation.is_some()),
         ("velocity", probe.velocity.is_some()),
         ("pressure", probe.pressure.is_some()),

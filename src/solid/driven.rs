@@ -21,6 +21,11 @@ pub enum Law {
 }
 
 impl Law {
+    /// The law that is `x` at all times.
+    pub fn constant(x: f64) -> Self {
+        Self::Formula(Formula::constant(x))
+    }
+
     /// Value (m or rad) and its rate (m/s or rad/s) at time `t` (s).
     pub fn at(&self, t: f64) -> (f64, f64) {
         match self {

@@ -4,7 +4,7 @@
 
 use crate::{
     error::{Error, Kind, Result},
-    solid::{Kinematics, Load, SolidSpec},
+    solid::{Kinematics, Links, Load, Mobility, Role, SolidSpec},
     space::{Vector, Wedge},
 };
 
@@ -35,7 +35,10 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Adds the user's `force` (N) at the world point `at` (m) of a free solid, in the next step only.
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>);
 
-    /// What the pushes that wait for the next step come to on a free solid.
+    /// Adds a load about the centre of a free solid, in the next step only; without effect on any other.
+    fn burden(&mut self, solid: usize, load: &Load<D>);
+
+    /// What the pushes and burdens that wait for the next step come to on a free solid.
     fn pushed(&self, solid: usize) -> Load<D>;
 
     /// Sets the velocity of the centre of mass (m/s) and the spin (rad/s) of a free solid.
@@ -44,6 +47,19 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Pairs of solids that pressed on each other in the last step (lower index first), with the sum of the
     /// normal forces (N) at their contact points.
     fn contacts(&self) -> Vec<(usize, usize, f64)>;
+
+    /// Holds a free solid still, or lets it go as it was made.
+    fn hold(&mut self, solid: usize, held: bool);
+
+    /// How easily a solid is moved now.
+    fn mobility(&self, solid: usize) -> Mobility<D>;
+
+    /// Impulses (N s, N m s) of joint number `joint` on its second solid in the last step: of its locks, turns first, then of
+    /// its end stop. Each is along what the rows before it leave of its own: see `solid/rows.rs`.
+    fn impulses(&self, joint: usize) -> Vec<f64>;
+
+    /// Impulse (N s) of rope number `rope` in the last step.
+    fn rope_impulse(&self, rope: usize) -> f64;
 
     /// The whole state as bytes; [`Engine::restore`] continues from them to the same bits.
     ///
@@ -81,10 +97,10 @@ pub trait HasEngine<const D: usize> {
     /// Name and version of the engine.
     const VERSION: (&'static str, &'static str);
 
-    /// Makes the engine of `solids`, each starting as `start` says, under `gravity` (m/s²).
+    /// Makes the engine of `solids`, each starting as `start` says and tied by `links`, under `gravity` (m/s²).
     ///
     /// `dp`: particle spacing (m), the measure of what overlap is too deep. Shapes are not checked here but by
-    /// [`SolidSpec::check`]; mass, inertia, friction, restitution and motion are.
+    /// [`SolidSpec::check`]; ties, mass, inertia, friction, restitution and motion are.
     ///
     /// # Errors
     /// `Scene` for a solid that cannot be meant, and if a free solid starts deeper than 0.05 dp inside another:
@@ -92,6 +108,7 @@ pub trait HasEngine<const D: usize> {
     fn engine(
         solids: &[SolidSpec<D>],
         start: &[Kinematics<D>],
+        links: &Links<D>,
         gravity: &Vector<D>,
         dp: f64,
     ) -> Result<Box<dyn Engine<D>>>;
@@ -104,10 +121,11 @@ impl HasEngine<2> for Dim<2> {
     fn engine(
         solids: &[SolidSpec<2>],
         start: &[Kinematics<2>],
+        links: &Links<2>,
         gravity: &Vector<2>,
         dp: f64,
     ) -> Result<Box<dyn Engine<2>>> {
-        Ok(Box::new(super::planar::World::new(solids, start, gravity, dp)?))
+        Ok(Box::new(super::planar::World::new(solids, start, links, gravity, dp)?))
     }
 }
 
@@ -118,11 +136,27 @@ impl HasEngine<3> for Dim<3> {
     fn engine(
         solids: &[SolidSpec<3>],
         start: &[Kinematics<3>],
+        links: &Links<3>,
         gravity: &Vector<3>,
         dp: f64,
     ) -> Result<Box<dyn Engine<3>>> {
-        Ok(Box::new(super::spatial::World::new(solids, start, gravity, dp)?))
+        Ok(Box::new(super::spatial::World::new(solids, start, links, gravity, dp)?))
     }
+}
+
+/// Most iterations: a contact 4096 times as stiff.
+const ITERATIONS_MAX: usize = 64;
+
+/// Iterations that keep contacts as firm under the heaviest of the free solids as under the lightest: a contact yields to what
+/// lies on the lighter body with 1/n².
+pub(super) fn iterations<const D: usize>(solids: &[SolidSpec<D>]) -> usize {
+    let masses = solids.iter().filter_map(|solid| match &solid.role {
+        Role::Free(body) => Some(body.mass),
+        _ => None,
+    });
+    let (lightest, heaviest) = masses.fold((f64::INFINITY, 0.0_f64), |(a, b), mass| (a.min(mass), b.max(mass)));
+    let wanted = (heaviest / lightest).sqrt() / 1.5;
+    if wanted > 1.0 { (wanted.ceil() as usize).next_power_of_two().min(ITERATIONS_MAX) } else { 1 }
 }
 
 /// The error of a state that cannot be saved or restored.

@@ -77,6 +77,11 @@ impl Formula {
         read(text, &["t"]).map(|root| Self { root })
     }
 
+    /// The formula that is `x` at all times.
+    pub fn constant(x: f64) -> Self {
+        Self { root: Node::Number(x) }
+    }
+
     /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
     pub fn at(&self, t: f64) -> (f64, f64) {
         self.root.at(&[t])

@@ -4,7 +4,7 @@
 //! where friction and restitution together would make energy, friction is left out. The engine's own contacts are springs
 //! without restitution, which hold what rests. Compiled for each dimension as part of the world: `super` names the engine.
 
-use super::{Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
+use super::{super::Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
 
 /// How far ahead touching is foreseen, in steps: loads change the speed meanwhile.
 const AHEAD: f64 = 1.5;
@@ -17,6 +17,7 @@ const SWEEPS: usize = 400;
 
 /// A point at which two bodies are about to touch.
 struct Touch {
+    owners: [usize; 2],
     bodies: [RigidBodyHandle; 2],
     at: Point,
     /// From the first to the second.
@@ -32,15 +33,19 @@ struct Touch {
     across: Point,
 }
 
-/// Lets the bodies of `world` that are to touch in a step `dt` (s) part again. `restitution` of the pair of two colliders' owners.
-/// Gives who met, with the impulse (N s).
+/// Lets the bodies of `world` that are to touch in a step `dt` (s) part again. `pair` gives restitution and friction of two solids
+/// whose mean friction it is told. Gives who met, with the impulse (N s) at each point.
 pub(super) fn rebound(
     world: &mut PhysicsWorld,
     dt: f64,
-    restitution: impl Fn(usize, usize) -> f64,
+    pair: impl Fn(usize, usize, f64) -> (f64, f64),
 ) -> Vec<(usize, usize, f64)> {
-    let mut met = Vec::new();
-    let mut touches = find(world, dt, restitution, &mut met);
+    let mut touches = find(world, dt, pair);
+    for touch in &mut touches {
+        touch.response = response(world, touch, touch.normal);
+    }
+    // Nothing moves what is held.
+    touches.retain(|touch| touch.response > 0.0);
     if touches.is_empty() {
         return Vec::new();
     }
@@ -53,27 +58,24 @@ pub(super) fn rebound(
         }
         solve(world, &mut touches);
     }
-    met.iter().zip(&touches).map(|(&(a, b), touch)| (a, b, touch.along)).collect()
+    let met = |touch: &Touch| (touch.owners[0].min(touch.owners[1]), touch.owners[0].max(touch.owners[1]), touch.along);
+    touches.iter().map(met).collect()
 }
 
-/// The points of all pairs of which one is to touch at speed, and in `met` whose they are.
-fn find(
-    world: &PhysicsWorld,
-    dt: f64,
-    restitution: impl Fn(usize, usize) -> f64,
-    met: &mut Vec<(usize, usize)>,
-) -> Vec<Touch> {
+/// The points of all pairs of which one is to touch at speed.
+fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Touch> {
     let slowest = SLOWEST * world.gravity.length() * dt;
     let mut touches = Vec::new();
     for pair in world.narrow_phase.contact_pairs() {
         let colliders = [&world.colliders[pair.collider1], &world.colliders[pair.collider2]];
         let owners = colliders.map(|c| c.user_data as usize);
-        let e = restitution(owners[0], owners[1]);
+        let friction = 0.5 * (colliders[0].friction() + colliders[1].friction());
+        let (restitution, friction) = law(owners[0], owners[1], friction);
         let (Some(first), Some(second)) = (colliders[0].parent(), colliders[1].parent()) else { continue };
-        if e == 0.0 {
+        if restitution == 0.0 {
             continue;
         }
-        let (bodies, friction) = ([first, second], 0.5 * (colliders[0].friction() + colliders[1].friction()));
+        let bodies = [first, second];
         let (mut close, mut struck) = (Vec::new(), false);
         for manifold in pair.manifolds() {
             let poses = [
@@ -88,22 +90,14 @@ fn find(
                 struck |= meeting < -slowest && gap + AHEAD * meeting * dt < 0.0;
                 if meeting < 0.0 && gap + 2.0 * AHEAD * meeting * dt < 0.0 {
                     let (along, across) = (0.0, Point::ZERO);
-                    close.push(Touch {
-                        bodies,
-                        at,
-                        normal,
-                        meeting,
-                        restitution: e,
-                        friction,
-                        response: 0.0,
-                        along,
-                        across,
-                    });
+                    let response = 0.0;
+                    let touch =
+                        Touch { owners, bodies, at, normal, meeting, restitution, friction, response, along, across };
+                    close.push(touch);
                 }
             }
         }
         if struck {
-            met.extend(close.iter().map(|_| (owners[0].min(owners[1]), owners[0].max(owners[1]))));
             touches.extend(close);
         }
     }
@@ -143,9 +137,6 @@ fn set(world: &mut PhysicsWorld, body: RigidBodyHandle, velocity: Point, spin: A
 
 /// Finds the impulses, one point after the other until nothing changes any more, and gives them.
 fn solve(world: &mut PhysicsWorld, touches: &mut [Touch]) {
-    for touch in touches.iter_mut() {
-        touch.response = response(world, touch, touch.normal);
-    }
     for _ in 0..SWEEPS {
         let mut change: f64 = 0.0;
         for touch in touches.iter_mut() {

@@ -3,10 +3,16 @@
 mod body;
 pub mod driven;
 pub mod engine;
+pub mod force;
 pub mod formula;
 pub mod hydrostatics;
+pub mod joint;
+pub mod links;
+pub mod mooring;
 #[cfg(feature = "dim2")]
 mod planar;
+pub(crate) mod rig;
+mod rows;
 pub mod skin;
 #[cfg(feature = "dim3")]
 mod spatial;
@@ -15,7 +21,13 @@ mod tests;
 
 pub use driven::{Law, Motion};
 pub use engine::{Dim, Engine, EngineFault, HasEngine};
+pub use force::ForceSpec;
 pub use formula::{Field, Formula};
+pub use joint::{Drive, JointKind, JointSpec, Motor};
+pub use links::{ContactSpec, Hold, Links};
+pub use mooring::{Elastic, End, RopeSpec, SpringSpec};
+pub use rig::{JointReading, LineReading};
+pub use rows::Mobility;
 
 use std::ops::Range;
 

@@ -8,6 +8,7 @@ mod world;
 
 pub(super) use world::World;
 
+use nalgebra::SMatrix;
 use rapier::{
     dynamics::{IntegrationParameters, RigidBodyBuilder},
     geometry::{SharedShape, TriMesh},
@@ -44,6 +45,11 @@ fn to_rotation(matrix: &Matrix<D>) -> Rotation {
 
 fn from_rotation(rotation: &Rotation) -> Matrix<D> {
     Matrix::from_row_slice(&[rotation.re, -rotation.im, rotation.im, rotation.re])
+}
+
+/// An inverse inertia as a matrix: its one number at the first place.
+fn inverse_inertia(inverse: &f64) -> SMatrix<f64, 3, 3> {
+    SMatrix::from_fn(|i, j| if (i, j) == (0, 0) { *inverse } else { 0.0 })
 }
 
 /// Mass properties in the solid's frame; a plane has one inertia, whatever is locked.

@@ -13,7 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use rapier::{
     dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder},
     geometry::{SharedShape, TriMeshFlags},
-    math::{Matrix as Square, Pose as Frame, Rotation, Vector as Point},
+    math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
     parry::{
         mass_properties::MassProperties,
         transformation::vhacd::{VHACD, VHACDParameters},
@@ -57,6 +57,12 @@ fn from_rotation(rotation: &Rotation) -> Matrix<D> {
 /// The same matrix in rapier's type; both store columns.
 fn square(matrix: &Matrix<D>) -> Square {
     Square::from_cols_array(&std::array::from_fn(|i| matrix.as_slice()[i]))
+}
+
+/// An inverse inertia as a matrix.
+fn inverse_inertia(inverse: &AngularInertia) -> Matrix<3> {
+    let AngularInertia { m11, m12, m13, m22, m23, m33 } = *inverse;
+    Matrix::from_row_slice(&[m11, m12, m13, m12, m22, m23, m13, m23, m33])
 }
 
 /// Mass properties in the solid's frame. With a rotation locked, the products of inertia about the world's

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 mod contact;
 
-use super::{Dim, Engine, Formula, FreeBody, HasEngine, Law, Load, Motion, Role, SolidSpec};
+use super::{Dim, Engine, Formula, FreeBody, HasEngine, Law, Links, Load, Motion, Role, SolidSpec};
 use crate::{
     error::{Kind, Result},
     shape::{Contact, Mesh, Shape},
@@ -58,7 +58,7 @@ where
     Dim<D>: HasEngine<D>,
 {
     let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-    Dim::<D>::engine(solids, &start, &gravity, 0.01)
+    Dim::<D>::engine(solids, &start, &Links::default(), &gravity, 0.01)
 }
 
 fn idle<const D: usize>(count: usize) -> Vec<Load<D>> {
@@ -200,7 +200,7 @@ where
     let contacts = engine.contacts();
     assert!(contacts.len() == 2, "both contacts last: {contacts:?}");
     let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-    let mut other = Dim::<D>::engine(&solids, &start, &down(), 0.01).unwrap();
+    let mut other = Dim::<D>::engine(&solids, &start, &Links::default(), &down(), 0.01).unwrap();
     other.restore(&saved).unwrap();
     run(&mut *other, 400);
     assert_eq!(unbroken, (1..3).map(|i| other.kinematics(i)).collect::<Vec<_>>());

@@ -10,38 +10,43 @@
 //! (no contact skin), friction and restitution of a pair are the means of both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh
 //! nothing.
 
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "colliders.rs"]
+mod colliders;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "impact.rs"]
 mod impact;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "ties.rs"]
+mod ties;
 
 use std::collections::BTreeMap;
 
 use super::rapier::{
-    dynamics::{RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
-    geometry::{ColliderBuilder, ColliderHandle, SharedShape},
+    dynamics::{LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
+    geometry::{ColliderBuilder, ColliderHandle},
     math::{Pose as Frame, Vector as Point},
-    parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
-    pipeline::PhysicsWorld,
+    pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    Angular, D, ENGINE, from_angular, from_rotation, lock, mass_properties, parts, to_angular, to_rotation, tune,
+    D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular, to_rotation, tune,
 };
 use crate::{
-    error::{Error, Result},
-    shape::Shape,
+    error::Result,
     solid::{
-        Kinematics, Load, Role, SolidSpec,
-        engine::{Engine, EngineFault, restart},
+        Kinematics, Links, Load, Mobility, Role, SolidSpec,
+        engine::{Engine, EngineFault, iterations, restart},
     },
     space::{Pose, Vector, Wedge},
 };
+use colliders::{Parts, collect, refuse_overlap, thickness};
+use ties::Ties;
 
 /// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
 const OVERLAP_MAX: f64 = 0.05;
 
 /// Damping ratio of a contact, –: critical.
 const CONTACT_DAMPING: f64 = 1.0;
-
-/// Most iterations: a contact 4096 times as stiff.
-const ITERATIONS_MAX: usize = 64;
 
 /// A world of rigid bodies in this dimension.
 pub(in crate::solid) struct World {
@@ -57,25 +62,27 @@ pub(in crate::solid) struct World {
     /// The time of an iteration for which the contacts' stiffness was last set, s; 0 before the first step.
     tuned_for: f64,
     pushes: Vec<Push>,
+    ties: Ties,
+    /// What of each solid is locked when it is not held.
+    locks: Vec<LockedAxes>,
 }
 
 /// Two solids and the impulse (N s) with which they bounced off each other at a point.
 type Met = (usize, usize, f64);
 
-/// A user's force (N) on a solid at a world point (m).
-type Push = (usize, Vector<D>, Vector<D>);
-
-/// A solid's convex parts in its own frame.
-type Parts = Vec<(Frame, SharedShape)>;
+/// A load on a solid in the next step.
+type Push = (usize, Load<D>);
 
 impl World {
     pub(in crate::solid) fn new(
         solids: &[SolidSpec<D>],
         start: &[Kinematics<D>],
+        links: &Links<D>,
         gravity: &Vector<D>,
         dp: f64,
     ) -> Result<Self> {
         assert_eq!(solids.len(), start.len(), "every solid needs a start");
+        links.check(solids)?;
         let mut all_parts = Vec::new();
         for solid in solids {
             solid.check_role()?;
@@ -84,15 +91,19 @@ impl World {
             collect(&solid.shape, &Pose::identity(), fixed, &mut parts)?;
             all_parts.push(parts);
         }
-        refuse_overlap(solids, start, &all_parts, OVERLAP_MAX * dp)?;
+        refuse_overlap(solids, start, &all_parts, links, OVERLAP_MAX * dp)?;
         let mut world = PhysicsWorld { gravity: to_point(gravity), ..PhysicsWorld::default() };
         let free = solids.iter().zip(&all_parts).filter(|(solid, _)| matches!(solid.role, Role::Free(_)));
         let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
         settle(&mut world, reach);
-        let bodies = (0..solids.len()).map(|i| insert(&mut world, i, &solids[i], &start[i], &all_parts[i])).collect();
+        let hooks = if links.contacts.is_empty() { ActiveHooks::empty() } else { ActiveHooks::all() };
+        let insert = |i: usize| insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
+        let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
+        let ties = Ties::new(&mut world, &bodies, links, start);
+        let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let restitution = solids.iter().map(|solid| solid.restitution).collect();
         let (iterations, met, pushes) = (iterations(solids), Vec::new(), Vec::new());
-        Ok(Self { world, bodies, restitution, iterations, met, reach, tuned_for: 0.0, pushes })
+        Ok(Self { world, bodies, restitution, iterations, met, reach, tuned_for: 0.0, pushes, ties, locks })
     }
 
     fn body(&self, solid: usize) -> &RigidBody {
@@ -216,24 +227,31 @@ impl Engine<D> for World {
         self.load(loads)?;
         self.drive(driven)?;
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
-        let pair = |a: usize, b: usize| 0.5 * (self.restitution[a] + self.restitution[b]);
-        self.met = impact::rebound(&mut self.world, dt, pair);
-        self.world.step();
+        self.met = impact::rebound(&mut self.world, dt, |a, b, mu| self.ties.pairs.bounce(a, b, &self.restitution, mu));
+        self.ties.tighten(&mut self.world, dt);
+        match self.ties.pairs.is_empty() {
+            true => self.world.step(),
+            false => self.world.step_with_events(&self.ties.pairs, &()),
+        }
         self.foresee();
         self.examine(&before)
     }
 
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>) {
-        self.pushes.push((solid, *force, *at));
+        let torque = Wedge::torque(&(at - from_point(self.body(solid).center_of_mass())), force);
+        self.pushes.push((solid, Load { force: *force, torque }));
+    }
+
+    fn burden(&mut self, solid: usize, load: &Load<D>) {
+        self.pushes.push((solid, *load));
     }
 
     fn pushed(&self, solid: usize) -> Load<D> {
-        let centre = from_point(self.body(solid).center_of_mass());
         let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
-        self.pushes.iter().filter(|push| push.0 == solid).fold(none, |sum, (_, force, at)| Load {
-            force: sum.force + force,
-            torque: sum.torque + Wedge::torque(&(at - centre), force),
-        })
+        self.pushes
+            .iter()
+            .filter(|push| push.0 == solid)
+            .fold(none, |sum, (_, load)| Load { force: sum.force + load.force, torque: sum.torque + load.torque })
     }
 
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
@@ -257,6 +275,31 @@ impl Engine<D> for World {
         forces.into_iter().map(|((a, b), force)| (a, b, force)).collect()
     }
 
+    fn hold(&mut self, solid: usize, held: bool) {
+        let body = &mut self.world.bodies[self.bodies[solid]];
+        if held {
+            body.set_linvel(Point::ZERO, true);
+            body.set_angvel(to_angular(&Wedge::zero()), true);
+        }
+        body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
+    }
+
+    fn mobility(&self, solid: usize) -> Mobility<D> {
+        let mass = self.body(solid).mass_properties();
+        Mobility {
+            linear: from_point(mass.effective_inv_mass),
+            angular: inverse_inertia(&mass.effective_world_inv_inertia),
+        }
+    }
+
+    fn impulses(&self, joint: usize) -> Vec<f64> {
+        self.ties.impulses(&self.world, joint)
+    }
+
+    fn rope_impulse(&self, rope: usize) -> f64 {
+        self.ties.rope(&self.world, rope)
+    }
+
     fn save(&self) -> Result<Vec<u8>> {
         postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.met, &self.pushes)).map_err(restart)
     }
@@ -268,7 +311,8 @@ impl Engine<D> for World {
         }
         let (world, tuned_for, met, pushes): (PhysicsWorld, f64, Vec<Met>, Vec<Push>) =
             postcard::from_bytes(rest).map_err(restart)?;
-        let same = world.bodies.len() == self.bodies.len()
+        let same = world.bodies.len() == self.world.bodies.len()
+            && world.impulse_joints.len() == self.world.impulse_joints.len()
             && self.bodies.iter().all(|&h| world.bodies.contains(h))
             && pushes.iter().all(|push| push.0 < self.bodies.len());
         if !same {
@@ -277,18 +321,6 @@ impl Engine<D> for World {
         (self.world, self.tuned_for, self.met, self.pushes) = (world, tuned_for, met, pushes);
         Ok(())
     }
-}
-
-/// Iterations that keep contacts as firm under the heaviest of the free solids as under the lightest: a contact yields to what
-/// lies on the lighter body with 1/n².
-fn iterations(solids: &[SolidSpec<D>]) -> usize {
-    let masses = solids.iter().filter_map(|solid| match &solid.role {
-        Role::Free(body) => Some(body.mass),
-        _ => None,
-    });
-    let (lightest, heaviest) = masses.fold((f64::INFINITY, 0.0_f64), |(a, b), mass| (a.min(mass), b.max(mass)));
-    let wanted = (heaviest / lightest).sqrt() / 1.5;
-    if wanted > 1.0 { (wanted.ceil() as usize).next_power_of_two().min(ITERATIONS_MAX) } else { 1 }
 }
 
 /// Settings that hold for the whole run.
@@ -312,6 +344,7 @@ fn insert(
     solid: &SolidSpec<D>,
     start: &Kinematics<D>,
     parts: &Parts,
+    hooks: ActiveHooks,
 ) -> RigidBodyHandle {
     let builder = match &solid.role {
         Role::Fixed => RigidBodyBuilder::fixed(),
@@ -329,84 +362,12 @@ fn insert(
             .contact_skin(0.0)
             .friction(solid.friction)
             .restitution(0.0)
+            .active_hooks(hooks)
             .user_data(index as u128);
         world.insert_collider(collider, Some(handle));
     }
     world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
     handle
-}
-
-/// Adds the convex parts of `shape`, posed in the solid's frame; of a mesh that is `fixed` its surface.
-fn collect(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut Parts) -> Result<()> {
-    let frame = to_frame(pose);
-    let mut cuboid = |min: Vector<D>, max: Vector<D>| {
-        let centre = Frame::from_translation(to_point(&(0.5 * (min + max))));
-        found.push((frame * centre, SharedShape::new(Cuboid::new(to_point(&(0.5 * (max - min)))))));
-    };
-    match shape {
-        Shape::Box { size } => cuboid(-0.5 * size, 0.5 * size),
-        Shape::Tank { size, thickness } => {
-            let (low, mut high) = (Vector::repeat(-thickness), size.add_scalar(*thickness));
-            high[D - 1] = size[D - 1];
-            for axis in 0..D {
-                let (mut min, mut max) = (low, high);
-                max[axis] = 0.0;
-                cuboid(min, max);
-                if axis < D - 1 {
-                    (min[axis], max[axis]) = (size[axis], high[axis]);
-                    cuboid(min, max);
-                }
-            }
-        }
-        Shape::Ball { radius } => found.push((frame, SharedShape::ball(*radius))),
-        Shape::Capsule { length, radius, axis } => {
-            let end = Point::AXES[*axis] * (0.5 * length);
-            found.push((frame, SharedShape::capsule(-end, end, *radius)));
-        }
-        Shape::Compound(inner) => {
-            for (place, shape) in inner {
-                collect(shape, &pose.then(place), fixed, found)?;
-            }
-        }
-        Shape::Cylinder { .. } | Shape::Polygon { .. } | Shape::Polyline { .. } | Shape::Mesh { .. } => {
-            found.extend(parts(shape, fixed)?.into_iter().map(|(inner, part)| (frame * inner, part)));
-        }
-    }
-    Ok(())
-}
-
-/// Smallest edge of the box around the parts, m.
-fn thickness(parts: &Parts) -> f64 {
-    let boxes = parts.iter().map(|(frame, part)| part.compute_aabb(frame));
-    boxes.reduce(|a, b| a.merged(&b)).map_or(f64::INFINITY, |whole| whole.extents().min_element())
-}
-
-/// Refuses a free solid that starts deeper than `allowed` (m) inside another.
-fn refuse_overlap(solids: &[SolidSpec<D>], start: &[Kinematics<D>], parts: &[Parts], allowed: f64) -> Result<()> {
-    let free = |i: usize| matches!(solids[i].role, Role::Free(_));
-    for a in 0..solids.len() {
-        for b in a + 1..solids.len() {
-            if !(free(a) || free(b)) {
-                continue;
-            }
-            let (frame_a, frame_b) = (to_frame(&start[a].pose), to_frame(&start[b].pose));
-            let mut depth: f64 = 0.0;
-            for (inner_a, part_a) in &parts[a] {
-                for (inner_b, part_b) in &parts[b] {
-                    let touch = contact(&(frame_a * *inner_a), &**part_a, &(frame_b * *inner_b), &**part_b, 0.0);
-                    depth = touch.ok().flatten().map_or(depth, |touch| depth.max(-touch.dist));
-                }
-            }
-            if depth > allowed {
-                let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
-                let (inner, outer) = (&solids[inner].name, &solids[outer].name);
-                let help = "move one of them by that much or more, or make it smaller";
-                return Err(Error::scene(format!("\"{inner}\" starts {depth:.5} m inside \"{outer}\""))
-                    .help(format!("{help}; {allowed:.5} m (0.05 dp) is let pass")));
-            }
-        }
-    }
-    Ok(())
 }
 
 pub(super) fn to_point(x: &Vector<D>) -> Point {

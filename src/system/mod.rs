@@ -31,7 +31,7 @@ use crate::{
     model::{Dimension, Model, Viscosity, Walls},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
-    solid::{Dim, Load, Solid, skin},
+    solid::{Dim, Links, Load, Solid, skin},
     space::{Bounds, Matrix, Pose, Vector, Wedge},
     sweep::{Input, Output, Sums, Sweep},
 };
@@ -66,6 +66,7 @@ pub struct System<const D: usize> {
     /// Where the solids were when the lists were made, if they were.
     built: Option<Vec<Pose<D>>>,
     pub(crate) solids: Vec<Solid<D>>,
+    links: Links<D>,
     domain: Bounds<D>,
     limits: Limits,
     /// Height of the highest water at the start, m, and number of water particles then.
@@ -104,7 +105,7 @@ impl<const D: usize> System<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let Setup { model, water, levels, velocity, pressure, solids: specs, domain, periodic, limits } = setup;
+        let Setup { model, water, levels, velocity, pressure, solids: specs, links, domain, periodic, limits } = setup;
         let (medium, reach) = (model.medium::<D>(), model.reach());
         let state = State::new(medium.c0, medium.gamma);
         // Depth along g: the level is a height on the last axis.
@@ -177,6 +178,7 @@ impl<const D: usize> System<D> {
             shown: Vec::new(),
             boxes,
             solids,
+            links,
             domain,
             limits,
             top,

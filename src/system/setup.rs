@@ -7,7 +7,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     model::Model,
-    solid::SolidSpec,
+    solid::{Links, SolidSpec},
     space::{Bounds, Vector},
 };
 
@@ -26,6 +26,8 @@ pub struct Setup<const D: usize> {
     pub pressure: Vec<f64>,
     /// The solids.
     pub solids: Vec<SolidSpec<D>>,
+    /// What ties them.
+    pub links: Links<D>,
     /// Where particles may be; by default everything at the start, with its own largest extent around it.
     pub domain: Option<Bounds<D>>,
     /// Which sides are periodic.
@@ -37,8 +39,8 @@ pub struct Setup<const D: usize> {
 impl<const D: usize> Setup<D> {
     /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
     pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
-        let (velocity, pressure, periodic) = (Vec::new(), Vec::new(), [None; D]);
-        Self { model, water, levels, solids, velocity, pressure, domain: None, periodic, limits: Limits::default() }
+        let (velocity, pressure, links, limits) = (Vec::new(), Vec::new(), Links::default(), Limits::default());
+        Self { model, water, levels, solids, links, velocity, pressure, domain: None, periodic: [None; D], limits }
     }
 
     /// Refuses a setup whose constants have no meaning.
@@ -75,6 +77,7 @@ impl<const D: usize> Setup<D> {
         if let Some(i) = self.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
             return Err(Error::scene(format!("water particle {i} has no finite place")));
         }
+        self.links.check(&self.solids)?;
         periodic::check(&self.periodic, m, &self.solids)
     }
 }

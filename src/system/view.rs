@@ -7,7 +7,7 @@ use crate::{
     law::Medium,
     model::Model,
     particles::View,
-    solid::Solid,
+    solid::{Links, Solid},
     space::{Bounds, Vector},
 };
 
@@ -35,6 +35,11 @@ impl<const D: usize> System<D> {
     /// The solids.
     pub fn solids(&self) -> &[Solid<D>] {
         &self.solids
+    }
+
+    /// What ties the solids, as it was made.
+    pub fn links(&self) -> &Links<D> {
+        &self.links
     }
 
     /// Number of the solid of that name.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::{Held, Interval, Light};
 use crate::{
     error::{Error, Fault, Result},
-    solid::{Engine, EngineFault, Kinematics, Load, Role, Solid},
+    solid::{Engine, EngineFault, Kinematics, Load, Role, Solid, rig::Rig},
     space::{Pose, Vector},
     system::System,
 };
@@ -14,14 +14,33 @@ use crate::{
 pub struct Bodies<const D: usize> {
     engine: Option<Box<dyn Engine<D>>>,
     light: Vec<Light<D>>,
+    rig: Rig<D>,
     steps: u64,
     spent: Duration,
 }
 
 impl<const D: usize> Bodies<D> {
-    /// The bodies that `engine` moves, at the start, those of them that are `light` with care.
-    pub(crate) fn new(engine: Option<Box<dyn Engine<D>>>, light: Vec<Light<D>>) -> Self {
-        Self { engine, light, steps: 0, spent: Duration::ZERO }
+    /// The bodies that `engine` moves, at the start, those of them that are `light` with care, tied by `rig`.
+    pub(crate) fn new(engine: Option<Box<dyn Engine<D>>>, light: Vec<Light<D>>, rig: Rig<D>) -> Self {
+        Self { engine, light, rig, steps: 0, spent: Duration::ZERO }
+    }
+
+    /// What ties the bodies.
+    pub(crate) fn rig(&self) -> &Rig<D> {
+        &self.rig
+    }
+
+    /// What ties the bodies, to be changed.
+    pub(crate) fn rig_mut(&mut self) -> &mut Rig<D> {
+        &mut self.rig
+    }
+
+    /// The longest step (s) that springs and motors allow at time `t` (s).
+    pub(crate) fn limit(&self, system: &System<D>, t: f64) -> f64 {
+        match self.engine.as_deref().filter(|_| !self.rig.is_empty()) {
+            Some(engine) => self.rig.limit(engine, &whereabouts(system, engine, t), t),
+            None => f64::INFINITY,
+        }
     }
 
     /// What of the light bodies must be kept to go on to the same bits.
@@ -81,6 +100,11 @@ impl<const D: usize> Bodies<D> {
                 Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight }
             };
             let mut loads: Vec<_> = system.solids.iter().map(weighed).collect();
+            let tied = !self.rig.is_empty();
+            let began = if tied { whereabouts(system, &**engine, over.t) } else { Vec::new() };
+            if tied {
+                self.rig.act(&mut **engine, &began, over.t, over.dt);
+            }
             let mut left = Vec::new();
             for light in &mut self.light {
                 let push = engine.pushed(light.solid);
@@ -95,6 +119,10 @@ impl<const D: usize> Bodies<D> {
             for (light, before) in self.light.iter_mut().zip(&before) {
                 light.learn(system, over.dt, before, &engine.kinematics(light.solid));
             }
+            if tied {
+                let ended = whereabouts(system, &**engine, end);
+                self.rig.learn(&**engine, &began, &ended, over.dt);
+            }
         }
         self.steps += 1;
         let engine = self.engine.as_deref();
@@ -104,6 +132,16 @@ impl<const D: usize> Bodies<D> {
         });
         Ok(())
     }
+}
+
+/// How each solid moves at time `t` (s), which is the engine's.
+fn whereabouts<const D: usize>(system: &System<D>, engine: &dyn Engine<D>, t: f64) -> Vec<Kinematics<D>> {
+    let one = |(i, solid): (usize, &Solid<D>)| match &solid.spec.role {
+        Role::Fixed => solid.kinematics,
+        Role::Driven(motion) => motion.kinematics(&solid.spec.pose, t),
+        Role::Free(_) => engine.kinematics(i),
+    };
+    system.solids.iter().enumerate().map(one).collect()
 }
 
 /// Gives each solid the kinematics that `to` says, if any, and places its skin; `over` is the length (s) of a step that

@@ -7,6 +7,7 @@ mod determinism;
 mod errors;
 mod guards;
 mod hostile;
+mod joints;
 mod kernels;
 mod lanes;
 mod laws;

@@ -285,3 +285,19 @@ fn a_run_writes_as_much_as_was_told() {
     assert!((0.6..1.0).contains(&packed), "{packed} of what was told");
     std::fs::remove_dir_all(&out).unwrap();
 }
+
+#[test]
+fn a_spring_that_slows_the_run_is_told_with_how_soft_it_may_be() {
+    let moored = |stiffness: f64| {
+        let spring = "[[spring]]\nname = \"line\"\nbetween = [\"box\"]\nfrom = [1.0, 0.35]\nto = [1.0, 0.0]";
+        let text = format!("{GOOD}\n{spring}\nstiffness = {stiffness:?}\n");
+        look::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+    };
+    let stiff = moored(1e9);
+    let finding = stiff.findings.iter().find(|f| f.topic == "stiff_spring").expect("1e9 N/m on 10 kg is stiff");
+    assert_eq!(stiff.step.bound_by, "springs");
+    let part: f64 = finding.mend.split(' ').next().unwrap().parse().unwrap();
+    let soft = moored(1e9 * part);
+    assert!(!topics(&soft).contains(&"stiff_spring") && soft.step.springs_s.unwrap() >= soft.step.sound_s);
+    assert_eq!(with(&[]).step.springs_s, None);
+}

@@ -1,0 +1,62 @@
+//! How strong should the brake of a hinged raft be? Two pontoons in waves, once for each brake: the power that it takes has a maximum
+//! between a hinge that turns freely and one that hardly turns.
+//!
+//! `cargo run --release --example hinged_raft`, a minute or two.
+
+use pontoon::{
+    Result,
+    scene::{AtWords, DrivenWords, JointKindWords, JointWords, Scene, ShapeWords, SolidWords, SpringWords},
+    simulation::Simulation,
+};
+
+/// Period of the waves, s.
+const PERIOD: f64 = 0.8;
+
+/// A raft with this brake in its hinge, N m s/rad per metre of width.
+fn raft(brake: f64) -> Scene {
+    let pontoon =
+        |name, x: f64| SolidWords::free(name, ShapeWords::cuboid([0.25, 0.075]), 500.0).at(AtWords::afloat(&[x]));
+    let mooring = SpringWords {
+        length: Some(0.6),
+        damping: Some(5.0),
+        ..SpringWords::mooring("mooring", "fore", [0.775, 0.25], [0.3, 0.0], 50.0)
+    };
+    let paddle = DrivenWords::slide([1.0, 0.0], format!("0.025*(1-cos(2*pi*t/{PERIOD}))"));
+    Scene::new(2, 0.0125, 6.0 * PERIOD)
+        .title("A hinged raft")
+        .water_box([0.0, 0.0], [2.5, 0.25])
+        .solid(SolidWords::fixed("tank", ShapeWords::tank([2.6, 0.6])).at(AtWords::point(&[-0.1, 0.0])))
+        .solid(SolidWords::fixed("beach", ShapeWords::polygon([[1.9, 0.0], [2.5, 0.0], [2.5, 0.36]])))
+        .solid(
+            SolidWords::driven("paddle", ShapeWords::cuboid([0.05, 0.5]), paddle)
+                .at(AtWords { bottom: Some(0.0), ..AtWords::point(&[-0.025]) }),
+        )
+        .solid(pontoon("fore", 0.9))
+        .solid(pontoon("aft", 1.2))
+        .joint(JointWords::new("hinge", JointKindWords::Hinge, ["fore", "aft"], [1.05, 0.25]).damped(brake))
+        .spring(mooring)
+}
+
+fn main() -> Result<()> {
+    println!("{:>22} {:>18} {:>14}", "brake (N m s/rad/m)", "mean power (W/m)", "swing (deg)");
+    for brake in [0.1, 2.0, 20.0] {
+        let built = raft(brake).build::<2>()?;
+        let (until, from) = (built.plan.until, built.plan.until - 2.0 * PERIOD);
+        let mut sim = Simulation::new(built.setup)?;
+        let hinge = sim.find_joint("hinge")?;
+        while sim.time() < from {
+            sim.step_to(from)?;
+        }
+        // Over the last two periods.
+        let before = sim.joint(hinge).absorbed;
+        let mut swing: f64 = 0.0;
+        while sim.time() < until {
+            sim.step_to(until)?;
+            swing = swing.max(sim.joint(hinge).position.abs());
+        }
+        let power = (sim.joint(hinge).absorbed - before) / (until - from);
+        println!("{brake:22.1} {power:18.4} {:14.2}", swing.to_degrees());
+        assert!(power > 0.0, "a brake only takes");
+    }
+    Ok(())
+}

@@ -1,0 +1,73 @@
+//! What a joint carries and how it moves, and what its motor takes: a power take-off's power is the mean of `power`, or the rise of
+//! `absorbed`.
+
+use super::{Probe, axes};
+use crate::{
+    error::Result,
+    simulation::{Simulation, find},
+    solid::JointKind,
+    system::System,
+};
+
+/// Watches a joint: force (N) and torque (N m) of its locks and end stops on its second solid; of a hinge or a slider its angle
+/// (deg) or position (m), the rate, the motor's force, power absorbed (W), energy absorbed (J).
+pub struct Joint {
+    joint: usize,
+    kind: JointKind,
+}
+
+impl Joint {
+    /// The probe of the joint called `joint`.
+    ///
+    /// # Errors
+    /// `Scene` if there is no such joint.
+    pub fn new<const D: usize>(system: &System<D>, joint: &str) -> Result<Self> {
+        let joints = &system.links().joints;
+        let joint = find("joint", joint, joints.iter().map(|joint| joint.name.as_str()))?;
+        Ok(Self { joint, kind: joints[joint].kind })
+    }
+}
+
+/// Number of the columns of force and torque.
+const fn carried<const D: usize>() -> usize {
+    D + D * (D - 1) / 2
+}
+
+impl<const D: usize> Probe<D> for Joint {
+    fn columns(&self) -> Vec<String> {
+        let wide = if D == 2 { "_per_m" } else { "" };
+        let mut columns: Vec<String> = axes::<D>().iter().map(|a| format!("f{a}_N{wide}")).collect();
+        match D {
+            2 => columns.push("torque_Nm_per_m".into()),
+            _ => columns.extend(axes::<D>().iter().map(|a| format!("t{a}_Nm"))),
+        }
+        let own = match self.kind {
+            JointKind::Hinge => ["angle_deg", "rate_radps", "motor_Nm"],
+            JointKind::Slider => ["position_m", "rate_mps", "motor_N"],
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => return columns,
+        };
+        let [position, rate, motor] = own.map(String::from);
+        let motor = [motor, "power_W".into(), "absorbed_J".into()].map(|name| name + wide);
+        columns.extend([position, rate].into_iter().chain(motor));
+        columns
+    }
+
+    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+        let now = sim.joint(self.joint);
+        let mut row: Vec<f64> = now.force.iter().copied().chain(now.torque.axial()).collect();
+        let position = match self.kind {
+            JointKind::Hinge => now.position.to_degrees(),
+            JointKind::Slider => now.position,
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => return row,
+        };
+        row.extend([position, now.rate, now.motor, now.power(), now.absorbed]);
+        row
+    }
+
+    fn follow(&self, before: &[f64], now: &mut [f64]) {
+        if self.kind == JointKind::Hinge {
+            let angle = carried::<D>();
+            now[angle] = super::motion::unwrapped(before[angle], now[angle]);
+        }
+    }
+}

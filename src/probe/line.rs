@@ -1,0 +1,45 @@
+//! Length and tension of a spring or a rope.
+
+use super::Probe;
+use crate::{
+    error::Result,
+    simulation::{Simulation, find},
+    system::System,
+};
+
+/// Watches a spring, mooring line or rope: its length (m) and its tension (N; N/m in 2-D), negative where a spring pushes.
+pub struct Line {
+    line: usize,
+    rope: bool,
+}
+
+impl Line {
+    /// The probe of the spring called `name`.
+    ///
+    /// # Errors
+    /// `Scene` if there is no such spring.
+    pub fn spring<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
+        let springs = system.links().springs.iter();
+        Ok(Self { line: find("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
+    }
+
+    /// The probe of the rope called `name`.
+    ///
+    /// # Errors
+    /// `Scene` if there is no such rope.
+    pub fn rope<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
+        let ropes = system.links().ropes.iter();
+        Ok(Self { line: find("rope", name, ropes.map(|rope| rope.name.as_str()))?, rope: true })
+    }
+}
+
+impl<const D: usize> Probe<D> for Line {
+    fn columns(&self) -> Vec<String> {
+        vec!["length_m".into(), if D == 2 { "tension_N_per_m" } else { "tension_N" }.into()]
+    }
+
+    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+        let now = if self.rope { sim.rope(self.line) } else { sim.spring(self.line) };
+        vec![now.length, now.tension]
+    }
+}

@@ -1,0 +1,133 @@
+//! From words to ties: joints, springs, ropes, forces and contacts of the solids that were built.
+
+use super::{
+    ForceWords, FrameOf, JointKindWords, JointWords, MotorWords, Scene, SolidWords, ValueWords, build_solids::Unit,
+    geometry::vector,
+};
+use crate::{
+    error::{Error, Result},
+    solid::{
+        ContactSpec, End, ForceSpec, Hold, JointKind, JointSpec, Law, Links, Motor, RopeSpec, SolidSpec, SpringSpec,
+        links::{check_force, check_rope, check_spring},
+    },
+};
+
+impl Scene {
+    /// The ties of `solids`, which are in the order of the scene.
+    pub(super) fn links<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Links<D>> {
+        let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
+        let ends = |between: &[String], from: &[f64], to: &[f64]| {
+            [(0, from), (1, to)].map(|(k, at)| End { solid: between.get(k).and_then(number), at: vector(at) })
+        };
+        let place = |kind: &str, i: usize| {
+            let key = format!("{kind}.{i}");
+            move |e: Error| self.origin.place(e, &key)
+        };
+        let mut links = Links::default();
+        for (i, words) in self.joint.iter().enumerate() {
+            // One solid moves against the world.
+            let between = match &words.between[..] {
+                [one] => [None, number(one)],
+                two => [0, 1].map(|k| two.get(k).and_then(number)),
+            };
+            links.joints.push(self.joint_spec(&format!("joint.{i}"), words, between)?);
+            links.check_joint(i, solids).map_err(place("joint", i))?;
+        }
+        for (i, words) in self.spring.iter().enumerate() {
+            let spring = SpringSpec {
+                name: words.name.clone(),
+                ends: ends(&words.between, &words.from, &words.to),
+                stiffness: words.stiffness,
+                damping: words.damping.unwrap_or_default(),
+                length: words.length,
+                tension_only: words.tension_only.unwrap_or_default(),
+            };
+            check_spring(&spring, solids).map_err(place("spring", i))?;
+            links.springs.push(spring);
+        }
+        for (i, words) in self.rope.iter().enumerate() {
+            let (name, ends) = (words.name.clone(), ends(&words.between, &words.from, &words.to));
+            let rope = RopeSpec { name, ends, length: words.length };
+            check_rope(&rope, solids).map_err(place("rope", i))?;
+            links.ropes.push(rope);
+        }
+        for (i, words) in self.force.iter().enumerate() {
+            let force = self.force_spec(&format!("force.{i}"), words, number(&words.on).unwrap_or_default())?;
+            check_force(&force, solids).map_err(place("force", i))?;
+            links.forces.push(force);
+        }
+        for words in &self.contact {
+            let numbers: Vec<usize> = words.between.iter().filter_map(number).collect();
+            let others = (0..solids.len()).filter(|i| numbers.len() == 1 && !numbers.contains(i));
+            let pairs = numbers[1..].iter().copied().chain(others);
+            links.contacts.extend(pairs.map(|other| ContactSpec {
+                between: [numbers[0], other],
+                touch: words.touch.unwrap_or(true),
+                friction: words.friction,
+                restitution: words.restitution,
+            }));
+        }
+        let release = |(solid, words): (usize, &SolidWords)| Some(Hold { solid, until: words.free.as_ref()?.release? });
+        links.holds = self.solid.iter().enumerate().filter_map(release).collect();
+        Ok(links)
+    }
+
+    fn joint_spec<const D: usize>(
+        &self,
+        key: &str,
+        words: &JointWords,
+        between: [Option<usize>; 2],
+    ) -> Result<JointSpec<D>> {
+        let kind = match words.kind {
+            JointKindWords::Hinge => JointKind::Hinge,
+            JointKindWords::Slider => JointKind::Slider,
+            JointKindWords::Fixed => JointKind::Fixed,
+            JointKindWords::Ball => JointKind::Ball,
+            JointKindWords::Tow => JointKind::Tow,
+        };
+        let axis = vector(words.axis.as_ref().or(words.along.as_ref()).map_or(&[], |x| x));
+        let mut joint = JointSpec::new(&words.name, kind, between, vector(&words.at), axis);
+        joint.contacts = words.contacts.unwrap_or_default();
+        let pair = |limits: &Vec<f64>, unit: f64| [limits[0] * unit, limits[1] * unit];
+        joint.limits = match (&words.limits, &words.limits_deg) {
+            (Some(limits), _) => Some(pair(limits, 1.0)),
+            (None, limits) => limits.as_ref().map(|limits| pair(limits, 1f64.to_radians())),
+        };
+        joint.motor = words.motor.as_ref().map(|motor| self.motor(&format!("{key}.motor"), motor)).transpose()?;
+        Ok(joint)
+    }
+
+    fn motor(&self, key: &str, words: &MotorWords) -> Result<Motor> {
+        let mut motor = Motor { strongest: words.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
+        for (word, value) in words.laws() {
+            let unit = match word {
+                "position_deg" => Unit::Degrees,
+                "position" | "velocity" => Unit::Radians,
+                _ => Unit::Metres,
+            };
+            let law = self.law(&format!("{key}.{word}"), &value.0, unit)?;
+            match word {
+                "force" | "torque" => motor.force = law,
+                "position" | "position_deg" => motor.position = law,
+                "velocity" => motor.velocity = Some(law),
+                "stiffness" => motor.stiffness = law,
+                _ => motor.damping = law,
+            }
+        }
+        Ok(motor)
+    }
+
+    fn force_spec<const D: usize>(&self, key: &str, words: &ForceWords, solid: usize) -> Result<ForceSpec<D>> {
+        let laws = |word: &str, values: &[ValueWords]| -> Result<Vec<Law>> {
+            values.iter().map(|value| self.law(&format!("{key}.{word}"), &value.0, Unit::Metres)).collect()
+        };
+        Ok(ForceSpec {
+            name: words.name.clone(),
+            solid,
+            at: words.at.as_ref().map(|at| vector(at)),
+            force: laws("force", words.force.as_ref().map_or(&[], |values| values.components()))?,
+            torque: laws("torque", words.torque.as_ref().map_or(&[], |values| values.components()))?,
+            turns: words.frame == Some(FrameOf::Body),
+        })
+    }
+}

@@ -1,0 +1,257 @@
+//! Holds the words of joints, springs, ropes, forces and contacts against those of the solids.
+
+use super::{
+    ForceWords, JointKindWords, JointWords, LawWords, MotorWords, ProbeEntry, Scene, SolidWords, SpringWords,
+    ValueWords,
+    verify::{guess, last},
+};
+use crate::{error::Result, solid::Formula};
+
+impl Scene {
+    pub(super) fn verify_links(&self) -> Result<()> {
+        fn names<T>(all: &[T], name: impl Fn(&T) -> &str) -> Vec<&str> {
+            all.iter().map(name).collect()
+        }
+        self.names("joint", &names(&self.joint, |joint| &joint.name))?;
+        self.names("spring", &names(&self.spring, |spring| &spring.name))?;
+        self.names("rope", &names(&self.rope, |rope| &rope.name))?;
+        self.names("force", &names(&self.force, |force| &force.name))?;
+        self.joint.iter().enumerate().try_for_each(|(i, joint)| self.verify_joint(&format!("joint.{i}"), joint))?;
+        self.spring
+            .iter()
+            .enumerate()
+            .try_for_each(|(i, spring)| self.verify_spring(&format!("spring.{i}"), spring))?;
+        for (i, rope) in self.rope.iter().enumerate() {
+            let key = format!("rope.{i}");
+            self.ends(&key, &rope.between)?;
+            self.vector(&format!("{key}.from"), &rope.from)?;
+            self.vector(&format!("{key}.to"), &rope.to)?;
+            self.positive(&format!("{key}.length"), rope.length)?;
+        }
+        self.force.iter().enumerate().try_for_each(|(i, force)| self.verify_force(&format!("force.{i}"), force))?;
+        for (i, contact) in self.contact.iter().enumerate() {
+            let key = format!("contact.{i}");
+            self.ends(&key, &contact.between)?;
+            if contact.touch == Some(false) && (contact.friction.is_some() || contact.restitution.is_some()) {
+                let what = "what does not touch has neither friction nor restitution";
+                return Err(self.wrong(&format!("{key}.touch"), what));
+            }
+            if contact.touch != Some(false) && contact.friction.is_none() && contact.restitution.is_none() {
+                return Err(self.wrong(&key, "this contact is as any other"));
+            }
+            self.within(&format!("{key}.friction"), contact.friction, 10.0)?;
+            self.within(&format!("{key}.restitution"), contact.restitution, 1.0)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a probe of a joint, spring or rope that there is not.
+    pub(super) fn known_ties(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+        let joints = self.joint.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>();
+        let springs = self.spring.iter().map(|spring| spring.name.as_str()).collect();
+        let ropes = self.rope.iter().map(|rope| rope.name.as_str()).collect();
+        let ties = [("joint", &probe.joint, joints), ("spring", &probe.spring, springs), ("rope", &probe.rope, ropes)];
+        for (word, name, known) in ties {
+            let Some(name) = name.as_ref().filter(|name| !known.contains(&name.as_str())) else { continue };
+            let what = format!("no {word} is called \"{name}\"{}", guess(name, &known));
+            let help = match known.is_empty() {
+                true => format!("the scene has no {word}"),
+                false => format!("known: {}", known.join(", ")),
+            };
+            return Err(self.wrong_with(&format!("{key}.{word}"), what, help));
+        }
+        Ok(())
+    }
+
+    /// Refuses names that are none, or given twice.
+    fn names(&self, kind: &str, names: &[&str]) -> Result<()> {
+        names.iter().enumerate().try_for_each(|(i, name)| {
+            let key = format!("{kind}.{i}.name");
+            self.good_name(&key, name)?;
+            match names[..i].contains(name) {
+                true => {
+                    Err(self.wrong_with(&key, format!("two {kind}s are called \"{name}\""), "give each its own name"))
+                }
+                false => Ok(()),
+            }
+        })
+    }
+
+    /// Refuses ends that are not one or two solids, of which one is free.
+    fn ends(&self, key: &str, between: &[String]) -> Result<()> {
+        let key = format!("{key}.between");
+        if !(1..=2).contains(&between.len()) {
+            return Err(self.wrong(&key, format!("between names one solid or two, not {}", between.len())));
+        }
+        between.iter().try_for_each(|name| self.known_solid(&key, name))?;
+        if between.len() == 2 && between[0] == between[1] {
+            return Err(self.wrong(&key, format!("\"{}\" is named twice", between[0])));
+        }
+        let free = |solid: &&SolidWords| between.contains(&solid.name) && solid.free.is_some();
+        if self.solid.iter().any(|solid| free(&solid)) || key.starts_with("contact") && between.len() == 1 {
+            return Ok(());
+        }
+        let verb = if between.len() == 2 { "are" } else { "is" };
+        let what = format!("\"{}\" {verb} not free: nothing here can move otherwise", between.join("\" and \""));
+        Err(self.wrong_with(&key, what, "one of them at least must be  free = { density = 500.0 }"))
+    }
+
+    fn verify_joint(&self, key: &str, joint: &JointWords) -> Result<()> {
+        self.ends(key, &joint.between)?;
+        self.vector(&format!("{key}.at"), &joint.at)?;
+        let three = self.dimension == 3;
+        let (hinge, slider) = (joint.kind == JointKindWords::Hinge, joint.kind == JointKindWords::Slider);
+        if joint.kind == JointKindWords::Ball && !three {
+            let help = "in 2-D  kind = \"hinge\"  turns freely about its point";
+            return Err(self.wrong_with(&format!("{key}.kind"), "a plane has no ball joint", help));
+        }
+        let along = slider || joint.kind == JointKindWords::Tow;
+        let needs = [("axis", &joint.axis, hinge && three), ("along", &joint.along, along)];
+        for (word, vector, needed) in needs {
+            let key = format!("{key}.{word}");
+            match vector {
+                None if needed => return Err(self.wrong(&key, format!("{word} is missing: which way?"))),
+                Some(_) if !needed => {
+                    let help =
+                        "a slider and a tow have  along, a hinge in 3-D has  axis; no other joint has a direction";
+                    return Err(self.wrong_with(&key, format!("{word} has no meaning here"), help));
+                }
+                Some(vector) => {
+                    self.vector(&key, vector)?;
+                    if vector.iter().all(|x| x.abs() < 1e-12) {
+                        return Err(self.wrong(&key, format!("{word} points nowhere")));
+                    }
+                }
+                None => {}
+            }
+        }
+        if joint.limits.is_some() && joint.limits_deg.is_some() {
+            return Err(self.wrong(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"));
+        }
+        if joint.limits_deg.is_some() && !hinge {
+            return Err(self.wrong(&format!("{key}.limits_deg"), "only a hinge has limits in degrees"));
+        }
+        for (word, limits) in [("limits", &joint.limits), ("limits_deg", &joint.limits_deg)] {
+            let Some(limits) = limits else { continue };
+            let key = format!("{key}.{word}");
+            if !(hinge || slider) {
+                return Err(self.wrong_with(&key, "this joint has no way to go", "a hinge or a slider has limits"));
+            }
+            if !matches!(limits[..], [min, max] if min <= 0.0 && 0.0 <= max && min < max) {
+                let what = format!("{limits:?} does not reach from 0 or less to 0 or more; 0 is where it starts");
+                return Err(self.wrong(&key, what));
+            }
+        }
+        match &joint.motor {
+            Some(_) if !(hinge || slider) => {
+                let help = "a hinge or a slider has a motor";
+                Err(self.wrong_with(&format!("{key}.motor"), "this joint has no way to go", help))
+            }
+            Some(motor) => self.verify_motor(&format!("{key}.motor"), motor, hinge),
+            None => Ok(()),
+        }
+    }
+
+    fn verify_motor(&self, key: &str, motor: &MotorWords, hinge: bool) -> Result<()> {
+        let foreign: &[&str] = if hinge { &["force"] } else { &["torque", "position_deg"] };
+        if let Some((word, _)) = motor.laws().find(|(word, _)| foreign.contains(word)) {
+            let help = "a hinge has a torque, N m, and angles in rad or degrees; a slider a force, N, and metres";
+            return Err(self.wrong_with(&format!("{key}.{word}"), format!("{word} has no meaning here"), help));
+        }
+        let position = motor.position.is_some() || motor.position_deg.is_some();
+        let drives = [&motor.force, &motor.torque, &motor.stiffness, &motor.damping];
+        if drives.iter().all(|law| law.is_none()) {
+            return Err(self.wrong(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
+        }
+        if motor.position.is_some() && motor.position_deg.is_some() {
+            return Err(self.wrong(&format!("{key}.position_deg"), "position and position_deg say the same twice"));
+        }
+        if position && motor.stiffness.is_none() {
+            let what = "a position needs a stiffness with which it is held";
+            return Err(self.wrong(&format!("{key}.stiffness"), what));
+        }
+        if motor.velocity.is_some() && motor.damping.is_none() {
+            let what = "a velocity needs a damping with which it is held";
+            return Err(self.wrong(&format!("{key}.damping"), what));
+        }
+        self.positive(&format!("{key}.strongest"), motor.strongest)?;
+        motor.laws().try_for_each(|(word, value)| self.value(&format!("{key}.{word}"), value))?;
+        for (word, value) in [("stiffness", &motor.stiffness), ("damping", &motor.damping)] {
+            if let Some(x) = value.as_ref().and_then(ValueWords::number).filter(|x| *x < 0.0) {
+                let what = format!("{word} is {x}: below 0 it would drive what it should hold");
+                return Err(self.wrong(&format!("{key}.{word}"), what));
+            }
+        }
+        Ok(())
+    }
+
+    fn verify_spring(&self, key: &str, spring: &SpringWords) -> Result<()> {
+        self.ends(key, &spring.between)?;
+        self.vector(&format!("{key}.from"), &spring.from)?;
+        self.vector(&format!("{key}.to"), &spring.to)?;
+        self.positive(&format!("{key}.stiffness"), Some(spring.stiffness))?;
+        for (word, x) in [("damping", spring.damping), ("length", spring.length)] {
+            if let Some(x) = x.filter(|x| *x < 0.0) {
+                return Err(self.wrong(&format!("{key}.{word}"), format!("{word} is 0 or more, not {x}")));
+            }
+        }
+        Ok(())
+    }
+
+    fn verify_force(&self, key: &str, force: &ForceWords) -> Result<()> {
+        self.known_solid(&format!("{key}.on"), &force.on)?;
+        if !self.solid.iter().any(|solid| solid.name == force.on && solid.free.is_some()) {
+            let what = format!("\"{}\" is not free: a force does not move it", force.on);
+            return Err(self.wrong_with(&format!("{key}.on"), what, "a force acts on a free solid"));
+        }
+        if let Some(at) = &force.at {
+            self.vector(&format!("{key}.at"), at)?;
+        }
+        if force.force.is_none() && force.torque.is_none() {
+            return Err(self.wrong(key, "neither a force nor a torque is given"));
+        }
+        let turns = if self.dimension == 3 { 3 } else { 1 };
+        for (word, values, count) in [("force", &force.force, self.dimension), ("torque", &force.torque, turns)] {
+            let Some(values) = values else { continue };
+            let key = format!("{key}.{word}");
+            let values = values.components();
+            if values.len() != count {
+                let what = format!("{word} has {} components, and a {}-D scene {count}", values.len(), self.dimension);
+                return Err(self.wrong(&key, what));
+            }
+            values.iter().try_for_each(|value| self.value(&key, value))?;
+        }
+        Ok(())
+    }
+
+    fn value(&self, key: &str, value: &ValueWords) -> Result<()> {
+        self.one_law(key, &value.0)?;
+        match &value.0.formula {
+            Some(text) => Formula::parse(text).map(|_| ()).map_err(|e| self.origin.place(e, key)),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a law that is not either a formula or a column of a file.
+    pub(super) fn one_law(&self, key: &str, law: &LawWords) -> Result<()> {
+        match (&law.formula, &law.file) {
+            (Some(_), None) if law.column.is_none() && law.scale.is_none() && law.time.is_none() => Ok(()),
+            (Some(_), None) => Err(self.wrong(key, "column, time and scale belong to a file, not to a formula")),
+            (None, Some(_)) if law.column.is_some() => Ok(()),
+            (None, Some(_)) => Err(self.wrong(key, "which column of the file?")),
+            _ => Err(self.wrong(key, "a law is either a formula or a file with a column")),
+        }
+    }
+
+    /// Refuses a number that is given and not from 0 to `most`.
+    pub(super) fn within(&self, key: &str, x: Option<f64>, most: f64) -> Result<()> {
+        match x.filter(|x| !(0.0..=most).contains(x)) {
+            Some(x) => {
+                let word = last(key);
+                let help = format!("{word} is a number from 0 to {most}");
+                Err(self.wrong_with(key, format!("{word} cannot be {x}"), help))
+            }
+            None => Ok(()),
+        }
+    }
+}

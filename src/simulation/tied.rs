@@ -1,0 +1,67 @@
+//! Joints, springs and ropes of a running simulation: to be found by name, read, and driven by a program.
+
+use super::Simulation;
+use crate::{
+    error::{Error, Result, nearest},
+    solid::{Drive, Elastic, JointReading, LineReading},
+};
+
+impl<const D: usize> Simulation<D> {
+    /// Number of the joint called `name`.
+    ///
+    /// # Errors
+    /// `Scene` if there is none: says the nearest name, or all of them.
+    pub fn find_joint(&self, name: &str) -> Result<usize> {
+        find("joint", name, self.system.links().joints.iter().map(|joint| joint.name.as_str()))
+    }
+
+    /// Number of the spring called `name`.
+    ///
+    /// # Errors
+    /// As [`Simulation::find_joint`].
+    pub fn find_spring(&self, name: &str) -> Result<usize> {
+        find("spring", name, self.system.links().springs.iter().map(|spring| spring.name.as_str()))
+    }
+
+    /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
+    pub fn spring_limit(&self) -> f64 {
+        self.bodies.limit(&self.system, self.clock.time)
+    }
+
+    /// What joint number `joint` felt in the last step.
+    pub fn joint(&self, joint: usize) -> JointReading<D> {
+        self.bodies.rig().joint(joint)
+    }
+
+    /// What spring number `spring` felt in the last step.
+    pub fn spring(&self, spring: usize) -> LineReading {
+        self.bodies.rig().spring(spring)
+    }
+
+    /// What rope number `rope` felt in the last step.
+    pub fn rope(&self, rope: usize) -> LineReading {
+        self.bodies.rig().rope(rope)
+    }
+
+    /// Drives joint number `joint`, a hinge or a slider, from now on, in place of the motor that it was made with; `None` gives
+    /// it back to that. A checkpoint keeps it.
+    pub fn drive(&mut self, joint: usize, drive: Option<Drive>) {
+        self.bodies.rig_mut().drive(joint, drive);
+    }
+
+    /// Stiffness, damping and rest length of spring number `spring`, to be read or changed from now on. A checkpoint keeps them.
+    pub fn elastic(&mut self, spring: usize) -> &mut Elastic {
+        self.bodies.rig_mut().elastic(spring)
+    }
+}
+
+/// The number of `name` among `names` of a `kind` of things.
+pub(crate) fn find<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Result<usize> {
+    names.clone().position(|known| known == name).ok_or_else(|| {
+        let help = match nearest(name, names.clone()) {
+            Some(near) => format!("did you mean {near:?}?"),
+            None => format!("the {kind}s are: {}", names.collect::<Vec<_>>().join(", ")),
+        };
+        Error::scene(format!("there is no {kind} called {name:?}")).help(help)
+    })
+}

@@ -1,0 +1,327 @@
+//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, and the motor on it.
+//!
+//! The locks are the engine's. The motor is ours, a load like any other on both solids:
+//!
+//!   F = F₀ + k (x* − x) + c (v* − ẋ)
+//!
+//! The damping is taken at the rate at the step's end under itself alone, on a pair as easy to move as its locks leave it,
+//! g = J M⁻¹ Jᵀ: c (v* − ẋ)/(1 + Δt c g), so that no c is too stiff for a step. The stiffness bounds the step as a spring's does.
+
+use serde::{Deserialize, Serialize};
+
+use super::rows::{Mobility, Row, part};
+use crate::{
+    solid::{Engine, Kinematics, Law},
+    space::{Matrix, Pose, Vector, Wedge},
+};
+
+/// What a joint leaves free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turning about an axis.
+    Hinge,
+    /// Moving along a line.
+    Slider,
+    /// Nothing.
+    Fixed,
+    /// Turning any way; 3-D.
+    Ball,
+    /// All but moving along a line: the second solid is towed along it.
+    Tow,
+}
+
+/// A joint as it is to be made.
+#[derive(Clone, Debug)]
+pub struct JointSpec<const D: usize> {
+    /// Its name.
+    pub name: String,
+    /// What it leaves free.
+    pub kind: JointKind,
+    /// Numbers of the two solids; `None` is the world.
+    pub between: [Option<usize>; 2],
+    /// The world point at which it sits at the start, m.
+    pub at: Vector<D>,
+    /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero.
+    pub axis: Vector<D>,
+    /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
+    pub limits: Option<[f64; 2]>,
+    /// What moves or brakes it.
+    pub motor: Option<Motor>,
+    /// Whether the two solids touch one another.
+    pub contacts: bool,
+}
+
+impl<const D: usize> JointSpec<D> {
+    /// A joint of this kind at the world point `at` (m), along or about `axis`, without limits or motor. The second of `between`
+    /// moves against the first.
+    pub fn new(
+        name: impl Into<String>,
+        kind: JointKind,
+        between: [Option<usize>; 2],
+        at: Vector<D>,
+        axis: Vector<D>,
+    ) -> Self {
+        Self { name: name.into(), kind, between, at, axis, limits: None, motor: None, contacts: false }
+    }
+
+    /// The same joint with end stops, m or rad from the start.
+    pub fn limits(mut self, min: f64, max: f64) -> Self {
+        self.limits = Some([min, max]);
+        self
+    }
+
+    /// The same joint with a motor.
+    pub fn motor(mut self, motor: Motor) -> Self {
+        self.motor = Some(motor);
+        self
+    }
+}
+
+/// A motor, brake or power take-off. Forces are N (N m of a hinge; in 2-D per metre of width), positive if they drive the second
+/// solid the way in which the coordinate grows.
+#[derive(Clone, Debug)]
+pub struct Motor {
+    /// F₀, N or N m.
+    pub force: Law,
+    /// x*, m or rad from the start.
+    pub position: Law,
+    /// v*, m/s or rad/s; by default the rate of `position`.
+    pub velocity: Option<Law>,
+    /// k, N/m or N m/rad.
+    pub stiffness: Law,
+    /// c, N s/m or N m s/rad.
+    pub damping: Law,
+    /// The strongest that it can be, N or N m.
+    pub strongest: f64,
+}
+
+impl Default for Motor {
+    /// None at all.
+    fn default() -> Self {
+        let none = || Law::constant(0.0);
+        Self {
+            force: none(),
+            position: none(),
+            velocity: None,
+            stiffness: none(),
+            damping: none(),
+            strongest: f64::INFINITY,
+        }
+    }
+}
+
+impl Motor {
+    /// A linear power take-off: F = −c ẋ.
+    pub fn damping(c: f64) -> Self {
+        Self { damping: Law::constant(c), ..Self::default() }
+    }
+
+    /// What it does at time `t` (s).
+    pub fn at(&self, t: f64) -> Drive {
+        let (position, rate) = self.position.at(t);
+        Drive {
+            force: self.force.at(t).0,
+            position,
+            velocity: self.velocity.as_ref().map_or(rate, |law| law.at(t).0),
+            stiffness: self.stiffness.at(t).0,
+            damping: self.damping.at(t).0,
+            strongest: self.strongest,
+        }
+    }
+}
+
+/// What a motor does at an instant; the names are those of [`Motor`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drive {
+    /// F₀, N or N m.
+    pub force: f64,
+    /// x*, m or rad.
+    pub position: f64,
+    /// v*, m/s or rad/s.
+    pub velocity: f64,
+    /// k, N/m or N m/rad.
+    pub stiffness: f64,
+    /// c, N s/m or N m s/rad.
+    pub damping: f64,
+    /// The strongest that it can be, N or N m.
+    pub strongest: f64,
+}
+
+impl Drive {
+    /// Its force over a step `dt` (s) from the coordinate `x` and its rate, on a pair that gives way by `g`; a difference of
+    /// angles is counted the short way round.
+    fn force(&self, kind: JointKind, (x, rate): (f64, f64), g: f64, dt: f64) -> f64 {
+        let mut off = self.position - x;
+        if kind == JointKind::Hinge {
+            off -= std::f64::consts::TAU * (off / std::f64::consts::TAU).round();
+        }
+        let damped = self.damping * (self.velocity - rate) / (1.0 + dt * self.damping * g);
+        (self.force + self.stiffness * off + damped).clamp(-self.strongest, self.strongest)
+    }
+}
+
+/// A joint in a running system.
+pub(super) struct Joint<const D: usize> {
+    pub(super) spec: JointSpec<D>,
+    /// Where it sits in the two solids; x is its axis.
+    frames: [Pose<D>; 2],
+}
+
+impl<const D: usize> Joint<D> {
+    /// The joint between solids that start as `start`.
+    pub(super) fn new(spec: JointSpec<D>, start: &[Kinematics<D>]) -> Self {
+        let frames = spec.frames(start);
+        Self { spec, frames }
+    }
+
+    /// How its two solids move.
+    pub(super) fn ends(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
+        self.spec.between.map(|end| of(end, solids))
+    }
+
+    pub(super) fn mobility(&self, engine: &dyn Engine<D>) -> [Mobility<D>; 2] {
+        self.spec.between.map(|end| end.map_or_else(Mobility::none, |solid| engine.mobility(solid)))
+    }
+
+    fn sits(&self, ends: &[Kinematics<D>; 2]) -> [Pose<D>; 2] {
+        [0, 1].map(|k| ends[k].pose.then(&self.frames[k]))
+    }
+
+    /// The world point of the second solid at which it sits, m.
+    pub(super) fn point(&self, ends: &[Kinematics<D>; 2]) -> Vector<D> {
+        self.sits(ends)[1].position
+    }
+
+    /// Its coordinate, m or rad (−π to π).
+    pub(super) fn position(&self, ends: &[Kinematics<D>; 2]) -> f64 {
+        let [first, second] = self.sits(ends);
+        match self.spec.kind {
+            JointKind::Slider => first.rotation.column(0).dot(&(second.position - first.position)),
+            JointKind::Hinge => {
+                let (turn, i, j) = (first.rotation.transpose() * second.rotation, D - 2, D - 1);
+                (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
+            }
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => 0.0,
+        }
+    }
+
+    /// The row of its coordinate, if it has one.
+    pub(super) fn free(&self, ends: &[Kinematics<D>; 2]) -> Option<Row<D>> {
+        let [first, second] = self.sits(ends);
+        match self.spec.kind {
+            JointKind::Slider => Some(Row::along(first.rotation.column(0).into(), &second.position, ends)),
+            JointKind::Hinge => Some(Row::about(turning(&first.rotation.column(0).into()))),
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow => None,
+        }
+    }
+
+    /// The rows of its locks in the order of the engine: turns first. In 3-D the engine measures a turn by the quaternion between
+    /// the frames, so its row is half of the axis, turned half-way from one frame to the other.
+    fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<Row<D>> {
+        let [first, second] = self.sits(ends);
+        let (straight, turns) = locked::<D>(self.spec.kind);
+        let mut rows = Vec::new();
+        if D == 2 && turns[0] {
+            rows.push(Row::about(Wedge::from_axial(&[1.0])));
+        }
+        if D == 3 {
+            let half = (turning(&first.rotation.column(0).into()) * (0.5 * self.position_or_none(ends))).exp();
+            for i in (0..D).filter(|&i| turns[i]) {
+                let axis: Vector<D> = half * first.rotation.column(i) * 0.5;
+                rows.push(Row::about(Wedge::from_axial(axis.as_slice())));
+            }
+        }
+        for i in (0..D).filter(|&i| straight[i]) {
+            rows.push(Row::along(first.rotation.column(i).into(), &second.position, ends));
+        }
+        rows
+    }
+
+    /// The angle of a hinge; 0 of any other joint.
+    fn position_or_none(&self, ends: &[Kinematics<D>; 2]) -> f64 {
+        if self.spec.kind == JointKind::Hinge { self.position(ends) } else { 0.0 }
+    }
+
+    /// The rows of its locks, and after them that of its coordinate less what the locks do of it; and how many locks there are.
+    pub(super) fn rows(&self, ends: &[Kinematics<D>; 2], mobility: &[Mobility<D>; 2]) -> (Vec<Row<D>>, usize) {
+        let mut rows = self.locks(ends);
+        let locks = rows.len();
+        rows.extend(self.free(ends));
+        part(&mut rows, locks, mobility);
+        (rows, locks)
+    }
+
+    /// What drives it at time `t` (s): a program's `set`, or its own motor.
+    pub(super) fn drive(&self, set: Option<Drive>, t: f64) -> Option<Drive> {
+        set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.at(t)))
+    }
+
+    /// The force of its motor, N or N m, over a step of `dt` (s).
+    pub(super) fn force(&self, drive: &Drive, ends: &[Kinematics<D>; 2], rate: f64, g: f64, dt: f64) -> f64 {
+        drive.force(self.spec.kind, (self.position(ends), rate), g, dt)
+    }
+}
+
+impl<const D: usize> JointSpec<D> {
+    /// Its frame in both solids, which start as `start`; x is its axis.
+    pub(super) fn frames(&self, start: &[Kinematics<D>]) -> [Pose<D>; 2] {
+        let axis = if D == 2 && self.kind == JointKind::Hinge { Vector::zeros() } else { self.axis };
+        let world = Pose { position: self.at, rotation: frame(&axis) };
+        self.between.map(|end| {
+            let pose = of(end, start).pose;
+            Pose { position: pose.local(&world.position), rotation: pose.rotation.transpose() * world.rotation }
+        })
+    }
+}
+
+/// Which translations and turns of a joint's frame are locked.
+pub(super) fn locked<const D: usize>(kind: JointKind) -> ([bool; D], [bool; 3]) {
+    let mut straight = [true; D];
+    let mut turns = [true; 3];
+    match kind {
+        JointKind::Hinge => turns[0] = false,
+        JointKind::Slider => straight[0] = false,
+        JointKind::Fixed => {}
+        JointKind::Ball => turns = [false; 3],
+        JointKind::Tow => {
+            straight = std::array::from_fn(|i| i == 0);
+            turns = [false; 3];
+        }
+    }
+    (straight, turns)
+}
+
+/// How the solid at an end moves; the world does not.
+pub(super) fn of<const D: usize>(end: Option<usize>, solids: &[Kinematics<D>]) -> Kinematics<D> {
+    let world =
+        Kinematics { pose: Pose::identity(), centre: Vector::zeros(), velocity: Vector::zeros(), spin: Wedge::zero() };
+    end.and_then(|solid| solids.get(solid)).copied().unwrap_or(world)
+}
+
+/// Turning once about `axis`; in 2-D counter-clockwise.
+fn turning<const D: usize>(axis: &Vector<D>) -> Wedge<D> {
+    if D == 2 { Wedge::from_axial(&[1.0]) } else { Wedge::from_axial(axis.as_slice()) }
+}
+
+/// A right-handed frame with its x along `axis`; the world's if that is nowhere.
+fn frame<const D: usize>(axis: &Vector<D>) -> Matrix<D> {
+    let length = axis.norm();
+    if length == 0.0 {
+        return Matrix::identity();
+    }
+    let mut all = Matrix::<D>::identity();
+    let x = axis / length;
+    all.set_column(0, &x);
+    if D == 2 {
+        all.set_column(1, &turning(&x).at(&x));
+    } else {
+        let away = x.iamin();
+        let z = turning(&x).at(&Vector::from_fn(|i, _| f64::from(u8::from(i == away)))).normalize();
+        all.set_column(1, &turning(&z).at(&x));
+        all.set_column(2, &z);
+    }
+    all
+}
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+mod tests;
