@@ -29,7 +29,7 @@ fn main() -> Result<()> {
     let (mut next, mut mean) = (0.0, 0.0);
     println!("{:>7} {:>12} {:>15}", "t (s)", "line (m)", "tension (N/m)");
     while sim.time() < 4.0 {
-        // The winch takes in 0.1 m in 2 s.
+        // The winch takes in 0.125 m in 2.5 s.
         sim.elastic(line).length = 0.35 - 0.05 * (sim.time() - 0.5).clamp(0.0, 2.5);
         sim.step_to(4.0)?;
         let now = sim.spring(line);

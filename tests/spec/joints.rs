@@ -146,7 +146,7 @@ fn wrong_words_of_ties_are_told_with_their_place_and_what_to_write() {
         (
             "between = [\"tank\", \"flap\"]",
             "between = [\"tank\", \"flip\"]",
-            &["did you mean \"flap\"?", "joint.0.between", ":41:"],
+            &["did you mean \"flap\"?", "joint.0.between", ":38:"],
         ),
         ("between = [\"tank\", \"flap\"]", "between = [\"tank\"]", &["\"tank\" is not free"]),
         ("between = [\"tank\", \"flap\"]", "between = [\"flap\", \"flap\"]", &["named twice"]),
