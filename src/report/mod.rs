@@ -9,7 +9,7 @@
 
 mod blob;
 mod charts;
-pub mod colour;
+mod colour;
 mod figures;
 mod film;
 mod ink;

@@ -47,7 +47,7 @@ class Deck {
     const pace = labelled(make("select", { onchange: e => { this.speed = +e.target.value; } }, ...speeds.map(s => make("option", { value: s, selected: s === this.speed }, `${s < 1 ? "1/" + 1 / s : s} × real time`))), "Speed of playing");
     const colour = labelled(make("select", { onchange: e => this.paint(e.target.value) }, ...this.fields.map(f => make("option", { value: f }, FIELDS[f].title))), "Colour of the particles");
     const zoom = make("span", { className: "group" }, ...[["−", "Zoom out", () => this.zoom(1 / 1.4)], ["+", "Zoom in", () => this.zoom(1.4)], ["Fit", "Show all", () => this.reset()]].map(([word, name, onclick]) => labelled(make("button", { type: "button", onclick }, word), name)));
-    const tools = make("div", { className: "row" }, make("label", {}, "Colour", colour), make("label", {}, "Speed", pace), zoom, check("surface", "surface"), check("gauges", "gauges"), check("names", "names"));
+    const tools = make("div", { className: "row" }, make("label", { hidden: !this.fields.length }, "Colour", colour), make("label", {}, "Speed", pace), zoom, check("surface", "surface"), check("gauges", "gauges"), check("names", "names"));
     if (deep) tools.append(...this.cutter());
     const keys = make("p", { className: "quiet keys" }, "Keys: space plays, ← → a frame (with shift ten), Home and End, + − zoom, 0 shows all. Drag moves, " + (deep ? "or turns in 3-D (with shift it moves), " : "") + "Ctrl and the wheel zoom; point at the water to read its values.");
     this.deck = make("div", { className: "deck", role: "group", onkeydown: e => this.key(e) }, this.stage, make("div", { className: "row scrubber" }, this.button, this.scrub, this.clock), this.legend(), tools, keys);
@@ -84,7 +84,7 @@ class Deck {
     this.strip = make("div", { className: "strip", role: "img" });
     this.unit = make("span", { className: "unit" });
     this.marks = make("div", { className: "marks" });
-    return make("div", { className: "legend" }, this.ends[0], this.strip, this.ends[1], this.unit, this.marks);
+    return make("div", { className: "legend", hidden: !this.fields.length }, this.ends[0], this.strip, this.ends[1], this.unit, this.marks);
   }
 
   paint(field) {
@@ -197,7 +197,11 @@ class Deck {
     this.strip.style.background = `linear-gradient(to right, ${map.map(hex).join(",")})`;
     labelled(this.strip, `Colours from ${said(low)} to ${said(high)} ${unit}`);
     this.unit.textContent = `${title}, ${unit}`;
-    this.marks.replaceChildren(...[0.25, 0.5, 0.75].map(s => make("span", {}, said(low + s * (high - low)))));
+    this.marks.replaceChildren(...marks(low, high, 5).map(x => {
+      const mark = make("span", {}, plain(x));
+      mark.style.left = `${100 * (x - low) / (high - low)}%`;
+      return mark;
+    }));
     if (this.place) this.place.textContent = this.views[0].cut === null ? "" : `${look.mode} = ${said(this.views[0].cut)} m`;
     this.followers.forEach(follow => follow(t));
   }

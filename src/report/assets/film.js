@@ -115,16 +115,17 @@ class Film {
     return p.map((x, k) => x + a * (q[k] - x));
   }
 
-  /** The box that holds the water of all frames and the moving solids: low and high corner. */
+  /** The box that holds the water of all frames, but for single drops, and the moving solids: low and high corner. */
   around() {
     const low = [1e9, 1e9, 1e9], high = [-1e9, -1e9, -1e9];
     this.span = [0, 0, 0];
     const take = (c, x) => { low[c] = Math.min(low[c], x); high[c] = Math.max(high[c], x); };
     for (const frame of this.frames) for (let c = 0; c < this.dim; c++) {
-      let a = 65535, b = 0;
-      for (const q of frame[c]) { if (q < a) a = q; if (q > b) b = q; }
-      this.span[c] = Math.max(this.span[c], b);
-      if (frame[c].length) [a, b].forEach(q => take(c, this.channels[c].min + this.channels[c].step * q));
+      const sorted = frame[c].slice().sort(), last = sorted.length - 1, rare = Math.floor(0.005 * last);
+      if (last < 0) continue;
+      const a = sorted[rare], b = sorted[last - rare];
+      this.span[c] = Math.max(this.span[c], sorted[last]);
+      [a, b].forEach(q => take(c, this.channels[c].min + this.channels[c].step * q));
     }
     this.times.forEach((_, i) => {
       this.at = { i, a: 0 };

@@ -89,13 +89,13 @@ function surface(water, solids, dp, box) {
   const nx = Math.ceil((x1 - x0) / g) + 1, ny = Math.ceil((y1 - y0) / g) + 1;
   if (!(nx > 1 && ny > 1)) return [];
   const wet = new Float32Array(nx * ny), all = new Float32Array(nx * ny), share = (dp / g) ** 2;
-  const add = (into, { x, y, n }) => {
+  const add = (into, { x, y, near, n }) => {
     for (let k = 0; k < n; k++) {
       const u = (x[k] - x0) / g, v = (y[k] - y0) / g, i = Math.round(u), j = Math.round(v);
       if (!(i > 0 && j > 0 && i < nx - 1 && j < ny - 1)) continue;
       const a = u - i, b = v - j;
       const p = [0.5 * (0.5 - a) ** 2, 0.75 - a * a, 0.5 * (0.5 + a) ** 2], q = [0.5 * (0.5 - b) ** 2, 0.75 - b * b, 0.5 * (0.5 + b) ** 2];
-      for (let s = 0; s < 3; s++) for (let r = 0; r < 3; r++) into[(j + s - 1) * nx + i + r - 1] += share * p[r] * q[s];
+      for (let s = 0; s < 3; s++) for (let r = 0; r < 3; r++) into[(j + s - 1) * nx + i + r - 1] += share * near[k] * p[r] * q[s];
     }
   };
   add(wet, water);

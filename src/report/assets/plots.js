@@ -38,6 +38,7 @@ class Chart {
   draw(wide) {
     if (this.u) return;
     const { lines, unit } = this.what;
+    if (!lines.some(line => line.x.some(Number.isFinite))) return this.plot.replaceChildren(make("p", { className: "quiet" }, "Nothing was measured."));
     const gaps = x => Array.from(x, v => Number.isNaN(v) ? null : v);
     const data = uPlot.join(lines.map(line => [Array.from(line.t), gaps(line.x)]));
     const axis = { stroke: style("--quiet"), font: "11px system-ui, sans-serif", grid: { stroke: style("--rule"), width: 1 }, ticks: { stroke: style("--rule"), width: 1, size: 5 } };
@@ -49,7 +50,7 @@ class Chart {
     });
     this.u = new uPlot({
       width: wide ?? this.plot.clientWidth, height: 190, scales: { x: { time: false } }, legend: { live: true }, cursor: { sync: { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
-      axes: [{ ...axis, values: (_, all) => all.map(v => `${+v.toPrecision(6)} s`) }, { ...axis, size: 58, values: words }], series: [{ label: "t", value: (_, v) => v == null ? "–" : `${v.toFixed(3)} s` }, ...series],
+      axes: [{ ...axis, size: 34, values: (_, all) => all.map(v => `${+v.toPrecision(6)} s`) }, { ...axis, size: 58, values: words }], series: [{ label: "t", value: (_, v) => v == null ? "–" : `${v.toFixed(3)} s` }, ...series],
     }, data, this.plot);
     this.now = make("div", { className: "now" });
     this.u.over.append(this.now);

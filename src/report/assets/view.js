@@ -10,6 +10,9 @@ function said(x) {
   return text.replace("-", "−");
 }
 
+/** The same without zeros at its end. */
+const plain = x => said(x).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+
 /** Round numbers from `low` to `high`, about `count` of them. */
 function marks(low, high, count) {
   const wished = (high - low) / count, ten = 10 ** Math.floor(Math.log10(wished));
@@ -17,6 +20,9 @@ function marks(low, high, count) {
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) all.push(+(k * step).toPrecision(12));
   return all;
 }
+
+/** What lies nearer to a cut than half of dp is seen in it. */
+const SEEN = 0.45;
 
 const FIELDS = {
   pressure: { title: "pressure", unit: "Pa" },
@@ -90,22 +96,23 @@ class View {
       ((height - margin[1]) / 2 - py) / scale + middle[1] + look.pan[1]];
   }
 
-  /** Where on the sheet (m) and how deep the points `p` lie; the numbers of those that are seen. */
+  /** Where on the sheet (m) and how deep the points `p` lie; the numbers of those that are seen, and how near to the cut. */
   project(p, n, cut) {
     const [u, v, d] = this.axes(), x = new Float32Array(n), y = new Float32Array(n), z = new Float32Array(n);
-    const [a, b] = p, c = this.film.dim === 3 ? p[2] : null, half = 0.55 * this.film.dp;
+    const [a, b] = p, c = this.film.dim === 3 ? p[2] : null, near = new Float32Array(n).fill(1), { dp } = this.film;
     const axis = cut === null ? null : p["xyz".indexOf(this.look.mode)];
     let m = 0;
     const who = new Int32Array(n);
     for (let k = 0; k < n; k++) {
-      if (axis && Math.abs(axis[k] - cut) > half) continue;
+      if (axis && Math.abs(axis[k] - cut) >= dp) continue;
+      if (axis) near[m] = 1 - Math.abs(axis[k] - cut) / dp;
       const w = c ? c[k] : 0;
       x[m] = u[0] * a[k] + u[1] * b[k] + u[2] * w;
       y[m] = v[0] * a[k] + v[1] * b[k] + v[2] * w;
       z[m] = d[0] * a[k] + d[1] * b[k] + d[2] * w;
       who[m++] = k;
     }
-    return { x, y, z, who, n: m };
+    return { x, y, z, who, near, n: m };
   }
 
   /** Place of the cut along its axis (m), or null where nothing is cut. */
@@ -159,8 +166,9 @@ class View {
     const table = maps[look.field], scale = this.scale * ratio, turning = this.turning;
     const [ox, oy] = this.pixel([0, 0]), X = (ox - this.margin[0]) * ratio, Y = oy * ratio;
     raster.clear(width, height, turning);
-    const by = 255 / (high - low || 1), r = scale * film.dp * (turning ? 0.62 : 0.54);
+    const by = 255 / (high - low || 1), dp = scale * film.dp, r = dp * (turning ? 0.62 : dp < 8 ? 0.72 : 0.54);
     for (let k = 0; k < water.n; k++) {
+      if (water.near[k] < SEEN) continue;
       const s = (values[water.who[k]] - low) * by, colour = table[s > 0 ? s < 255 ? s | 0 : 255 : 0];
       const x = X + scale * water.x[k], y = Y - scale * water.y[k];
       if (turning) raster.ball(x, y, scale * water.z[k], r, colour, water.who[k]);
@@ -171,6 +179,7 @@ class View {
       if (turning ? solid.role === "fixed" : solid.lines.length && film.dim === 2) return;
       const colour = turning ? 0xffa9bccb : solid.role === "fixed" ? 0xffa8a19b : 0xff8fa3b5;
       for (let k = 0; k < skin.n; k++) {
+        if (skin.near[k] < SEEN) continue;
         const x = X + scale * skin.x[k], y = Y - scale * skin.y[k];
         if (turning) raster.ball(x, y, scale * skin.z[k], r, colour, -2 - s);
         else raster.disc(x, y, r, colour);
@@ -291,7 +300,7 @@ class View {
       if (px > wide - 14 || px < margin[0] + 6) continue;
       on.moveTo(px, height - margin[1]);
       on.lineTo(px, height - margin[1] + 4);
-      on.fillText(said(x).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), px, height - margin[1] + 16);
+      on.fillText(plain(x), px, height - margin[1] + 16);
     }
     on.textAlign = "right";
     for (const y of marks(y0, y1, Math.max(2, height / 70))) {
@@ -299,7 +308,7 @@ class View {
       if (py < 8 || py > height - margin[1] - 2) continue;
       on.moveTo(margin[0] - 4, py);
       on.lineTo(margin[0], py);
-      on.fillText(said(y).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), margin[0] - 7, py + 4);
+      on.fillText(plain(y), margin[0] - 7, py + 4);
     }
     on.stroke();
     on.fillText("m", margin[0] - 7, height - margin[1] + 16);
@@ -335,7 +344,7 @@ class View {
       let best = Math.max(0.8 * film.dp, 5 / this.scale) ** 2;
       for (let k = 0; k < water.n && solid < 0; k++) {
         const d = (water.x[k] - x) ** 2 + (water.y[k] - y) ** 2;
-        if (d < best) { best = d; found = water.who[k]; }
+        if (d < best && water.near[k] >= SEEN) { best = d; found = water.who[k]; }
       }
     }
     if (solid >= 0) {
