@@ -116,7 +116,7 @@ pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
         rows: [rows.len(), table.t.len()],
         t,
         columns,
-        charts: charts(&table.columns),
+        charts: seen(charts(&table.columns), &table.x),
     }
 }
 
@@ -160,6 +160,16 @@ fn charts(columns: &[String]) -> Vec<Chart> {
     charts.extend(left.into_iter().map(|i| Chart { columns: vec![i], folded: false }));
     if charts.iter().all(|chart| chart.folded) {
         charts.iter_mut().for_each(|chart| chart.folded = false);
+    }
+    charts
+}
+
+/// Folds away the charts of columns `x` that have no numbers, as at a gauge that was dry; something stays to be seen.
+fn seen(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
+    let empty = |chart: &Chart| chart.columns.iter().all(|&i| x[i].iter().all(|x| x.is_nan()));
+    charts.iter_mut().for_each(|chart| chart.folded |= empty(chart));
+    if charts.iter().all(|chart| chart.folded) {
+        charts.iter_mut().for_each(|chart| chart.folded = empty(chart));
     }
     charts
 }

@@ -136,7 +136,7 @@ pub fn energy(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     let mut said =
         format!("The total {} by {} {unit}", if change < 0.0 { "falls" } else { "rises" }, digits(change.abs()));
     if moving > 0.0 {
-        said += &format!(", {} % of the most kinetic energy that the water had", digits(100.0 * change.abs() / moving));
+        said += &format!(", {:.1} % of the most kinetic energy that the water had", 100.0 * change.abs() / moving);
     }
     said += ". It changes by the work of driven and fixed solids and by dissipation.";
     Some((rows, said))

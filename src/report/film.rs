@@ -207,8 +207,8 @@ fn ranges(shown: &[Shown], channels: &[Channel], set: Option<&Set>) -> Vec<(&'st
     let gather = |c: usize| shown.iter().flat_map(|frame| frame.x[c].iter().copied()).collect::<Vec<f32>>();
     let mut ranges = Vec::new();
     if let Some(c) = find("pressure") {
-        let [low, high] = quantiles(&mut gather(c), [0.01, 0.995]);
-        let low = if low < -0.1 * high { f64::from(low) } else { 0.0 };
+        let [low, high] = quantiles(&mut gather(c), [0.02, 0.995]);
+        let low = if low < -0.5 * high { f64::from(low) } else { 0.0 };
         ranges.push(("pressure", tidy(low, f64::from(high))));
         if let Some(set) = set.filter(|set| set.g > 0.0) {
             let up = set.dimension - 1;

@@ -10,6 +10,7 @@
 mod blob;
 mod charts;
 mod colour;
+mod easel;
 mod figures;
 mod film;
 mod ink;

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use tiny_skia::{Color, PathBuilder, Pixmap, Rect, Stroke, Transform};
+use tiny_skia::{Color, Pixmap};
 
 use super::{
-    colour::{self, MAPS, Map},
+    colour::{MAPS, Map},
+    easel::{INK, View, legend},
     film::{members, placed},
-    ink::{Anchor, Ink, fill, paint},
+    ink::{Anchor, Ink},
     kept::{Kept, Set},
-    words,
 };
 use crate::{
     error::{Error, Kind, Result},
@@ -41,24 +41,21 @@ pub struct Shot {
     pub width: u32,
 }
 
-const INK: [u8; 3] = [40, 46, 52];
-const QUIET: [u8; 3] = [110, 118, 126];
-const BODY: [u8; 3] = [203, 196, 186];
-const WALL: [u8; 3] = [226, 228, 230];
-const EDGE: [u8; 3] = [70, 66, 60];
-
 /// A frame of a run as it is drawn.
-struct Panel<'a> {
-    set: &'a Set,
-    t: f64,
-    /// Points on the sheet (m), from the back to the front, and their values.
-    points: Vec<([f64; 2], f64)>,
+pub struct Panel<'a> {
+    /// Its scene.
+    pub set: &'a Set,
+    /// Its time, s.
+    pub t: f64,
+    /// Points on the sheet (m), from the back to the front, and their values; those of bodies have none.
+    pub points: Vec<([f64; 2], Option<f64>)>,
     /// Lines of solids on the sheet: whether they are closed, and whether their solid moves.
-    lines: Vec<(Vec<[f64; 2]>, bool, bool)>,
+    pub lines: Vec<(Vec<[f64; 2]>, bool, bool)>,
 }
 
 impl Field {
-    fn map(self) -> Map {
+    /// Its colours.
+    pub fn map(self) -> Map {
         match self {
             Self::Pressure => MAPS.pressure,
             Self::Excess => MAPS.excess,
@@ -66,7 +63,8 @@ impl Field {
         }
     }
 
-    fn title(self) -> &'static str {
+    /// What stands at the bar of colours.
+    pub fn title(self) -> &'static str {
         match self {
             Self::Pressure => "pressure, Pa",
             Self::Excess => "pressure − that of still water, Pa",
@@ -132,15 +130,26 @@ fn panel(run: &Kept, t: f64, field: Field) -> Result<Panel<'_>> {
             .help("name pressure and velocity under fields of [frames] in its scene"));
     }
     let flat = set.dimension == 2;
-    let mut points: Vec<(f64, [f64; 2], f64)> = (0..water.r.len())
+    let mut points: Vec<(f64, [f64; 2], Option<f64>)> = (0..water.r.len())
         .map(|i| {
             let (on, depth) = sheet(&water.r[i].map(f64::from), flat);
-            (depth, on, field.value(&water, i, set))
+            (depth, on, Some(field.value(&water, i, set)))
         })
         .collect();
+    if !flat {
+        points.extend(bodies(film, number, set)?);
+    }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let points = points.into_iter().map(|(_, on, value)| (on, value)).collect();
     Ok(Panel { set, t: film.times()[number], points, lines: lines(film, number, set, flat)? })
+}
+
+/// The boundary particles of moving solids in frame `number` of a 3-D film: depth and place on the sheet.
+fn bodies(film: &Film, number: usize, set: &Set) -> Result<Vec<(f64, [f64; 2], Option<f64>)>> {
+    let cloud = film.solids(number)?;
+    let moves = |k: usize| set.solids.get(cloud.solid[k] as usize).is_some_and(|solid| solid.role != "fixed");
+    let own = (0..cloud.solid.len()).filter(|&k| moves(k)).map(|k| sheet(&cloud.r[k].map(f64::from), false));
+    Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
 /// The lines of all solids in frame `number`.
@@ -170,7 +179,7 @@ fn sheet(x: &[f64; 3], flat: bool) -> ([f64; 2], f64) {
 
 /// The usual range of the values in `rows`, round, from 0 or to both sides of it.
 fn range(rows: &[Vec<Panel>], field: Field) -> [f64; 2] {
-    let all = rows.iter().flatten().flat_map(|panel| panel.points.iter().map(|(_, x)| x.abs()));
+    let all = rows.iter().flatten().flat_map(|panel| panel.points.iter().filter_map(|(_, x)| Some(x.as_ref()?.abs())));
     let mut all: Vec<f64> = all.filter(|x| x.is_finite()).collect();
     if all.is_empty() {
         return [0.0, 1.0];
@@ -214,8 +223,8 @@ fn draw(names: &[&str], rows: &[Vec<Panel>], shot: &Shot, range: [f64; 2]) -> Re
     let wide = ((width - left - gap) / columns - gap).max(20.0);
     let scale = f64::from(wide) / (high[0] - low[0]);
     let tall = (scale * (high[1] - low[1])) as f32;
-    let (head, foot) = (2.2 * em, 6.2 * em);
-    let step = tall + 2.6 * em;
+    let (head, foot) = (2.2 * em, 5.0 * em);
+    let step = tall + 3.6 * em;
     let height = head + step * rows.len() as f32 + foot;
     let sheet = (height.is_finite() && height < 32_000.0).then(|| Pixmap::new(width as u32, height.ceil() as u32));
     let Some(mut on) = sheet.flatten() else {
@@ -225,10 +234,12 @@ fn draw(names: &[&str], rows: &[Vec<Panel>], shot: &Shot, range: [f64; 2]) -> Re
     on.fill(Color::WHITE);
     for (r, row) in rows.iter().enumerate() {
         for (c, panel) in row.iter().enumerate() {
-            let corner = (left + (wide + gap) * c as f32, head + step * r as f32);
+            let corner = ((left + (wide + gap) * c as f32).floor(), (head + step * r as f32).floor());
             let place = View { low, high, scale, corner, size: (wide, tall), em };
             place.panel(&mut on, panel, shot.field.map(), range);
-            place.ticks(&mut on, &ink, c == 0);
+            if panel.set.dimension == 2 {
+                place.ticks(&mut on, &ink, c == 0);
+            }
             let title = format!(
                 "{}t = {:.3} s",
                 if names.len() > 1 { format!("{}, ", names[c]) } else { String::new() },
@@ -237,148 +248,7 @@ fn draw(names: &[&str], rows: &[Vec<Panel>], shot: &Shot, range: [f64; 2]) -> Re
             ink.write(&mut on, &title, (corner.0, corner.1 - 0.5 * em), em, Anchor::Start, INK);
         }
     }
-    let bar = (left, height - foot + 2.0 * em, width - left - 2.0 * gap, 0.9 * em);
+    let bar = (left.floor(), (height - foot + 0.6 * em).floor(), width - left - 2.0 * gap, 0.9 * em);
     legend(&mut on, &ink, bar, em, shot.field, range);
     Ok(on)
-}
-
-/// A panel's place on the picture.
-struct View {
-    low: [f64; 2],
-    high: [f64; 2],
-    /// Pixels a metre.
-    scale: f64,
-    corner: (f32, f32),
-    size: (f32, f32),
-    em: f32,
-}
-
-impl View {
-    fn pixel(&self, x: &[f64; 2]) -> (f32, f32) {
-        let across = (self.scale * (x[0] - self.low[0])) as f32;
-        (self.corner.0 + across, self.corner.1 + (self.scale * (self.high[1] - x[1])) as f32)
-    }
-
-    fn panel(&self, on: &mut Pixmap, panel: &Panel, map: Map, range: [f64; 2]) {
-        let flat = panel.set.dimension == 2;
-        for (points, closed, moves) in panel.lines.iter().filter(|(_, _, moves)| !moves || !flat) {
-            self.line(on, points, *closed, (flat && !moves).then_some(WALL), 0.06);
-        }
-        let radius = (0.55 * panel.set.dp * self.scale) as f32;
-        for (x, value) in &panel.points {
-            let colour = colour::at(map, (value - range[0]) / (range[1] - range[0]));
-            let (x, y) = self.pixel(x);
-            let (side, paint) = (2.0 * radius, paint(colour, 255));
-            if radius < 1.5 {
-                if let Some(square) = Rect::from_xywh(x - radius, y - radius, side.max(0.5), side.max(0.5)) {
-                    on.fill_rect(square, &paint, Transform::identity(), None);
-                }
-            } else if let Some(disc) = PathBuilder::from_circle(x, y, radius) {
-                fill(on, &disc, colour, 255);
-            }
-        }
-        for (points, closed, _) in panel.lines.iter().filter(|(_, _, moves)| *moves && flat) {
-            self.line(on, points, *closed, Some(BODY), 0.12);
-        }
-    }
-
-    /// A line `thick` em thick, cut at the edge of the panel.
-    fn line(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool, inside: Option<[u8; 3]>, thick: f32) {
-        let reach = |x: f64, i: usize| x.clamp(self.low[i], self.high[i]);
-        let mut path = PathBuilder::new();
-        for (i, x) in points.iter().enumerate() {
-            let (x, y) = self.pixel(&[reach(x[0], 0), reach(x[1], 1)]);
-            if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
-        }
-        if closed {
-            path.close();
-        }
-        let Some(path) = path.finish() else { return };
-        if let Some(colour) = inside {
-            fill(on, &path, colour, 255);
-        }
-        let stroke = Stroke { width: (thick * self.em).max(1.0), ..Stroke::default() };
-        on.stroke_path(
-            &path,
-            &paint(EDGE, if inside.is_some() { 255 } else { 110 }),
-            &stroke,
-            Transform::identity(),
-            None,
-        );
-    }
-
-    /// Metres along the lower edge, and along the left one if this is the first panel of its row.
-    fn ticks(&self, on: &mut Pixmap, ink: &Ink, first: bool) {
-        let (em, small) = (self.em, 0.8 * self.em);
-        let bottom = self.corner.1 + self.size.1;
-        for x in marks(self.low[0], self.high[0], 6.0) {
-            let (px, _) = self.pixel(&[x, self.low[1]]);
-            self.dash(on, (px, bottom), (px, bottom + 0.3 * em));
-            ink.write(on, &words::minus(&short(x)), (px, bottom + 1.2 * em), small, Anchor::Middle, QUIET);
-        }
-        let count = (6.0 * self.size.1 / self.size.0).max(2.0);
-        for y in marks(self.low[1], self.high[1], f64::from(count)) {
-            let (_, py) = self.pixel(&[self.low[0], y]);
-            self.dash(on, (self.corner.0 - 0.3 * em, py), (self.corner.0, py));
-            if first {
-                let at = (self.corner.0 - 0.5 * em, py + 0.3 * em);
-                ink.write(on, &words::minus(&short(y)), at, small, Anchor::End, QUIET);
-            }
-        }
-        if first {
-            ink.write(on, "m", (self.corner.0 - 0.5 * em, bottom + 1.2 * em), small, Anchor::End, QUIET);
-        }
-    }
-
-    fn dash(&self, on: &mut Pixmap, from: (f32, f32), to: (f32, f32)) {
-        let mut path = PathBuilder::new();
-        path.move_to(from.0, from.1);
-        path.line_to(to.0, to.1);
-        if let Some(path) = path.finish() {
-            let stroke = Stroke { width: (0.06 * self.em).max(1.0), ..Stroke::default() };
-            on.stroke_path(&path, &paint(QUIET, 255), &stroke, Transform::identity(), None);
-        }
-    }
-}
-
-/// The colours from one end of the range to the other, with marks.
-fn legend(on: &mut Pixmap, ink: &Ink, bar: (f32, f32, f32, f32), em: f32, field: Field, range: [f64; 2]) {
-    let wide = bar.2.min(40.0 * em);
-    for i in 0..wide as u32 {
-        let colour = colour::at(field.map(), f64::from(i) / f64::from(wide));
-        if let Some(strip) = Rect::from_xywh(bar.0 + i as f32, bar.1, 1.0, bar.3) {
-            on.fill_rect(strip, &paint(colour, 255), Transform::identity(), None);
-        }
-    }
-    for x in marks(range[0], range[1], 6.0) {
-        let at = bar.0 + wide * ((x - range[0]) / (range[1] - range[0])) as f32;
-        ink.write(on, &words::minus(&short(x)), (at, bar.1 + bar.3 + 1.2 * em), 0.8 * em, Anchor::Middle, INK);
-    }
-    ink.write(on, field.title(), (bar.0, bar.1 + bar.3 + 2.7 * em), em, Anchor::Start, INK);
-}
-
-/// Round numbers between `low` and `high`, about `count` of them.
-fn marks(low: f64, high: f64, count: f64) -> Vec<f64> {
-    let wished = ((high - low) / count).max(1e-300);
-    let ten = 10f64.powf(wished.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|x| x * ten).find(|x| *x >= 0.999 * wished).unwrap_or(10.0 * ten);
-    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
-    (first..=last).map(|i| i as f64 * step).collect()
-}
-
-/// A round number without the round-off of its multiple.
-fn short(x: f64) -> String {
-    format!("{}", (x * 1e9).round() / 1e9)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn marks_are_round_and_within() {
-        assert_eq!(marks(-0.1, 1.05, 6.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
-        assert_eq!(short(marks(0.0, 1.0, 6.0)[3]), "0.6");
-        assert_eq!(marks(0.0, 3000.0, 6.0).last(), Some(&3000.0));
-    }
 }

@@ -21,6 +21,10 @@ class Deck {
     this.until = Math.max(...films.map(f => f.times.at(-1)));
     this.times = [...new Set(films.flatMap(f => [...f.times]))].sort((a, b) => a - b);
     this.t = this.from;
+    for (const dim of [2, 3]) {
+      const alike = films.filter(f => f.dim === dim), ends = k => alike[0].bounds[k].map((_, c) => Math[k ? "max" : "min"](...alike.map(f => f.bounds[k][c])));
+      if (alike.length > 1) { const all = [ends(0), ends(1)]; alike.forEach(f => { f.bounds = all; }); }
+    }
     this.fields = Object.keys(FIELDS).filter(f => films.every(film => film.ranges[f]));
     this.ranges = Object.fromEntries(this.fields.map(f => [f, [0, 1].map(k => Math[k ? "max" : "min"](...films.map(film => film.ranges[f][k])))]));
     const field = this.fields[0] ?? "pressure", deep = films.some(f => f.dim === 3);

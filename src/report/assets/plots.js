@@ -38,7 +38,10 @@ class Chart {
   draw(wide) {
     if (this.u) return;
     const { lines, unit } = this.what;
-    if (!lines.some(line => line.x.some(Number.isFinite))) return this.plot.replaceChildren(make("p", { className: "quiet" }, "Nothing was measured."));
+    if (!lines.some(line => line.x.some(Number.isFinite))) {
+      this.plot.style.minHeight = 0;
+      return this.plot.replaceChildren(make("p", { className: "quiet" }, "Nothing was measured."));
+    }
     const gaps = x => Array.from(x, v => Number.isNaN(v) ? null : v);
     const data = uPlot.join(lines.map(line => [Array.from(line.t), gaps(line.x)]));
     const axis = { stroke: style("--quiet"), font: "11px system-ui, sans-serif", grid: { stroke: style("--rule"), width: 1 }, ticks: { stroke: style("--rule"), width: 1, size: 5 } };
@@ -49,7 +52,7 @@ class Chart {
       return { label: line.label, stroke, width: 1.5, spanGaps: false, value, dash: line.dash, points: { show: false }, ...(line.dots ? dots : {}) };
     });
     this.u = new uPlot({
-      width: wide ?? this.plot.clientWidth, height: 190, scales: { x: { time: false } }, legend: { live: true }, cursor: { sync: { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
+      width: wide ?? this.plot.clientWidth, height: 190, scales: { x: { time: false }, y: { range: (_, low, high) => low === high ? [low - 0.1 * (Math.abs(low) || 1), high + 0.1 * (Math.abs(low) || 1)] : uPlot.rangeNum(low, high, 0.08, false) } }, legend: { live: true }, cursor: { sync: { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
       axes: [{ ...axis, size: 34, values: (_, all) => all.map(v => `${+v.toPrecision(6)} s`) }, { ...axis, size: 58, values: words }], series: [{ label: "t", value: (_, v) => v == null ? "–" : `${v.toFixed(3)} s` }, ...series],
     }, data, this.plot);
     this.now = make("div", { className: "now" });
@@ -120,7 +123,8 @@ function held(home, charts, runs, bytes) {
     const checks = several ? runs.map(run => run.checks.find(c => c.series === key)).filter(Boolean) : [key], [first] = checks;
     const all = checks.map((check, i) => ({ label: several ? runs.find(run => run.checks.includes(check)).name : "run", ...curve(check.sim, bytes), tint: i }));
     if (!several && first.meaned) all.push({ label: "mean", ...curve(first.meaned, bytes), tint: 2 });
-    all.push({ label: "reference", ...curve(first.reference, bytes), tint: several ? 6 : 1, dots: !first.exact, dash: first.exact ? [5, 4] : undefined });
+    const known = several ? runs.find(run => run.checks.includes(first)).checks.filter(c => c.series === key) : [first];
+    known.forEach((check, k) => all.push({ label: k ? `reference ${k + 1}` : "reference", ...curve(check.reference, bytes), tint: several ? 6 - k : 1, dots: !check.exact, dash: check.exact ? [5, 4] : undefined }));
     charts.add(grid, { title: first.series, unit: first.unit, said: several ? "" : first.caption, lines: all });
   }
   home.append(grid);

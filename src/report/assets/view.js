@@ -243,9 +243,6 @@ class View {
   gauges(on) {
     const { film } = this, stage = film.run.stage, [u, v] = this.axes();
     if (!stage) return;
-    on.font = "11px system-ui, sans-serif";
-    on.textAlign = "center";
-    on.strokeStyle = on.fillStyle = this.css.gauge;
     const at = p => this.pixel([u, v].map(a => a[0] * p[0] + a[1] * p[1] + a[2] * (p[2] ?? 0)));
     stage.gauges.forEach(gauge => {
       const upright = gauge.what === "elevation", up = film.dim - 1;
@@ -253,6 +250,7 @@ class View {
       if (this.cut !== null && Math.abs(ends[0]["xyz".indexOf(this.look.mode)] - this.cut) > 3 * film.dp && !(upright && this.look.mode === "z")) return;
       const [a, b] = ends.map(at);
       on.beginPath();
+      on.strokeStyle = this.css.gauge;
       on.lineWidth = 1.2;
       if (upright) {
         on.setLineDash([5, 4]);
