@@ -53,7 +53,7 @@ impl Desk {
 
     /// Starts a run of [`RAFT`] in the folder `out`.
     fn start(&self, out: &str, threads: &str) -> Child {
-        let words = [&["run"], &RAFT[..], &["--out", out, "--threads", threads, "--quiet"]].concat();
+        let words = [&["run"], &RAFT[..], &["--out", out, "--threads", threads, "--quiet", "--no-report"]].concat();
         self.command(&words).stderr(Stdio::piped()).spawn().unwrap()
     }
 
@@ -170,7 +170,7 @@ fn run_with_kills(desk: &Desk, wanted: u32, random: &mut Random, met: &mut Met) 
         let (broken, threads) = (desk.path("broken"), ["1", "2", "3"][met.kills as usize % 3]);
         let resumable = [LAST, PREVIOUS].iter().any(|name| broken.join(name).exists());
         let mut child = if resumable {
-            desk.command(&["resume", "broken", "--threads", threads, "--quiet"]).spawn().unwrap()
+            desk.command(&["resume", "broken", "--threads", threads, "--quiet", "--no-report"]).spawn().unwrap()
         } else {
             let _ = fs::remove_dir_all(&broken);
             desk.start("broken", threads)

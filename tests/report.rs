@@ -147,7 +147,7 @@ fn asked(page: &Path, script: &str) -> Value {
     );
     let asking = page.with_extension("asked.html");
     fs::write(&asking, text.replace("</body>", &driver)).unwrap();
-    let dom = browse(&asking, "profile", &["--window-size=1280,1000", "--dump-dom"]);
+    let dom = browse(&asking, "profile", &["--window-size=1280,6000", "--dump-dom"]);
     fs::remove_file(&asking).unwrap();
     let said = dom.split("<pre id=\"said\">").nth(1).and_then(|rest| rest.split("</pre>").next());
     let said = said

@@ -44,7 +44,8 @@ pub fn facts(run: &Kept) -> Vec<(&'static str, String)> {
         "Particles",
         format!("{} water, {} boundary", thousands(count.fluid as u64), thousands(count.boundary as u64)),
     ));
-    facts.push(("Simulated", format!("{} of {} s in {} steps", digits(m.simulated_s), m.until_s, thousands(m.steps))));
+    let reached = if m.simulated_s < m.until_s { format!("{} of ", digits(m.simulated_s)) } else { String::new() };
+    facts.push(("Simulated", format!("{reached}{} s in {} steps", m.until_s, thousands(m.steps))));
     facts.push((
         "Wall time",
         format!("{}, {} thread{}", duration(m.wall_s), m.threads, if m.threads == 1 { "" } else { "s" }),

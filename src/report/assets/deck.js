@@ -197,9 +197,9 @@ class Deck {
     if (document.activeElement !== this.scrub || this.playing) this.scrub.value = 1000 * (t - this.from) / (this.until - this.from || 1);
     this.clock.textContent = `t = ${t.toFixed(3)} s`;
     this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
-    this.ends.forEach((end, k) => { if (document.activeElement !== end) end.value = said(look.range[k]); });
+    this.ends.forEach((end, k) => { if (document.activeElement !== end) end.value = plain(look.range[k]); });
     this.strip.style.background = `linear-gradient(to right, ${map.map(hex).join(",")})`;
-    labelled(this.strip, `Colours from ${said(low)} to ${said(high)} ${unit}`);
+    labelled(this.strip, `Colours from ${plain(low)} to ${plain(high)} ${unit}`);
     this.unit.textContent = `${title}, ${unit}`;
     this.marks.replaceChildren(...marks(low, high, 5).map(x => {
       const mark = make("span", {}, plain(x));
