@@ -58,7 +58,7 @@ impl Desk {
     }
 
     fn resume(&self, out: &str) -> Output {
-        self.command(&["resume", out]).output().unwrap()
+        self.command(&["resume", out, "--no-report"]).output().unwrap()
     }
 
     /// Rows of the table that is written most often.
