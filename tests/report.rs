@@ -93,8 +93,9 @@ fn desk(name: &str) -> PathBuf {
 
 /// Runs `scene` by the program as a stranger would, with the words `more`; the run's folder.
 fn ran(desk: &Path, name: &str, scene: &str, more: &[&str]) -> PathBuf {
-    fs::write(desk.join(format!("{name}.toml")), scene).unwrap();
-    let words = [&["run", &format!("{name}.toml"), "--out", name, "--quiet"], more].concat();
+    let file = format!("{name}.toml");
+    fs::write(desk.join(&file), scene).unwrap();
+    let words = [&["run", &file, "--out", name, "--quiet"], more].concat();
     let said = pontoon(desk, &words);
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
     desk.join(name)

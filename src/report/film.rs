@@ -43,7 +43,7 @@ pub struct Reel {
     /// Particle spacing, m.
     pub dp: f32,
     /// Distance of the shown particles over dp: more than 1 where some are left out.
-    pub apart: f64,
+    pub apart: usize,
     /// Frames and water particles of the run.
     pub of: [usize; 2],
     /// Boundary particles of all solids, in the frames of their solids.
@@ -94,16 +94,21 @@ pub fn reel(run: &Kept, film: &Film, samples: usize, blob: &mut Blob) -> Result<
     let dp = run.told("dp").unwrap_or(0.0) as f32;
     let first = film.water(0)?;
     let all = first.r.len().max(1);
-    let readable = (MOST_READ / film.bytes(film.times().len() / 2).max(1)) as usize;
     let frames = film.times().len();
-    let most = (samples / all).max(FRAMES[1]).min(FRAMES[0]).min(readable.max(2)).min(frames);
+    // Whole multiples of dp: of a lattice a lattice is left, without gaps.
+    let left = |apart: usize| (all / apart.pow(dimension as u32)).max(1);
+    let fits = |apart: &usize| left(*apart) * FRAMES[1].min(frames) <= samples;
+    let apart = if dp > 0.0 { (1..64).find(fits).unwrap_or(64) } else { 1 };
+    let readable = (MOST_READ / film.bytes(frames / 2).max(1)) as usize;
+    let most = (samples / left(apart)).clamp(2, FRAMES[0]).min(readable.max(2)).min(frames);
     let kept: Vec<usize> = (0..most).map(|k| (k * (frames - 1)).checked_div(most - 1).unwrap_or(0)).collect();
-    let share = (samples as f64 / (all * kept.len()) as f64).min(1.0);
-    let apart = if share < 1.0 && dp > 0.0 { share.powf(-1.0 / dimension as f64) } else { 1.0 };
-    let chosen = (apart > 1.0).then(|| sparse(&first, apart as f32 * dp));
+    let distance = (apart > 1).then_some((apart as f32, dp));
+    let chosen: HashSet<u32> = sparse(&first, distance).into_iter().filter_map(|i| first.id.get(i).copied()).collect();
     let mut shown = Vec::new();
     for &number in &kept {
-        shown.push(show(&film.water(number)?, film.times()[number], dimension, chosen.as_ref()));
+        let cloud = film.water(number)?;
+        let order = if cloud.id.is_empty() { sparse(&cloud, distance) } else { ordered(&cloud, &chosen) };
+        shown.push(show(&cloud, film.times()[number], dimension, &order));
     }
     let channels = channels(&shown, &first, dimension, dp);
     let offset = blob.len();
@@ -115,21 +120,27 @@ pub fn reel(run: &Kept, film: &Film, samples: usize, blob: &mut Blob) -> Result<
     Ok(Reel { times, counts, alone, offset, channels, dp, apart, of: [frames, all], skins, ranges })
 }
 
-/// The numbers of particles that lie about `distance` apart: one in each cell of that size.
-fn sparse(cloud: &Cloud, distance: f32) -> HashSet<u32> {
+/// Particles about so many dp apart: the first in each cell of that size; all of them without a distance. Cells begin a
+/// quarter of dp beside the places of a lattice.
+fn sparse(cloud: &Cloud, distance: Option<(f32, f32)>) -> Vec<usize> {
+    let finite = |i: &usize| cloud.r[*i].iter().all(|x| x.is_finite());
+    let all = (0..cloud.r.len()).filter(finite);
+    let Some((apart, dp)) = distance else { return all.collect() };
     let mut cells = HashSet::new();
-    let cell = |r: &[f32; 3]| r.map(|x| (x / distance).floor() as i64);
-    (0..cloud.id.len()).filter(|&i| cells.insert(cell(&cloud.r[i]))).map(|i| cloud.id[i]).collect()
+    let cell = |r: &[f32; 3]| r.map(|x| ((x / dp + 0.25) / apart).floor() as i64);
+    all.filter(|&i| cells.insert(cell(&cloud.r[i]))).collect()
 }
 
-/// What is shown of a frame, in the order of the particles' numbers.
-fn show(cloud: &Cloud, t: f64, dimension: usize, chosen: Option<&HashSet<u32>>) -> Shown {
-    let finite = |i: &usize| cloud.r[*i].iter().all(|x| x.is_finite());
-    let mut order: Vec<usize> = (0..cloud.r.len()).filter(finite).collect();
-    if !cloud.id.is_empty() {
-        order.retain(|&i| chosen.is_none_or(|chosen| chosen.contains(&cloud.id[i])));
-        order.sort_by_key(|&i| cloud.id[i]);
-    }
+/// The `chosen` particles in the order of their numbers.
+fn ordered(cloud: &Cloud, chosen: &HashSet<u32>) -> Vec<usize> {
+    let finite = |i: usize| cloud.r[i].iter().all(|x| x.is_finite());
+    let mut order: Vec<usize> = (0..cloud.r.len()).filter(|&i| chosen.contains(&cloud.id[i]) && finite(i)).collect();
+    order.sort_by_key(|&i| cloud.id[i]);
+    order
+}
+
+/// What is shown of a frame, in the given `order`.
+fn show(cloud: &Cloud, t: f64, dimension: usize, order: &[usize]) -> Shown {
     let take = |of: &dyn Fn(usize) -> f32| order.iter().map(|&i| of(i)).collect::<Vec<f32>>();
     let mut x: Vec<Vec<f32>> = (0..dimension).map(|c| take(&|i| cloud.r[i][c])).collect();
     if !cloud.pressure.is_empty() {
@@ -282,4 +293,28 @@ pub fn placed(fixed: bool, start: &Placement, own: &[usize], first: &Cloud, now:
     let some = || own.iter().step_by(own.len().div_ceil(400));
     let points = |cloud: &Cloud| some().map(|&k| cloud.r[k]).collect::<Vec<_>>();
     start.moved(&points(first), &points(now))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_lattice_a_lattice_is_left_wherever_it_begins() {
+        for begin in [0.0, 0.005, 0.0025, -0.3] {
+            let r = (0..400).map(|k| [begin + 0.01 * (k % 20) as f32, 0.005 + 0.01 * (k / 20) as f32, 0.0]).collect();
+            let cloud = Cloud { r, ..Cloud::default() };
+            let left = sparse(&cloud, Some((2.0, 0.01)));
+            let row: Vec<f32> = left.iter().map(|&i| cloud.r[i]).filter(|x| x[1] < 0.01).map(|x| x[0]).collect();
+            let even = row[1..].windows(2).all(|w| (w[1] - w[0] - 0.02).abs() < 1e-5);
+            assert!(even && (100..=121).contains(&left.len()), "from {begin} m: {} left, a row {row:?}", left.len());
+            assert_eq!(sparse(&cloud, None).len(), 400);
+        }
+    }
+
+    #[test]
+    fn ranges_end_with_two_digits() {
+        assert_eq!([tidy(0.0, 2704.0), tidy(-0.0123, 0.456)], [[0.0, 2800.0], [-0.02, 0.46]]);
+        assert_eq!(tidy(0.0, 0.0), [0.0, 1.0]);
+    }
 }

@@ -27,8 +27,8 @@ const SCRIPT: [&str; 6] = [
     include_str!("assets/plots.js"),
 ];
 
-/// Samples (a particle in a frame) that a page has room for: seven bytes each.
-const SAMPLES: f64 = (MOST_BYTES - 2_000_000) as f64 / 7.0;
+/// Samples (a particle in a frame) that a page has room for: five bytes each, where four were the most that was seen.
+const SAMPLES: f64 = (MOST_BYTES - 2_000_000) as f64 / 5.0;
 
 /// What the scripts are told.
 #[derive(Serialize)]

@@ -41,6 +41,12 @@ pub struct Shot {
     pub width: u32,
 }
 
+/// How near a point is to who looks, its place on the sheet (m), and its value.
+type Deep = (f64, [f64; 2], Option<f64>);
+
+/// A line on the sheet (m), whether it is closed, and whether its solid moves.
+type Drawn = (Vec<[f64; 2]>, bool, bool);
+
 /// A frame of a run as it is drawn.
 pub struct Panel<'a> {
     /// Its scene.
@@ -50,7 +56,7 @@ pub struct Panel<'a> {
     /// Points on the sheet (m), from the back to the front, and their values; those of bodies have none.
     pub points: Vec<([f64; 2], Option<f64>)>,
     /// Lines of solids on the sheet: whether they are closed, and whether their solid moves.
-    pub lines: Vec<(Vec<[f64; 2]>, bool, bool)>,
+    pub lines: Vec<Drawn>,
 }
 
 impl Field {
@@ -130,7 +136,7 @@ fn panel(run: &Kept, t: f64, field: Field) -> Result<Panel<'_>> {
             .help("name pressure and velocity under fields of [frames] in its scene"));
     }
     let flat = set.dimension == 2;
-    let mut points: Vec<(f64, [f64; 2], Option<f64>)> = (0..water.r.len())
+    let mut points: Vec<Deep> = (0..water.r.len())
         .map(|i| {
             let (on, depth) = sheet(&water.r[i].map(f64::from), flat);
             (depth, on, Some(field.value(&water, i, set)))
@@ -145,7 +151,7 @@ fn panel(run: &Kept, t: f64, field: Field) -> Result<Panel<'_>> {
 }
 
 /// The boundary particles of moving solids in frame `number` of a 3-D film: depth and place on the sheet.
-fn bodies(film: &Film, number: usize, set: &Set) -> Result<Vec<(f64, [f64; 2], Option<f64>)>> {
+fn bodies(film: &Film, number: usize, set: &Set) -> Result<Vec<Deep>> {
     let cloud = film.solids(number)?;
     let moves = |k: usize| set.solids.get(cloud.solid[k] as usize).is_some_and(|solid| solid.role != "fixed");
     let own = (0..cloud.solid.len()).filter(|&k| moves(k)).map(|k| sheet(&cloud.r[k].map(f64::from), false));
@@ -153,7 +159,7 @@ fn bodies(film: &Film, number: usize, set: &Set) -> Result<Vec<(f64, [f64; 2], O
 }
 
 /// The lines of all solids in frame `number`.
-fn lines(film: &Film, number: usize, set: &Set, flat: bool) -> Result<Vec<(Vec<[f64; 2]>, bool, bool)>> {
+fn lines(film: &Film, number: usize, set: &Set, flat: bool) -> Result<Vec<Drawn>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let mut lines = Vec::new();
     for (i, solid) in set.solids.iter().enumerate() {

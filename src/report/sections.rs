@@ -220,9 +220,9 @@ pub fn shown(reel: &Reel) -> String {
     } else {
         format!("{} of {frames} frames, evenly spread", kept.0)
     };
-    said += &if reel.apart > 1.0 {
+    said += &if reel.apart > 1 {
         format!(
-            ", and of {} water particles {}, about {:.1} dp apart",
+            ", and of {} water particles {}, about {} dp apart",
             thousands(particles as u64),
             thousands(kept.1 as u64),
             reel.apart
