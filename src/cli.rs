@@ -5,6 +5,7 @@
 
 mod bench;
 mod inspect;
+mod page;
 mod progress;
 mod report;
 mod shelf;
@@ -43,7 +44,7 @@ Try:
   pontoon run raft                    several floats, a paddle, a tank
   pontoon run raft --dp 0.01          the same, finer
   pontoon inspect raft                what it costs, what looks wrong, every value in force
-Results go to runs/<scene>: open frames.pvd with ParaView, series/*.csv with anything."
+Results go to runs/<scene>: open report.html first; frames.pvd is for ParaView, series/*.csv for anything."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -73,6 +74,9 @@ or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
         /// Threads [default: one for each processor]
         #[arg(long, value_name = "N")]
         threads: Option<usize>,
+        /// Leave out the page at the end, report.html
+        #[arg(long)]
+        no_report: bool,
         /// Say nothing but errors
         #[arg(long, short)]
         quiet: bool,
@@ -123,6 +127,21 @@ scene by the same version is not run again; Ctrl-C stops after the cases in hand
 Exit codes: 0 none is wrong; 2 something in the command or a file is wrong; 3 a case is wrong;
 130 interrupted.")]
     Stress(stress::StressArgs),
+    /// Write the page of a run: a player, plots, tables, in one file that opens anywhere
+    #[command(after_help = "\
+Examples:
+  pontoon report runs/raft                          runs/raft/report.html
+  pontoon report runs/raft --png raft.png --time 1.2
+  pontoon report runs/raft --png raft.png --time 0.5,1,1.5 --by speed --range 0,1.5
+`run` and `resume` write the page at their end. It needs no network and no server.")]
+    Report(page::ReportArgs),
+    /// Lay several runs over one another: a page with their players side by side, or a picture
+    #[command(after_help = "\
+Examples:
+  pontoon compare runs/raft runs/raft-2 --out rafts.html
+  pontoon compare runs/plain runs/delta runs/shifted --png fields.png --time 0.5,1.0
+Players go at equal times, with equal colours; pictures have a column for each run and a row for each time.")]
+    Compare(page::CompareArgs),
     /// List the scenes that come with the program
     Scenes,
     /// Time standard works on this machine: particle-steps per second, where a step goes, memory
@@ -161,6 +180,9 @@ struct RunArgs {
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    /// Leave out the page at the end, report.html
+    #[arg(long)]
+    no_report: bool,
     /// Say nothing but errors
     #[arg(long, short)]
     quiet: bool,
@@ -203,12 +225,12 @@ fn obey(command: Command) -> Result<u8> {
             let options = Options { out: args.out, sets: args.scene.sets(), threads: args.threads };
             let mut follow = Follow::new(args.quiet, stopper()?);
             let outcome = run::run(found.path(), &options, &mut follow);
-            end(outcome, follow, args.quiet)
+            end(outcome, follow, !args.no_report, args.quiet)
         }
-        Command::Resume { folder, threads, quiet } => {
+        Command::Resume { folder, threads, no_report, quiet } => {
             let mut follow = Follow::new(quiet, stopper()?);
             let outcome = run::resume(&folder, threads, &mut follow);
-            end(outcome, follow, quiet)
+            end(outcome, follow, !no_report, quiet)
         }
         Command::Inspect(args) => {
             say(&inspect::inspect(&args)?);
@@ -221,6 +243,8 @@ fn obey(command: Command) -> Result<u8> {
             say(&bench::bench(&args)?);
             Ok(0)
         }
+        Command::Report(args) => page::report(&args),
+        Command::Compare(args) => page::compare(&args),
         Command::Scenes => {
             say(&report::shelf(&shelf::all()));
             Ok(0)
@@ -228,13 +252,18 @@ fn obey(command: Command) -> Result<u8> {
     }
 }
 
-/// Closes the progress, prints the table, chooses the exit code.
-fn end(outcome: Result<Outcome>, follow: Follow, quiet: bool) -> Result<u8> {
-    follow.close();
-    let outcome = outcome?;
-    if !quiet {
-        say(&report::ended(&outcome));
+/// Closes the progress, prints the table, writes the `page` of the run if it is wanted, chooses the exit code.
+fn end(outcome: Result<Outcome>, follow: Follow, page: bool, quiet: bool) -> Result<u8> {
+    let folder = follow.close();
+    if let Ok(outcome) = &outcome
+        && !quiet
+    {
+        say(&report::ended(outcome));
     }
+    if let Some(folder) = folder.filter(|_| page) {
+        page::at_end(&folder, quiet);
+    }
+    let outcome = outcome?;
     Ok(match outcome.manifest.status {
         Status::Interrupted => 130,
         _ if outcome.failed_checks() => 3,

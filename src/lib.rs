@@ -32,6 +32,7 @@ pub mod record;
 pub mod scene;
 pub mod preflight;
 pub mod run;
+pub mod report;
 pub mod study;
 pub mod bench;
 

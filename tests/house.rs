@@ -6,7 +6,7 @@ use std::{
 };
 
 /// The rooms in the order in which they depend on one another.
-const ROOMS: [&str; 23] = [
+const ROOMS: [&str; 24] = [
     "error",
     "series",
     "space",
@@ -28,6 +28,7 @@ const ROOMS: [&str; 23] = [
     "scene",
     "preflight",
     "run",
+    "report",
     "study",
     "bench",
 ];

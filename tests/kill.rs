@@ -53,12 +53,12 @@ impl Desk {
 
     /// Starts a run of [`RAFT`] in the folder `out`.
     fn start(&self, out: &str, threads: &str) -> Child {
-        let words = [&["run"], &RAFT[..], &["--out", out, "--threads", threads, "--quiet"]].concat();
+        let words = [&["run"], &RAFT[..], &["--out", out, "--threads", threads, "--quiet", "--no-report"]].concat();
         self.command(&words).stderr(Stdio::piped()).spawn().unwrap()
     }
 
     fn resume(&self, out: &str) -> Output {
-        self.command(&["resume", out]).output().unwrap()
+        self.command(&["resume", out, "--no-report"]).output().unwrap()
     }
 
     /// Rows of the table that is written most often.
@@ -170,7 +170,7 @@ fn run_with_kills(desk: &Desk, wanted: u32, random: &mut Random, met: &mut Met) 
         let (broken, threads) = (desk.path("broken"), ["1", "2", "3"][met.kills as usize % 3]);
         let resumable = [LAST, PREVIOUS].iter().any(|name| broken.join(name).exists());
         let mut child = if resumable {
-            desk.command(&["resume", "broken", "--threads", threads, "--quiet"]).spawn().unwrap()
+            desk.command(&["resume", "broken", "--threads", threads, "--quiet", "--no-report"]).spawn().unwrap()
         } else {
             let _ = fs::remove_dir_all(&broken);
             desk.start("broken", threads)

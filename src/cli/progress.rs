@@ -1,6 +1,7 @@
 //! Progress: a bar on a terminal, now and then a line elsewhere.
 
 use std::{
+    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -21,6 +22,8 @@ pub struct Follow {
     quiet: bool,
     stop: Arc<AtomicBool>,
     bar: ProgressBar,
+    /// The folder of the run that has begun.
+    folder: Option<PathBuf>,
     /// Since when, in wall and simulated time (s), and at which step.
     begun: Option<(Instant, f64, u64)>,
     next: Option<Instant>,
@@ -34,12 +37,13 @@ impl Follow {
         if let Ok(style) = ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}") {
             bar.set_style(style);
         }
-        Self { quiet, stop, bar, begun: None, next: None }
+        Self { quiet, stop, bar, folder: None, begun: None, next: None }
     }
 
-    /// Takes the bar away.
-    pub fn close(self) {
+    /// Takes the bar away; the folder of the run, if one has begun.
+    pub fn close(self) -> Option<PathBuf> {
         self.bar.finish_and_clear();
+        self.folder
     }
 
     fn line(&self, now: &Progress) -> String {
@@ -59,6 +63,7 @@ impl Follow {
 
 impl Watch for Follow {
     fn start(&mut self, start: &Start) {
+        self.folder = Some(start.folder.to_owned());
         if !self.quiet {
             complain(&report::started(start));
         }

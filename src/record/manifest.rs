@@ -20,6 +20,9 @@ pub struct Manifest {
     pub title: String,
     /// Version of this crate.
     pub version: String,
+    /// Commit of this crate's source, where the build could tell; "…, changed" if the source was not quite that.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub commit: Option<String>,
     /// Name and version of the engine that moves the bodies.
     pub engine: String,
     /// Threads used.

@@ -1,11 +1,13 @@
 //! What is kept of a run: tables (CSV), frames (VTK), checkpoints, the manifest. No opinion on any of it.
 
+pub mod film;
 pub mod frame;
 pub mod manifest;
 pub mod removed;
 pub mod restart;
 pub mod table;
 
+pub use film::{Cloud, Film};
 pub use frame::Frames;
 pub use manifest::Manifest;
 pub use restart::Checkpoint;

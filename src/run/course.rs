@@ -287,6 +287,7 @@ fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: 
         status: Status::Running,
         title: plan.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
+        commit: option_env!("PONTOON_COMMIT").map(String::from),
         engine: String::new(),
         threads: rayon::current_num_threads(),
         particles: Count { fluid: sim.system().fluid().len(), boundary: sim.system().skin().len() },

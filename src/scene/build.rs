@@ -46,6 +46,16 @@ pub struct Still {
     pub depth: f64,
 }
 
+/// What stands around the water: enough to draw a scene.
+pub(crate) struct Stage<const D: usize> {
+    /// The solids, where they start.
+    pub(crate) solids: Vec<SolidSpec<D>>,
+    /// The laws and constants.
+    pub(crate) model: Model,
+    /// The water at rest.
+    pub(crate) still: Still,
+}
+
 /// A body of water: where it is and how high it stands.
 pub(super) struct Body<const D: usize> {
     pub(super) region: Region<D>,
@@ -66,6 +76,14 @@ impl<const D: usize> Body<D> {
     }
 }
 
+impl Still {
+    fn of<const D: usize>(water: &[Body<D>]) -> Self {
+        let level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
+        Self { level, depth: level - bottom }
+    }
+}
+
 impl Scene {
     /// Opens the files that the scene names and makes what a [`Simulation`](crate::simulation::Simulation)
     /// starts from, and the plan of the run.
@@ -79,9 +97,9 @@ impl Scene {
         }
         let (scene, _) = self.filled()?;
         let water = scene.bodies_of_water::<D>()?;
-        let still_level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let still = Still::of(&water);
         let model = scene.laws(&water)?;
-        let solids = scene.solids::<D>(still_level)?;
+        let solids = scene.solids::<D>(still.level)?;
         let links = scene.links(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
@@ -106,7 +124,7 @@ impl Scene {
         let plan = scene.planned()?;
         // Packing may have moved a particle a little way out of its water.
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
-        let level = |x: &Vector<D>| nearest(x).map_or(still_level, |body| body.level);
+        let level = |x: &Vector<D>| nearest(x).map_or(still.level, |body| body.level);
         let levels = filled.r.iter().map(level).collect();
         let flow = |x: &Vector<D>| nearest(x).map_or((Vector::zeros(), 0.0), |body| body.flow.at(x));
         let moves = scene.water.iter().any(|words| words.velocity.is_some() || words.pressure.is_some());
@@ -114,12 +132,20 @@ impl Scene {
         if let Some(part) = scene.scatter {
             scatter(&mut filled.r, part * scene.dp);
         }
-        let limits = scene.limits();
-        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
-        let water = filled.r;
+        let (limits, water) = (scene.limits(), filled.r);
         let setup = Setup { model, water, levels, velocity, pressure, solids, links, domain, periodic, limits };
-        let still = Still { level: still_level, depth: still_level - bottom };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
+    }
+
+    /// The solids and the water at rest; makes no particles.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub(crate) fn stage<const D: usize>(&self) -> Result<Stage<D>> {
+        let (scene, _) = self.filled()?;
+        let water = scene.bodies_of_water::<D>()?;
+        let still = Still::of(&water);
+        Ok(Stage { solids: scene.solids::<D>(still.level)?, model: scene.laws(&water)?, still })
     }
 
     /// What a run watches, keeps and judges; makes no particles.

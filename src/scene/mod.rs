@@ -30,6 +30,7 @@ mod wording;
 
 pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWords, PartWords, ShapeWords, SolidWords};
+pub(crate) use build::Stage;
 pub use build::{Built, Still};
 pub use document::Source;
 pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Touch, Unit};

@@ -4,6 +4,7 @@ use std::time::SystemTime;
 
 use super::plot;
 use crate::record::manifest::Machine;
+pub use crate::report::words::{escape, table, unit};
 
 const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\
@@ -11,11 +12,6 @@ table{border-collapse:collapse;margin:.6em 0;font-size:.87em}td,th{padding:.2em 
 border-bottom:1px solid #ddd;font-variant-numeric:tabular-nums}th{border-bottom:2px solid #888}\
 code{font-size:.92em}.key{display:inline-block;width:1.6em;height:.5em;margin-right:.5em;vertical-align:middle}\
 .missed{color:#b00020;font-weight:bold}figure{margin:.5em 0}figcaption{font-size:.9em;color:#444}";
-
-/// `text` with the signs that HTML means otherwise written out.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
 
 /// The page called `title` with what `body` says.
 pub fn page(title: &str, body: &str) -> Vec<u8> {
@@ -25,20 +21,6 @@ pub fn page(title: &str, body: &str) -> Vec<u8> {
          <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n{body}</body></html>\n"
     )
     .into_bytes()
-}
-
-/// A table; the first row is its head.
-pub fn table(rows: &[Vec<String>]) -> String {
-    let row = |cells: &Vec<String>, tag: &str| {
-        let cells = cells.iter().map(|cell| {
-            let class = if cell == "MISSED" || cell == "failed" { " class=\"missed\"" } else { "" };
-            format!("<{tag}{class}>{}</{tag}>", escape(cell))
-        });
-        format!("<tr>{}</tr>\n", cells.collect::<String>())
-    };
-    let mut rows = rows.iter();
-    let head = rows.next().map(|cells| row(cells, "th")).unwrap_or_default();
-    format!("<table>\n{head}{}</table>\n", rows.map(|cells| row(cells, "td")).collect::<String>())
 }
 
 /// A plot with its caption; `keys` name its colours.
@@ -72,29 +54,6 @@ pub fn now() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
 }
 
-/// The unit of a column by the end of its name, as in `fx_N_per_m`; what follows a comma is no part of it.
-pub fn unit(column: &str) -> &'static str {
-    const UNITS: [(&str, &str); 15] = [
-        ("_Nm_per_m", "N m/m"),
-        ("_N_per_m", "N/m"),
-        ("_J_per_m", "J/m"),
-        ("_radps", "rad/s"),
-        ("_mps", "m/s"),
-        ("_deg", "°"),
-        ("_rad", "rad"),
-        ("_kg", "kg"),
-        ("_Pa", "Pa"),
-        ("_Nm", "N m"),
-        ("_N", "N"),
-        ("_J", "J"),
-        ("_m3", "m³"),
-        ("_m", "m"),
-        ("_s", "s"),
-    ];
-    let column = column.split(',').next().unwrap_or(column);
-    UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("–", |(_, unit)| unit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,10 +62,5 @@ mod tests {
     fn what_a_user_writes_cannot_break_the_page() {
         let text = String::from_utf8_lossy(&page("<script>", &table(&[vec!["a&b".into()]]))).into_owned();
         assert!(text.contains("&lt;script&gt;") && text.contains("a&amp;b") && !text.contains("<script>"));
-    }
-
-    #[test]
-    fn columns_tell_their_units() {
-        assert_eq!(["fx_N_per_m", "fx_N", "heave_m, 0 at 2 s", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
     }
 }

@@ -1,0 +1,151 @@
+//! `pontoon report` and `pontoon compare`; the page that a run leaves at its end.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use pontoon::{
+    error::{Error, Kind, Result},
+    report::{self, Field, Page, Shot},
+};
+
+use super::{complain, report::duration, say};
+
+/// A page of one run.
+#[derive(Args)]
+pub struct ReportArgs {
+    /// Folder of the run
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    #[command(flatten)]
+    picture: PictureArgs,
+}
+
+/// A page of several.
+#[derive(Args)]
+pub struct CompareArgs {
+    /// Folders of the runs
+    #[arg(value_name = "DIR", num_args = 2.., required = true)]
+    folders: Vec<PathBuf>,
+    /// The page to write
+    #[arg(long, value_name = "FILE", default_value = "compare.html")]
+    out: PathBuf,
+    #[command(flatten)]
+    picture: PictureArgs,
+}
+
+/// A picture instead of a page.
+#[derive(Args)]
+struct PictureArgs {
+    /// Write a picture to FILE instead of a page [default: frame.png]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "frame.png")]
+    png: Option<PathBuf>,
+    /// Times of the pictures, s, separated by commas; of each the nearest frame [default: the last]
+    #[arg(long, value_name = "SECONDS,..", value_delimiter = ',', requires = "png")]
+    time: Vec<f64>,
+    /// What colours the particles
+    #[arg(long, value_name = "FIELD", default_value = "pressure", requires = "png")]
+    by: By,
+    /// Values of the two ends of the colours [default: the usual range of all that is shown]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = ends, allow_hyphen_values = true, requires = "png")]
+    range: Option<[f64; 2]>,
+    /// Width of the picture, pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 1600, requires = "png")]
+    width: u32,
+}
+
+/// What colours the particles.
+#[derive(Clone, Copy, ValueEnum)]
+enum By {
+    /// The pressure
+    Pressure,
+    /// The pressure beyond that of still water at the place
+    Excess,
+    /// The speed
+    Speed,
+}
+
+/// Two numbers that rise, separated by a comma.
+fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[low, high]) if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),
+        _ => Err("write the lower and the higher value, as in --range 0,5000".into()),
+    }
+}
+
+/// `pontoon report`.
+///
+/// # Errors
+/// As [`report::write`].
+pub fn report(args: &ReportArgs) -> Result<u8> {
+    match &args.picture.png {
+        Some(png) => picture(std::slice::from_ref(&args.folder), &args.picture, png),
+        None => {
+            told(&report::write(&args.folder)?);
+            Ok(0)
+        }
+    }
+}
+
+/// `pontoon compare`.
+///
+/// # Errors
+/// As [`report::compare`].
+pub fn compare(args: &CompareArgs) -> Result<u8> {
+    match &args.picture.png {
+        Some(png) => picture(&args.folders, &args.picture, png),
+        None => {
+            told(&report::compare(&args.folders, &args.out)?);
+            Ok(0)
+        }
+    }
+}
+
+fn picture(folders: &[PathBuf], args: &PictureArgs, out: &Path) -> Result<u8> {
+    if let Some(t) = args.time.iter().find(|t| !t.is_finite()) {
+        return Err(Error::new(Kind::Usage, format!("--time {t} is no time")).help("give seconds, as in --time 0.5,1"));
+    }
+    let field = match args.by {
+        By::Pressure => Field::Pressure,
+        By::Excess => Field::Excess,
+        By::Speed => Field::Speed,
+    };
+    let shot = Shot { times: args.time.clone(), field, range: args.range, width: args.width };
+    let (width, height) = report::picture(folders, &shot, out)?;
+    say(&format!("{}: {width} × {height} pixels\n", out.display()));
+    Ok(0)
+}
+
+/// Says where a page is and what is not on it.
+fn told(page: &Page) {
+    for remark in &page.remarks {
+        complain(&format!("warning: {remark}\n"));
+    }
+    say(&line(page));
+}
+
+fn line(page: &Page) -> String {
+    let size = page.bytes as f64 / 1e6;
+    format!("page: {} ({size:.1} MB, written in {})\n", page.path.display(), duration(page.seconds))
+}
+
+/// Writes the page of the run in `folder` at its end. The run is what it is, with a page or without: what hinders the
+/// page is a warning.
+pub fn at_end(folder: &Path, quiet: bool) {
+    match report::write(folder) {
+        Ok(_) if quiet => {}
+        Ok(page) => say(&line(&page)),
+        Err(why) => complain(&format!("warning: the page of the run was not written: {why}\n")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ends;
+
+    #[test]
+    fn the_ends_of_a_range_rise() {
+        assert_eq!(ends("-5, 1e3"), Ok([-5.0, 1000.0]));
+        assert!(["5,1", "1", "1,2,3", "a,b", "0,inf"].iter().all(|text| ends(text).is_err()));
+    }
+}

@@ -1,0 +1,234 @@
+//! The series of a run as the page's plots take them: thinned without losing a peak, sorted into charts.
+
+use serde::Serialize;
+
+use super::{
+    blob::Blob,
+    kept::{Kept, Table},
+    words::{bare, unit},
+};
+use crate::{check::Verdict, series::Series};
+
+/// Rows of a table above which it is thinned.
+const MOST_ROWS: usize = 6000;
+
+/// What the page says of a table; numbers are places in the blob.
+#[derive(Clone, Debug, Serialize)]
+pub struct Plotted {
+    /// Name of the probe.
+    pub name: String,
+    /// What it watches, in a word.
+    pub what: &'static str,
+    /// Kept rows, and rows of the table.
+    pub rows: [usize; 2],
+    /// Where the times begin.
+    pub t: usize,
+    /// Its columns.
+    pub columns: Vec<Column>,
+    /// Which columns stand in one chart.
+    pub charts: Vec<Chart>,
+}
+
+/// A column.
+#[derive(Clone, Debug, Serialize)]
+pub struct Column {
+    /// Its name as in the table.
+    pub name: String,
+    /// Its name in words.
+    pub label: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Where its numbers begin.
+    pub x: usize,
+}
+
+/// A chart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chart {
+    /// Numbers of its columns.
+    pub columns: Vec<usize>,
+    /// Whether it may wait behind a fold.
+    pub folded: bool,
+}
+
+/// A check and its curves.
+#[derive(Clone, Debug, Serialize)]
+pub struct Held {
+    /// The series, as `probe.column`, with when it was set to zero.
+    pub series: String,
+    /// Its name in words.
+    pub label: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The run as it is.
+    pub sim: Line,
+    /// The run as its instrument shows it.
+    pub meaned: Option<Line>,
+    /// What it is held against.
+    pub reference: Line,
+    /// Whether that is a formula.
+    pub exact: bool,
+    /// The figures in words.
+    pub caption: String,
+}
+
+/// A curve in the blob.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Line {
+    /// Number of samples.
+    pub rows: usize,
+    /// Where the times begin.
+    pub t: usize,
+    /// Where the values begin.
+    pub x: usize,
+}
+
+/// Columns that belong together, by their names without units. The first sets are shown, the others wait behind a fold.
+const FAMILIES: [(&[&str], bool); 12] = [
+    (&["surge", "sway", "heave"], false),
+    (&["roll", "pitch", "yaw"], false),
+    (&["fx", "fy", "fz"], false),
+    (&["torque", "tx", "ty", "tz"], false),
+    (&["eta"], false),
+    (&["p"], false),
+    (&["front"], false),
+    (&["water kinetic", "water potential", "water compression", "bodies kinetic", "bodies potential", "total"], false),
+    (&["level"], true),
+    (&["vx", "vy", "vz"], true),
+    (&["spin", "spin x", "spin y", "spin z"], true),
+    (&["x", "y", "z"], true),
+];
+
+/// Adds `table` to `blob`.
+pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
+    let rows = thinned(table);
+    let t = blob.floats(rows.iter().map(|&i| table.t[i] as f32));
+    let columns = table.columns.iter().zip(&table.x).map(|(name, x)| Column {
+        name: name.clone(),
+        label: bare(name),
+        unit: unit(name),
+        x: blob.floats(rows.iter().map(|&i| x[i] as f32)),
+    });
+    let columns = columns.collect();
+    Plotted {
+        name: table.name.clone(),
+        what: table.what,
+        rows: [rows.len(), table.t.len()],
+        t,
+        columns,
+        charts: seen(charts(&table.columns), &table.x),
+    }
+}
+
+/// The rows of a table that its plots need: of each of many equal stretches the least and the largest of every column.
+fn thinned(table: &Table) -> Vec<usize> {
+    let all = table.t.len();
+    if all <= MOST_ROWS {
+        return (0..all).collect();
+    }
+    let stretch = all.div_ceil(MOST_ROWS / (2 * table.x.len()).clamp(1, 8));
+    let mut rows = vec![0, all - 1];
+    for from in (0..all).step_by(stretch) {
+        let here = from..(from + stretch).min(all);
+        for x in &table.x {
+            let ends = [
+                here.clone().min_by(|a, b| x[*a].total_cmp(&x[*b])),
+                here.clone().max_by(|a, b| x[*a].total_cmp(&x[*b])),
+            ];
+            rows.extend(ends.into_iter().flatten());
+        }
+    }
+    rows.sort_unstable();
+    rows.dedup();
+    rows
+}
+
+/// The columns as charts: those that belong together, then every other one by itself.
+fn charts(columns: &[String]) -> Vec<Chart> {
+    let names: Vec<String> = columns.iter().map(|name| bare(name)).collect();
+    let mut left: Vec<usize> = (0..columns.len()).collect();
+    let mut charts = Vec::new();
+    for (family, folded) in FAMILIES {
+        let own: Vec<usize> = left.iter().copied().filter(|&i| family.contains(&names[i].as_str())).collect();
+        left.retain(|i| !own.contains(i));
+        // What is never shown otherwise is not folded away.
+        let folded = folded && (!charts.is_empty() || !left.is_empty());
+        if !own.is_empty() {
+            charts.push(Chart { columns: own, folded });
+        }
+    }
+    charts.extend(left.into_iter().map(|i| Chart { columns: vec![i], folded: false }));
+    if charts.iter().all(|chart| chart.folded) {
+        charts.iter_mut().for_each(|chart| chart.folded = false);
+    }
+    charts
+}
+
+/// Folds away the charts of columns `x` that have no numbers, as at a gauge that was dry; something stays to be seen.
+fn seen(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
+    let empty = |chart: &Chart| chart.columns.iter().all(|&i| x[i].iter().all(|x| x.is_nan()));
+    charts.iter_mut().for_each(|chart| chart.folded |= empty(chart));
+    if charts.iter().all(|chart| chart.folded) {
+        charts.iter_mut().for_each(|chart| chart.folded = empty(chart));
+    }
+    charts
+}
+
+/// The checks of `run` that have curves, added to `blob`; `caption` says the figures of a verdict.
+pub fn held(run: &Kept, caption: impl Fn(&Verdict) -> String, blob: &mut Blob) -> Vec<Held> {
+    let verdicts = &run.manifest.checks;
+    let mut line = |series: &Series| Line {
+        rows: series.times().len(),
+        t: blob.floats(series.times().iter().map(|t| *t as f32)),
+        x: blob.floats(series.values().iter().map(|x| *x as f32)),
+    };
+    let mut held = Vec::new();
+    for (i, (check, curves)) in run.checks.iter().enumerate() {
+        let Some(curves) = curves else { continue };
+        let series = check.words().label();
+        let column = series.rsplit_once('.').map_or(series.as_str(), |(_, column)| column);
+        held.push(Held {
+            label: bare(column.split(',').next().unwrap_or(column)),
+            unit: unit(column),
+            sim: line(&curves.sim),
+            meaned: curves.meaned.as_ref().map(&mut line),
+            reference: line(&curves.reference),
+            exact: curves.exact,
+            caption: verdicts.get(i).map(&caption).unwrap_or_default(),
+            series,
+        });
+    }
+    held
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(rows: usize) -> Table {
+        let t: Vec<f64> = (0..rows).map(|i| i as f64).collect();
+        let mut x = vec![0.0; rows];
+        x[rows / 2 + 1] = 5.0;
+        Table { name: "p".into(), what: "pressure", columns: vec!["p_Pa".into()], t, x: vec![x] }
+    }
+
+    #[test]
+    fn a_long_table_is_thinned_without_losing_its_peak() {
+        let long = table(1_000_000);
+        let rows = thinned(&long);
+        assert!(rows.len() <= MOST_ROWS + 2 && rows.contains(&500_001), "{} rows", rows.len());
+        assert!(rows.contains(&0) && rows.contains(&999_999), "the ends stay");
+        assert_eq!(thinned(&table(MOST_ROWS)).len(), MOST_ROWS);
+    }
+
+    #[test]
+    fn every_column_is_in_one_chart() {
+        let names = ["x_m", "y_m", "surge_m", "heave_m", "pitch_deg", "vx_mps", "odd_kg"].map(String::from);
+        let charts = charts(&names);
+        let mut all: Vec<usize> = charts.iter().flat_map(|chart| chart.columns.clone()).collect();
+        all.sort_unstable();
+        assert_eq!(all, [0, 1, 2, 3, 4, 5, 6]);
+        assert_eq!(charts[0], Chart { columns: vec![2, 3], folded: false });
+        assert!(!super::charts(&["x_m".into()])[0].folded, "what stands alone is shown");
+    }
+}

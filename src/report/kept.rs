@@ -1,0 +1,247 @@
+//! What stands in a run's folder, read for a page. Whatever is missing there is missing here, with a remark.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+use super::{
+    outline::{Outline, outlines},
+    pose::Placement,
+};
+use crate::{
+    check::{Check, Curves},
+    error::{Error, Result},
+    plan::{Plan, ProbeKind},
+    record::{Film, Manifest},
+    run,
+    scene::{Scene, Stage},
+    solid::Role,
+};
+
+/// A run's folder.
+pub struct Kept {
+    /// The folder.
+    pub folder: PathBuf,
+    /// A short name, told apart from those of the runs beside it.
+    pub name: String,
+    /// Its manifest.
+    pub manifest: Manifest,
+    /// When the manifest was written last.
+    pub written: Option<SystemTime>,
+    /// The words of the scene as the user wrote them.
+    pub words: String,
+    /// What was watched and what stands around the water; none if the kept scene cannot be built again.
+    pub set: Option<Set>,
+    /// Its frames.
+    pub film: Option<Film>,
+    /// Its tables.
+    pub tables: Vec<Table>,
+    /// Its checks with their curves; as many as the manifest has verdicts if the run has finished.
+    pub checks: Vec<(Check, Option<Curves>)>,
+    /// What could not be read, and why.
+    pub remarks: Vec<String>,
+}
+
+/// What stands around the water.
+pub struct Set {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particle spacing, m.
+    pub dp: f64,
+    /// Level of the still water, m.
+    pub level: f64,
+    /// Density at rest, kg/m³.
+    pub rho0: f64,
+    /// Weight of a mass down the last axis, m/s²; 0 where gravity is otherwise.
+    pub g: f64,
+    /// The solids at the start.
+    pub solids: Vec<Solid>,
+    /// What is watched, judged and kept.
+    pub plan: Plan,
+}
+
+/// A solid as it is drawn.
+pub struct Solid {
+    /// Its name.
+    pub name: String,
+    /// `fixed`, `driven` or `free`.
+    pub role: &'static str,
+    /// Its lines, in its own frame.
+    pub lines: Vec<Outline>,
+    /// Where that frame is at the start.
+    pub start: Placement,
+}
+
+/// A table of a probe.
+pub struct Table {
+    /// Name of the probe.
+    pub name: String,
+    /// What it watches, in a word.
+    pub what: &'static str,
+    /// Names of the columns after the time.
+    pub columns: Vec<String>,
+    /// Times, s.
+    pub t: Vec<f64>,
+    /// A row of numbers for each column; NaN where there was nothing to measure.
+    pub x: Vec<Vec<f64>>,
+}
+
+impl Kept {
+    /// The run in `folder`.
+    ///
+    /// # Errors
+    /// `Restart` if it holds no run. All else that cannot be read is left out with a remark.
+    pub fn read(folder: &Path) -> Result<Self> {
+        let manifest = Manifest::read(folder)?;
+        let file = run::scene_file(&folder.join("scene"));
+        let mut remarks = Vec::new();
+        let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.what));
+        let sets: Vec<(String, String)> = manifest.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
+        let set = Scene::read(&file, &sets).and_then(|scene| Set::of(&scene));
+        let set = set.map_err(|why| noted("bodies and gauges are not drawn, for the scene cannot be built", why)).ok();
+        let film = Film::open(folder).unwrap_or_else(|why| {
+            noted("there is no player, for the frames cannot be read", why);
+            None
+        });
+        let plan = set.as_ref().map(|set| &set.plan);
+        let series = run::series_folder(folder);
+        let mut tables = Vec::new();
+        for name in names(&series, plan) {
+            match Table::read(&series, &name, plan) {
+                Ok(table) => tables.push(table),
+                Err(why) => noted("a table is left out", why),
+            }
+        }
+        let mut checks = Vec::new();
+        for words in plan.iter().flat_map(|plan| &plan.checks) {
+            match Check::new(words, &folder.join("scene")) {
+                Ok(check) => checks.push((check.curves(&series).ok(), check)),
+                Err(why) => noted("a reference is not drawn", why),
+            }
+        }
+        let checks = checks.into_iter().map(|(curves, check)| (check, curves)).collect();
+        Ok(Self {
+            name: folder
+                .canonicalize()
+                .ok()
+                .and_then(|f| Some(f.file_name()?.to_string_lossy().into_owned()))
+                .unwrap_or_default(),
+            written: fs::metadata(folder.join("manifest.json")).and_then(|file| file.modified()).ok(),
+            words: fs::read_to_string(&file).unwrap_or_else(|_| manifest.scene.clone()),
+            folder: folder.to_owned(),
+            manifest,
+            set,
+            film,
+            tables,
+            checks,
+            remarks,
+        })
+    }
+
+    /// A number in force, by its key in the scene.
+    pub fn told(&self, key: &str) -> Option<f64> {
+        self.manifest.values.iter().find(|value| value.key == key)?.value.parse().ok()
+    }
+
+    /// The runs in `folders`, with names that differ.
+    ///
+    /// # Errors
+    /// As [`Kept::read`], for the first that is none.
+    pub fn all(folders: &[PathBuf]) -> Result<Vec<Self>> {
+        let mut runs = folders.iter().map(|folder| Self::read(folder)).collect::<Result<Vec<_>>>()?;
+        let names: Vec<String> = runs.iter().map(|run| run.name.clone()).collect();
+        for run in &mut runs {
+            if names.iter().filter(|name| **name == run.name).count() > 1 {
+                run.name = run.folder.display().to_string();
+            }
+        }
+        Ok(runs)
+    }
+}
+
+/// The tables in the folder `series`: first those of the plan, in its order.
+fn names(series: &Path, plan: Option<&Plan>) -> Vec<String> {
+    let mut names: Vec<String> = plan.iter().flat_map(|p| &p.probes).map(|probe| probe.name.clone()).collect();
+    names.retain(|name| series.join(format!("{name}.csv")).is_file());
+    let entries = fs::read_dir(series).into_iter().flatten().flatten().map(|entry| entry.path());
+    let tables = entries.filter(|path| path.extension().is_some_and(|end| end == "csv"));
+    let mut others: Vec<String> = tables.filter_map(|p| Some(p.file_stem()?.to_string_lossy().into_owned())).collect();
+    others.sort();
+    others.retain(|name| !names.contains(name));
+    names.extend(others);
+    names
+}
+
+impl Set {
+    fn of(scene: &Scene) -> Result<Self> {
+        match scene.dimension {
+            2 => Self::built::<2>(scene),
+            _ => Self::built::<3>(scene),
+        }
+    }
+
+    fn built<const D: usize>(scene: &Scene) -> Result<Self> {
+        let Stage { solids, model, still } = scene.stage::<D>()?;
+        let plan = scene.plan()?;
+        let solids = solids.iter().map(|spec| Solid {
+            name: spec.name.clone(),
+            role: match spec.role {
+                Role::Fixed => "fixed",
+                Role::Driven(_) => "driven",
+                Role::Free(_) => "free",
+            },
+            lines: outlines(&spec.shape),
+            start: Placement::of(&spec.start().pose),
+        });
+        let solids = solids.collect();
+        let (down, beside) =
+            model.gravity.split_last().map_or((0.0, false), |(g, rest)| (-g, rest.iter().any(|x| *x != 0.0)));
+        let g = if beside || scene.periodic.is_some() { 0.0 } else { down };
+        Ok(Self { dimension: D, dp: scene.dp, level: still.level, rho0: model.rho0, g, solids, plan })
+    }
+
+    /// Where gauges stand: the name of each, what it measures, and its place (m) with as many coordinates as it has.
+    pub fn gauges(&self) -> impl Iterator<Item = (&str, &'static str, &[f64])> {
+        self.plan.probes.iter().filter_map(|probe| match &probe.what {
+            ProbeKind::Elevation { at } => Some((probe.name.as_str(), "elevation", &at[..])),
+            ProbeKind::Velocity { at } => Some((probe.name.as_str(), "velocity", &at[..])),
+            ProbeKind::Pressure { at } => Some((probe.name.as_str(), "pressure", &at[..])),
+            _ => None,
+        })
+    }
+}
+
+impl Table {
+    fn read(series: &Path, name: &str, plan: Option<&Plan>) -> Result<Self> {
+        let path = series.join(format!("{name}.csv"));
+        let broken = |why: csv::Error| Error::file(&path, why);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(&path).map_err(broken)?;
+        let columns: Vec<String> = reader.headers().map_err(broken)?.iter().skip(1).map(String::from).collect();
+        let (mut t, mut x) = (Vec::new(), vec![Vec::new(); columns.len()]);
+        for record in reader.records() {
+            let record = record.map_err(broken)?;
+            let field = |i: usize| record.get(i).and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
+            // The last row of a killed run may be cut.
+            if record.len() == columns.len() + 1 && field(0).is_finite() {
+                t.push(field(0));
+                x.iter_mut().enumerate().for_each(|(i, column)| column.push(field(i + 1)));
+            }
+        }
+        let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));
+        let what = probe.map_or("table", |probe| match &probe.what {
+            ProbeKind::Motion { .. } => "motion",
+            ProbeKind::Force { .. } => "force of the water",
+            ProbeKind::Joint { .. } => "joint",
+            ProbeKind::Spring { .. } => "spring",
+            ProbeKind::Rope { .. } => "rope",
+            ProbeKind::Elevation { .. } => "level of the water",
+            ProbeKind::Velocity { .. } => "velocity of the water",
+            ProbeKind::Pressure { .. } => "pressure",
+            ProbeKind::Front => "leading edge of the water",
+            ProbeKind::Energy => "energy",
+        });
+        Ok(Self { name: name.into(), what, columns, t, x })
+    }
+}

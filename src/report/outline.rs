@@ -1,0 +1,198 @@
+//! Solids as lines: what a shape looks like when it is drawn.
+
+use std::f64::consts::{PI, TAU};
+
+use serde::Serialize;
+
+use crate::{
+    shape::Shape,
+    space::{Pose, Vector},
+};
+
+/// Corners of a circle.
+const ROUND: usize = 48;
+
+/// A line of a drawing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outline {
+    /// Whether its end is joined to its start; in 2-D it then has an inside.
+    pub closed: bool,
+    /// Its points, m, in the frame of the solid; in 2-D the third coordinate is zero.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// The lines of `shape`: its outline in 2-D, its edges in 3-D. None of a shape that has no lines of its own: then its
+/// boundary particles show it.
+pub fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
+    match shape {
+        Shape::Box { size } => box_lines(&(size * -0.5), &(size * 0.5)),
+        Shape::Ball { radius } => rounds(&[0.0; 3], *radius, D),
+        Shape::Capsule { length, radius, axis } => capsule::<D>(*length, *radius, *axis),
+        Shape::Cylinder { length, radius, axis } if D == 3 => cylinder(*length, *radius, *axis),
+        Shape::Polygon { points } => vec![closed(points.iter().map(spread))],
+        Shape::Polyline { points, thickness } => vec![closed(wall(points, *thickness).iter().map(spread))],
+        Shape::Tank { size, thickness } if D == 2 => vec![tank(size[0], size[1], *thickness)],
+        Shape::Tank { size, .. } => box_lines(&Vector::zeros(), size),
+        Shape::Compound(parts) => parts.iter().flat_map(|(pose, part)| placed(pose, outlines(part))).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// A vector with a third coordinate.
+pub fn spread<const D: usize>(x: &Vector<D>) -> [f64; 3] {
+    std::array::from_fn(|i| if i < D { x[i] } else { 0.0 })
+}
+
+fn placed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
+    for x in lines.iter_mut().flat_map(|line| &mut line.points) {
+        *x = spread(&pose.point(&Vector::from_fn(|i, _| x[i])));
+    }
+    lines
+}
+
+fn closed(points: impl IntoIterator<Item = [f64; 3]>) -> Outline {
+    Outline { closed: true, points: points.into_iter().collect() }
+}
+
+/// The edges of a box from `low` to `high`.
+fn box_lines<const D: usize>(low: &Vector<D>, high: &Vector<D>) -> Vec<Outline> {
+    let (a, b) = (spread(low), spread(high));
+    let ring = |z: f64| closed([[a[0], a[1], z], [b[0], a[1], z], [b[0], b[1], z], [a[0], b[1], z]]);
+    if D == 2 {
+        return vec![ring(0.0)];
+    }
+    let upright = |x: f64, y: f64| Outline { closed: false, points: vec![[x, y, a[2]], [x, y, b[2]]] };
+    let corners = [[a[0], a[1]], [b[0], a[1]], [b[0], b[1]], [a[0], b[1]]];
+    [ring(a[2]), ring(b[2])].into_iter().chain(corners.map(|[x, y]| upright(x, y))).collect()
+}
+
+/// The circle around `centre` in the plane of the axes `u` and `v`.
+fn circle(centre: &[f64; 3], radius: f64, u: usize, v: usize) -> Outline {
+    arc(centre, radius, (u, v), 0.0, TAU, ROUND, true)
+}
+
+fn arc(
+    centre: &[f64; 3],
+    radius: f64,
+    (u, v): (usize, usize),
+    from: f64,
+    by: f64,
+    parts: usize,
+    closed: bool,
+) -> Outline {
+    let point = |k: usize| {
+        let angle = from + by * k as f64 / parts as f64;
+        let mut x = *centre;
+        x[u] += radius * angle.cos();
+        x[v] += radius * angle.sin();
+        x
+    };
+    Outline { closed, points: (0..if closed { parts } else { parts + 1 }).map(point).collect() }
+}
+
+fn rounds(centre: &[f64; 3], radius: f64, dimension: usize) -> Vec<Outline> {
+    let planes: &[(usize, usize)] = if dimension == 2 { &[(0, 1)] } else { &[(0, 1), (0, 2), (1, 2)] };
+    planes.iter().map(|&(u, v)| circle(centre, radius, u, v)).collect()
+}
+
+/// The outline of a straight part with round ends in the plane of its `axis` and the axis `v`.
+fn stadium(length: f64, radius: f64, axis: usize, v: usize) -> Outline {
+    let end = |centre: &[f64; 3], from: f64| arc(centre, radius, (axis, v), from, PI, ROUND / 2, false).points;
+    let [low, high] = ends(length, axis);
+    let mut points = end(&high, -0.5 * PI);
+    points.extend(end(&low, 0.5 * PI));
+    Outline { closed: true, points }
+}
+
+fn capsule<const D: usize>(length: f64, radius: f64, axis: usize) -> Vec<Outline> {
+    let across: Vec<usize> = (0..D).filter(|&i| i != axis).collect();
+    let mut lines: Vec<Outline> = across.iter().map(|&v| stadium(length, radius, axis, v)).collect();
+    if let [u, v] = across[..] {
+        lines.extend(ends(length, axis).map(|centre| circle(&centre, radius, u, v)));
+    }
+    lines
+}
+
+fn ends(length: f64, axis: usize) -> [[f64; 3]; 2] {
+    [-0.5, 0.5].map(|side| {
+        let mut centre = [0.0; 3];
+        centre[axis] = side * length;
+        centre
+    })
+}
+
+fn cylinder(length: f64, radius: f64, axis: usize) -> Vec<Outline> {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut lines: Vec<Outline> = ends(length, axis).iter().map(|centre| circle(centre, radius, u, v)).collect();
+    for k in 0..4 {
+        let angle = 0.25 * TAU * f64::from(k);
+        let points = ends(length, axis).map(|mut x| {
+            (x[u], x[v]) = (radius * angle.cos(), radius * angle.sin());
+            x
+        });
+        lines.push(Outline { closed: false, points: points.to_vec() });
+    }
+    lines
+}
+
+/// The cut through the walls and the bottom of a tank.
+fn tank(width: f64, height: f64, wall: f64) -> Outline {
+    let outer = [[-wall, height], [-wall, -wall], [width + wall, -wall], [width + wall, height]];
+    let inner = [[width, height], [width, 0.0], [0.0, 0.0], [0.0, height]];
+    closed(outer.iter().chain(&inner).map(|x| [x[0], x[1], 0.0]))
+}
+
+/// The corners of a wall `thickness` thick on the right of the line through `points`.
+fn wall<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
+    let right = |a: &Vector<D>, b: &Vector<D>| {
+        let mut n = Vector::<D>::zeros();
+        (n[0], n[1]) = (b[1] - a[1], a[0] - b[0]);
+        n / n.norm()
+    };
+    let normals: Vec<Vector<D>> = points.windows(2).map(|ab| right(&ab[0], &ab[1])).collect();
+    let offset = |i: usize| {
+        let (before, after) = (normals[i.saturating_sub(1)], normals[i.min(normals.len() - 1)]);
+        let middle = before + after;
+        // The mitre of a sharp corner would be as long as one likes.
+        points[i] + middle * (2.0 * thickness / middle.norm_squared().max(1.0))
+    };
+    points.iter().copied().chain((0..points.len()).rev().map(offset)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_of_an_outline_lies_on_the_face_of_its_shape() {
+        let v2 = |x: [f64; 2]| Vector::<2>::from(x);
+        let flat = [
+            Shape::Box { size: v2([0.4, 0.2]) },
+            Shape::Ball { radius: 0.3 },
+            Shape::Capsule { length: 0.3, radius: 0.1, axis: 1 },
+            Shape::Polygon { points: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(v2).to_vec() },
+            Shape::Tank { size: v2([1.0, 0.5]), thickness: 0.1 },
+            Shape::Polyline { points: [[0.0, 0.0], [1.0, 0.0], [2.0, 0.5]].map(v2).to_vec(), thickness: 0.1 },
+        ];
+        for shape in flat {
+            for x in outlines(&shape).iter().flat_map(|line| &line.points) {
+                let off = shape.signed_distance(&v2([x[0], x[1]]));
+                // The far side of a bend in a wall is drawn with a corner where the wall's own is round.
+                assert!(off.abs() < 2e-3, "{shape:?}: {x:?} is {off} m off");
+            }
+        }
+        let v3 = Vector::<3>::from([0.4, 0.2, 0.3]);
+        let solid = [
+            Shape::Box { size: v3 },
+            Shape::Ball { radius: 0.3 },
+            Shape::Capsule { length: 0.3, radius: 0.1, axis: 2 },
+            Shape::Cylinder { length: 0.3, radius: 0.1, axis: 0 },
+        ];
+        for shape in solid {
+            for x in outlines(&shape).iter().flat_map(|line| &line.points) {
+                let off = shape.signed_distance(&Vector::from(*x));
+                assert!(off.abs() < 1e-12, "round-off; {shape:?}: {x:?} is {off} m off");
+            }
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! What a page says in words and tables: it reads so without a script, and on paper.
+
+use std::{fs, time::SystemTime};
+
+use super::{
+    figures,
+    film::Reel,
+    kept::Kept,
+    words::{self, bytes, digits, duration, escape, table, thousands},
+};
+use crate::{
+    check::{Verdict, said},
+    record::{Manifest, manifest::Status},
+};
+
+/// How a run stands, in a word, and the class of its badge.
+pub fn status(manifest: &Manifest) -> (&'static str, &'static str) {
+    match manifest.status {
+        Status::Finished if manifest.checks.iter().any(|check| check.passed == Some(false)) => {
+            ("finished, a check is missed", "bad")
+        }
+        Status::Finished => ("finished", "good"),
+        Status::Interrupted => ("interrupted", "odd"),
+        Status::Failed => ("failed", "bad"),
+        Status::Running => ("unfinished", "odd"),
+    }
+}
+
+/// Date and time, UTC.
+fn date(time: SystemTime) -> String {
+    let text = humantime::format_rfc3339_seconds(time).to_string();
+    text.replace('T', " ").trim_end_matches('Z').chars().take(16).collect::<String>() + " UTC"
+}
+
+/// The facts under the title: each a word and a value.
+pub fn facts(run: &Kept) -> Vec<(&'static str, String)> {
+    let m = &run.manifest;
+    let mut facts = Vec::new();
+    if let Some(set) = &run.set {
+        facts.push(("Spacing", format!("dp = {} m, {}-D", set.dp, set.dimension)));
+    }
+    let count = m.particles;
+    facts.push((
+        "Particles",
+        format!("{} water, {} boundary", thousands(count.fluid as u64), thousands(count.boundary as u64)),
+    ));
+    let reached = if m.simulated_s < m.until_s { format!("{} of ", digits(m.simulated_s)) } else { String::new() };
+    facts.push(("Simulated", format!("{reached}{} s in {} steps", m.until_s, thousands(m.steps))));
+    facts.push((
+        "Wall time",
+        format!("{}, {} thread{}", duration(m.wall_s), m.threads, if m.threads == 1 { "" } else { "s" }),
+    ));
+    facts.extend(run.written.map(|time| ("Written", date(time))));
+    facts.push(("Program", program(m)));
+    facts
+}
+
+/// Version and commit.
+fn program(m: &Manifest) -> String {
+    match &m.commit {
+        Some(commit) => format!("pontoon {}, commit {commit}", m.version),
+        None => format!("pontoon {}", m.version),
+    }
+}
+
+/// The head of a page of one run.
+pub fn head(run: &Kept) -> String {
+    let (word, class) = status(&run.manifest);
+    let facts =
+        facts(run).iter().map(|(k, x)| format!("<div><dt>{k}</dt><dd>{}</dd></div>", escape(x))).collect::<String>();
+    format!(
+        "<p class=\"over\">pontoon · {}</p>\n<h1>{}</h1>\n<p><span class=\"badge {class}\">{word}</span></p>\n\
+         <dl class=\"facts\">{facts}</dl>\n{}",
+        escape(&run.name),
+        escape(&run.manifest.title),
+        trouble(&run.manifest)
+    )
+}
+
+/// Why a run did not come to its end, with the report of the particle or body.
+fn trouble(m: &Manifest) -> String {
+    let reached = format!("It reached t = {} s of {} s.", digits(m.simulated_s), m.until_s);
+    let said = match m.status {
+        Status::Finished => return String::new(),
+        Status::Running => {
+            format!("<strong>This run has not finished: it still goes on, or was killed.</strong> {reached}")
+        }
+        Status::Interrupted => {
+            format!("<strong>This run was interrupted.</strong> {reached} <code>pontoon resume</code> goes on with it.")
+        }
+        Status::Failed => {
+            let why = escape(m.error.as_deref().unwrap_or("no reason is kept"));
+            format!("<strong>This run could not go on.</strong> {reached}<pre>{why}</pre>")
+        }
+    };
+    let fault = m.fault.as_ref().and_then(|fault| fault.as_object()).map_or(String::new(), |fault| {
+        let rows = fault.iter().map(|(key, value)| {
+            let value = value.as_str().map_or_else(|| value.to_string(), String::from);
+            format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escape(key), escape(&value))
+        });
+        format!("<table>{}</table>", rows.collect::<String>())
+    });
+    format!("<div class=\"note bad\" role=\"alert\"><p>{said}</p>{fault}</div>\n")
+}
+
+/// Warnings of the run and remarks of the page.
+pub fn warnings(runs: &[Kept]) -> String {
+    let all: Vec<String> = runs
+        .iter()
+        .flat_map(|run| {
+            let name = if runs.len() > 1 { format!("{}: ", run.name) } else { String::new() };
+            run.manifest.warnings.iter().chain(&run.remarks).map(move |text| format!("{name}{text}"))
+        })
+        .collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    let items = all.iter().map(|text| format!("<li>{}</li>", escape(text))).collect::<String>();
+    format!("<div class=\"note odd\"><p><strong>Warnings</strong></p><ul>{items}</ul></div>\n")
+}
+
+/// The figures of a verdict in words.
+pub fn caption(verdict: &Verdict) -> String {
+    let rows = said::rows(&[(&[], verdict)], &[]);
+    let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
+    let said: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect();
+    words::minus(&said.join("; "))
+}
+
+/// A table that scrolls where the page is narrow.
+pub fn wide(rows: &[Vec<String>]) -> String {
+    format!("<div class=\"wide\" tabindex=\"0\">{}</div>\n", table(rows))
+}
+
+/// The verdicts of all runs.
+pub fn verdicts(runs: &[Kept]) -> String {
+    let names: Vec<[String; 1]> = runs.iter().map(|run| [run.name.clone()]).collect();
+    let several = runs.len() > 1;
+    let pairs: Vec<(&[String], &Verdict)> = runs
+        .iter()
+        .zip(&names)
+        .flat_map(|(run, name)| {
+            let before: &[String] = if several { name } else { &[] };
+            run.manifest.checks.iter().map(move |verdict| (before, verdict))
+        })
+        .collect();
+    if pairs.is_empty() {
+        let waiting = runs.iter().any(|run| !run.checks.is_empty());
+        return if waiting { "<p>Checks are judged when a run has finished.</p>\n".into() } else { String::new() };
+    }
+    let said = "<p class=\"quiet\">N is the relative deviation (0 is perfect), M the ratio of the amplitudes (1 is perfect).</p>\n";
+    wide(&said::rows(&pairs, if several { &["run"] } else { &[] })) + said
+}
+
+/// The energy budget; empty without an energy table.
+pub fn energy(run: &Kept) -> String {
+    let budgets = run.tables.iter().filter_map(figures::energy);
+    budgets.map(|(rows, said)| format!("{}<p>{}</p>\n", wide(&rows), escape(&said))).collect()
+}
+
+/// What was run: the scene's words, every value in force, the machine.
+pub fn what(run: &Kept) -> String {
+    let m = &run.manifest;
+    let machine = &m.machine;
+    let rows = [
+        ("scene", run.manifest.title.clone()),
+        ("changed on the command line", m.set.iter().map(|(k, v)| format!("{k} = {v}")).collect::<Vec<_>>().join(", ")),
+        ("program", program(m)),
+        ("bodies moved by", m.engine.clone()),
+        ("processor", format!("{}, {} processors", machine.processor, machine.cpus)),
+        ("instructions", machine.instructions.clone().unwrap_or_else(|| "no lanes".into())),
+        ("system", format!("{}, {}", machine.os, machine.arch)),
+        ("processor time", duration(m.cpu_s)),
+        (
+            "particle-steps",
+            format!("{}, {:.2} million a second", thousands(m.particle_steps), m.particle_steps_per_second / 1e6),
+        ),
+    ];
+    let rows: String = rows
+        .iter()
+        .filter(|(_, x)| !x.is_empty())
+        .map(|(k, x)| format!("<tr><th scope=\"row\">{k}</th><td>{}</td></tr>\n", escape(x)))
+        .collect();
+    let mut values = vec![["key", "value", "said by"].map(String::from).to_vec()];
+    values.extend(m.values.iter().map(|v| vec![v.key.clone(), v.value.clone(), v.source.clone()]));
+    format!(
+        "<div class=\"wide\"><table>{rows}</table></div>\n<details><summary>The scene as written</summary><pre tabindex=\"0\">{}</pre></details>\n\
+         <details><summary>All {} values in force, and who said them</summary>{}</details>\n",
+        escape(&run.words),
+        m.values.len(),
+        wide(&values)
+    )
+}
+
+/// Where the files are.
+pub fn files(run: &Kept) -> String {
+    let folder = run.folder.canonicalize().unwrap_or_else(|_| run.folder.clone());
+    let mut rows = vec![["file", "size"].map(String::from).to_vec()];
+    for file in &run.manifest.files {
+        let size = fs::metadata(run.folder.join(file))
+            .map_or("–".into(), |f| if f.is_dir() { String::new() } else { bytes(f.len()) });
+        rows.push(vec![file.clone(), size]);
+    }
+    if let Some(film) = &run.film {
+        let count = film.times().len();
+        rows.push(vec![
+            format!("frames/ ({count} frames)"),
+            format!("about {}", bytes(film.bytes(count / 2) * count as u64)),
+        ]);
+    }
+    format!("<p>In <code>{}</code>:</p>\n{}", escape(&folder.display().to_string()), wide(&rows))
+}
+
+/// What of a film the page shows, and what it leaves out.
+pub fn shown(reel: &Reel) -> String {
+    let [frames, particles] = reel.of;
+    let kept = (reel.times.len(), reel.counts.first().copied().unwrap_or(0));
+    let mut said = if kept.0 == frames {
+        format!("All {frames} frames")
+    } else {
+        format!("{} of {frames} frames, evenly spread", kept.0)
+    };
+    said += &if reel.apart > 1 {
+        format!(
+            ", and of {} water particles {}, about {} dp apart",
+            thousands(particles as u64),
+            thousands(kept.1 as u64),
+            reel.apart
+        )
+    } else {
+        format!(" with all {} water particles", thousands(particles as u64))
+    };
+    said + ". Between two frames the player moves particles in straight lines. Places are rounded to 1/48 dp, values to about \
+            1/600 of their usual range; frames.pvd has all of it."
+}
+
+/// What differs between the values in force of several runs: a row for each key.
+pub fn differences(runs: &[Kept]) -> String {
+    let mut keys: Vec<&str> = Vec::new();
+    for value in runs.iter().flat_map(|run| &run.manifest.values) {
+        if !keys.contains(&value.key.as_str()) {
+            keys.push(&value.key);
+        }
+    }
+    let value = |run: &Kept, key: &str| {
+        run.manifest.values.iter().find(|v| v.key == key).map_or("–".to_string(), |v| v.value.clone())
+    };
+    let mut rows =
+        vec![std::iter::once("key".to_string()).chain(runs.iter().map(|run| run.name.clone())).collect::<Vec<_>>()];
+    for key in keys {
+        let cells: Vec<String> = runs.iter().map(|run| value(run, key)).collect();
+        if cells.iter().any(|cell| *cell != cells[0]) {
+            rows.push(std::iter::once(key.to_string()).chain(cells).collect());
+        }
+    }
+    if rows.len() == 1 {
+        return "<p>All values in force are the same.</p>\n".into();
+    }
+    wide(&rows)
+}
+
+/// The facts of several runs side by side.
+pub fn beside(runs: &[Kept]) -> String {
+    let all: Vec<Vec<(&str, String)>> = runs
+        .iter()
+        .map(|run| {
+            let mut facts = vec![("Title", run.manifest.title.clone()), ("State", status(&run.manifest).0.to_string())];
+            facts.extend(self::facts(run));
+            facts.push(("Folder", run.folder.display().to_string()));
+            facts
+        })
+        .collect();
+    let mut rows =
+        vec![std::iter::once(String::new()).chain(runs.iter().map(|run| run.name.clone())).collect::<Vec<_>>()];
+    for (key, _) in all.iter().max_by_key(|facts| facts.len()).into_iter().flatten() {
+        let cell = |facts: &Vec<(&str, String)>| {
+            facts.iter().find(|(k, _)| k == key).map_or(String::new(), |(_, x)| x.clone())
+        };
+        rows.push(std::iter::once(key.to_string()).chain(all.iter().map(cell)).collect());
+    }
+    wide(&rows)
+}

@@ -1,0 +1,371 @@
+//! The page of a run as a reader meets it: in a real browser (Chromium; without one those tests say so and pass), and as
+//! a file. Screenshots are left in the folder `tmp` of the build, to be looked at.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    sync::OnceLock,
+};
+
+use pontoon::{
+    error::{Error, Fault, Kind},
+    record::{Manifest, manifest::Status},
+    report,
+};
+use serde_json::Value;
+use tiny_skia::Pixmap;
+
+/// A box afloat in a small tank; its title is one that could break a page.
+const BAY: &str = r#"
+title     = "A box & a gauge </script><script>nothing()</script>"
+dimension = 2
+dp        = 0.02
+until     = 0.2
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [0.8, 0.3] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [0.8, 0.5] } }
+
+[[solid]]
+name  = "box"
+shape = { box = { size = [0.16, 0.12] } }
+at    = { x = 0.5, draft = "equilibrium", angle_deg = 5.0 }
+free  = { density = 500.0 }
+
+[[probe]]
+motion = "box"
+
+[[probe]]
+name      = "gauge"
+elevation = { x = 0.2 }
+
+[[probe]]
+energy = true
+
+[frames]
+every = 0.02
+
+[[check]]
+series  = "box.heave_m"
+formula = "0"
+bound   = { off = 0.05 }
+"#;
+
+const DEEP: &str = r#"
+title     = "A ball in a tub"
+dimension = 3
+dp        = 0.05
+until     = 0.1
+
+[[water]]
+fill = { box = { min = [0.0, 0.0, 0.0], max = [0.6, 0.4, 0.3] } }
+
+[[solid]]
+name  = "tub"
+fixed = true
+shape = { tank = { size = [0.6, 0.4, 0.45] } }
+
+[[solid]]
+name  = "ball"
+shape = { ball = { radius = 0.1 } }
+at    = { x = 0.3, y = 0.2, draft = "equilibrium" }
+free  = { density = 500.0 }
+
+[[probe]]
+motion = "ball"
+
+[frames]
+every = 0.05
+"#;
+
+/// A folder for the test `name`, empty.
+fn desk(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Runs `scene` by the program as a stranger would, with the words `more`; the run's folder.
+fn ran(desk: &Path, name: &str, scene: &str, more: &[&str]) -> PathBuf {
+    let file = format!("{name}.toml");
+    fs::write(desk.join(&file), scene).unwrap();
+    let words = [&["run", &file, "--out", name, "--quiet"], more].concat();
+    let said = pontoon(desk, &words);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    desk.join(name)
+}
+
+fn pontoon(desk: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pontoon")).args(words).current_dir(desk).stdin(Stdio::null()).output().unwrap()
+}
+
+/// Chromium, if it is there; says so if not.
+fn chromium() -> Option<&'static str> {
+    static FOUND: OnceLock<Option<&'static str>> = OnceLock::new();
+    *FOUND.get_or_init(|| {
+        let answers =
+            |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|said| said.status.success());
+        let found = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(answers);
+        if found.is_none() {
+            eprintln!("Chromium is not installed: the page was not opened in a browser");
+        }
+        found
+    })
+}
+
+/// Opens `page` in the browser with the arguments `more`; nothing may be said on its console. What it prints.
+fn browse(page: &Path, profile: &str, more: &[&str]) -> String {
+    let profile = page.with_extension(profile);
+    let said = Command::new(chromium().unwrap())
+        .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr"])
+        .args(["--allow-file-access-from-files", "--virtual-time-budget=30000"])
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .args(more)
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .unwrap();
+    let _ = fs::remove_dir_all(&profile);
+    let errors = String::from_utf8_lossy(&said.stderr).into_owned();
+    let console: Vec<&str> = errors.lines().filter(|line| line.contains("CONSOLE")).collect();
+    assert!(console.is_empty(), "{}: {console:#?}", page.display());
+    String::from_utf8_lossy(&said.stdout).into_owned()
+}
+
+/// What `script` says of the open `page`: it fills the object `said`, with the players in `deck`.
+fn asked(page: &Path, script: &str) -> Value {
+    let text = fs::read_to_string(page).unwrap();
+    let driver = format!(
+        "<script>pontoon.ready.then(async () => {{ const said = {{}}, {{ deck, films, charts }} = pontoon;\n\
+         const wait = ms => new Promise(go => setTimeout(go, ms));\n{script}\n\
+         const note = document.createElement('pre'); note.id = 'said'; note.textContent = JSON.stringify(said);\n\
+         document.body.append(note); }});</script></body>"
+    );
+    let asking = page.with_extension("asked.html");
+    fs::write(&asking, text.replace("</body>", &driver)).unwrap();
+    let dom = browse(&asking, "profile", &["--window-size=1280,6000", "--dump-dom"]);
+    fs::remove_file(&asking).unwrap();
+    let said = dom.split("<pre id=\"said\">").nth(1).and_then(|rest| rest.split("</pre>").next());
+    let said = said
+        .expect("the page's scripts ran to their end")
+        .replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&amp;", "&");
+    serde_json::from_str(&said).unwrap()
+}
+
+/// A picture of the open `page`; it shows something.
+fn shot(page: &Path, name: &str, more: &[&str]) {
+    let file = page.with_file_name(name);
+    let picture = format!("--screenshot={}", file.display());
+    browse(page, name, &[&[picture.as_str()], more].concat());
+    let pixels = Pixmap::load_png(&file).unwrap();
+    assert!(colours(&pixels) > 50, "{} is almost blank", file.display());
+}
+
+/// How many colours a picture has.
+fn colours(picture: &Pixmap) -> usize {
+    let mut all: Vec<[u8; 4]> = picture.data().as_chunks::<4>().0.to_vec();
+    all.sort_unstable();
+    all.dedup();
+    all.len()
+}
+
+/// The number after `word` in `text`.
+fn number(text: &str, word: &str) -> f64 {
+    let rest = text.split(word).nth(1).unwrap_or_else(|| panic!("{word:?} is not in {text:?}")).trim_start();
+    let sign = if rest.starts_with('−') { -1.0 } else { 1.0 };
+    let digits: String =
+        rest.chars().skip_while(|c| *c == '−').take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    sign * digits.parse::<f64>().unwrap()
+}
+
+#[test]
+fn the_page_plays_and_tells_the_value_under_the_pointer() {
+    let desk = desk("plays");
+    let page = ran(&desk, "bay", BAY, &[]).join(report::FILE);
+    assert!(page.is_file(), "a run leaves its page");
+    if chromium().is_none() {
+        return;
+    }
+    let said = asked(
+        &page,
+        "const view = deck.views[0], { canvas } = view;
+         deck.button.click(); await wait(1500); said.played = deck.t; deck.pause();
+         const key = key => canvas.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
+         key('End'); said.end = deck.t; key('Home'); said.home = deck.t; key('ArrowRight'); said.next = deck.t; key('Home');
+         key('+'); said.zoom = deck.look.zoom; key('0');
+         const point = ([x, y]) => { const box = canvas.getBoundingClientRect();
+           canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + x, clientY: box.top + y, bubbles: true }));
+           return view.tip.hidden ? '' : view.tip.textContent; };
+         said.water = point(view.pixel([0.21, 0.11])); said.box = point(view.pixel([0.5, 0.3])); said.air = point(view.pixel([0.2, 0.45]));
+         said.frames = films[0].times.length; said.charts = document.querySelectorAll('.uplot').length;
+         said.moved = films[0].pose(1)[1]; deck.seek(0.1); said.later = films[0].pose(1)[1];
+         document.querySelectorAll('details').forEach(fold => fold.open = true); await wait(500);
+         said.wide = document.documentElement.scrollWidth - innerWidth; said.title = document.title;",
+    );
+    // How far depends on how often the browser draws.
+    assert!(said["played"].as_f64().unwrap() > 0.0, "it plays: {said}");
+    assert!(said["home"] == 0.0 && said["end"].as_f64().unwrap() >= 0.2 - 1e-9, "{said}");
+    let next = said["next"].as_f64().unwrap();
+    assert!((0.02..0.03).contains(&next), "the second frame is the first step at or past 0.02 s: {said}");
+    assert_eq!(said["zoom"], 1.4);
+    // Still water: P = ρ g (0.3 − y); that of the lattice is 2 % more at most, and values are rounded to 1/600 of the range.
+    let water = said["water"].as_str().unwrap();
+    let still = 1000.0 * 9.81 * (0.3 - number(water, "y "));
+    assert!((number(water, "pressure ") / still - 1.0).abs() < 0.03, "{water}, where still water has {still} Pa");
+    assert!(said["box"].as_str().unwrap().starts_with("box (free)"), "{said}");
+    assert_eq!(said["air"], "");
+    assert_eq!(said["frames"], 11);
+    assert!(said["charts"].as_u64().unwrap() >= 5, "{said}");
+    assert_ne!(said["moved"], said["later"], "the box moves");
+    assert!(said["wide"].as_f64().unwrap() <= 0.0, "nothing sticks out at the right: {said}");
+    assert!(said["title"].as_str().unwrap().contains("</script>"), "the title is as it was written: {said}");
+}
+
+#[test]
+fn the_page_is_looked_at_in_light_and_dark_and_on_a_phone() {
+    let desk = desk("looks");
+    let run = ran(&desk, "bay", BAY, &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let page = run.join(report::FILE);
+    shot(&page, "light.png", &["--window-size=1280,2600"]);
+    shot(&page, "dark.png", &["--window-size=1280,2600", "--blink-settings=preferredColorScheme=0"]);
+    // A window is never narrower than 500 pixels; a frame in it is.
+    let frame = run.join("phone.html");
+    let text = format!(
+        "<style>body{{margin:0}}</style><iframe style=\"border:0;width:390px;height:3600px\" src=\"{}\"></iframe>",
+        report::FILE
+    );
+    fs::write(&frame, text).unwrap();
+    shot(&frame, "phone.png", &["--window-size=500,3600"]);
+}
+
+#[test]
+fn a_deep_tank_turns_and_is_cut() {
+    let desk = desk("deep");
+    let run = ran(&desk, "tub", DEEP, &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let said = asked(
+        &run.join(report::FILE),
+        "const view = deck.views[0], seen = () => { const who = new Set(view.raster.who); return [...who].filter(k => k >= 0).length; };
+         said.all = films[0].n; said.seen = seen(); deck.look.yaw += 1.2; deck.draw(); said.turned = seen();
+         deck.look.mode = 'y'; deck.fit(); said.cut = view.water.near.slice(0, view.water.n).filter(near => near >= 0.45).length;
+         const [x, y] = view.pixel([0.12, 0.12]), box = view.canvas.getBoundingClientRect();
+         view.canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + x, clientY: box.top + y }));
+         said.tip = view.tip.textContent;",
+    );
+    let figure = |name: &str| said[name].as_u64().unwrap();
+    assert!(figure("seen") > 100 && figure("seen") < figure("all"), "what is behind is not seen: {said}");
+    assert!(figure("turned") > 100, "{said}");
+    assert!(figure("cut") >= 40 && figure("cut") < figure("all") / 3, "two layers of eight: {said}");
+    assert!(number(said["tip"].as_str().unwrap(), "pressure ") > 500.0, "{said}");
+}
+
+#[test]
+fn runs_are_laid_over_one_another_locked_in_time() {
+    let desk = desk("compare");
+    ran(&desk, "a", BAY, &["--no-report"]);
+    ran(&desk, "b", BAY, &["--set", "solid.box.free.density=250", "--no-report"]);
+    assert!(!desk.join("a").join(report::FILE).exists(), "--no-report leaves the page out");
+    let said = pontoon(&desk, &["compare", "a", "b", "--out", "both.html"]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let page = desk.join("both.html");
+    let text = fs::read_to_string(&page).unwrap();
+    assert!(text.contains("solid.box.free.density") && text.contains("What differs"), "the difference is told");
+    if chromium().is_none() {
+        return;
+    }
+    let said = asked(
+        &page,
+        "deck.seek(0.1); said.times = deck.views.map(view => view.t); said.ranges = deck.views.map(view => view.look.range);
+         said.lines = charts.all[0].what.lines.map(line => line.label);",
+    );
+    assert_eq!((&said["times"][0], &said["times"][1]), (&Value::from(0.1), &Value::from(0.1)));
+    assert_eq!(said["ranges"][0], said["ranges"][1], "equal colours");
+    assert!(said["lines"].as_array().unwrap().iter().any(|line| line == "b"), "{said}");
+    shot(&page, "both.png", &["--window-size=1280,2000"]);
+}
+
+#[test]
+fn a_picture_has_a_column_for_each_run_and_a_row_for_each_time() {
+    let desk = desk("picture");
+    ran(&desk, "a", BAY, &["--no-report"]);
+    let said = pontoon(&desk, &["compare", "a", "a", "--png", "fields.png", "--time", "0,0.2", "--width", "900"]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let (two, path) = (Pixmap::load_png(desk.join("fields.png")).unwrap(), desk.join("one.png"));
+    assert_eq!(two.width(), 900);
+    let said = pontoon(&desk, &["report", "a", "--png", "one.png", "--by", "speed", "--range", "0,1"]);
+    assert!(said.status.success() && path.is_file(), "{}", String::from_utf8_lossy(&said.stderr));
+    // The same run twice: what stands in the left column stands in the right one.
+    let dark = |from: u32, to: u32| {
+        let inside = (from..to).flat_map(|x| (0..two.height()).map(move |y| (x, y)));
+        inside
+            .filter(|&(x, y)| two.pixel(x, y).is_some_and(|p| p.blue() > 70 && p.red() < 80 && p.green() < 160))
+            .count()
+    };
+    let (left, right) = (dark(0, 450), dark(450, 900));
+    assert!(left > 5000 && (left as f64 / right as f64 - 1.0).abs() < 0.15, "{left} and {right} pixels of water");
+    let said = pontoon(&desk, &["report", "a", "--time", "1"]);
+    assert!(!said.status.success(), "a time belongs to a picture");
+}
+
+/// A fault as the guard would report it.
+fn fault() -> Error {
+    let fault = Fault {
+        reason: "the water has left".into(),
+        who: "water particle 12".into(),
+        step: 7,
+        time: 0.01,
+        position: vec![0.1, 0.2],
+        velocity: vec![30.0, 0.0],
+        density: Some(1010.0),
+        cause: "too long a step: shorten the step".into(),
+    };
+    Error { fault: Some(Box::new(fault)), ..Error::new(Kind::Fault, "the water has left the domain") }
+}
+
+#[test]
+fn a_run_that_failed_or_has_not_finished_says_so_on_its_page() {
+    let desk = desk("fails");
+    let run = ran(&desk, "bay", BAY, &["--no-report"]);
+    let mut manifest = Manifest::read(&run).unwrap();
+    manifest.status = Status::Running;
+    manifest.write(&run).unwrap();
+    let words = |run: &Path| {
+        let page = report::write(run).unwrap();
+        assert!(page.bytes < report::MOST_BYTES);
+        fs::read_to_string(page.path).unwrap()
+    };
+    assert!(words(&run).contains("This run has not finished"));
+    let said = pontoon(&desk, &["report", "nowhere"]);
+    assert!(!said.status.success() && String::from_utf8_lossy(&said.stderr).contains("holds no run"));
+    manifest.fail(&fault());
+    manifest.write(&run).unwrap();
+    let text = words(&run);
+    for word in ["This run could not go on", "the water has left", "shorten the step"] {
+        assert!(text.contains(word), "{word:?} is not on the page");
+    }
+}
+
+#[test]
+fn a_page_loads_nothing_and_a_scene_that_is_lost_is_a_remark() {
+    let desk = desk("lost");
+    let run = ran(&desk, "bay", BAY, &["--no-report"]);
+    fs::remove_dir_all(run.join("scene")).unwrap();
+    let page = report::write(&run).unwrap();
+    assert!(page.remarks.iter().any(|remark| remark.contains("bodies and gauges are not drawn")), "{:?}", page.remarks);
+    let text = fs::read_to_string(page.path).unwrap();
+    for word in ["src=", "@import", "url(", "fetch(", "XMLHttpRequest", "href=\"http"] {
+        assert!(!text.contains(word), "{word:?} is on the page");
+    }
+}
