@@ -10,8 +10,11 @@ use crate::{
     series::Series,
     shape::Shape,
     solid::{Formula, FreeBody, Law, Motion, Role, SolidSpec, hydrostatics::equilibrium_height},
-    space::{Matrix, Vector, Wedge},
+    space::{Matrix, Pose, Vector, Wedge},
 };
+
+/// Largest extent, dp, of bodies that must weigh half a water particle.
+const SMALL: f64 = 7.9;
 
 impl Scene {
     /// The solids of the scene; drafts are below `level` (m).
@@ -58,16 +61,18 @@ impl Scene {
         Ok(spec)
     }
 
-    /// Refuses a free body under gravity that weighs less than half a water particle: it would ride on single particles.
+    /// Refuses a free body under gravity that is small and weighs less than half a water particle: it would ride on single ones.
     fn heavy_enough<const D: usize>(&self, key: &str, spec: &SolidSpec<D>) -> Result<()> {
         let (rho0, heavy) = (self.model.rho0.unwrap_or_default(), self.gravity.iter().flatten().any(|g| *g != 0.0));
         let Role::Free(body) = &spec.role else { return Ok(()) };
         let least = 0.5 * rho0 * self.dp.powi(D as i32);
-        if !heavy || body.mass >= least {
+        let small = spec.shape.bounds_at(&Pose::identity()).size().max() < SMALL * self.dp;
+        if !heavy || !small || body.mass >= least {
             return Ok(());
         }
         let part = 0.5 * body.mass / least;
-        let what = format!("\"{}\" weighs {part:.2} of a water particle: no draft could come of that", spec.name);
+        let what =
+            format!("\"{}\" is small and weighs {part:.2} of a water particle: no draft could come of that", spec.name);
         let dp = 0.99 * self.dp * (body.mass / least).powf(1.0 / D as f64);
         Err(self.wrong_with(
             &format!("{key}.free"),

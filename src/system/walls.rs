@@ -82,7 +82,7 @@ impl<const D: usize> System<D> {
             let owner = self.owner(i);
             let pull = self.medium.gravity - owner.acceleration_at(&self.skin.r[i]);
             let depth = self.depths[i];
-            let density = self.medium.rho0 * (1.0 + self.state.excess(fit.close(&pull, depth)));
+            let density = self.medium.rho0 * (1.0 + self.state.excess(fit.close(&pull, &self.medium.gravity, depth)));
             (density, self.cover.part(fit.weight, depth))
         };
         let wet = self.near.wet();

@@ -227,9 +227,9 @@ fn fit(p: impl Fn(&Vector<3>) -> f64) -> Fit<f64, 3> {
 fn the_pressure_of_water_that_moves_with_a_wall_is_extrapolated_to_it_exactly() {
     let pull = Vector::from([1.0, -2.0, -9.81]);
     // ∇P = ρ₀ (g − a): linear.
-    let p = fit(|r| 7.0 + pull.dot(r)).close(&pull, 0.01);
+    let p = fit(|r| 7.0 + pull.dot(r)).close(&pull, &pull, 0.01);
     assert!((p - 7.0).abs() < 1e-12, "{p}");
-    assert_eq!(Fit::<f64, 3>::all(0.0).close(&pull, 0.01), 0.0, "no water, no pressure");
+    assert_eq!(Fit::<f64, 3>::all(0.0).close(&pull, &pull, 0.01), 0.0, "no water, no pressure");
 }
 
 #[test]
@@ -238,12 +238,16 @@ fn a_face_is_never_sucked_at() {
     let at = |below: f64, p: f64| {
         let mut fit = Fit::all(0.0);
         fit.add(0.3, p, 1.0, [0.0, 0.0, below]);
-        fit.close(&g, deep)
+        fit.close(&g, &g, deep)
     };
     // Water 6 mm below the particle under no pressure: the face 4 mm below it has less than none, and is given none.
     assert!((at(0.006, 0.0) + 9.81 * deep).abs() < 1e-15);
     // With 0.03 m²/s² it has 0.03 − g · 2 mm.
     assert!((at(0.006, 0.03) - (0.03 - 9.81 * 0.006)).abs() < 1e-15);
+    // However a body is thrown about, its weight is all that counts.
+    let mut fit = Fit::all(0.0);
+    fit.add(0.3, 0.0, 1.0, [0.0, 0.0, 0.006]);
+    assert!((fit.close(&(g * 1e6), &g, deep) + 9.81 * deep).abs() < 1e-15);
     // Above a bed the particle has at least none itself.
     assert_eq!(at(-0.006, -1.0), 0.0);
 }

@@ -5,7 +5,7 @@
 //!   dρ_w/dt = continuity + (ρ(P_w) − ρ_w)/τ,   τ = 10 h/c₀.
 //!
 //! Water that strikes it meets the dynamic wall; water at rest, or carried along, presses on it as on more water, and no gap
-//! is remembered. P_w is never so low that the face itself would be sucked at, P_w ≥ min(0, ρ₀ (g − a_w)·n' d), d deep along n' from
+//! is remembered. P_w is never so low that the face itself would be sucked at, P_w ≥ min(0, ρ₀ g·n' d), d deep along n' from
 //! the water: a face that bears nothing has 0 there, and less behind it if it looks down. To more pressure a particle settles only with
 //! the part of its [`Cover`]: a particle of spray would leave with more energy than it brought, and so would a film.
 
@@ -69,15 +69,16 @@ impl<N: Num, const D: usize> Fit<N, D> {
 }
 
 impl<const D: usize> Fit<f64, D> {
-    /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle that feels `pull` = g − a_w (m/s²) and lies `depth` (m) below the face.
-    pub fn close(&self, pull: &Vector<D>, depth: f64) -> f64 {
+    /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle that feels `pull` = g − a_w (m/s²), of which `g` is the weight, and lies
+    /// `depth` (m) below the face.
+    pub fn close(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 {
         // At the rim of the support the weight is the square of a rounding: no water.
         if self.weight < 1e-9 {
             return 0.0;
         }
         let arm = Vector::from(self.arm);
         // The face is where the water is: a thin plate has two.
-        let least = arm.try_normalize(0.0).map_or(0.0, |away| (pull.dot(&away) * depth).min(0.0));
+        let least = arm.try_normalize(0.0).map_or(0.0, |away| (g.dot(&away) * depth).min(0.0));
         ((self.head + pull.dot(&arm)) / self.weight).max(least)
     }
 }
