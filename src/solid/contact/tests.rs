@@ -106,9 +106,10 @@ where
 
 #[test]
 fn a_light_box_bears_one_ten_thousand_times_as_heavy() {
-    // Two contacts that give as under equal boxes, some tenths of a millimetre; the bound is a tenth of dp, which a user sees.
+    // Two contacts that give as under equal boxes, a millimetre at this step, of springs of 50 Hz; the bound is a tenth of
+    // dp = 2 cm, as in `pontoon stress`.
     for ratio in [1.0, 100.0, 1e4] {
         let sinks = [stack_sinks::<2>(ratio), stack_sinks::<3>(ratio)];
-        assert!(sinks.iter().all(|sink| (0.0..1e-3).contains(sink)), "{ratio}: {sinks:?}");
+        assert!(sinks.iter().all(|sink| (0.0..2e-3).contains(sink)), "{ratio}: {sinks:?}");
     }
 }
