@@ -154,7 +154,8 @@ where
     let push = Motor { force: formula("3*t"), ..Motor::default() };
     let mut air = Air::new(vec![bar], joined(hinge([None, Some(0)], Vector::zeros()).motor(push)), 0.0);
     air.run(1e-4, 0.2);
-    assert!((air.rig.joint(0).rate / (1.5 * 0.04 / i) - 1.0).abs() < 1e-9, "{:?}", air.rig.joint(0));
+    // In space the locks, found in four sweeps, leave 1e-7; a law read half a step late would be 2.5e-4 off.
+    assert!((air.rig.joint(0).rate / (1.5 * 0.04 / i) - 1.0).abs() < 1e-6, "{:?}", air.rig.joint(0));
     // A servo holds its angle against the weight but for the sag F/k, and a drive keeps its pace.
     let servo = Motor { position: formula("0.4*min(t, 1)"), ..Motor::damping(300.0) };
     let mut air = pendulum::<D>(Some(Motor { stiffness: Law::constant(2e4), ..servo }));
