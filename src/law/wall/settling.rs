@@ -113,7 +113,7 @@ impl Cover {
     }
 
     /// The part (0 to 1) with which a boundary particle `depth` (m) below the face may settle to more pressure, if its fit has
-    /// `weight`: 0 beside spray, or in a film between two solids, 1 where water is all around.
+    /// `weight`: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
     pub fn part(&self, weight: f64, depth: f64) -> f64 {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);
         let (k, rest) = (place as usize, place.fract());
