@@ -8,6 +8,8 @@ use pontoon::{
     run::{Body, Outcome, Start},
 };
 
+pub use pontoon::report::duration;
+
 use super::shelf::Listed;
 
 /// A table with its columns aligned, two spaces in; the first row is its header.
@@ -33,16 +35,6 @@ pub fn short(n: f64) -> String {
         n if n >= 1e4 => format!("{:.1} k", n / 1e3),
         n if n >= 100.0 => format!("{n:.0}"),
         n => format!("{n:.2}"),
-    }
-}
-
-/// A wall time (s) as a user says it.
-pub fn duration(seconds: f64) -> String {
-    let whole = seconds.round() as u64;
-    match whole {
-        0..=59 => format!("{seconds:.1} s"),
-        60..=3599 => format!("{} min {:02} s", whole / 60, whole % 60),
-        _ => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
     }
 }
 
@@ -153,7 +145,6 @@ mod tests {
     #[test]
     fn numbers_are_said_briefly() {
         assert_eq!([short(1.234e6), short(5.0), short(123.4)], ["1.23 M", "5.00", "123"]);
-        assert_eq!([duration(3.21), duration(125.0), duration(7260.0)], ["3.2 s", "2 min 05 s", "2 h 01 min"]);
     }
 
     #[test]

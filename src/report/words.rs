@@ -113,5 +113,6 @@ mod tests {
         );
         assert_eq!([thousands(999), thousands(1234567)], ["999", "1\u{202f}234\u{202f}567"]);
         assert_eq!([bytes(12), bytes(1_500_000)], ["12 B", "1.5 MB"]);
+        assert_eq!([duration(3.21), duration(125.0), duration(7260.0)], ["3.2 s", "2 min 05 s", "2 h 01 min"]);
     }
 }

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::flexible::{Draft, LineWords, Numbers, Touch, Unit};
+use super::flexible::{Draft, LineWords, Numbers, Unit};
+use crate::shape::Contact;
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -101,7 +102,7 @@ pub struct MeshWords {
     pub flip: Option<bool>,
     /// What other bodies touch; fitting if not said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<Touch>,
+    pub contact: Option<Contact>,
 }
 
 /// A coordinate direction.

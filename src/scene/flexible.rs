@@ -204,23 +204,6 @@ impl Unit {
     }
 }
 
-/// What of a mesh other bodies touch: see [`crate::shape::Contact`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Touch {
-    /// What fits its role and form.
-    #[default]
-    Fitting,
-    /// Every facet.
-    Surface,
-    /// The convex hull.
-    Hull,
-    /// Convex parts.
-    Decomposition,
-    /// Nothing.
-    None,
-}
-
 /// A line: its points, a table with the columns `x_m` and `y_m`, or a drawing; as a wall it may have a thickness.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LineWords {

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{AtWords, Axis, LineWords, MeshWords, Scene, ShapeWords, Touch, drawing, mesh, table};
+use super::{AtWords, Axis, LineWords, MeshWords, Scene, ShapeWords, drawing, mesh, table};
 
 use crate::{
     error::Result,
-    shape::{Contact, Shape},
+    shape::Shape,
     space::{Bounds, Pose, Vector},
 };
 
@@ -54,14 +54,7 @@ fn solid<const D: usize>(scene: &Scene, words: &MeshWords) -> Result<Shape<D>> {
     let path = table::beside(&scene.origin.folder, &words.file)?;
     let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
     let mesh = mesh::read(&path, unit, words.flip.unwrap_or(false))?;
-    let contact = match words.contact.unwrap_or_default() {
-        Touch::Fitting => Contact::Fitting,
-        Touch::Surface => Contact::Surface,
-        Touch::Hull => Contact::Hull,
-        Touch::Decomposition => Contact::Decomposition,
-        Touch::None => Contact::None,
-    };
-    Ok(Shape::Mesh { mesh: Arc::new(mesh), contact })
+    Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: words.contact.unwrap_or_default() })
 }
 
 fn points<const D: usize>(scene: &Scene, words: &LineWords) -> Result<Vec<Vector<D>>> {

@@ -33,7 +33,7 @@ pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWord
 pub(crate) use build::Stage;
 pub use build::{Built, Still};
 pub use document::Source;
-pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Touch, Unit};
+pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Unit};
 pub use flow::PeriodicWords;
 pub use format::{
     BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,

@@ -3,12 +3,13 @@
 use std::{collections::BTreeMap, fmt};
 
 use super::{
-    AtWords, Axis, FrameOf, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, Touch, Unit, document::Source,
+    AtWords, Axis, FrameOf, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, Unit, document::Source,
     verify::FIELDS,
 };
 use crate::{
     error::Result,
     model::{C0_FACTOR, Model, Scheme},
+    shape::Contact,
 };
 
 /// A value in force and who said it.
@@ -360,7 +361,7 @@ impl Sheet {
                 filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the file's own size");
                 filler.fill(format!("{key}.unit"), &mut words.unit, Unit::M, "neither STL nor OBJ tells its unit");
                 let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
-                filler.fill(format!("{key}.contact"), &mut words.contact, Touch::Fitting, why);
+                filler.fill(format!("{key}.contact"), &mut words.contact, Contact::Fitting, why);
             }
             ShapeWords::Polygon(words) if words.is_drawing() => {
                 let key = format!("{key}.polygon");

@@ -7,6 +7,8 @@ mod whole;
 
 use std::collections::HashMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Volume, draught::Facet};
 use crate::{
     error::{Error, Result},
@@ -29,8 +31,9 @@ pub struct Mesh {
     tree: Tree,
 }
 
-/// What of a mesh other bodies touch. The water sees the mesh itself, whatever is chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What of a mesh other bodies touch. The water sees the mesh itself, whatever is chosen. Scene word `mesh.contact`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Contact {
     /// The surface of a solid that is fixed. Of one that moves its hull, where that has at most a hundredth more
     /// volume, else its decomposition: two surfaces without an inside cannot be kept apart.
