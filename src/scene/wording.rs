@@ -158,7 +158,10 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         false => error.help(lines.join("\n")),
     };
     if let (true, [word, known @ ..]) = (message.starts_with("unknown field"), &words[..]) {
-        let parent = key.strip_suffix(word).map_or(key, |parent| parent.trim_end_matches('.'));
+        // The key ends with the unknown word or, after --set, goes on below it.
+        let parts: Vec<&str> = key.split('.').collect();
+        let known_parts = parts.iter().rposition(|part| part == word).unwrap_or(parts.len());
+        let parent = &parts[..known_parts].join(".");
         let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // Of the same parent: a water's velocity is not a probe's.

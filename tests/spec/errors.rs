@@ -210,6 +210,15 @@ fn every_shipped_scene_is_built() {
     }
 }
 
+#[test]
+fn a_misspelt_set_is_shown_as_it_was_written() {
+    for (key, shown) in [("modle.walls", "modle"), ("model.wals", "model.wals"), ("model.kernal.cubic", "model.kernal")]
+    {
+        let error = try_out(GOOD, &[(key, "1")]).unwrap_err().to_string();
+        assert!(error.contains(&format!("in --set, {shown}\n")), "{key}: {error}");
+    }
+}
+
 /// Words and signs that are swapped into a scene.
 const PIECES: [&str; 24] = [
     "",
