@@ -84,6 +84,18 @@ pub enum ProbeKind {
     Front,
     /// Energies of water and bodies.
     Energy,
+    /// All loads on a free body, by kind.
+    Balance {
+        /// The body's name.
+        solid: String,
+    },
+    /// How two solids press on each other.
+    Contact {
+        /// Their names.
+        between: [String; 2],
+    },
+    /// Where energy came from and went.
+    Budget,
 }
 
 /// When frames are written, and with which fields.

@@ -1,5 +1,6 @@
 //! A running simulation: limit, step, check; no files.
 
+mod booked;
 mod rescue;
 mod tied;
 
@@ -18,12 +19,12 @@ use crate::{
     error::{Error, Fault, Kind, Result},
     model::Dimension,
     solid::{
-        Dim, HasEngine as _, Role, SolidSpec,
+        Contact, Dim, HasEngine as _, Role, SolidSpec,
         rig::{Rig, RigState},
     },
     space::{Vector, Wedge},
     system::{System, SystemState},
-    time::{Bodies, Held, Interval, Light, Stepper, limit},
+    time::{Bodies, Books, Held, Interval, Light, Stepper, limit},
 };
 
 /// Water and solids moving through time.
@@ -69,6 +70,7 @@ struct Kept<const D: usize> {
     rig: RigState<D>,
     rescued: Vec<Rescued>,
     lost: Vec<(f64, Lost<D>)>,
+    books: Option<Books<D>>,
 }
 
 impl<const D: usize> Simulation<D> {
@@ -163,6 +165,9 @@ impl<const D: usize> Simulation<D> {
     fn advance(&mut self, end: f64) -> Result<()> {
         if let Some(renewal) = self.system.renew() {
             self.stepper.follow(&renewal, self.system.medium().rho0);
+            if let Some(books) = &mut self.bodies.books {
+                books.removed(&self.system, &renewal.lost);
+            }
             self.lost.extend(renewal.lost.into_iter().map(|lost| (self.clock.time, lost)));
         }
         self.system.rates();
@@ -283,8 +288,8 @@ impl<const D: usize> Simulation<D> {
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
     }
 
-    /// Touching pairs of solids and the normal force (N; N/m in 2-D) between them in the last step.
-    pub fn contacts(&self) -> Vec<(usize, usize, f64)> {
+    /// How the solids pressed on one another in the last step, pair by pair.
+    pub fn contacts(&self) -> Vec<Contact<D>> {
         self.bodies.engine().map(|e| e.contacts()).unwrap_or_default()
     }
 
@@ -297,7 +302,8 @@ impl<const D: usize> Simulation<D> {
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
         let rescued = self.rescue.log.clone();
         let (light, rig, lost) = (self.bodies.held(), self.bodies.rig().save(), self.lost.clone());
-        let kept = Kept { system, stepper, clock, engine, light, rig, rescued, lost };
+        let books = self.bodies.books.clone();
+        let kept = Kept { system, stepper, clock, engine, light, rig, rescued, lost, books };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
@@ -316,7 +322,13 @@ impl<const D: usize> Simulation<D> {
         if !self.bodies.restore(&kept.light) || !self.bodies.rig_mut().restore(kept.rig) {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
+        match (&self.bodies.books, &kept.books) {
+            (Some(own), Some(books)) if own.like(books) => {}
+            (None, None) => {}
+            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other books of loads and energy")),
+        }
         self.system.restore(kept.system)?;
+        self.bodies.books = kept.books;
         (self.stepper, self.clock, self.lost) = (kept.stepper, kept.clock, kept.lost);
         self.rescue.begin_again(kept.rescued);
         Ok(())

@@ -3,6 +3,9 @@
 //! A [`Probe`] names its columns, units included, and gives a number for each whenever it is asked. Sums
 //! over the water are interpolations with the kernel W and the volumes V_b = m/ρ_b.
 
+mod balance;
+mod budget;
+mod contact;
 mod elevation;
 mod energy;
 mod force;
@@ -13,6 +16,9 @@ mod motion;
 mod pressure;
 mod velocity;
 
+pub use balance::Balance;
+pub use budget::Budget;
+pub use contact::Contact;
 pub use elevation::Elevation;
 pub use energy::Energy;
 pub use force::Force;

@@ -142,6 +142,29 @@ pub fn energy(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     Some((rows, said))
 }
 
+/// What a budget table comes to at the end: each entry, and its share of all that was turned over; and how well it closes, in
+/// words. None of any other table.
+pub fn budget(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
+    if table.what != "energy budget" {
+        return None;
+    }
+    let unit = words::unit(table.columns.first()?);
+    let last = table.x.iter().map(|x| x.last().copied()).collect::<Option<Vec<f64>>>()?;
+    let (residual, entries) = last.split_last().and_then(|(residual, rest)| Some((residual, rest.get(1..)?)))?;
+    let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
+    let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
+    let row = |(name, energy): (&String, &f64)| {
+        vec![words::bare(name), words::digits(*energy), words::minus(&format!("{:.2}", share(*energy)))]
+    };
+    let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
+    let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();
+    let said = format!(
+        "All entries but {:.2} % of what was turned over add up to what water and bodies have stored.",
+        share(residual.abs())
+    );
+    Some((rows, said))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

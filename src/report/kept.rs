@@ -241,6 +241,9 @@ impl Table {
             ProbeKind::Pressure { .. } => "pressure",
             ProbeKind::Front => "leading edge of the water",
             ProbeKind::Energy => "energy",
+            ProbeKind::Balance { .. } => "loads by kind",
+            ProbeKind::Contact { .. } => "contact",
+            ProbeKind::Budget => "energy budget",
         });
         Ok(Self { name: name.into(), what, columns, t, x })
     }

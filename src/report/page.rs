@@ -173,7 +173,7 @@ fn single(run: &Kept, told: &Run) -> String {
         + &section("player", "Player", &player(std::slice::from_ref(told)))
         + &section("checks", "Against references", &(held + &charts("held", !told.checks.is_empty())))
         + &section("series", "Series", &charts("charts", !told.tables.is_empty()))
-        + &section("energy", "Energy budget", &sections::energy(run))
+        + &section("energy", "Energy", &sections::energy(run))
         + &section(
             "figures",
             "Figures of the series",

@@ -152,9 +152,9 @@ pub fn verdicts(runs: &[Kept]) -> String {
     wide(&said::rows(&pairs, if several { &["run"] } else { &[] })) + said
 }
 
-/// The energy budget; empty without an energy table.
+/// Energies and where they went; empty without a table of them.
 pub fn energy(run: &Kept) -> String {
-    let budgets = run.tables.iter().filter_map(figures::energy);
+    let budgets = run.tables.iter().filter_map(|table| figures::energy(table).or_else(|| figures::budget(table)));
     budgets.map(|(rows, said)| format!("{}<p>{}</p>\n", wide(&rows), escape(&said))).collect()
 }
 

@@ -55,7 +55,7 @@ where
         let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
         let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup)?;
-        let probes = outputs::probes(&plan, sim.system())?;
+        let probes = outputs::probes(&plan, &mut sim)?;
         let checks = outputs::checks(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
         let mut warnings = preflight::look(&sim, &plan, still, overlapped, &columns).warnings();

@@ -11,10 +11,12 @@ use std::{
 use crate::{
     check::Check,
     error::{Error, Kind, Result, nearest},
+    model::Dimension,
     probe::{self, Probe},
     record::{Checkpoint, Frames, Table},
     scene::{CheckWords, Plan, ProbeKind, ProbeWords},
     simulation::Simulation,
+    solid::Dim,
     system::System,
 };
 
@@ -188,11 +190,21 @@ pub fn series_folder(folder: &Path) -> PathBuf {
     folder.join("series")
 }
 
-/// The probes that `plan` asks for, made from the system at its start.
+/// The probes that `plan` asks for, made from the simulation at its start, which keeps the books that they read.
 ///
 /// # Errors
 /// `Scene` or `Usage` if one names no solid or a place with the wrong number of coordinates.
-pub fn probes<const D: usize>(plan: &Plan, system: &System<D>) -> Result<Vec<Box<dyn Probe<D>>>> {
+pub fn probes<const D: usize>(plan: &Plan, sim: &mut Simulation<D>) -> Result<Vec<Box<dyn Probe<D>>>>
+where
+    Dim<D>: Dimension<D>,
+{
+    if plan.probes.iter().any(|words| words.what == ProbeKind::Budget) {
+        sim.keep_energy();
+    }
+    if plan.probes.iter().any(|words| matches!(words.what, ProbeKind::Balance { .. })) {
+        sim.keep_loads();
+    }
+    let system = sim.system();
     plan.probes.iter().map(|words| made(words, system)).collect()
 }
 
@@ -211,6 +223,9 @@ fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dy
         ProbeKind::Pressure { at } => Box::new(probe::Pressure::new(at)?),
         ProbeKind::Front => Box::new(probe::Front),
         ProbeKind::Energy => Box::new(probe::Energy::new(system)),
+        ProbeKind::Balance { solid } => Box::new(probe::Balance::new(system, solid)?),
+        ProbeKind::Contact { between: [a, b] } => Box::new(probe::Contact::new(system, [a, b])?),
+        ProbeKind::Budget => Box::new(probe::Budget::new(system)),
     })
 }
 

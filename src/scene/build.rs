@@ -331,6 +331,9 @@ fn kind(probe: &ProbeEntry) -> ProbeKind {
         ProbeEntry { velocity: Some(at), .. } => ProbeKind::Velocity { at: at.clone() },
         ProbeEntry { pressure: Some(at), .. } => ProbeKind::Pressure { at: at.clone() },
         ProbeEntry { front: Some(_), .. } => ProbeKind::Front,
+        ProbeEntry { balance: Some(solid), .. } => ProbeKind::Balance { solid: solid.clone() },
+        ProbeEntry { contact: Some(between), .. } => ProbeKind::Contact { between: between.clone() },
+        ProbeEntry { budget: Some(_), .. } => ProbeKind::Budget,
         _ => ProbeKind::Energy,
     }
 }

@@ -16,6 +16,12 @@ use crate::{
 /// Largest extent, dp, of bodies that must weigh half a water particle.
 const SMALL: f64 = 7.9;
 
+/// Thickness, dp, below which one row of boundary particles stands for both faces of a body.
+const THIN: f64 = 1.5;
+
+/// Least density over the water's of so thin a body, –.
+const THIN_DENSITY: f64 = 0.2;
+
 impl Scene {
     /// The solids of the scene; drafts are below `level` (m).
     pub(super) fn solids<const D: usize>(&self, level: f64) -> Result<Vec<SolidSpec<D>>> {
@@ -58,6 +64,7 @@ impl Scene {
         };
         spec.check().map_err(|e| self.origin.place(e, key))?;
         self.heavy_enough(key, &spec)?;
+        self.thick_enough(key, &spec)?;
         Ok(spec)
     }
 
@@ -79,6 +86,28 @@ impl Scene {
             what,
             format!("half of one is the least: write  dp = {dp:.2e}  or less"),
         ))
+    }
+
+    /// Refuses a light free plate of a single row of boundary particles, which cannot press on both sides as they should.
+    fn thick_enough<const D: usize>(&self, key: &str, spec: &SolidSpec<D>) -> Result<()> {
+        let (rho0, heavy) = (self.model.rho0.unwrap_or_default(), self.gravity.iter().flatten().any(|g| *g != 0.0));
+        let Role::Free(body) = &spec.role else { return Ok(()) };
+        let thickness = spec.shape.bounds_at(&Pose::identity()).size().min();
+        let density = body.mass / (rho0 * spec.shape.volume().volume);
+        if !heavy || thickness >= THIN * self.dp || density >= THIN_DENSITY {
+            return Ok(());
+        }
+        let what = format!(
+            "\"{}\" is {:.2} dp thick and has {density:.2} of the water's density: one row of boundary particles stands for \
+             both its faces",
+            spec.name,
+            thickness / self.dp
+        );
+        let help = format!(
+            "two rows bear it: write  dp = {:.2e}  or less, or make it as heavy as {THIN_DENSITY}",
+            0.5 * thickness
+        );
+        Err(self.wrong_with(&format!("{key}.free"), what, help))
     }
 
     fn motion<const D: usize>(&self, key: &str, words: &DrivenWords) -> Result<Motion<D>> {

@@ -233,6 +233,15 @@ pub struct ProbeEntry {
     /// Energies of water and bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<bool>,
+    /// All loads on the free solid of this name, by kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub balance: Option<String>,
+    /// How the two solids of these names press on each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<[String; 2]>,
+    /// Where energy came from and went.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub budget: Option<bool>,
 }
 
 /// A place on the plan: x in 2-D, x and y in 3-D.

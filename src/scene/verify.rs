@@ -167,14 +167,20 @@ impl Scene {
             self.positive(&format!("{key}.every"), probe.every)?;
             if kinds(probe).len() != 1 {
                 let what = format!("a probe looks at one thing; this one at {}", said(&kinds(probe)));
-                let help = "one of motion, force, joint, spring, rope, elevation, velocity, pressure, front, energy; a [[probe]] \
-                     section for each";
+                let help = "one of motion, force, balance, contact, joint, spring, rope, elevation, velocity, pressure, front, \
+                     energy, budget; a [[probe]] section for each";
                 return Err(self.wrong_with(&key, what, help));
             }
-            for (word, solid) in [("motion", &probe.motion), ("force", &probe.force)] {
-                if let Some(name) = solid {
-                    self.known_solid(&format!("{key}.{word}"), name)?;
-                }
+            let solids = [("motion", &probe.motion), ("force", &probe.force), ("balance", &probe.balance)];
+            let pair = probe.contact.iter().flatten().map(|name| ("contact", name));
+            for (word, name) in solids.into_iter().filter_map(|(word, name)| Some((word, name.as_ref()?))).chain(pair) {
+                self.known_solid(&format!("{key}.{word}"), name)?;
+            }
+            let free = |name: &String| self.solid.iter().any(|solid| solid.name == *name && solid.free.is_some());
+            if let Some(name) = probe.balance.as_ref().filter(|name| !free(name)) {
+                let what = format!("\"{name}\" is not free: what it weighs and carries is not known");
+                let help = format!("the water's load on any solid is  force = \"{name}\"");
+                return Err(self.wrong_with(&format!("{key}.balance"), what, help));
             }
             self.known_ties(&key, probe)?;
             for (word, at) in [("velocity", &probe.velocity), ("pressure", &probe.pressure)] {
@@ -193,7 +199,7 @@ impl Scene {
                 }
                 _ => {}
             }
-            for (word, given) in [("front", probe.front), ("energy", probe.energy)] {
+            for (word, given) in [("front", probe.front), ("energy", probe.energy), ("budget", probe.budget)] {
                 if given == Some(false) {
                     let what = format!("{word} = false watches nothing");
                     return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
@@ -261,10 +267,12 @@ impl Scene {
             let before = nameless.entry(kind).or_default();
             let alike = *before;
             *before += usize::from(probe.name.is_none());
-            let own = match (&probe.name, &probe.motion, &probe.force) {
-                (Some(name), ..) => name.clone(),
-                (None, Some(solid), _) => solid.clone(),
-                (None, None, Some(solid)) => format!("{solid}_force"),
+            let own = match probe {
+                ProbeEntry { name: Some(name), .. } => name.clone(),
+                ProbeEntry { motion: Some(solid), .. } => solid.clone(),
+                ProbeEntry { force: Some(solid), .. } => format!("{solid}_force"),
+                ProbeEntry { balance: Some(solid), .. } => format!("{solid}_balance"),
+                ProbeEntry { contact: Some([a, b]), .. } => format!("{a}_{b}_contact"),
                 _ if probe.joint.is_some() || probe.spring.is_some() || probe.rope.is_some() => {
                     let ties = [&probe.joint, &probe.spring, &probe.rope];
                     ties.into_iter().flatten().next().cloned().unwrap_or_default()
@@ -291,6 +299,9 @@ fn kinds(probe: &ProbeEntry) -> Vec<&'static str> {
         ("pressure", probe.pressure.is_some()),
         ("front", probe.front.is_some()),
         ("energy", probe.energy.is_some()),
+        ("balance", probe.balance.is_some()),
+        ("contact", probe.contact.is_some()),
+        ("budget", probe.budget.is_some()),
     ];
     given.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()
 }

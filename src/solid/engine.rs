@@ -44,9 +44,8 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Sets the velocity of the centre of mass (m/s) and the spin (rad/s) of a free solid.
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>);
 
-    /// Pairs of solids that pressed on each other in the last step (lower index first), with the sum of the
-    /// normal forces (N) at their contact points.
-    fn contacts(&self) -> Vec<(usize, usize, f64)>;
+    /// How the solids pressed on one another in the last step, pair by pair in order.
+    fn contacts(&self) -> Vec<Contact<D>>;
 
     /// Holds a free solid still, or lets it go as it was made.
     fn hold(&mut self, solid: usize, held: bool);
@@ -72,6 +71,19 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// # Errors
     /// `Restart` if the bytes are damaged, or of another version or list of solids; the engine is unchanged.
     fn restore(&mut self, bytes: &[u8]) -> Result<()>;
+}
+
+/// How two solids pressed on each other in the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<const D: usize> {
+    /// Their numbers, the lower first.
+    pub between: [usize; 2],
+    /// Sum of the normal forces at their contact points, N (N/m in 2-D).
+    pub pressing: f64,
+    /// Where they act: the mean of the contact points, weighed by the normal forces, m.
+    pub at: Vector<D>,
+    /// Loads on the first and on the second, friction included, each about its own centre.
+    pub loads: [Load<D>; 2],
 }
 
 /// A step that the engine could not make, and the solid to blame.

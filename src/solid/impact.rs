@@ -4,7 +4,24 @@
 //! where friction and restitution together would make energy, friction is left out. The engine's own contacts are springs
 //! without restitution, which hold what rests. Compiled for each dimension as part of the world: `super` names the engine.
 
+use serde::{Deserialize, Serialize};
+
 use super::{super::Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
+
+/// Two solids that bounced off each other at a point.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Met {
+    /// Their numbers.
+    pub(super) between: [usize; 2],
+    /// Where, m.
+    pub(super) at: Point,
+    /// From their centres of mass to there, m.
+    pub(super) arms: [Point; 2],
+    /// Impulse along the normal, N s.
+    pub(super) along: f64,
+    /// The whole impulse on the second, N s.
+    pub(super) impulse: Point,
+}
 
 /// How far ahead touching is foreseen, in steps: loads change the speed meanwhile.
 const AHEAD: f64 = 1.5;
@@ -34,12 +51,8 @@ struct Touch {
 }
 
 /// Lets the bodies of `world` that are to touch in a step `dt` (s) part again. `pair` gives restitution and friction of two solids
-/// whose mean friction it is told. Gives who met, with the impulse (N s) at each point.
-pub(super) fn rebound(
-    world: &mut PhysicsWorld,
-    dt: f64,
-    pair: impl Fn(usize, usize, f64) -> (f64, f64),
-) -> Vec<(usize, usize, f64)> {
+/// whose mean friction it is told. Gives who met, point by point.
+pub(super) fn rebound(world: &mut PhysicsWorld, dt: f64, pair: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Met> {
     let mut touches = find(world, dt, pair);
     for touch in &mut touches {
         touch.response = response(world, touch, touch.normal);
@@ -58,7 +71,13 @@ pub(super) fn rebound(
         }
         solve(world, &mut touches);
     }
-    let met = |touch: &Touch| (touch.owners[0].min(touch.owners[1]), touch.owners[0].max(touch.owners[1]), touch.along);
+    let met = |touch: &Touch| Met {
+        between: touch.owners,
+        at: touch.at,
+        arms: touch.bodies.map(|body| touch.at - world.bodies[body].center_of_mass()),
+        along: touch.along,
+        impulse: touch.normal * touch.along + touch.across,
+    };
     touches.iter().map(met).collect()
 }
 

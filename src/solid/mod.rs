@@ -8,6 +8,7 @@ pub mod formula;
 pub mod hydrostatics;
 pub mod joint;
 pub mod links;
+mod load;
 pub mod mooring;
 #[cfg(feature = "dim2")]
 mod planar;
@@ -20,11 +21,12 @@ mod spatial;
 mod tests;
 
 pub use driven::{Law, Motion};
-pub use engine::{Dim, Engine, EngineFault, HasEngine};
+pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};
 pub use force::ForceSpec;
 pub use formula::{Field, Formula};
 pub use joint::{Drive, JointKind, JointSpec, Motor};
 pub use links::{ContactSpec, Hold, Links};
+pub use load::Load;
 pub use mooring::{Elastic, End, RopeSpec, SpringSpec};
 pub use rig::{JointReading, LineReading};
 pub use rows::Mobility;
@@ -84,15 +86,6 @@ pub struct FreeBody<const D: usize> {
     pub locked_translations: [bool; D],
     /// Which world rotations (axial components, one in 2-D) are locked; entries past the last are unused.
     pub locked_rotations: [bool; 3],
-}
-
-/// Force and torque on a solid.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Load<const D: usize> {
-    /// Force, N (N/m in 2-D).
-    pub force: Vector<D>,
-    /// Torque about the solid's `centre`, N m (N m/m in 2-D).
-    pub torque: Wedge<D>,
 }
 
 /// Pose and velocity of a solid at an instant.

@@ -11,9 +11,10 @@ pub(super) use world::World;
 use nalgebra::SMatrix;
 use rapier::{
     dynamics::{IntegrationParameters, RigidBodyBuilder},
-    geometry::{SharedShape, TriMesh},
+    geometry::{ContactData, SharedShape, TriMesh},
     math::{Pose as Frame, Rotation, Vector as Point},
     parry::{mass_properties::MassProperties, transformation::hertel_mehlhorn},
+    utils::OrthonormalBasis,
 };
 
 use crate::{
@@ -61,6 +62,11 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
     let [x, y] = body.locked_translations;
     let builder = builder.enabled_translations(!x, !y);
     if body.locked_rotations[0] { builder.lock_rotations() } else { builder }
+}
+
+/// Friction impulse (N s) of a contact on its first solid, which is pushed along `direction`.
+fn friction(direction: Point, data: &ContactData) -> Point {
+    direction.orthonormal_vector() * data.tangent_impulse[0]
 }
 
 /// Settings that only this dimension has: none.

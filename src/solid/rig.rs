@@ -50,6 +50,26 @@ pub struct LineReading {
     pub tension: f64,
 }
 
+/// What the ties did to a solid in the last step, by their kind.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tied<const D: usize> {
+    pub(crate) joints: Load<D>,
+    pub(crate) ropes: Load<D>,
+    pub(crate) springs: Load<D>,
+    pub(crate) motors: Load<D>,
+    pub(crate) forces: Load<D>,
+    /// Whether it was held still.
+    pub(crate) held: bool,
+}
+
+impl<const D: usize> Tied<D> {
+    /// Nothing.
+    pub(crate) fn zero() -> Self {
+        let none = Load::zero();
+        Self { joints: none, ropes: none, springs: none, motors: none, forces: none, held: false }
+    }
+}
+
 /// What of it must be kept to go on to the same bits.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RigState<const D: usize> {
@@ -73,6 +93,8 @@ pub(crate) struct Rig<const D: usize> {
     holds: Vec<Hold>,
     /// Rows of each joint's locks and of its coordinate in the present step.
     rows: Vec<Vec<Row<D>>>,
+    /// What they did to each solid in the last step.
+    tied: Vec<Tied<D>>,
     state: RigState<D>,
 }
 
@@ -101,6 +123,7 @@ impl<const D: usize> Rig<D> {
             forces: links.forces.clone(),
             holds: links.holds.clone(),
             rows: Vec::new(),
+            tied: vec![Tied::zero(); start.len()],
             state: RigState {
                 joints: vec![(None, none); links.joints.len()],
                 springs: links.springs.iter().map(spring).collect(),
@@ -122,7 +145,9 @@ impl<const D: usize> Rig<D> {
     /// Puts motors, springs and forces on the engine's solids for the step from `t` (s) on, `dt` (s) long, in which they start as
     /// `solids` says.
     pub(crate) fn act(&mut self, engine: &mut dyn Engine<D>, solids: &[Kinematics<D>], t: f64, dt: f64) {
+        self.tied.fill(Tied::zero());
         for hold in &self.holds {
+            self.tied[hold.solid].held = hold.holds(t);
             engine.hold(hold.solid, hold.holds(t));
         }
         self.rows.clear();
@@ -134,6 +159,7 @@ impl<const D: usize> Rig<D> {
                 let ease = own.with(own, &mobility);
                 reading.motor = joint.force(&drive, &ends, free.rate(&ends), ease, dt);
                 give(engine, joint.spec.between, &free.loads(reading.motor));
+                note(&mut self.tied, joint.spec.between, &free.loads(reading.motor), |tied| &mut tied.motors);
             }
             self.rows.push(rows);
         }
@@ -144,11 +170,13 @@ impl<const D: usize> Rig<D> {
                 let ease = row.with(&row, &mobility);
                 reading.tension = elastic.tension(length, row.rate(&ends), ease, dt, spring.tension_only);
                 give(engine, spring.line.solids(), &row.loads(-reading.tension));
+                note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
             }
         }
         for force in &self.forces {
             let load = force.load(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
             engine.burden(force.solid, &load);
+            self.tied[force.solid].forces += load;
         }
     }
 
@@ -156,12 +184,13 @@ impl<const D: usize> Rig<D> {
     pub(crate) fn learn(&mut self, engine: &dyn Engine<D>, before: &[Kinematics<D>], after: &[Kinematics<D>], dt: f64) {
         for (i, (joint, (_, reading))) in self.joints.iter().zip(&mut self.state.joints).enumerate() {
             let (was, is) = (joint.ends(before), joint.ends(after));
-            let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
             let impulses = engine.impulses(i);
-            let held = self.rows[i].iter().zip(&impulses).fold(none, |sum, (row, impulse)| {
-                let [_, second] = row.loads(impulse / dt);
-                Load { force: sum.force + second.force, torque: sum.torque + second.torque }
-            });
+            let mut held = Load::zero();
+            for (row, impulse) in self.rows[i].iter().zip(&impulses) {
+                let loads = row.loads(impulse / dt);
+                held += loads[1];
+                note(&mut self.tied, joint.spec.between, &loads, |tied| &mut tied.joints);
+            }
             let arm = joint.point(&was) - was[1].centre;
             (reading.force, reading.torque) = (held.force, held.torque + Wedge::torque(&arm, &held.force) * -1.0);
             reading.position = joint.position(&is);
@@ -175,6 +204,9 @@ impl<const D: usize> Rig<D> {
         for (i, (rope, reading)) in self.ropes.iter().zip(&mut self.state.ropes).enumerate() {
             let length = rope.along(&rope.ends(after)).0;
             *reading = LineReading { length, tension: engine.rope_impulse(i) / dt };
+            if let Some(row) = rope.along(&rope.ends(before)).1 {
+                note(&mut self.tied, rope.solids(), &row.loads(-reading.tension), |tied| &mut tied.ropes);
+            }
         }
     }
 
@@ -213,6 +245,11 @@ impl<const D: usize> Rig<D> {
     /// How long (s) from time `t` (s) on until the next solid is let go; no step goes past that.
     pub(crate) fn let_go(&self, t: f64) -> f64 {
         self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What the ties did to solid number `i` in the last step.
+    pub(crate) fn tied(&self, i: usize) -> Tied<D> {
+        self.tied[i]
     }
 
     /// What joint number `i` felt in the last step.
@@ -262,6 +299,20 @@ fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], lo
     for (end, load) in ends.iter().zip(loads) {
         if let Some(solid) = end {
             engine.burden(*solid, load);
+        }
+    }
+}
+
+/// Notes a load each for the solids at both ends.
+fn note<const D: usize>(
+    tied: &mut [Tied<D>],
+    ends: [Option<usize>; 2],
+    loads: &[Load<D>; 2],
+    kind: impl Fn(&mut Tied<D>) -> &mut Load<D>,
+) {
+    for (end, load) in ends.iter().zip(loads) {
+        if let Some(solid) = end {
+            *kind(&mut tied[*solid]) += *load;
         }
     }
 }

@@ -12,12 +12,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use rapier::{
     dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder},
-    geometry::{SharedShape, TriMeshFlags},
+    geometry::{ContactData, SharedShape, TriMeshFlags},
     math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
     parry::{
         mass_properties::MassProperties,
         transformation::vhacd::{VHACD, VHACDParameters},
     },
+    utils::OrthonormalBasis,
 };
 
 use crate::{
@@ -84,6 +85,12 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
         .enabled_translations(!x, !y, !z)
         .enabled_rotations(!about_x, !about_y, !about_z)
         .gyroscopic_forces_enabled(!(about_x || about_y || about_z))
+}
+
+/// Friction impulse (N s) of a contact on its first solid, which is pushed along `direction`.
+fn friction(direction: Point, data: &ContactData) -> Point {
+    let tangent = direction.orthonormal_vector();
+    tangent * data.tangent_impulse[0] + direction.cross(tangent) * data.tangent_impulse[1]
 }
 
 /// Settings that only this dimension has: Coulomb's law at every contact point.

@@ -19,12 +19,13 @@ mod impact;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "ties.rs"]
 mod ties;
-
-use std::collections::BTreeMap;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "touch.rs"]
+mod touch;
 
 use super::rapier::{
     dynamics::{LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
-    geometry::{ColliderBuilder, ColliderHandle},
+    geometry::ColliderBuilder,
     math::{Pose as Frame, Vector as Point},
     pipeline::{ActiveHooks, PhysicsWorld},
 };
@@ -35,11 +36,12 @@ use crate::{
     error::Result,
     solid::{
         Kinematics, Links, Load, Mobility, Role, SolidSpec,
-        engine::{Engine, EngineFault, iterations, restart},
+        engine::{Contact, Engine, EngineFault, iterations, restart},
     },
     space::{Pose, Vector, Wedge},
 };
 use colliders::{Parts, collect, refuse_overlap, thickness};
+use impact::Met;
 use ties::Ties;
 
 /// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
@@ -66,9 +68,6 @@ pub(in crate::solid) struct World {
     /// What of each solid is locked when it is not held.
     locks: Vec<LockedAxes>,
 }
-
-/// Two solids and the impulse (N s) with which they bounced off each other at a point.
-type Met = (usize, usize, f64);
 
 /// A load on a solid in the next step.
 type Push = (usize, Load<D>);
@@ -138,8 +137,7 @@ impl World {
         assert_eq!(loads.len(), self.bodies.len(), "every solid needs a load");
         let mut total = loads.to_vec();
         for (solid, load) in total.iter_mut().enumerate() {
-            let push = self.pushed(solid);
-            (load.force, load.torque) = (load.force + push.force, load.torque + push.torque);
+            *load += self.pushed(solid);
         }
         self.pushes.clear();
         for (solid, load) in total.iter().enumerate() {
@@ -199,11 +197,6 @@ impl World {
             velocity: from_point(body.linvel()),
         }
     }
-
-    /// The solid to which a collider belongs.
-    fn owner(&self, collider: ColliderHandle) -> usize {
-        self.world.colliders[collider].user_data as usize
-    }
 }
 
 impl Engine<D> for World {
@@ -247,11 +240,7 @@ impl Engine<D> for World {
     }
 
     fn pushed(&self, solid: usize) -> Load<D> {
-        let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
-        self.pushes
-            .iter()
-            .filter(|push| push.0 == solid)
-            .fold(none, |sum, (_, load)| Load { force: sum.force + load.force, torque: sum.torque + load.torque })
+        self.pushes.iter().filter(|push| push.0 == solid).map(|push| push.1).sum()
     }
 
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
@@ -260,19 +249,8 @@ impl Engine<D> for World {
         body.set_angvel(to_angular(spin), true);
     }
 
-    fn contacts(&self) -> Vec<(usize, usize, f64)> {
-        let mut forces = BTreeMap::new();
-        for &(a, b, impulse) in &self.met {
-            *forces.entry((a, b)).or_insert(0.0) += impulse / self.world.integration_parameters.dt;
-        }
-        for pair in self.world.narrow_phase.contact_pairs() {
-            let force = pair.total_impulse_magnitude() / self.world.integration_parameters.dt;
-            if force > 0.0 {
-                let (a, b) = (self.owner(pair.collider1), self.owner(pair.collider2));
-                *forces.entry((a.min(b), a.max(b))).or_insert(0.0) += force;
-            }
-        }
-        forces.into_iter().map(|((a, b), force)| (a, b, force)).collect()
+    fn contacts(&self) -> Vec<Contact<D>> {
+        touch::contacts(&self.world, &self.bodies, &self.met)
     }
 
     fn hold(&mut self, solid: usize, held: bool) {

@@ -3,6 +3,7 @@
 
 mod guard;
 mod kept;
+mod meter;
 pub mod periodic;
 mod setup;
 mod view;
@@ -11,6 +12,8 @@ mod walls;
 pub(crate) use guard::Seen;
 pub use guard::{Escape, Limits, Lost};
 pub(crate) use kept::SystemState;
+use meter::Meter;
+pub(crate) use meter::Powers;
 use periodic::Images;
 pub use periodic::Periodic;
 pub use setup::Setup;
@@ -42,6 +45,8 @@ pub struct System<const D: usize> {
     medium: Medium<D>,
     state: State,
     sweep: Box<dyn Sweep<D>>,
+    /// Tells the laws apart, if somebody asks.
+    meter: Option<Meter<D>>,
     pub(crate) near: Near<D>,
     pub(crate) fluid: Particles<D>,
     pub(crate) skin: Particles<D>,
@@ -138,7 +143,7 @@ impl<const D: usize> System<D> {
                 return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
                     .help("make it larger or dp smaller"));
             }
-            let load = Load { force: Vector::zeros(), torque: Wedge::zero() };
+            let load = Load::zero();
             let (acceleration, whirl) = (Vector::zeros(), Wedge::zero());
             solids.push(Solid { spec, kinematics, acceleration, whirl, skin: first..skin.len(), load });
         }
@@ -148,6 +153,7 @@ impl<const D: usize> System<D> {
         let cover = Cover::new(|r2| model.kernel_value(r2, D) * medium.volume0(), model.dp, reach, D);
         let mut system = Self {
             sweep: Dim::<D>::sweep(&model),
+            meter: None,
             near: Near::new(reach, model.dp, model.sweep.level()),
             stress: if matches!(model.viscosity, Viscosity::Sps(_)) {
                 vec![Matrix::zeros(); fluid.len()]
@@ -265,35 +271,29 @@ impl<const D: usize> System<D> {
                 *stress = Matrix::from_fn(|i, j| rows[i][j]);
             });
         }
-        self.load();
+        let loads = self.loads(&self.skin_sums);
+        self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
         self.passes += 1;
     }
 
-    /// Adds up each solid's wet boundary particles in chunks of fixed size, in order.
-    fn load(&mut self) {
-        let mass = self.particle_mass();
-        let wet = self.near.wet();
-        for solid in &mut self.solids {
+    /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order.
+    fn loads(&self, sums: &[Sums<D>]) -> Vec<Load<D>> {
+        let (mass, wet) = (self.particle_mass(), self.near.wet());
+        let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
+        let of = |solid: &Solid<D>| {
             let centre = solid.kinematics.centre;
-            let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
             let own = place(solid.skin.start)..place(solid.skin.end);
-            let none = Load { force: Vector::zeros(), torque: Wedge::zero() };
-            let parts: Vec<Load<D>> = wet[own.clone()]
-                .par_chunks(CHUNK)
-                .zip(self.skin_sums[own].par_chunks(CHUNK))
-                .map(|(wet, sums)| {
-                    // Beyond a periodic side the water is an image, and what it does has been counted.
-                    let own = |(i, _): &(&u32, _)| self.images.between(&self.skin.r[**i as usize]);
-                    wet.iter().zip(sums).filter(own).fold(none, |load, (&i, s)| {
-                        let force = s.dv * mass;
-                        let torque = Wedge::torque(&(self.skin.r[i as usize] - centre), &force);
-                        Load { force: load.force + force, torque: load.torque + torque }
-                    })
-                })
-                .collect();
-            solid.load =
-                parts.into_iter().fold(none, |a, b| Load { force: a.force + b.force, torque: a.torque + b.torque });
-        }
+            let chunks = wet[own.clone()].par_chunks(CHUNK).zip(sums[own].par_chunks(CHUNK));
+            let part = |(wet, sums): (&[u32], &[Sums<D>])| {
+                // Beyond a periodic side the water is an image, and what it does has been counted.
+                let own =
+                    wet.iter().map(|&i| &self.skin.r[i as usize]).zip(sums).filter(|(r, _)| self.images.between(r));
+                own.map(|(r, s)| Load::at(&(r - centre), s.dv * mass)).sum()
+            };
+            let parts: Vec<Load<D>> = chunks.map(part).collect();
+            parts.into_iter().sum()
+        };
+        self.solids.iter().map(of).collect()
     }
 
     /// The largest values that limit the next step.
@@ -310,10 +310,10 @@ impl<const D: usize> System<D> {
         Some(shifts.collect())
     }
 
-    /// Gives the water nearest to `solid` the `impulse` (N s), in equal shares.
-    pub(crate) fn give_back(&mut self, solid: usize, impulse: &Vector<D>) {
+    /// Gives the water nearest to `solid` the `impulse` (N s), in equal shares; says what energy (J) that gave.
+    pub(crate) fn give_back(&mut self, solid: usize, impulse: &Vector<D>) -> f64 {
         if impulse.norm_squared() == 0.0 {
-            return;
+            return 0.0;
         }
         let real = self.real();
         let skin = Bounds::around(&self.skin.r[self.solids[solid].skin.clone()]);
@@ -323,12 +323,13 @@ impl<const D: usize> System<D> {
             let these: Vec<usize> = (0..real).filter(|&i| near.contains(&self.fluid.r[i])).collect();
             if !these.is_empty() {
                 let share = impulse / (these.len() as f64 * self.particle_mass());
+                let gained: f64 = these.iter().map(|&i| share.dot(&(self.fluid.v[i] + share * 0.5))).sum();
                 these.into_iter().for_each(|i| self.fluid.v[i] += share);
-                return;
+                return gained * self.particle_mass();
             }
             reach *= 2.0;
             if !reach.is_finite() {
-                return;
+                return 0.0;
             }
         }
     }

@@ -113,6 +113,20 @@ impl<const D: usize> System<D> {
         self.medium.gravity
     }
 
+    /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
+    pub fn height_gravity(&self) -> Vector<D> {
+        Vector::from_fn(|i, _| if self.images.periodic[i].is_some() { 0.0 } else { self.medium.gravity[i] })
+    }
+
+    /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).
+    pub fn periodic_power(&self) -> f64 {
+        let along = self.medium.gravity - self.height_gravity();
+        if along.norm_squared() == 0.0 {
+            return 0.0;
+        }
+        self.particle_mass() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
+    }
+
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
     pub fn water_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {

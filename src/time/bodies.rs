@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Held, Interval, Light};
+use super::{Books, Held, Interval, Light, books::Moved};
 use crate::{
     error::{Error, Fault, Result},
     solid::{Engine, EngineFault, Kinematics, Load, Role, Solid, rig::Rig},
@@ -15,6 +15,7 @@ pub struct Bodies<const D: usize> {
     engine: Option<Box<dyn Engine<D>>>,
     light: Vec<Light<D>>,
     rig: Rig<D>,
+    pub(crate) books: Option<Books<D>>,
     steps: u64,
     spent: Duration,
 }
@@ -22,7 +23,7 @@ pub struct Bodies<const D: usize> {
 impl<const D: usize> Bodies<D> {
     /// The bodies that `engine` moves, at the start, those of them that are `light` with care, tied by `rig`.
     pub(crate) fn new(engine: Option<Box<dyn Engine<D>>>, light: Vec<Light<D>>, rig: Rig<D>) -> Self {
-        Self { engine, light, rig, steps: 0, spent: Duration::ZERO }
+        Self { engine, light, rig, books: None, steps: 0, spent: Duration::ZERO }
     }
 
     /// What ties the bodies.
@@ -74,6 +75,20 @@ impl<const D: usize> Bodies<D> {
         self.engine.as_mut()
     }
 
+    /// Books what the water does at a force pass whose rates hold for `dt` (s), if there are books.
+    pub(super) fn book_water(&mut self, system: &mut System<D>, dt: f64) {
+        if let Some(books) = &mut self.books {
+            books.water(system, dt);
+        }
+    }
+
+    /// Books that the water was moved by `shifts` (m), if there are books.
+    pub(super) fn book_shifts(&mut self, system: &System<D>, shifts: &[Vector<D>]) {
+        if let Some(books) = &mut self.books {
+            books.shifted(system, shifts);
+        }
+    }
+
     /// Puts the solids where they will be half a step on: driven ones exactly, free ones as they drift.
     pub(super) fn drift(&self, system: &mut System<D>, over: Interval) {
         let half = 0.5 * over.dt;
@@ -100,8 +115,9 @@ impl<const D: usize> Bodies<D> {
                 Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight }
             };
             let mut loads: Vec<_> = system.solids.iter().map(weighed).collect();
-            let tied = !self.rig.is_empty();
-            let began = if tied { whereabouts(system, &**engine, over.t) } else { Vec::new() };
+            let (tied, told) = (!self.rig.is_empty(), self.books.is_some());
+            let pushes: Vec<_> = (0..if told { loads.len() } else { 0 }).map(|i| engine.pushed(i)).collect();
+            let began = if tied || told { whereabouts(system, &**engine, over.t) } else { Vec::new() };
             if tied {
                 self.rig.act(&mut **engine, &began, over.t, over.dt);
             }
@@ -110,7 +126,10 @@ impl<const D: usize> Bodies<D> {
                 let push = engine.pushed(light.solid);
                 left.push((light.solid, light.share(system, over.dt, &push, &mut loads[light.solid])));
             }
-            left.into_iter().for_each(|(solid, impulse)| system.give_back(solid, &impulse));
+            for (solid, impulse) in left {
+                let energy = system.give_back(solid, &impulse);
+                self.books.iter_mut().for_each(|books| books.gave_back(energy));
+            }
             let before: Vec<_> = self.light.iter().map(|light| engine.kinematics(light.solid)).collect();
             let step = self.steps;
             let start = Instant::now();
@@ -119,9 +138,16 @@ impl<const D: usize> Bodies<D> {
             for (light, before) in self.light.iter_mut().zip(&before) {
                 light.learn(system, over.dt, before, &engine.kinematics(light.solid));
             }
+            let ended = if tied || told { whereabouts(system, &**engine, end) } else { Vec::new() };
             if tied {
-                let ended = whereabouts(system, &**engine, end);
                 self.rig.learn(&**engine, &began, &ended, over.dt);
+            }
+            if let Some(books) = &mut self.books {
+                let contacts = engine.contacts();
+                for (i, (before, after)) in began.iter().zip(&ended).enumerate() {
+                    let (given, pushes, tied) = (loads[i], pushes[i], self.rig.tied(i));
+                    books.body(system, i, &contacts, &Moved { given, pushes, tied, before, after, dt: over.dt });
+                }
             }
         }
         self.steps += 1;

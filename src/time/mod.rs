@@ -1,12 +1,15 @@
 //! The equations in time: how long a step may be, and how a step is made. No pairs.
 
 mod bodies;
+mod books;
 mod light;
 pub mod limit;
 mod symplectic;
 mod verlet;
 
 pub use bodies::Bodies;
+pub(crate) use books::Books;
+pub use books::{Ledger, Shares};
 pub(crate) use light::{Held, Light};
 pub use symplectic::Symplectic;
 pub use verlet::Verlet;

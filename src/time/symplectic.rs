@@ -47,6 +47,7 @@ impl Symplectic {
         system.relist();
         system.rates();
 
+        bodies.book_water(system, dt);
         let shifts = system.shifts(dt);
         let whole = |rho_start: f64, rho_half: f64, dx: f64| {
             let epsilon = -dt * rho0 * dx / rho_half;
@@ -67,6 +68,8 @@ impl Symplectic {
             })
             .reduce(|| Seen::NOTHING, Seen::and);
         if let Some(shifts) = shifts {
+            bodies.book_shifts(system, &shifts);
+            let fluid = &mut system.fluid;
             fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
             system.look();
         }

@@ -87,6 +87,7 @@ impl<const D: usize> Verlet<D> {
             self.skin_rho_before.clone_from(&system.skin.rho);
         }
         let span = if euler { dt } else { self.dt_before + dt };
+        bodies.book_water(system, dt);
         let shifts = system.shifts(dt);
 
         let guard = system.guard();
@@ -105,6 +106,8 @@ impl<const D: usize> Verlet<D> {
             })
             .reduce(|| Seen::NOTHING, Seen::and);
         if let Some(shifts) = shifts {
+            bodies.book_shifts(system, &shifts);
+            let fluid = &mut system.fluid;
             fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
             system.look();
         }

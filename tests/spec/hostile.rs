@@ -184,7 +184,7 @@ fn a_link_beside_the_scene_does_not_lead_out_of_its_folder() {
 }
 
 /// Words, signs and numbers that are put into a scene.
-const PIECES: [&str; 24] = [
+const PIECES: [&str; 30] = [
     "",
     "[",
     "]",
@@ -209,6 +209,12 @@ const PIECES: [&str; 24] = [
     "polygon",
     "file",
     "e",
+    ".",
+    "nan",
+    "inf",
+    "-1",
+    "[[]]",
+    "999999999999999999999",
 ];
 
 proptest! {

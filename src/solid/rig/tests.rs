@@ -57,7 +57,7 @@ where
             _ => None,
         };
         let targets: Vec<_> = self.solids.iter().map(driven).collect();
-        let idle = Load { force: Vector::zeros(), torque: Wedge::zero() };
+        let idle = Load::zero();
         self.engine.step(dt, &vec![idle; targets.len()], &targets).unwrap();
         self.rig.learn(&*self.engine, &before, &self.now(), dt);
     }

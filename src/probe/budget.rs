@@ -1,0 +1,37 @@
+//! Where energy came from and went since the start, and what of it is not accounted for.
+
+use super::{Energy, Probe};
+use crate::{simulation::Simulation, system::System, time::Ledger};
+
+/// Watches what water and bodies have stored since the start (J; J/m in 2-D): energy of motion, height and compression; every entry
+/// of the [`Ledger`]; and what is stored beyond their sum. Nothing but NaN unless energy is booked
+/// ([`Simulation::keep_energy`]).
+pub struct Budget {
+    energy: Energy,
+    start: f64,
+}
+
+impl Budget {
+    /// The probe; the store counts from now.
+    pub fn new<const D: usize>(system: &System<D>) -> Self {
+        let energy = Energy::new(system);
+        let start = energy.total(system);
+        Self { energy, start }
+    }
+}
+
+impl<const D: usize> Probe<D> for Budget {
+    fn columns(&self) -> Vec<String> {
+        let unit = if D == 2 { "J_per_m" } else { "J" };
+        let entries = Ledger::default().entries().map(|(name, _)| name);
+        ["stored"].into_iter().chain(entries).chain(["residual"]).map(|name| format!("{name}_{unit}")).collect()
+    }
+
+    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+        let Some(ledger) = sim.ledger() else { return vec![f64::NAN; Probe::<D>::columns(self).len()] };
+        let stored = self.energy.total(sim.system()) - self.start;
+        let entries = ledger.entries().map(|(_, energy)| energy);
+        let residual = stored - entries.iter().sum::<f64>();
+        [stored].into_iter().chain(entries).chain([residual]).collect()
+    }
+}

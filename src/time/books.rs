@@ -1,0 +1,293 @@
+//! What each body got in the last step, by kind, and where energy went since the start.
+//!
+//! A load that acts over a step does work at the mean of the velocities at its two ends, ½ (V₀ + V₁), so that the works of all
+//! add up to the change of kinetic energy. The water gave its share at the velocity that it saw; what the body got and the water
+//! did not give is named `coupling`, and with it what the engine's step, which moves by V₁, makes of weight.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    solid::{Contact, FreeBody, Kinematics, Load, Role, rig::Tied},
+    space::{Matrix, Vector, Wedge},
+    system::{Lost, Powers, System},
+};
+
+/// The loads on a free body in the last step, about its centre of mass, by what they come from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shares<const D: usize> {
+    /// Of the water's pressure.
+    pub pressure: Load<D>,
+    /// Of its viscosity.
+    pub viscous: Load<D>,
+    /// What the body gets later, or gets now from before: of bodies that answer with the inertia of the water around them, and
+    /// of Verlet's steps.
+    pub delayed: Load<D>,
+    /// Its weight.
+    pub weight: Load<D>,
+    /// Contacts, friction included.
+    pub contacts: Load<D>,
+    /// Locks and end stops of joints.
+    pub joints: Load<D>,
+    /// Ropes.
+    pub ropes: Load<D>,
+    /// Springs and mooring lines.
+    pub springs: Load<D>,
+    /// Motors of joints.
+    pub motors: Load<D>,
+    /// The scene's forces.
+    pub forces: Load<D>,
+    /// A program's pushes.
+    pub pushes: Load<D>,
+    /// What holds its locked motions: by definition what the others come to there.
+    pub locks: Load<D>,
+    /// Rate at which its momentum and angular momentum changed: m a in a plane.
+    pub change: Load<D>,
+}
+
+impl<const D: usize> Shares<D> {
+    /// None.
+    pub fn zero() -> Self {
+        let none = Load::zero();
+        Self {
+            pressure: none,
+            viscous: none,
+            delayed: none,
+            weight: none,
+            contacts: none,
+            joints: none,
+            ropes: none,
+            springs: none,
+            motors: none,
+            forces: none,
+            pushes: none,
+            locks: none,
+            change: none,
+        }
+    }
+
+    /// All kinds with their names, without the change of momentum.
+    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] {
+        [
+            ("pressure", self.pressure),
+            ("viscous", self.viscous),
+            ("delayed", self.delayed),
+            ("weight", self.weight),
+            ("contacts", self.contacts),
+            ("joints", self.joints),
+            ("ropes", self.ropes),
+            ("springs", self.springs),
+            ("motors", self.motors),
+            ("forces", self.forces),
+            ("pushes", self.pushes),
+            ("locks", self.locks),
+        ]
+    }
+
+    /// The sum of all kinds.
+    pub fn sum(&self) -> Load<D> {
+        self.kinds().into_iter().map(|(_, load)| load).sum()
+    }
+}
+
+/// Energies since the start, J (J/m in 2-D): positive is what water and bodies have gained.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    /// Work of driven solids on the water, and of gravity along periodic sides.
+    pub driven: f64,
+    /// Work of motors.
+    pub motors: f64,
+    /// Work of springs: what they store or damp is negative.
+    pub springs: f64,
+    /// Work of the scene's forces and of a program's pushes.
+    pub forces: f64,
+    /// Work of contacts, of driven solids through them too.
+    pub contacts: f64,
+    /// Work of joints, end stops and ropes.
+    pub joints: f64,
+    /// What viscosity gives: negative.
+    pub viscous: f64,
+    /// What the diffusion of density gives.
+    pub diffusion: f64,
+    /// What shifting gives.
+    pub shifting: f64,
+    /// What the boundary particles give.
+    pub walls: f64,
+    /// What bodies got beyond what the water gave.
+    pub coupling: f64,
+    /// What particles had that were taken out, with the sign changed.
+    pub removed: f64,
+}
+
+impl Ledger {
+    /// All entries with their names.
+    pub fn entries(&self) -> [(&'static str, f64); 12] {
+        [
+            ("driven", self.driven),
+            ("motors", self.motors),
+            ("springs", self.springs),
+            ("forces", self.forces),
+            ("contacts", self.contacts),
+            ("joints", self.joints),
+            ("viscous", self.viscous),
+            ("diffusion", self.diffusion),
+            ("shifting", self.shifting),
+            ("walls", self.walls),
+            ("coupling", self.coupling),
+            ("removed", self.removed),
+        ]
+    }
+}
+
+/// The books of a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Books<const D: usize> {
+    /// Steps from one telling apart of the water's laws to the next; none if nobody needs it.
+    pub(crate) every: Option<u32>,
+    since: u32,
+    /// Whether energy is asked for.
+    pub(crate) energy: bool,
+    powers: Powers,
+    /// Loads of the viscosity on the solids when they were last told apart.
+    viscous: Vec<Load<D>>,
+    /// Work (J) that the water did on each solid in the present step.
+    work: Vec<f64>,
+    pub(crate) shares: Vec<Shares<D>>,
+    pub(crate) ledger: Ledger,
+}
+
+/// What moved a free body in a step, but for the water.
+pub(super) struct Moved<'a, const D: usize> {
+    pub(super) given: Load<D>,
+    pub(super) pushes: Load<D>,
+    pub(super) tied: Tied<D>,
+    pub(super) before: &'a Kinematics<D>,
+    pub(super) after: &'a Kinematics<D>,
+    pub(super) dt: f64,
+}
+
+impl<const D: usize> Books<D> {
+    /// Empty books of so many solids, of `energy` too, for which the water's laws are told apart every so many steps.
+    pub(crate) fn new(solids: usize, energy: bool, every: Option<u32>) -> Self {
+        Self {
+            every,
+            since: 0,
+            energy,
+            powers: Powers::default(),
+            viscous: vec![Load::zero(); solids],
+            work: vec![0.0; solids],
+            shares: vec![Shares::zero(); solids],
+            ledger: Ledger::default(),
+        }
+    }
+
+    /// Books of as many solids, with entries as full.
+    pub(crate) fn like(&self, other: &Self) -> bool {
+        self.every == other.every && self.energy == other.energy && self.shares.len() == other.shares.len()
+    }
+
+    /// Books what the water does at a force pass whose rates hold for `dt` (s).
+    pub(super) fn water(&mut self, system: &mut System<D>, dt: f64) {
+        if let Some(every) = self.every {
+            if self.since == 0
+                && let Some((powers, pressure)) = system.tell_apart()
+            {
+                self.powers = powers;
+                let solids = system.solids().iter().zip(pressure);
+                self.viscous = solids.map(|(solid, pressure)| solid.load - pressure).collect();
+            }
+            self.since = (self.since + 1) % every;
+        }
+        if self.energy {
+            let Powers { viscous, diffusion } = self.powers;
+            self.ledger.viscous += viscous * dt;
+            self.ledger.diffusion += diffusion * dt;
+            self.ledger.walls += (system.unworked() - viscous - diffusion) * dt;
+            self.ledger.driven += system.periodic_power() * dt;
+        }
+        for (solid, work) in system.solids().iter().zip(&mut self.work) {
+            *work = solid.load.power(&solid.kinematics) * dt;
+            if let Role::Driven(_) = solid.spec.role {
+                self.ledger.driven -= *work;
+            }
+        }
+    }
+
+    /// Books that the water was moved by `shifts` (m).
+    pub(super) fn shifted(&mut self, system: &System<D>, shifts: &[Vector<D>]) {
+        self.ledger.shifting -= system.particle_mass() * shifts.iter().map(|s| system.gravity().dot(s)).sum::<f64>();
+    }
+
+    /// Books particles that were taken out.
+    pub(crate) fn removed(&mut self, system: &System<D>, lost: &[Lost<D>]) {
+        let energy =
+            |p: &Lost<D>| 0.5 * p.v.norm_squared() - system.height_gravity().dot(&p.r) + system.compression(p.rho);
+        self.ledger.removed -= system.particle_mass() * lost.iter().map(energy).sum::<f64>();
+    }
+
+    /// Books energy (J) that the water got back for a body.
+    pub(super) fn gave_back(&mut self, energy: f64) {
+        self.ledger.coupling += energy;
+    }
+
+    /// Books a step of the free body number `i` of `system`.
+    pub(super) fn body(&mut self, system: &System<D>, i: usize, contacts: &[Contact<D>], moved: &Moved<'_, D>) {
+        let solid = &system.solids()[i];
+        let Role::Free(body) = &solid.spec.role else { return };
+        let Moved { given, pushes, tied, before, after, dt } = *moved;
+        let touching =
+            contacts.iter().flat_map(|c| c.between.into_iter().zip(c.loads)).filter(|(solid, _)| *solid == i);
+        let mut shares = Shares {
+            pressure: solid.load - self.viscous[i],
+            viscous: self.viscous[i],
+            delayed: given - solid.load,
+            weight: Load { force: system.gravity() * body.mass, torque: Wedge::zero() },
+            contacts: touching.map(|(_, load)| load).sum(),
+            joints: tied.joints,
+            ropes: tied.ropes,
+            springs: tied.springs,
+            motors: tied.motors,
+            forces: tied.forces,
+            pushes,
+            locks: Load::zero(),
+            change: (momentum(body, after) - momentum(body, before)) * (1.0 / dt),
+        };
+        shares.locks = locked(body, tied.held, &(shares.change - shares.sum()));
+        let mean = Kinematics {
+            velocity: 0.5 * (before.velocity + after.velocity),
+            spin: (before.spin + after.spin) * 0.5,
+            ..*after
+        };
+        let work = |load: Load<D>| load.power(&mean) * dt;
+        let ledger = &mut self.ledger;
+        ledger.motors += work(shares.motors);
+        ledger.springs += work(shares.springs);
+        ledger.forces += work(shares.forces + shares.pushes);
+        ledger.contacts += work(shares.contacts);
+        ledger.joints += work(shares.joints + shares.ropes);
+        let sunk = shares.weight.force.dot(&(after.centre - before.centre));
+        ledger.coupling += work(given + shares.weight) - sunk - self.work[i];
+        self.shares[i] = shares;
+    }
+}
+
+/// Momentum, kg m/s, and angular momentum about the centre of mass, kg m²/s.
+fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
+    Load { force: motion.velocity * body.mass, torque: turned(&body.inertia, &motion.pose.rotation, &motion.spin) }
+}
+
+/// I Ω in the world's axes, with the inertia in the body's.
+fn turned<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &Wedge<D>) -> Wedge<D> {
+    if D == 2 {
+        return *spin * inertia[(0, 0)];
+    }
+    let world = rotation * inertia * rotation.transpose() * Vector::<D>::from_iterator(spin.axial());
+    Wedge::from_axial(world.as_slice())
+}
+
+/// The part of `load` along what is locked of `body`: all of it if it is `held`.
+fn locked<const D: usize>(body: &FreeBody<D>, held: bool, load: &Load<D>) -> Load<D> {
+    let force = Vector::from_fn(|i, _| if held || body.locked_translations[i] { load.force[i] } else { 0.0 });
+    let turns = load.torque.axial().into_iter().enumerate();
+    let torque: Vec<f64> = turns.map(|(i, t)| if held || body.locked_rotations[i] { t } else { 0.0 }).collect();
+    Load { force, torque: Wedge::from_axial(&torque) }
+}

@@ -1,0 +1,160 @@
+//! Loads by kind and the energy budget: they add up, and asking for them changes nothing.
+
+use std::path::Path;
+
+use pontoon::{
+    model::Dimension,
+    probe::{Budget, Probe},
+    scene::Scene,
+    simulation::Simulation,
+    solid::{Dim, Load},
+};
+
+/// A tank with bodies that touch, hang, swing and are pushed.
+const CROWD: &str = r#"
+dimension = 2
+dp = 0.02
+until = 1.0
+water = [{ fill = { box = { min = [0.0, 0.0], max = [1.6, 0.3] } } }]
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [1.6, 0.6] } }
+[[solid]]
+name = "raft"
+shape = { box = { size = [0.3, 0.08] } }
+at = { x = 0.4, draft = 0.05 }
+free = { density = 400.0 }
+[[solid]]
+name = "crate"
+shape = { box = { size = [0.08, 0.08] } }
+at = { x = 0.43, bottom = 0.335 }
+free = { density = 200.0, velocity = [0.1, 0.0] }
+[[solid]]
+name = "stone"
+shape = { box = { size = [0.08, 0.08] } }
+at = { x = 0.9, bottom = 0.002 }
+free = { density = 2500.0, velocity = [-0.3, 0.0] }
+restitution = 0.3
+[[solid]]
+name = "buoy"
+shape = { ball = { radius = 0.08 } }
+at = { x = 1.2, draft = "equilibrium" }
+free = { density = 500.0, locked = ["turn"] }
+[[solid]]
+name = "flap"
+shape = { box = { size = [0.06, 0.2] } }
+at = { x = 1.45, y = 0.25 }
+free = { density = 300.0, release = 0.05 }
+[[joint]]
+name = "hinge"
+kind = "hinge"
+between = ["flap"]
+at = [1.45, 0.15]
+motor = { damping = 3.0 }
+[[spring]]
+name = "mooring"
+between = ["buoy"]
+from = [1.2, 0.3]
+to = [1.1, 0.0]
+stiffness = 300.0
+damping = 4.0
+[[rope]]
+name = "tether"
+between = ["raft"]
+from = [0.25, 0.3]
+to = [0.25, 0.36]
+[[force]]
+name = "wind"
+on = "raft"
+force = [4.0, 0.0]
+"#;
+
+fn crowd(model: &str) -> Simulation<2> {
+    let text = format!("{CROWD}\n[model]\n{model}");
+    let scene = Scene::parse(&text, Path::new(""), &[]).expect("a sound scene");
+    Simulation::new(scene.build::<2>().expect("a sound scene").setup).expect("a sound setup")
+}
+
+#[test]
+fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
+    // Round-off of sums of some hundred particles, and the engine's own: 1e-9 of the largest kind.
+    for model in
+        ["", "slip = \"partial\"", "walls = \"dbc\"\nviscosity = { laminar = { nu0 = 1e-4 } }\nslip = \"none\""]
+    {
+        let mut sim = crowd(model);
+        sim.keep_loads();
+        let mut seen = [false; 12];
+        for step in 0..400 {
+            sim.step().unwrap();
+            for i in 1..6 {
+                let shares = sim.shares(i).unwrap();
+                let largest = shares.kinds().iter().fold(0.0f64, |most, (_, load)| most.max(load.force.norm()));
+                let off = shares.change - shares.sum();
+                assert!(off.force.norm() < 1e-9 * largest, "{model}, step {step}, solid {i}: {off:?} of {largest}");
+                let turning = shares.kinds().iter().fold(largest * 0.01, |most, (_, load)| most.max(torque(load)));
+                assert!(torque(&off) < 1e-9 * turning, "{model}, step {step}, solid {i}: {off:?} of {turning}");
+                for (seen, (_, load)) in seen.iter_mut().zip(shares.kinds()) {
+                    *seen |= load.force.norm() + torque(&load) > 0.0;
+                }
+            }
+        }
+        let kinds = sim.shares(1).unwrap().kinds().map(|(kind, _)| kind);
+        let absent: Vec<_> = kinds.into_iter().zip(seen).filter(|(_, seen)| !seen).map(|(kind, _)| kind).collect();
+        let expected = if model.is_empty() { vec!["viscous", "pushes"] } else { vec!["pushes"] };
+        assert!(absent.iter().all(|kind| expected.contains(kind) || *kind == "delayed"), "{model}: {absent:?}");
+    }
+}
+
+fn torque(load: &Load<2>) -> f64 {
+    load.torque.axial()[0].abs()
+}
+
+/// What is stored beyond the entries after a run of `steps`, over the sum of the sizes of all entries; and that sum, J.
+fn residual<const D: usize>(mut sim: Simulation<D>, steps: usize) -> (f64, f64)
+where
+    Dim<D>: Dimension<D>,
+{
+    sim.keep_energy();
+    let probe = Budget::new(sim.system());
+    for _ in 0..steps {
+        sim.step().unwrap();
+    }
+    let row = probe.look(&sim);
+    let turned = sim.ledger().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
+    (row[row.len() - 1].abs(), turned)
+}
+
+#[test]
+fn the_energy_budget_closes() {
+    // One in a hundred of what is turned over: steps are of second order.
+    let shifting = "shifting = { everywhere = { a = 2.0 } }\nviscosity = { sps = { nu0 = 1e-6 } }";
+    for model in ["", "walls = \"dbc\"", "slip = \"partial\"", shifting] {
+        let (off, turned) = residual(crowd(model), 3000);
+        assert!(off < 0.01 * turned, "{model}: {off} J of {turned} J");
+    }
+}
+
+#[test]
+fn books_change_no_bit_and_outlive_a_restart() {
+    let (mut plain, mut booked) = (crowd(""), crowd(""));
+    booked.keep_energy();
+    booked.keep_loads();
+    for _ in 0..100 {
+        plain.step().unwrap();
+        booked.step().unwrap();
+    }
+    assert_eq!(plain.system().fluid().r, booked.system().fluid().r);
+    assert_eq!(plain.system().solids()[1].kinematics, booked.system().solids()[1].kinematics);
+    let mut again = crowd("");
+    again.keep_energy();
+    again.keep_loads();
+    again.restore(&booked.save().unwrap()).unwrap();
+    for _ in 0..37 {
+        booked.step().unwrap();
+        again.step().unwrap();
+    }
+    assert_eq!(booked.ledger(), again.ledger());
+    assert_eq!(booked.shares(2), again.shares(2));
+    assert!(plain.restore(&booked.save().unwrap()).is_err(), "books of a checkpoint are not dropped unseen");
+}
