@@ -10,12 +10,12 @@ pub mod joint;
 pub mod links;
 pub mod mooring;
 #[cfg(feature = "dim2")]
-mod planar;
+pub mod planar;
 pub(crate) mod rig;
 mod rows;
 pub mod skin;
 #[cfg(feature = "dim3")]
-mod spatial;
+pub mod spatial;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 mod tests;
 

@@ -110,6 +110,11 @@ impl<const D: usize> Rig<D> {
         }
     }
 
+    /// Takes up a solid that has come as `start`.
+    pub(crate) fn admit(&mut self, start: Kinematics<D>) {
+        self.start.push(start);
+    }
+
     /// Whether there is nothing that acts.
     pub(crate) fn is_empty(&self) -> bool {
         self.joints.is_empty()

@@ -1,18 +1,41 @@
-//! The engine in three dimensions: rapier3d, and what only space has.
+//! The engine in three dimensions, rapier3d; what of it is yours: bodies of a world of your own, in a hosted simulation.
+//!
+//! ```no_run
+//! # use pontoon::{solid::spatial::{self, rapier::prelude::*}, simulation::Simulation};
+//! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<3>) -> pontoon::Result<()> {
+//! water.step_with(1.0, |handover| {
+//!     spatial::give(&mut world.bodies[hull], &handover.loads()[1]);
+//!     world.integration_parameters.dt = handover.dt();
+//!     world.step();
+//!     handover.solids[1] = spatial::kinematics(&world.bodies[hull]);
+//!     Ok(())
+//! })
+//! # }
+//! ```
+//!
+//! `examples/own_world.rs` is a whole program.
 
-use rapier3d as rapier;
+/// The engine itself, in the version that this crate is made with.
+pub use rapier3d as rapier;
 
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "own.rs"]
+mod own;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "world.rs"]
 mod world;
 
+pub use own::{follow, give, kinematics, solid};
 pub(super) use world::World;
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
+};
 
 use rapier::{
     dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder},
-    geometry::{SharedShape, TriMeshFlags},
+    geometry::{SharedShape, TriMeshFlags, TypedShape},
     math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
     parry::{
         mass_properties::MassProperties,
@@ -24,7 +47,7 @@ use crate::{
     error::{Error, Result},
     shape::{Contact, Mesh, Shape},
     solid::FreeBody,
-    space::{Matrix, Wedge},
+    space::{Matrix, Vector, Wedge},
 };
 
 const D: usize = 3;
@@ -89,6 +112,33 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
 /// Settings that only this dimension has: Coulomb's law at every contact point.
 fn tune(parameters: &mut IntegrationParameters) {
     parameters.friction_model = FrictionModel::Coulomb;
+}
+
+/// The turn that takes the first axis along a vector.
+fn arc(along: &Vector<D>) -> Matrix<D> {
+    from_rotation(&Rotation::from_rotation_arc(Point::X, world::to_point(&along.normalize())))
+}
+
+/// The inertia of mass properties, as a free body has it.
+fn inertia(own: &MassProperties) -> Matrix<D> {
+    Matrix::from_column_slice(&own.reconstruct_inertia_matrix().to_cols_array())
+}
+
+/// The shape of a collider that only space has.
+fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
+    let mesh = |points: &[Point], facets: &[[u32; 3]]| {
+        let points: Vec<Vector<D>> = points.iter().copied().map(world::from_point).collect();
+        Ok(Shape::Mesh { mesh: Arc::new(Mesh::new(&points, facets)?), contact: Contact::None })
+    };
+    match geometry {
+        TypedShape::Cylinder(c) => Ok(Shape::Cylinder { length: 2.0 * c.half_height, radius: c.radius, axis: 1 }),
+        TypedShape::TriMesh(surface) => mesh(surface.vertices(), surface.indices()),
+        TypedShape::ConvexPolyhedron(hull) => {
+            let (points, facets) = hull.to_trimesh();
+            mesh(&points, &facets)
+        }
+        other => Err(own::unfelt(other)),
+    }
 }
 
 /// Parts of the shapes that only space has, in the shape's frame.

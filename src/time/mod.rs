@@ -6,7 +6,7 @@ pub mod limit;
 mod symplectic;
 mod verlet;
 
-pub use bodies::Bodies;
+pub use bodies::{Bodies, Handover};
 pub(crate) use light::{Held, Light};
 pub use symplectic::Symplectic;
 pub use verlet::Verlet;
@@ -14,7 +14,6 @@ pub use verlet::Verlet;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    error::Result,
     model::{Model, Scheme},
     system::{Renewal, System},
 };
@@ -53,14 +52,19 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Moves the system, whose rates at the start are known, over an interval.
-    ///
-    /// # Errors
-    /// Whatever stops the bodies: see [`crate::solid::EngineFault`].
-    pub fn step(&mut self, system: &mut System<D>, bodies: &mut Bodies<D>, over: Interval) -> Result<()> {
+    /// Forgets the step before, after particles have come or gone; the next step is one that needs none.
+    pub(crate) fn forget(&mut self) {
+        if let Self::Verlet(verlet) = self {
+            verlet.forget();
+        }
+    }
+
+    /// Moves the water of the system, whose rates at the start are known, over an interval; returns the weight with which the
+    /// loads of the last force pass then act on the bodies, –.
+    pub fn step(&mut self, system: &mut System<D>, over: Interval) -> f64 {
         match self {
-            Self::Verlet(verlet) => verlet.step(system, bodies, over),
-            Self::Symplectic => Symplectic.step(system, bodies, over),
+            Self::Verlet(verlet) => verlet.step(system, over),
+            Self::Symplectic => Symplectic.step(system, over),
         }
     }
 }

@@ -9,9 +9,8 @@
 
 use rayon::prelude::*;
 
-use super::{Bodies, Interval};
+use super::{Interval, bodies};
 use crate::{
-    error::Result,
     particles::PER_TASK,
     system::{Seen, System},
 };
@@ -20,8 +19,8 @@ use crate::{
 pub struct Symplectic;
 
 impl Symplectic {
-    /// Moves the system, whose rates at the start are known, over an interval.
-    pub fn step<const D: usize>(&self, system: &mut System<D>, bodies: &mut Bodies<D>, over: Interval) -> Result<()> {
+    /// Moves the water, whose rates at the start are known, over an interval; returns the weight of the loads on bodies.
+    pub fn step<const D: usize>(&self, system: &mut System<D>, over: Interval) -> f64 {
         let (dt, half) = (over.dt, 0.5 * over.dt);
         let rho0 = system.medium().rho0;
         let start = (system.fluid.clone(), system.skin.rho.clone());
@@ -42,7 +41,7 @@ impl Symplectic {
         let rates = std::mem::take(&mut system.skin_sums);
         system.set_skin_density(half, |k, _, rho| rho + rho0 * rates[k].dx * half);
         system.skin_sums = rates;
-        bodies.drift(system, over);
+        bodies::drift(system, over);
 
         system.relist();
         system.rates();
@@ -73,6 +72,6 @@ impl Symplectic {
         let rates = std::mem::take(&mut system.skin_sums);
         system.set_skin_density(dt, |k, i, rho| whole(start.1[i], rho, rates[k].dx));
         system.skin_sums = rates;
-        bodies.advance(system, over, 1.0)
+        1.0
     }
 }

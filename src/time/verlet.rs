@@ -15,9 +15,8 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Bodies, Interval};
+use super::Interval;
 use crate::{
-    error::Result,
     model::{Diffusion, Model, Viscosity},
     particles::PER_TASK,
     space::Vector,
@@ -73,8 +72,15 @@ impl<const D: usize> Verlet<D> {
         }
     }
 
-    /// Moves the system, whose rates at the start are known, over an interval.
-    pub fn step(&mut self, system: &mut System<D>, bodies: &mut Bodies<D>, over: Interval) -> Result<()> {
+    /// Forgets the step before: the next step is Euler's.
+    pub(crate) fn forget(&mut self) {
+        self.v_before.clear();
+        self.rho_before.clear();
+        self.skin_rho_before.clear();
+    }
+
+    /// Moves the water, whose rates at the start are known, over an interval; returns the weight of the loads on bodies.
+    pub fn step(&mut self, system: &mut System<D>, over: Interval) -> f64 {
         let dt = over.dt;
         let rho0 = system.medium().rho0;
         let first = self.v_before.is_empty() && self.skin_rho_before.is_empty();
@@ -112,11 +118,9 @@ impl<const D: usize> Verlet<D> {
         system.set_skin_density(span, |k, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * rates[k].dx * span);
         system.skin_sums = rates;
 
-        let weight = if euler { 1.0 } else { 0.5 * span / dt };
-        bodies.advance(system, over, weight)?;
         self.dt_before = dt;
         self.steps += 1;
         self.foldings += self.growth * dt;
-        Ok(())
+        if euler { 1.0 } else { 0.5 * span / dt }
     }
 }
