@@ -34,6 +34,7 @@ use rapier::{
     geometry::{SharedShape, TriMesh, TypedShape},
     math::{Pose as Frame, Rotation, Vector as Point},
     parry::{mass_properties::MassProperties, transformation::hertel_mehlhorn},
+    pipeline::PhysicsWorld,
 };
 
 use crate::{
@@ -82,6 +83,12 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
     let builder = builder.enabled_translations(!x, !y);
     if body.locked_rotations[0] { builder.lock_rotations() } else { builder }
 }
+
+/// Nothing: a plane's bodies do not tumble.
+fn wind(_world: &mut PhysicsWorld, _dt: f64) {}
+
+/// Nothing, as [`wind`].
+fn unwind(_world: &mut PhysicsWorld, _tumbling: ()) {}
 
 /// Settings that only this dimension has: none.
 fn tune(_parameters: &mut IntegrationParameters) {}

@@ -34,13 +34,14 @@ use std::{
 };
 
 use rapier::{
-    dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder},
+    dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
     geometry::{SharedShape, TriMeshFlags, TypedShape},
     math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
     parry::{
         mass_properties::MassProperties,
         transformation::vhacd::{VHACD, VHACDParameters},
     },
+    pipeline::PhysicsWorld,
 };
 
 use crate::{
@@ -107,6 +108,47 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
         .enabled_translations(!x, !y, !z)
         .enabled_rotations(!about_x, !about_y, !about_z)
         .gyroscopic_forces_enabled(!(about_x || about_y || about_z))
+}
+
+/// A body that turns about three axes: its angular momentum (kg m²/s) and spin (rad/s) before a step, and its principal axes then.
+struct Tumbling {
+    body: RigidBodyHandle,
+    momentum: Point,
+    spin: Point,
+    axes: Rotation,
+}
+
+/// Gives each body that turns as it likes the spin that it has in the middle of the step by Euler's equations, I ω̇ = −ω ∧ I ω, to turn
+/// by: rapier's own gyroscopic torque acts once a step and loses energy with Δt. Bodies in joints keep that.
+fn wind(world: &mut PhysicsWorld, dt: f64) -> Vec<Tumbling> {
+    let mut all = Vec::new();
+    for (handle, body) in world.bodies.iter_mut() {
+        let tied = world.impulse_joints.attached_joints(handle).next().is_some();
+        if !(body.is_dynamic() && body.is_enabled() && body.locked_axes().is_empty()) || tied {
+            continue;
+        }
+        body.enable_gyroscopic_forces(false);
+        let own = &body.mass_properties().local_mprops;
+        let (axes, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
+        let spin = axes.inverse() * body.angvel();
+        let momentum = inertia * spin;
+        let middle = axes * (spin - 0.5 * dt * (spin.cross(momentum) / inertia));
+        all.push(Tumbling { body: handle, momentum: axes * momentum, spin: middle, axes });
+        body.set_angvel(middle, false);
+    }
+    all
+}
+
+/// Adds the angular impulse that each of them got in the step to its angular momentum, and gives it the spin that this is now.
+fn unwind(world: &mut PhysicsWorld, tumbling: Vec<Tumbling>) {
+    for Tumbling { body, momentum, spin, axes } in tumbling {
+        let Some(body) = world.bodies.get_mut(body) else { continue };
+        let own = &body.mass_properties().local_mprops;
+        let (now, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
+        let impulse = axes * (inertia * (axes.inverse() * (body.angvel() - spin)));
+        let spin = now * ((now.inverse() * (momentum + impulse)) / inertia);
+        body.set_angvel(spin, false);
+    }
 }
 
 /// Settings that only this dimension has: Coulomb's law at every contact point.

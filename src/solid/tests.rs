@@ -110,13 +110,13 @@ fn a_force_up_on_the_right_turns_counter_clockwise() {
 }
 
 #[test]
-fn a_tumbling_body_keeps_its_energy_and_angular_momentum() {
+fn a_body_that_tumbles_in_a_vacuum_for_ten_seconds_keeps_energy_and_angular_momentum() {
     let mut body = light::<3>();
     body.spin = Wedge::from_axial(&[1.0, 8.0, 2.0]);
     let run = |dt: f64| {
         let brick = solid("brick", cube(0.1), [0.0; 3], Role::Free(body));
         let mut engine = engine(&[brick], Vector::zeros()).unwrap();
-        for _ in 0..(0.5 / dt).round() as u32 {
+        for _ in 0..(10.0 / dt).round() as u32 {
             engine.step(dt, &idle(1), &[None]).unwrap();
         }
         let now = engine.kinematics(0);
@@ -126,15 +126,11 @@ fn a_tumbling_body_keeps_its_energy_and_angular_momentum() {
     };
     let spin = Vector::<3>::from_column_slice(&body.spin.axial());
     let momentum = body.inertia * spin;
-    let errors = |dt: f64| {
-        let (energy, now) = run(dt);
-        let size = momentum.norm();
-        (energy / momentum.dot(&spin) - 1.0, now.norm() / size - 1.0, (now - momentum).norm() / size)
-    };
-    let (coarse, fine) = (errors(1e-4), errors(5e-5));
-    // First order in dt, with an error of the order of (spin · dt) = 4e-4 a radian turned; |L| is kept by design.
-    assert!(fine.0.abs() < 1e-4 && fine.2 < 4e-4 && fine.1.abs() < 1e-10, "{fine:?}");
-    assert!((coarse.0 / fine.0 - 2.0).abs() < 0.1 && (coarse.2 / fine.2 - 2.0).abs() < 0.1, "{coarse:?} {fine:?}");
+    let (energy, now) = run(2e-4);
+    // Second order in Δt: (8 rad/s · Δt)²/12 = 2e-7 of the energy, which comes and goes; the project's bound.
+    assert!((energy / momentum.dot(&spin) - 1.0).abs() < 1e-6, "{:e}", energy / momentum.dot(&spin) - 1.0);
+    // Angular momentum is what is integrated.
+    assert!((now - momentum).norm() < 1e-10 * momentum.norm(), "{:e}", (now - momentum).norm() / momentum.norm());
 }
 
 fn rests<const D: usize>()

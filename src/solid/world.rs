@@ -33,6 +33,7 @@ use super::rapier::{
 };
 use super::{
     D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular, to_rotation, tune,
+    unwind, wind,
 };
 use crate::{
     error::Result,
@@ -237,10 +238,12 @@ impl Engine<D> for World {
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
         self.met = impact::rebound(&mut self.world, dt, |a, b, mu| self.ties.pairs.bounce(a, b, &self.restitution, mu));
         self.ties.tighten(&mut self.world, dt);
+        let tumbling = wind(&mut self.world, dt);
         match self.ties.pairs.is_empty() {
             true => self.world.step(),
             false => self.world.step_with_events(&self.ties.pairs, &()),
         }
+        unwind(&mut self.world, tumbling);
         self.foresee();
         self.examine(&before)
     }
