@@ -1,12 +1,15 @@
 //! Executable specifications: each test is a sentence about the physics or a contract.
 
 mod buoyancy;
+mod carried;
 mod checks;
 mod coupling;
 mod determinism;
+mod equilibrium;
 mod errors;
 mod guards;
 mod hostile;
+mod hosted;
 mod joints;
 mod kernels;
 mod lanes;
