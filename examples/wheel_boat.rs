@@ -75,7 +75,8 @@ fn main() -> Result<()> {
         while sim.time() < UNTIL {
             // The motor is run up within half a second.
             let wanted = turning * (2.0 * sim.time()).min(1.0);
-            let motor = Motor { velocity: Some(Law::constant(wanted)), damping: Law::constant(20.0), ..Motor::default() };
+            let motor =
+                Motor { velocity: Some(Law::constant(wanted)), damping: Law::constant(20.0), ..Motor::default() };
             sim.drive(axle, Some(motor.at(0.0)));
             sim.step_to(UNTIL)?;
             work -= sim.joint(axle).power() * sim.dt();

@@ -19,7 +19,7 @@ use crate::{
 /// Its shape is that of the body's colliders, sensors left out. The water feels it at its true faces, whatever contact skin it has.
 ///
 /// # Errors
-/// `Scene` if there is no such body, it has no collider, one with a shape that water cannot feel (a half-space, a height field,
+/// `Scene` if there is no such body, it has no collider, one with a shape that water cannot feel (a half-space, a height field, a cone,
 /// a round shape: make the solid's shape by hand then), it is kinematic, or has no mass yet.
 pub fn solid(
     name: impl Into<String>,

@@ -94,14 +94,13 @@ fn a_pile_of_thirty_settles_and_never_gains_energy() {
 fn water_and_bodies_that_collide_in_free_space_keep_their_momentum() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    (model.gravity, model.sweep, model.c0, model.scheme) = (vec![0.0, 0.0], Sweeping::Reference, 34.0, Scheme::Symplectic);
+    (model.gravity, model.sweep, model.c0, model.scheme) =
+        (vec![0.0, 0.0], Sweeping::Reference, 34.0, Scheme::Symplectic);
     let mut water = rig::lattice([-0.3, -0.2], [0.6, 0.4], dp);
     let sizes = [[-0.1, 0.0], [0.06, 0.02]];
     water.retain(|r| sizes.iter().all(|at| (r - Vector::from(*at)).amax() > 0.05));
-    let mut solids: Vec<SolidSpec<2>> = sizes
-        .iter()
-        .map(|at| rig::float(Shape::Box { size: Vector::from([0.1, 0.1]) }, *at, 600.0))
-        .collect();
+    let mut solids: Vec<SolidSpec<2>> =
+        sizes.iter().map(|at| rig::float(Shape::Box { size: Vector::from([0.1, 0.1]) }, *at, 600.0)).collect();
     solids[1].name = "second".into();
     solids.iter_mut().for_each(|solid| (solid.friction, solid.restitution) = (0.3, 0.6));
     let mut sim = rig::simulation(model, water, -1.0, solids);
@@ -174,7 +173,10 @@ fn nothing_depends_on_where_one_stands_how_one_is_turned_or_on_a_mirror() {
                 let speed = (pose.rotation * flip * a.velocity - b.velocity).norm();
                 let spin = a.spin.axial()[0] * if mirrored { -1.0 } else { 1.0 } - b.spin.axial()[0];
                 // Round-off of f64, or of single precision in the sweep, and what 150 steps make of it, over 1 m/s.
-                assert!(place.max(speed).max(0.1 * spin.abs()) < bound, "{sweep:?} {what}: {place:e} m {speed:e} m/s {spin:e}");
+                assert!(
+                    place.max(speed).max(0.1 * spin.abs()) < bound,
+                    "{sweep:?} {what}: {place:e} m {speed:e} m/s {spin:e}"
+                );
             }
         }
     }
@@ -245,8 +247,18 @@ fn a_body_on_a_driven_floor_is_carried_as_far_as_friction_goes() -> Result<()> {
         let motion = Motion::slide(Vector::from([1.0, 0.0]), law);
         let block = Shape::Box { size: block };
         let mut solids = vec![
-            rig::solid("floor", Shape::Box { size: slab }, Pose::at(Vector::from([0.0, -0.25])), Role::Driven(motion.clone())),
-            rig::solid("block", block.clone(), Pose::at(Vector::from([0.0, 0.05])), Role::Free(FreeBody::from_mass(&block, 2.0))),
+            rig::solid(
+                "floor",
+                Shape::Box { size: slab },
+                Pose::at(Vector::from([0.0, -0.25])),
+                Role::Driven(motion.clone()),
+            ),
+            rig::solid(
+                "block",
+                block.clone(),
+                Pose::at(Vector::from([0.0, 0.05])),
+                Role::Free(FreeBody::from_mass(&block, 2.0)),
+            ),
         ];
         solids.iter_mut().for_each(|solid| solid.friction = 0.4);
         let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();

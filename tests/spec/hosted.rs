@@ -100,7 +100,8 @@ fn a_push_at_the_handover_is_a_push() -> Result<()> {
 
 /// The floats of the pool in a world of rapier's, set up as anybody would who reads docs/coupling.md.
 fn world(sim: &Simulation<2>) -> (rapier::PhysicsWorld, Vec<rapier::RigidBodyHandle>) {
-    let mut world = rapier::PhysicsWorld { gravity: rapier::Vector::new(0.0, -9.81), ..rapier::PhysicsWorld::default() };
+    let mut world =
+        rapier::PhysicsWorld { gravity: rapier::Vector::new(0.0, -9.81), ..rapier::PhysicsWorld::default() };
     world.integration_parameters.num_solver_iterations = 1;
     let mut bodies = Vec::new();
     for solid in &sim.system().solids()[1..] {
@@ -180,7 +181,10 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
         (2.0, SharedShape::capsule(Point::new(0.0, -0.1, -0.1), Point::new(0.0, 0.1, 0.1), 0.05)),
         (3.0, SharedShape::cylinder(0.2, 0.1)),
     ] {
-        world.insert_collider(ColliderBuilder::new(shape).translation(Point::new(x, 0.0, 0.0)).density(500.0), Some(body));
+        world.insert_collider(
+            ColliderBuilder::new(shape).translation(Point::new(x, 0.0, 0.0)).density(500.0),
+            Some(body),
+        );
     }
     world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
     let spec = made(&world)?;
@@ -195,9 +199,9 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
     other.insert_collider(ColliderBuilder::convex_hull(&hull).expect("a hull"), Some(tetra));
     let spec = spatial::solid("rock", tetra, &other.bodies, &other.colliders)?;
     assert!(matches!(spec.role, Role::Fixed) && (spec.shape.volume().volume - 1.0 / 6.0).abs() < 1e-12);
-    other.insert_collider(ColliderBuilder::halfspace(Point::Z.try_into().unwrap_or_default()), Some(tetra));
-    let error = spatial::solid("rock", tetra, &other.bodies, &other.colliders).expect_err("water feels no half-space");
-    assert!(error.what.contains("HalfSpace") && error.help.is_some(), "{error}");
+    other.insert_collider(ColliderBuilder::cone(0.1, 0.1), Some(tetra));
+    let error = spatial::solid("rock", tetra, &other.bodies, &other.colliders).expect_err("water feels no cone");
+    assert!(error.what.contains("Cone") && error.help.is_some(), "{error}");
     assert!(spatial::solid("gone", tetra, &world.bodies, &ColliderSet::new()).is_err());
     Ok(())
 }
