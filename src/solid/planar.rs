@@ -85,10 +85,13 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
 }
 
 /// Nothing: a plane's bodies do not tumble.
-fn wind(_world: &mut PhysicsWorld, _dt: f64) {}
+struct Tumbling;
 
-/// Nothing, as [`wind`].
-fn unwind(_world: &mut PhysicsWorld, _tumbling: ()) {}
+fn wind(_world: &mut PhysicsWorld, _dt: f64) -> Tumbling {
+    Tumbling
+}
+
+fn unwind(_world: &mut PhysicsWorld, _tumbling: Tumbling) {}
 
 /// Settings that only this dimension has: none.
 fn tune(_parameters: &mut IntegrationParameters) {}
