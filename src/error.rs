@@ -26,7 +26,7 @@ pub enum Kind {
 /// Where in a text file the trouble lies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// The file, as the user named it.
+    /// The file, as the user named it; empty where only the key is known yet.
     pub file: String,
     /// Line and column, both from 1, if known.
     pub line_column: Option<(usize, usize)>,
@@ -117,7 +117,7 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.what)?;
-        if let Some(place) = &self.place {
+        if let Some(place) = self.place.as_ref().filter(|place| !place.file.is_empty()) {
             write!(f, "\n  in {}", place.file)?;
             if let Some((line, column)) = place.line_column {
                 write!(f, ":{line}:{column}")?;

@@ -1,12 +1,18 @@
 //! A running simulation: limit, step, check; no files.
 
 mod booked;
+mod change;
+mod hosted;
 mod rescue;
 mod tied;
 
 use std::time::{Duration, Instant};
 
-pub use crate::system::{Escape, Limits, Lost, Setup};
+pub use crate::{
+    system::{Escape, Limits, Lost, Setup},
+    time::Handover,
+};
+pub use change::Added;
 pub use rescue::Rescued;
 pub(crate) use tied::find;
 
@@ -71,6 +77,8 @@ struct Kept<const D: usize> {
     rescued: Vec<Rescued>,
     lost: Vec<(f64, Lost<D>)>,
     books: Option<Books<D>>,
+    /// Numbers of the solids that have been removed.
+    gone: Vec<u32>,
 }
 
 impl<const D: usize> Simulation<D> {
@@ -82,6 +90,14 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
+        Self::made(setup, false)
+    }
+
+    /// Sets up a simulation whose free solids it moves itself, or lets be `hosted` by somebody else.
+    fn made(setup: Setup<D>, hosted: bool) -> Result<Self>
+    where
+        Dim<D>: Dimension<D>,
+    {
         setup.check()?;
         let (medium, solids, dp) = (setup.model.medium::<D>(), &setup.solids, setup.model.dp);
         for solid in solids {
@@ -89,7 +105,7 @@ impl<const D: usize> Simulation<D> {
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
         let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-        let engine = if solids.iter().any(|s| free(&s)) {
+        let engine = if !hosted && solids.iter().any(|s| free(&s)) {
             Some(Dim::<D>::engine(solids, &start, &setup.links, &medium.gravity, dp)?)
         } else {
             None
@@ -98,7 +114,7 @@ impl<const D: usize> Simulation<D> {
         let stepper = Stepper::new(&setup.model);
         let longest = limit::sound(&setup.model);
         let mut system = System::new(setup)?;
-        let bodies = Bodies::new(engine, Light::find(&mut system, longest), rig);
+        let bodies = Bodies::new(engine, Light::find(&mut system, longest), rig, hosted);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (Rescue::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rescue, lost, stepping };
@@ -120,12 +136,17 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_to(&mut self, end: f64) -> Result<()> {
+        self.stride(end, &mut |_| Ok(()))
+    }
+
+    /// Goes one step on, with `between` at the moment when the water hands over to the bodies.
+    fn stride(&mut self, end: f64, between: &mut dyn FnMut(&mut Handover<D>) -> Result<()>) -> Result<()> {
         let start = Instant::now();
         if self.rescue.due(self.clock.steps) {
             self.rescue.make_room();
             self.rescue.keep(self.clock.steps, self.clock.time, self.save()?);
         }
-        let outcome = self.advance(end).or_else(|error| self.go_back(error));
+        let outcome = self.advance(end, between).or_else(|error| self.go_back(error));
         self.stepping += start.elapsed();
         outcome
     }
@@ -162,7 +183,7 @@ impl<const D: usize> Simulation<D> {
         &self.lost
     }
 
-    fn advance(&mut self, end: f64) -> Result<()> {
+    fn advance(&mut self, end: f64, between: &mut dyn FnMut(&mut Handover<D>) -> Result<()>) -> Result<()> {
         if let Some(renewal) = self.system.renew() {
             self.stepper.follow(&renewal, self.system.medium().rho0);
             if let Some(books) = &mut self.bodies.books {
@@ -178,7 +199,9 @@ impl<const D: usize> Simulation<D> {
         if dt.is_nan() || dt <= 0.0 {
             return Err(self.fault("time step of no length", NO_STEP, 0));
         }
-        self.stepper.step(&mut self.system, &mut self.bodies, Interval { t: self.clock.time, dt })?;
+        let over = Interval { t: self.clock.time, dt };
+        let weight = self.stepper.step(&mut self.system, over, self.bodies.books.as_mut());
+        self.bodies.advance(&mut self.system, over, weight, between)?;
         self.clock.dt = dt;
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
@@ -302,9 +325,20 @@ impl<const D: usize> Simulation<D> {
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
         let rescued = self.rescue.log.clone();
         let (light, rig, lost) = (self.bodies.held(), self.bodies.rig().save(), self.lost.clone());
-        let books = self.bodies.books.clone();
-        let kept = Kept { system, stepper, clock, engine, light, rig, rescued, lost, books };
+        let (books, gone) = (self.bodies.books.clone(), self.gone());
+        let kept = Kept { system, stepper, clock, engine, light, rig, rescued, lost, books, gone };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
+    }
+
+    /// Numbers of the solids that have been removed.
+    fn gone(&self) -> Vec<u32> {
+        let solids = self.system.solids().iter().enumerate();
+        solids.filter(|(_, solid)| solid.skin.is_empty()).map(|(i, _)| i as u32).collect()
+    }
+
+    fn read(bytes: &[u8]) -> Result<Kept<D>> {
+        postcard::from_bytes(bytes)
+            .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint's state is damaged: {e}")))
     }
 
     /// Goes back to a state that [`Simulation::save`] gave, in a simulation made from the same setup.
@@ -312,8 +346,11 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
-        let kept: Kept<D> = postcard::from_bytes(bytes)
-            .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint's state is damaged: {e}")))?;
+        let kept = Self::read(bytes)?;
+        if kept.gone != self.gone() {
+            return Err(Error::new(Kind::Restart, "solids had been removed from the simulation whose state this is")
+                .help("restore_with takes it up in a simulation made from the same setup"));
+        }
         match (self.bodies.engine_mut(), kept.engine) {
             (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
             (None, None) => {}

@@ -72,6 +72,13 @@ impl<const D: usize> Near<D> {
         reach / UNITS
     }
 
+    /// Forgets the boundary particles `gone`, whose places the later ones take.
+    pub(crate) fn shift_wet(&mut self, gone: std::ops::Range<usize>) {
+        self.wet.retain(|&i| !gone.contains(&(i as usize)));
+        let later = self.wet.partition_point(|&i| (i as usize) < gone.start);
+        self.wet[later..].iter_mut().for_each(|i| *i -= gone.len() as u32);
+    }
+
     /// How far the lists look beyond the support, m.
     pub fn margin(&self) -> f64 {
         MARGIN * self.reach

@@ -54,7 +54,7 @@ where
     pub fn new(scene: &Scene, origin: Origin) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
         let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
-        let mut sim = Simulation::new(setup)?;
+        let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?;
         let probes = outputs::probes(&plan, &mut sim)?;
         let checks = outputs::checks(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();

@@ -135,7 +135,7 @@ where
 {
     let values: Vec<InForce> = scene.resolve()?.into_iter().map(InForce::from).collect();
     let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
-    let mut sim = Simulation::new(setup)?;
+    let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?;
     let probes = outputs::probes(&plan, &mut sim)?;
     outputs::checks(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();

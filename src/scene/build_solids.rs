@@ -34,11 +34,18 @@ impl Scene {
             move |e: Error| self.origin.place(e, &key)
         };
         let shape: Shape<D> = shape(self, &words.shape).map_err(place("shape"))?;
-        let at = words.at.clone().unwrap_or_default();
+        let (name, at) = (&words.name, words.at.clone().unwrap_or_default());
         let mut pose = pose(&at, &shape, level);
         let role = match (&words.driven, &words.free) {
             (Some(words), _) => Role::Driven(self.motion(&format!("{key}.driven"), words)?),
-            (None, Some(words)) => Role::Free(free(words, &shape)),
+            (None, Some(words)) => {
+                let body = free(words, &shape);
+                let part = if words.inertia.is_some() { "free.inertia" } else { "free" };
+                body.check()
+                    .map_err(|e| Error { what: format!("solid \"{}\": {}", name, e.what), ..e })
+                    .map_err(place(part))?;
+                Role::Free(body)
+            }
             (None, None) => Role::Fixed,
         };
         if at.draft == Some(Draft::Equilibrium) {

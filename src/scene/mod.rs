@@ -87,6 +87,15 @@ impl Scene {
         document::read(text, "scene.toml", folder, sets)
     }
 
+    /// An error of a simulation that this scene was built into, with the file and the line of the key that it speaks of, if it
+    /// speaks of one.
+    pub fn place(&self, mut error: Error) -> Error {
+        match error.place.take() {
+            Some(place) if place.file.is_empty() => self.origin.place(error, &place.key),
+            place => Error { place, ..error },
+        }
+    }
+
     /// The scene as TOML, for a file or a manifest.
     ///
     /// # Errors

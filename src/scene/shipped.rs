@@ -48,5 +48,6 @@ pub fn shipped() -> &'static [Shipped] {
         scene!("column", "force.csv", "velocity.csv"),
         scene!("column-gate", "force.csv"),
         scene!("wigley", "wigley.obj", "seabed.stl"),
+        scene!("sloshing"),
     ]
 }

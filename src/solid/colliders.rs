@@ -64,6 +64,26 @@ pub(super) fn thickness(parts: &Parts) -> f64 {
     boxes.reduce(|a, b| a.merged(&b)).map_or(f64::INFINITY, |whole| whole.extents().min_element())
 }
 
+/// The error that one solid starts so deep (m) inside another.
+fn inside(inner: &SolidSpec<D>, outer: &SolidSpec<D>, depth: f64, allowed: f64) -> Error {
+    let mut help =
+        format!("move one of them by that much or more, or make it smaller; {allowed:.5} m (0.05 dp) is let pass");
+    if let Shape::Tank { size, .. } = &outer.shape {
+        let own = inner.shape.bounds_at(&Pose { position: Vector::zeros(), ..inner.pose }).size();
+        if let Some(axis) = (0..D - 1).find(|&axis| own[axis] > size[axis]) {
+            help = format!(
+                "\"{}\" is {:.4} m long along {} and \"{}\" has room for {:.4} m: make it smaller, or the tank larger",
+                inner.name,
+                own[axis],
+                ["x", "y"][axis],
+                outer.name,
+                size[axis]
+            );
+        }
+    }
+    Error::scene(format!("\"{}\" starts {depth:.5} m inside \"{}\"", inner.name, outer.name)).help(help)
+}
+
 /// Refuses a free solid that starts deeper than `allowed` (m) inside another.
 pub(super) fn refuse_overlap(
     solids: &[SolidSpec<D>],
@@ -88,10 +108,11 @@ pub(super) fn refuse_overlap(
             }
             if depth > allowed {
                 let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
-                let (inner, outer) = (&solids[inner].name, &solids[outer].name);
-                let help = "move one of them by that much or more, or make it smaller";
-                return Err(Error::scene(format!("\"{inner}\" starts {depth:.5} m inside \"{outer}\""))
-                    .help(format!("{help}; {allowed:.5} m (0.05 dp) is let pass")));
+                return Err(inside(&solids[inner], &solids[outer], depth, allowed).at(
+                    "",
+                    None,
+                    format!("solid.{inner}.at"),
+                ));
             }
         }
     }

@@ -4,7 +4,7 @@
 
 use crate::{
     error::{Error, Kind, Result},
-    solid::{Kinematics, Links, Load, Mobility, Role, SolidSpec},
+    solid::{Kinematics, Links, Load, Mobility, SolidSpec},
     space::{Vector, Wedge},
 };
 
@@ -50,8 +50,26 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Holds a free solid still, or lets it go as it was made.
     fn hold(&mut self, solid: usize, held: bool);
 
+    /// With which solid, and how deep (m), a `solid` that starts as `start` would overlap most.
+    ///
+    /// # Errors
+    /// `Scene` if its shape cannot be touched.
+    fn overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>>;
+
+    /// Lets a solid come that starts as `start`; it gets the next number.
+    ///
+    /// # Errors
+    /// `Scene` if its shape cannot be touched; nothing has changed then.
+    fn admit(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()>;
+
+    /// Takes a solid out that nothing is tied to: it keeps its number and takes no part any more.
+    fn oust(&mut self, solid: usize);
+
     /// How easily a solid is moved now.
     fn mobility(&self, solid: usize) -> Mobility<D>;
+
+    /// Iterations of the last step. Joints and ropes tell the impulses of its last iteration, times their number.
+    fn iterations(&self) -> usize;
 
     /// Impulses (N s, N m s) of joint number `joint` on its second solid in the last step: of its locks, turns first, then of
     /// its end stop. Each is along what the rows before it leave of its own: see `solid/rows.rs`.
@@ -161,11 +179,7 @@ const ITERATIONS_MAX: usize = 64;
 
 /// Iterations that keep contacts as firm under the heaviest of the free solids as under the lightest: a contact yields to what
 /// lies on the lighter body with 1/n².
-pub(super) fn iterations<const D: usize>(solids: &[SolidSpec<D>]) -> usize {
-    let masses = solids.iter().filter_map(|solid| match &solid.role {
-        Role::Free(body) => Some(body.mass),
-        _ => None,
-    });
+pub(super) fn iterations(masses: impl Iterator<Item = f64>) -> usize {
     let (lightest, heaviest) = masses.fold((f64::INFINITY, 0.0_f64), |(a, b), mass| (a.min(mass), b.max(mass)));
     let wanted = (heaviest / lightest).sqrt() / 1.5;
     if wanted > 1.0 { (wanted.ceil() as usize).next_power_of_two().min(ITERATIONS_MAX) } else { 1 }

@@ -72,6 +72,18 @@ impl<const D: usize> Links<D> {
         !(self.joints.iter().any(jointed) || self.contacts.iter().any(apart))
     }
 
+    /// The name of a tie of solid number `solid`, if it has one.
+    pub(crate) fn of(&self, solid: usize) -> Option<String> {
+        let joints = self.joints.iter().map(|joint| (&joint.name, joint.between));
+        let ends = |ends: &[End<D>; 2]| ends.map(|end| end.solid);
+        let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends)));
+        let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends)));
+        let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None]));
+        let named = joints.chain(springs).chain(ropes).chain(forces);
+        let held = self.holds.iter().any(|hold| hold.solid == solid).then(|| "its release".to_string());
+        named.filter(|(_, ends)| ends.contains(&Some(solid))).map(|(name, _)| format!("{name:?}")).next().or(held)
+    }
+
     /// Refuses what cannot be meant of these solids.
     ///
     /// # Errors

@@ -11,12 +11,13 @@ pub mod links;
 mod load;
 pub mod mooring;
 #[cfg(feature = "dim2")]
-mod planar;
+pub mod planar;
+mod pull;
 pub(crate) mod rig;
 mod rows;
 pub mod skin;
 #[cfg(feature = "dim3")]
-mod spatial;
+pub mod spatial;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 mod tests;
 

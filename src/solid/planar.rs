@@ -1,19 +1,40 @@
-//! The engine in two dimensions: rapier2d, and what only a plane has.
+//! The engine in two dimensions, rapier2d; what of it is yours: bodies of a world of your own, in a hosted simulation.
+//!
+//! ```no_run
+//! # use pontoon::{solid::planar::{self, rapier::prelude::*}, simulation::Simulation};
+//! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<2>) -> pontoon::Result<()> {
+//! water.step_with(1.0, |handover| {
+//!     planar::give(&mut world.bodies[hull], &handover.loads()[1]);
+//!     world.integration_parameters.dt = handover.dt();
+//!     world.step();
+//!     handover.solids[1] = planar::kinematics(&world.bodies[hull]);
+//!     Ok(())
+//! })
+//! # }
+//! ```
+//!
+//! `examples/own_world.rs` is a whole program.
 
-use rapier2d as rapier;
+/// The engine itself, in the version that this crate is made with.
+pub use rapier2d as rapier;
 
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "own.rs"]
+mod own;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "world.rs"]
 mod world;
 
+pub use own::{follow, give, kinematics, solid};
 pub(super) use world::World;
 
 use nalgebra::SMatrix;
 use rapier::{
     dynamics::{IntegrationParameters, RigidBodyBuilder},
-    geometry::{ContactData, SharedShape, TriMesh},
+    geometry::{ContactData, SharedShape, TriMesh, TypedShape},
     math::{Pose as Frame, Rotation, Vector as Point},
     parry::{mass_properties::MassProperties, transformation::hertel_mehlhorn},
+    pipeline::PhysicsWorld,
     utils::OrthonormalBasis,
 };
 
@@ -69,8 +90,38 @@ fn friction(direction: Point, data: &ContactData) -> Point {
     direction.orthonormal_vector() * data.tangent_impulse[0]
 }
 
+/// Nothing: a plane's bodies do not tumble.
+struct Tumbling;
+
+fn wind(_world: &mut PhysicsWorld, _dt: f64) -> Tumbling {
+    Tumbling
+}
+
+fn unwind(_world: &mut PhysicsWorld, _tumbling: Tumbling) {}
+
 /// Settings that only this dimension has: none.
 fn tune(_parameters: &mut IntegrationParameters) {}
+
+/// The turn that takes the first axis along a vector.
+fn arc(along: &Vector<D>) -> Matrix<D> {
+    let [x, y] = along.normalize().into();
+    Matrix::from_row_slice(&[x, -y, y, x])
+}
+
+/// The inertia of mass properties, as a free body has it.
+fn inertia(own: &MassProperties) -> Matrix<D> {
+    Matrix::from_row_slice(&[own.principal_inertia(), 0.0, 0.0, 0.0])
+}
+
+/// The shape of a collider that only a plane has.
+fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
+    let points = |points: &[Point]| Shape::Polygon { points: points.iter().copied().map(world::from_point).collect() };
+    match geometry {
+        TypedShape::ConvexPolygon(polygon) => Ok(points(polygon.points())),
+        TypedShape::Triangle(triangle) => Ok(points(&[triangle.a, triangle.b, triangle.c])),
+        other => Err(own::unfelt(other)),
+    }
+}
 
 /// Convex parts of the shapes that only a plane has, in the shape's frame.
 fn parts(shape: &Shape<D>, _fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {

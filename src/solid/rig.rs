@@ -7,6 +7,7 @@ use super::{
     joint::{Drive, Joint},
     links::{Hold, Links},
     mooring::{Elastic, Line, RopeSpec, SpringSpec, start_length},
+    pull::{Pull, mend},
     rows::{Mobility, Row},
 };
 use crate::{
@@ -133,6 +134,12 @@ impl<const D: usize> Rig<D> {
         }
     }
 
+    /// Takes up a solid that has come as `start`.
+    pub(crate) fn admit(&mut self, start: Kinematics<D>) {
+        self.start.push(start);
+        self.tied.push(Tied::zero());
+    }
+
     /// Whether there is nothing that acts.
     pub(crate) fn is_empty(&self) -> bool {
         self.joints.is_empty()
@@ -180,17 +187,19 @@ impl<const D: usize> Rig<D> {
         }
     }
 
-    /// Reads what they felt in the step, `dt` (s) long, from `before` to `after`.
-    pub(crate) fn learn(&mut self, engine: &dyn Engine<D>, before: &[Kinematics<D>], after: &[Kinematics<D>], dt: f64) {
+    /// Reads what they felt in the step, `dt` (s) long, from `before` to `after`. Of steps in which the engine does not tell all of
+    /// its impulses, `told` says what changed the momentum of each solid and no other load explains (N, N m).
+    pub(crate) fn learn(
+        &mut self,
+        engine: &dyn Engine<D>,
+        [before, after]: [&[Kinematics<D>]; 2],
+        dt: f64,
+        told: Option<&[Load<D>]>,
+    ) {
+        let pulls = self.pulls(engine, before, dt, told);
         for (i, (joint, (_, reading))) in self.joints.iter().zip(&mut self.state.joints).enumerate() {
             let (was, is) = (joint.ends(before), joint.ends(after));
-            let impulses = engine.impulses(i);
-            let mut held = Load::zero();
-            for (row, impulse) in self.rows[i].iter().zip(&impulses) {
-                let loads = row.loads(impulse / dt);
-                held += loads[1];
-                note(&mut self.tied, joint.spec.between, &loads, |tied| &mut tied.joints);
-            }
+            let held: Load<D> = pulls[i].iter().map(|pull| pull.loads()[1]).sum();
             let arm = joint.point(&was) - was[1].centre;
             (reading.force, reading.torque) = (held.force, held.torque + Wedge::torque(&arm, &held.force) * -1.0);
             reading.position = joint.position(&is);
@@ -201,13 +210,49 @@ impl<const D: usize> Rig<D> {
         for (spring, (_, reading)) in self.springs.iter().zip(&mut self.state.springs) {
             reading.length = spring.line.along(&spring.line.ends(after)).0;
         }
-        for (i, (rope, reading)) in self.ropes.iter().zip(&mut self.state.ropes).enumerate() {
+        let (of_joints, of_ropes) = pulls.split_at(self.joints.len());
+        for ((rope, reading), pull) in self.ropes.iter().zip(&mut self.state.ropes).zip(of_ropes) {
             let length = rope.along(&rope.ends(after)).0;
-            *reading = LineReading { length, tension: engine.rope_impulse(i) / dt };
-            if let Some(row) = rope.along(&rope.ends(before)).1 {
-                note(&mut self.tied, rope.solids(), &row.loads(-reading.tension), |tied| &mut tied.ropes);
-            }
+            *reading = LineReading { length, tension: pull.first().map_or(0.0, |pull| -pull.force) };
         }
+        for pull in of_joints.iter().flatten() {
+            note(&mut self.tied, pull.between, &pull.loads(), |tied| &mut tied.joints);
+        }
+        for pull in of_ropes.iter().flatten() {
+            note(&mut self.tied, pull.between, &pull.loads(), |tied| &mut tied.ropes);
+        }
+    }
+
+    /// The pulls of each joint and then of each rope in a step `dt` (s) long.
+    fn pulls(
+        &self,
+        engine: &dyn Engine<D>,
+        before: &[Kinematics<D>],
+        dt: f64,
+        told: Option<&[Load<D>]>,
+    ) -> Vec<Vec<Pull<D>>> {
+        let of_joint = |(i, joint): (usize, &Joint<D>)| {
+            let (between, mobility) = (joint.spec.between, joint.mobility(engine));
+            let rows = self.rows[i].iter().zip(engine.impulses(i));
+            rows.map(|(row, impulse)| Pull { between, row: *row, mobility, force: impulse / dt }).collect()
+        };
+        let of_rope = |(i, rope): (usize, &Line<D>)| {
+            let (between, mobility) = (rope.solids(), rope.mobility(engine));
+            let force = -engine.rope_impulse(i) / dt;
+            let pull = |row| Pull { between, row, mobility, force };
+            rope.along(&rope.ends(before)).1.map(pull).into_iter().collect()
+        };
+        let joints = self.joints.iter().enumerate().map(of_joint);
+        let ropes = self.ropes.iter().enumerate().map(of_rope);
+        let mut pulls: Vec<Vec<Pull<D>>> = joints.chain(ropes).collect();
+        if let Some(told) = told {
+            let sizes: Vec<usize> = pulls.iter().map(Vec::len).collect();
+            let mut all: Vec<Pull<D>> = pulls.into_iter().flatten().collect();
+            mend(&mut all, told);
+            let mut all = all.into_iter();
+            pulls = sizes.into_iter().map(|size| all.by_ref().take(size).collect()).collect();
+        }
+        pulls
     }
 
     /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s).
@@ -245,6 +290,11 @@ impl<const D: usize> Rig<D> {
     /// How long (s) from time `t` (s) on until the next solid is let go; no step goes past that.
     pub(crate) fn let_go(&self, t: f64) -> f64 {
         self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How many solids there are, tied or not.
+    pub(crate) fn solids(&self) -> usize {
+        self.tied.len()
     }
 
     /// What the ties did to solid number `i` in the last step.

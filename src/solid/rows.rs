@@ -26,7 +26,7 @@ impl<const D: usize> Mobility<D> {
     }
 
     /// The spin (rad/s) that the angular impulse `torque` (N m s) gives.
-    fn spin(&self, torque: &Wedge<D>) -> Wedge<D> {
+    pub(super) fn spin(&self, torque: &Wedge<D>) -> Wedge<D> {
         let torque = torque.axial();
         let mut spin = [0.0; 3];
         for (i, spin) in spin.iter_mut().enumerate() {

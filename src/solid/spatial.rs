@@ -1,23 +1,47 @@
-//! The engine in three dimensions: rapier3d, and what only space has.
+//! The engine in three dimensions, rapier3d; what of it is yours: bodies of a world of your own, in a hosted simulation.
+//!
+//! ```no_run
+//! # use pontoon::{solid::spatial::{self, rapier::prelude::*}, simulation::Simulation};
+//! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<3>) -> pontoon::Result<()> {
+//! water.step_with(1.0, |handover| {
+//!     spatial::give(&mut world.bodies[hull], &handover.loads()[1]);
+//!     world.integration_parameters.dt = handover.dt();
+//!     world.step();
+//!     handover.solids[1] = spatial::kinematics(&world.bodies[hull]);
+//!     Ok(())
+//! })
+//! # }
+//! ```
+//!
+//! `examples/own_world.rs` is a whole program.
 
-use rapier3d as rapier;
+/// The engine itself, in the version that this crate is made with.
+pub use rapier3d as rapier;
 
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "own.rs"]
+mod own;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "world.rs"]
 mod world;
 
+pub use own::{follow, give, kinematics, solid};
 pub(super) use world::World;
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
+};
 
 use rapier::{
-    dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder},
-    geometry::{ContactData, SharedShape, TriMeshFlags},
+    dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
+    geometry::{ContactData, SharedShape, TriMeshFlags, TypedShape},
     math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
     parry::{
         mass_properties::MassProperties,
         transformation::vhacd::{VHACD, VHACDParameters},
     },
+    pipeline::PhysicsWorld,
     utils::OrthonormalBasis,
 };
 
@@ -25,7 +49,7 @@ use crate::{
     error::{Error, Result},
     shape::{Contact, Mesh, Shape},
     solid::FreeBody,
-    space::{Matrix, Wedge},
+    space::{Matrix, Vector, Wedge},
 };
 
 const D: usize = 3;
@@ -93,9 +117,77 @@ fn friction(direction: Point, data: &ContactData) -> Point {
     tangent * data.tangent_impulse[0] + direction.cross(tangent) * data.tangent_impulse[1]
 }
 
+/// A body that turns about three axes: its angular momentum (kg m²/s) and spin (rad/s) before a step, and its principal axes then.
+struct Tumbling {
+    body: RigidBodyHandle,
+    momentum: Point,
+    spin: Point,
+    axes: Rotation,
+}
+
+/// Gives each body that turns as it likes the spin that it has in the middle of the step by Euler's equations, I ω̇ = −ω ∧ I ω, to turn
+/// by: rapier's own gyroscopic torque acts once a step and loses energy with Δt. Bodies in joints keep that.
+fn wind(world: &mut PhysicsWorld, dt: f64) -> Vec<Tumbling> {
+    let mut all = Vec::new();
+    for (handle, body) in world.bodies.iter_mut() {
+        let tied = world.impulse_joints.attached_joints(handle).next().is_some();
+        if !(body.is_dynamic() && body.is_enabled() && body.locked_axes().is_empty()) || tied {
+            continue;
+        }
+        body.enable_gyroscopic_forces(false);
+        let own = &body.mass_properties().local_mprops;
+        let (axes, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
+        let spin = axes.inverse() * body.angvel();
+        let momentum = inertia * spin;
+        let middle = axes * (spin - 0.5 * dt * (spin.cross(momentum) / inertia));
+        all.push(Tumbling { body: handle, momentum: axes * momentum, spin: middle, axes });
+        body.set_angvel(middle, false);
+    }
+    all
+}
+
+/// Adds the angular impulse that each of them got in the step to its angular momentum, and gives it the spin that this is now.
+fn unwind(world: &mut PhysicsWorld, tumbling: Vec<Tumbling>) {
+    for Tumbling { body, momentum, spin, axes } in tumbling {
+        let Some(body) = world.bodies.get_mut(body) else { continue };
+        let own = &body.mass_properties().local_mprops;
+        let (now, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
+        let impulse = axes * (inertia * (axes.inverse() * (body.angvel() - spin)));
+        let spin = now * ((now.inverse() * (momentum + impulse)) / inertia);
+        body.set_angvel(spin, false);
+    }
+}
+
 /// Settings that only this dimension has: Coulomb's law at every contact point.
 fn tune(parameters: &mut IntegrationParameters) {
     parameters.friction_model = FrictionModel::Coulomb;
+}
+
+/// The turn that takes the first axis along a vector.
+fn arc(along: &Vector<D>) -> Matrix<D> {
+    from_rotation(&Rotation::from_rotation_arc(Point::X, world::to_point(&along.normalize())))
+}
+
+/// The inertia of mass properties, as a free body has it.
+fn inertia(own: &MassProperties) -> Matrix<D> {
+    Matrix::from_column_slice(&own.reconstruct_inertia_matrix().to_cols_array())
+}
+
+/// The shape of a collider that only space has.
+fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
+    let mesh = |points: &[Point], facets: &[[u32; 3]]| {
+        let points: Vec<Vector<D>> = points.iter().copied().map(world::from_point).collect();
+        Ok(Shape::Mesh { mesh: Arc::new(Mesh::new(&points, facets)?), contact: Contact::None })
+    };
+    match geometry {
+        TypedShape::Cylinder(c) => Ok(Shape::Cylinder { length: 2.0 * c.half_height, radius: c.radius, axis: 1 }),
+        TypedShape::TriMesh(surface) => mesh(surface.vertices(), surface.indices()),
+        TypedShape::ConvexPolyhedron(hull) => {
+            let (points, facets) = hull.to_trimesh();
+            mesh(&points, &facets)
+        }
+        other => Err(own::unfelt(other)),
+    }
 }
 
 /// Parts of the shapes that only space has, in the shape's frame.

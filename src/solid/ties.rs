@@ -98,21 +98,19 @@ impl Ties {
     }
 
     /// Impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in order, then of its end stop.
-    pub(super) fn impulses(&self, world: &PhysicsWorld, i: usize) -> Vec<f64> {
+    pub(super) fn impulses(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> Vec<f64> {
         let Some(joint) = world.impulse_joints.get(self.joints[i]) else { return Vec::new() };
         let (locked, limited) = (joint.data.locked_axes.bits(), joint.data.limit_axes.bits());
         let turns_first = (D..2 * D).chain(0..D).filter(|i| *i < joint.data.limits.len());
         let locks = turns_first.clone().filter(|i| locked >> i & 1 == 1).map(|i| joint.impulses[i]);
         let stops = turns_first.filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
         // The engine keeps those of the last of its iterations.
-        let iterations = world.integration_parameters.num_solver_iterations as f64;
-        locks.chain(stops).map(|impulse| -impulse * iterations).collect()
+        locks.chain(stops).map(|impulse| -impulse * iterations as f64).collect()
     }
 
     /// Impulse (N s) of rope number `i` in the last step.
-    pub(super) fn rope(&self, world: &PhysicsWorld, i: usize) -> f64 {
-        let iterations = world.integration_parameters.num_solver_iterations as f64;
-        world.impulse_joints.get(self.ropes[i].0).map_or(0.0, |rope| rope.data.limits[0].impulse * iterations)
+    pub(super) fn rope(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
+        world.impulse_joints.get(self.ropes[i].0).map_or(0.0, |rope| rope.data.limits[0].impulse * iterations as f64)
     }
 }
 

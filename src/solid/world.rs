@@ -17,6 +17,9 @@ mod colliders;
 #[path = "impact.rs"]
 mod impact;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "roster.rs"]
+mod roster;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "ties.rs"]
 mod ties;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
@@ -24,19 +27,19 @@ mod ties;
 mod touch;
 
 use super::rapier::{
-    dynamics::{LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
-    geometry::ColliderBuilder,
+    dynamics::{LockedAxes, RigidBody, RigidBodyHandle, SpringCoefficients},
     math::{Pose as Frame, Vector as Point},
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
     D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular, to_rotation, tune,
+    unwind, wind,
 };
 use crate::{
     error::Result,
     solid::{
         Kinematics, Links, Load, Mobility, Role, SolidSpec,
-        engine::{Contact, Engine, EngineFault, iterations, restart},
+        engine::{Contact, Engine, EngineFault, restart},
     },
     space::{Pose, Vector, Wedge},
 };
@@ -57,6 +60,8 @@ pub(in crate::solid) struct World {
     restitution: Vec<f64>,
     /// Iterations of a step in which bodies may touch.
     iterations: usize,
+    /// Those of the last step.
+    took: usize,
     /// Who bounced in the last step, with the impulse, N s.
     met: Vec<Met>,
     /// A tenth of the thinnest free body, m: contacts are foreseen from there.
@@ -67,6 +72,8 @@ pub(in crate::solid) struct World {
     ties: Ties,
     /// What of each solid is locked when it is not held.
     locks: Vec<LockedAxes>,
+    /// Which of them have been taken out.
+    gone: Vec<bool>,
 }
 
 /// A load on a solid in the next step.
@@ -96,13 +103,27 @@ impl World {
         let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
         settle(&mut world, reach);
         let hooks = if links.contacts.is_empty() { ActiveHooks::empty() } else { ActiveHooks::all() };
-        let insert = |i: usize| insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
+        let insert = |i: usize| roster::insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
         let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
         let ties = Ties::new(&mut world, &bodies, links, start);
         let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let restitution = solids.iter().map(|solid| solid.restitution).collect();
-        let (iterations, met, pushes) = (iterations(solids), Vec::new(), Vec::new());
-        Ok(Self { world, bodies, restitution, iterations, met, reach, tuned_for: 0.0, pushes, ties, locks })
+        let (iterations, met, pushes) = (roster::iterations(&world), Vec::new(), Vec::new());
+        let gone = vec![false; bodies.len()];
+        Ok(Self {
+            world,
+            bodies,
+            restitution,
+            iterations,
+            took: 1,
+            met,
+            reach,
+            tuned_for: 0.0,
+            pushes,
+            ties,
+            locks,
+            gone,
+        })
     }
 
     fn body(&self, solid: usize) -> &RigidBody {
@@ -136,10 +157,9 @@ impl World {
     fn load(&mut self, loads: &[Load<D>]) -> std::result::Result<(), EngineFault<D>> {
         assert_eq!(loads.len(), self.bodies.len(), "every solid needs a load");
         let mut total = loads.to_vec();
-        for (solid, load) in total.iter_mut().enumerate() {
-            *load += self.pushed(solid);
+        for (solid, push) in self.pushes.drain(..) {
+            total[solid] += push;
         }
-        self.pushes.clear();
         for (solid, load) in total.iter().enumerate() {
             if !self.body(solid).is_dynamic() {
                 continue;
@@ -174,7 +194,7 @@ impl World {
     /// Whether all solids came out of the step whole. Rapier disables what went astray and puts it back to
     /// where it last was.
     fn examine(&self, before: &[Point]) -> std::result::Result<(), EngineFault<D>> {
-        for (solid, velocity) in before.iter().enumerate() {
+        for (solid, velocity) in before.iter().enumerate().filter(|(solid, _)| !self.gone[*solid]) {
             let body = self.body(solid);
             let whole = body.is_enabled() && body.colliders().iter().all(|&c| self.world.colliders[c].is_enabled());
             if !(whole && body.position().is_finite() && body.linvel().length_squared().is_finite()) {
@@ -222,10 +242,13 @@ impl Engine<D> for World {
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
         self.met = impact::rebound(&mut self.world, dt, |a, b, mu| self.ties.pairs.bounce(a, b, &self.restitution, mu));
         self.ties.tighten(&mut self.world, dt);
+        let tumbling = wind(&mut self.world, dt);
         match self.ties.pairs.is_empty() {
             true => self.world.step(),
             false => self.world.step_with_events(&self.ties.pairs, &()),
         }
+        unwind(&mut self.world, tumbling);
+        self.took = self.world.integration_parameters.num_solver_iterations;
         self.foresee();
         self.examine(&before)
     }
@@ -249,6 +272,18 @@ impl Engine<D> for World {
         body.set_angvel(to_angular(spin), true);
     }
 
+    fn overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
+        self.overlap_of(solid, start)
+    }
+
+    fn admit(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+        self.admit_one(solid, start)
+    }
+
+    fn oust(&mut self, solid: usize) {
+        self.oust_one(solid);
+    }
+
     fn contacts(&self) -> Vec<Contact<D>> {
         touch::contacts(&self.world, &self.bodies, &self.met)
     }
@@ -270,12 +305,16 @@ impl Engine<D> for World {
         }
     }
 
+    fn iterations(&self) -> usize {
+        self.took
+    }
+
     fn impulses(&self, joint: usize) -> Vec<f64> {
-        self.ties.impulses(&self.world, joint)
+        self.ties.impulses(&self.world, joint, self.took)
     }
 
     fn rope_impulse(&self, rope: usize) -> f64 {
-        self.ties.rope(&self.world, rope)
+        self.ties.rope(&self.world, rope, self.took)
     }
 
     fn save(&self) -> Result<Vec<u8>> {
@@ -316,50 +355,18 @@ fn settle(world: &mut PhysicsWorld, reach: f64) {
     tune(parameters);
 }
 
-fn insert(
-    world: &mut PhysicsWorld,
-    index: usize,
-    solid: &SolidSpec<D>,
-    start: &Kinematics<D>,
-    parts: &Parts,
-    hooks: ActiveHooks,
-) -> RigidBodyHandle {
-    let builder = match &solid.role {
-        Role::Fixed => RigidBodyBuilder::fixed(),
-        Role::Driven(_) => RigidBodyBuilder::kinematic_position_based(),
-        Role::Free(body) => lock(RigidBodyBuilder::dynamic(), body)
-            .additional_mass_properties(mass_properties(body, &start.pose.rotation))
-            .linvel(to_point(&start.velocity))
-            .angvel(to_angular(&start.spin)),
-    };
-    let handle = world.insert_body(builder.pose(to_frame(&start.pose)).can_sleep(false));
-    for (frame, part) in parts {
-        let collider = ColliderBuilder::new(part.clone())
-            .position(*frame)
-            .density(0.0)
-            .contact_skin(0.0)
-            .friction(solid.friction)
-            .restitution(0.0)
-            .active_hooks(hooks)
-            .user_data(index as u128);
-        world.insert_collider(collider, Some(handle));
-    }
-    world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
-    handle
-}
-
 pub(super) fn to_point(x: &Vector<D>) -> Point {
     Point::from_array((*x).into())
 }
 
-fn from_point(x: Point) -> Vector<D> {
+pub(super) fn from_point(x: Point) -> Vector<D> {
     Vector::from(x.to_array())
 }
 
-fn to_frame(pose: &Pose<D>) -> Frame {
+pub(super) fn to_frame(pose: &Pose<D>) -> Frame {
     Frame::from_parts(to_point(&pose.position), to_rotation(&pose.rotation))
 }
 
-fn from_frame(frame: &Frame) -> Pose<D> {
+pub(super) fn from_frame(frame: &Frame) -> Pose<D> {
     Pose { position: from_point(frame.translation), rotation: from_rotation(&frame.rotation) }
 }

@@ -51,7 +51,8 @@ impl<const D: usize> System<D> {
         let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
         let stress = if self.stress.is_empty() { 0 } else { kept.fluid.len() };
         let Some(real) = kept.fluid.len().checked_sub(kept.images.len()) else { return Err(other()) };
-        let all = if self.limits.escape == Escape::Remove { real <= self.count } else { real == self.count };
+        let all =
+            if self.changed || self.limits.escape == Escape::Remove { real <= self.count } else { real == self.count };
         let same = all
             && kept.images.iter().all(|&i| (i as usize) < real)
             && kept.skin.len() == self.skin.len()

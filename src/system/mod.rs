@@ -1,6 +1,7 @@
 //! The system of water and solids at one instant, and its rates on one page: neighbours, sweep, loads.
 //! It does not know the time step.
 
+mod change;
 mod guard;
 mod kept;
 mod meter;
@@ -25,17 +26,13 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::{
-    error::{Error, Result},
-    law::{
-        Extra, Medium,
-        state::State,
-        wall::{Cover, Slip},
-    },
-    model::{Dimension, Model, Viscosity, Walls},
+    error::Result,
+    law::{Extra, Medium, state::State, wall::Cover},
+    model::{Dimension, Model, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
     solid::{Dim, Links, Load, Solid, skin},
-    space::{Bounds, Matrix, Pose, Vector, Wedge},
+    space::{Bounds, Matrix, Pose, Vector},
     sweep::{Input, Output, Sums, Sweep},
 };
 
@@ -89,6 +86,10 @@ pub struct System<const D: usize> {
     peaks: Peaks,
     pub(crate) seen: Seen,
     passes: u64,
+    /// Whether solids have come, and with them water may have gone.
+    changed: bool,
+    /// Which water is to go when the lists are made; empty unless a solid takes its place.
+    ousted: Vec<bool>,
     /// Time spent on lists and sorting so far.
     listing: Duration,
 }
@@ -124,32 +125,6 @@ impl<const D: usize> System<D> {
         let id = (0..water.len() as u32).collect();
         let fluid = Particles { r: water, v, rho, id };
         let (top, count) = (fluid.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max), fluid.len());
-        let (mut skin, mut local, mut solids) = (Particles::default(), Vec::new(), Vec::new());
-        let (mut depths, mut normals) = (Vec::new(), Vec::new());
-        for spec in specs {
-            let kinematics = spec.start();
-            let first = skin.len();
-            for point in spec.shape.skin(model.dp, model.layers()) {
-                skin.push(kinematics.pose.point(&point.r), medium.rho0);
-                local.push(point.r);
-            }
-            if model.slip == Slip::None || model.walls == Walls::Settling {
-                depths.par_extend(local[first..].par_iter().map(|r| -spec.shape.signed_distance(r)));
-            }
-            if model.slip == Slip::None {
-                normals.par_extend(local[first..].par_iter().map(|r| spec.shape.outward(r, 0.05 * model.dp)));
-            }
-            if skin.len() == first {
-                return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
-                    .help("make it larger or dp smaller"));
-            }
-            let load = Load::zero();
-            let (acceleration, whirl) = (Vector::zeros(), Wedge::zero());
-            solids.push(Solid { spec, kinematics, acceleration, whirl, skin: first..skin.len(), load });
-        }
-        let everything = Bounds::around(&fluid.r).union(&Bounds::around(&skin.r));
-        let domain = domain.unwrap_or_else(|| everything.grown(everything.size().max() + reach));
-        let boxes = solids.iter().map(|s: &Solid<D>| Bounds::around(&local[s.skin.clone()])).collect();
         let cover = Cover::new(|r2| model.kernel_value(r2, D) * medium.volume0(), model.dp, reach, D);
         let mut system = Self {
             sweep: Dim::<D>::sweep(&model),
@@ -160,7 +135,7 @@ impl<const D: usize> System<D> {
             } else {
                 Vec::new()
             },
-            marks: walls::marks(&model, &solids, skin.len()),
+            marks: Vec::new(),
             sums: vec![Sums::zero(); fluid.len()],
             skin_sums: Vec::new(),
             extra: Vec::new(),
@@ -173,28 +148,39 @@ impl<const D: usize> System<D> {
             medium,
             state,
             fluid,
-            skin,
-            local,
+            skin: Particles::default(),
+            local: Vec::new(),
             goals: Vec::new(),
             cover,
             feels: false,
             immersed: Vec::new(),
-            depths,
-            normals,
+            depths: Vec::new(),
+            normals: Vec::new(),
             shown: Vec::new(),
-            boxes,
-            solids,
+            boxes: Vec::new(),
+            solids: Vec::new(),
             links,
-            domain,
+            domain: domain.unwrap_or_else(Bounds::empty),
             limits,
             top,
             count,
             images: Images::new(periodic, reach),
+            changed: false,
+            ousted: Vec::new(),
         };
+        for spec in specs {
+            let kinematics = spec.start();
+            system.join(spec, kinematics)?;
+        }
+        system.mark();
+        if domain.is_none() {
+            let everything = Bounds::around(&system.fluid.r).union(&Bounds::around(&system.skin.r));
+            system.domain = everything.grown(everything.size().max() + reach);
+        }
         system.place_all();
         system.renew();
         system.look();
-        system.still_skin();
+        system.still_skin(0..system.skin.len());
         system.rates();
         Ok(system)
     }

@@ -97,6 +97,9 @@ impl<const D: usize> System<D> {
         self.images.wrap(&mut self.fluid.r[..real]);
         let mut order = self.near.order(&self.fluid.r[..real]);
         let lost = self.dismiss(&mut order);
+        if !self.ousted.is_empty() {
+            order.retain(|&i| !self.ousted[i as usize]);
+        }
         let real = order.len();
         let mut images = Vec::new();
         if self.images.any() {

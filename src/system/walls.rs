@@ -1,5 +1,7 @@
 //! By what density and velocity the boundary particles show themselves, and beside which of them water is not shifted.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::System;
@@ -16,8 +18,8 @@ use crate::{
 };
 
 impl<const D: usize> System<D> {
-    /// Gives each boundary particle beside water the density of still water at its depth.
-    pub(super) fn still_skin(&mut self) {
+    /// Gives each boundary particle of `whose` beside water the density of still water at its depth.
+    pub(super) fn still_skin(&mut self, whose: Range<usize>) {
         let up = D - 1;
         let g = -self.medium.gravity[up];
         let still: Vec<f64> = self
@@ -37,7 +39,7 @@ impl<const D: usize> System<D> {
                 self.medium.rho0 * (1.0 + self.state.excess(nearest.1.max(0.0)))
             })
             .collect();
-        self.set_skin_density(0.0, |k, _, _| still[k]);
+        self.set_skin_density(0.0, |k, i, rho| if whose.contains(&i) { still[k] } else { rho });
     }
 
     /// Lets the density (kg/m³) of each wet boundary particle become what `rho` makes of its place among the wet, its
@@ -119,19 +121,11 @@ impl<const D: usize> System<D> {
     }
 }
 
-/// Beside which boundary particles water is not shifted.
-pub(super) fn marks<const D: usize>(model: &Model, solids: &[Solid<D>], skin: usize) -> Vec<bool> {
-    let held = |solid: &Solid<D>| match model.shifting {
+/// Whether water is not shifted beside `solid`.
+pub(super) fn held<const D: usize>(model: &Model, solid: &Solid<D>) -> bool {
+    match model.shifting {
         Shifting::AwayFromSolids(_) => true,
         Shifting::AwayFromFixed(_) => matches!(solid.spec.role, Role::Fixed),
         Shifting::None | Shifting::Everywhere(_) => false,
-    };
-    if model.shift().is_none() {
-        return Vec::new();
     }
-    let mut marks = vec![false; skin];
-    for solid in solids {
-        marks[solid.skin.clone()].fill(held(solid));
-    }
-    marks
 }

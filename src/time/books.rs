@@ -180,6 +180,13 @@ impl<const D: usize> Books<D> {
         }
     }
 
+    /// Takes up a solid that has come.
+    pub(super) fn admit(&mut self) {
+        self.viscous.push(Load::zero());
+        self.work.push(0.0);
+        self.shares.push(Shares::zero());
+    }
+
     /// Books of as many solids, with entries as full.
     pub(crate) fn like(&self, other: &Self) -> bool {
         self.every == other.every && self.energy == other.energy && self.shares.len() == other.shares.len()
@@ -234,14 +241,12 @@ impl<const D: usize> Books<D> {
         let solid = &system.solids()[i];
         let Role::Free(body) = &solid.spec.role else { return };
         let Moved { given, pushes, tied, before, after, dt } = *moved;
-        let touching =
-            contacts.iter().flat_map(|c| c.between.into_iter().zip(c.loads)).filter(|(solid, _)| *solid == i);
         let mut shares = Shares {
             pressure: solid.load - self.viscous[i],
             viscous: self.viscous[i],
             delayed: given - solid.load,
             weight: Load { force: system.gravity() * body.mass, torque: Wedge::zero() },
-            contacts: touching.map(|(_, load)| load).sum(),
+            contacts: touching(contacts, i),
             joints: tied.joints,
             ropes: tied.ropes,
             springs: tied.springs,
@@ -270,8 +275,14 @@ impl<const D: usize> Books<D> {
     }
 }
 
+/// The load of all `contacts` on solid number `i`.
+pub(super) fn touching<const D: usize>(contacts: &[Contact<D>], i: usize) -> Load<D> {
+    let ends = contacts.iter().flat_map(|contact| contact.between.into_iter().zip(contact.loads));
+    ends.filter(|(solid, _)| *solid == i).map(|(_, load)| load).sum()
+}
+
 /// Momentum, kg m/s, and angular momentum about the centre of mass, kg m²/s.
-fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
+pub(super) fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
     Load { force: motion.velocity * body.mass, torque: turned(&body.inertia, &motion.pose.rotation, &motion.spin) }
 }
 

@@ -60,27 +60,36 @@ pub struct Held {
 impl<const D: usize> Light<D> {
     /// The free solids that steps up to `dt` (s) can be too long for, were they wet all around.
     pub(crate) fn find(system: &mut System<D>, dt: f64) -> Vec<Self> {
-        let found = Self::among(system, dt);
-        system.feels = !found.is_empty();
+        (0..system.solids().len()).filter_map(|i| Self::of(system, i, dt)).collect()
+    }
+
+    /// The free solid number `i`, if steps up to `dt` (s) can be too long for it, were it wet all around.
+    pub(crate) fn of(system: &mut System<D>, i: usize, dt: f64) -> Option<Self> {
+        let found = Self::one(system, i, dt);
+        system.feels |= found.is_some();
         found
     }
 
-    fn among(system: &System<D>, dt: f64) -> Vec<Self> {
-        let medium = system.medium();
-        let light = |(_, solid): &(usize, &Solid<D>)| match &solid.spec.role {
-            Role::Free(body) => (limit::stiffest(&solid.spec.shape, body, medium) * dt).powi(2) > STIFFEST,
-            _ => false,
-        };
-        let outer = |solid: &Solid<D>| {
-            let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
-            let of = |i: usize| (i as u32, pose.local(&system.skin().r[i]));
-            let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
-            let all = solid.skin.clone().map(of).filter(near_face);
-            all.map(|(i, r)| (i, shape.outward(&r, 0.05 * medium.dp))).collect()
-        };
+    fn one(system: &System<D>, i: usize, dt: f64) -> Option<Self> {
+        let (medium, solid) = (system.medium(), &system.solids()[i]);
+        let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
+        let Role::Free(body) = &solid.spec.role else { return None };
+        if (limit::stiffest(shape, body, medium) * dt).powi(2) <= STIFFEST {
+            return None;
+        }
+        let of = |i: usize| (i as u32, pose.local(&system.skin().r[i]));
+        let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
+        let all = solid.skin.clone().map(of).filter(near_face);
+        let outer = all.map(|(i, r)| (i, shape.outward(&r, 0.05 * medium.dp))).collect();
         let held = Held { withheld: Six::zeros(), contacts: Six::zeros(), grip: 0.0 };
-        let make = |(i, solid)| Self { solid: i, outer: outer(solid), held, given: Six::zeros() };
-        system.solids().iter().enumerate().filter(light).map(make).collect()
+        Some(Self { solid: i, outer, held, given: Six::zeros() })
+    }
+
+    /// Follows the boundary particles when `gone` of them, of solid number `solid`, are taken out.
+    pub(super) fn shift(&mut self, solid: usize, gone: u32) {
+        if self.solid > solid {
+            self.outer.iter_mut().for_each(|(i, _)| *i -= gone);
+        }
     }
 
     /// What must be kept to go on to the same bits.

@@ -7,7 +7,7 @@ pub mod limit;
 mod symplectic;
 mod verlet;
 
-pub use bodies::Bodies;
+pub use bodies::{Bodies, Handover};
 pub(crate) use books::Books;
 pub use books::{Ledger, Shares};
 pub(crate) use light::{Held, Light};
@@ -17,7 +17,6 @@ pub use verlet::Verlet;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    error::Result,
     model::{Model, Scheme},
     system::{Renewal, System},
 };
@@ -56,14 +55,19 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Moves the system, whose rates at the start are known, over an interval.
-    ///
-    /// # Errors
-    /// Whatever stops the bodies: see [`crate::solid::EngineFault`].
-    pub fn step(&mut self, system: &mut System<D>, bodies: &mut Bodies<D>, over: Interval) -> Result<()> {
+    /// Forgets the step before, after particles have come or gone; the next step is one that needs none.
+    pub(crate) fn forget(&mut self) {
+        if let Self::Verlet(verlet) = self {
+            verlet.forget();
+        }
+    }
+
+    /// Moves the water of the system, whose rates at the start are known, over an interval; returns the weight with which the
+    /// loads of the last force pass then act on the bodies, –. Keeps the `books`, if there are any.
+    pub(crate) fn step(&mut self, system: &mut System<D>, over: Interval, books: Option<&mut Books<D>>) -> f64 {
         match self {
-            Self::Verlet(verlet) => verlet.step(system, bodies, over),
-            Self::Symplectic => Symplectic.step(system, bodies, over),
+            Self::Verlet(verlet) => verlet.step(system, over, books),
+            Self::Symplectic => Symplectic.step(system, over, books),
         }
     }
 }

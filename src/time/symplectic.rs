@@ -9,9 +9,8 @@
 
 use rayon::prelude::*;
 
-use super::{Bodies, Interval};
+use super::{Books, Interval, bodies};
 use crate::{
-    error::Result,
     particles::PER_TASK,
     system::{Seen, System},
 };
@@ -20,8 +19,13 @@ use crate::{
 pub struct Symplectic;
 
 impl Symplectic {
-    /// Moves the system, whose rates at the start are known, over an interval.
-    pub fn step<const D: usize>(&self, system: &mut System<D>, bodies: &mut Bodies<D>, over: Interval) -> Result<()> {
+    /// Moves the water, whose rates at the start are known, over an interval; returns the weight of the loads on bodies.
+    pub(super) fn step<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        over: Interval,
+        mut books: Option<&mut Books<D>>,
+    ) -> f64 {
         let (dt, half) = (over.dt, 0.5 * over.dt);
         let rho0 = system.medium().rho0;
         let start = (system.fluid.clone(), system.skin.rho.clone());
@@ -42,12 +46,12 @@ impl Symplectic {
         let rates = std::mem::take(&mut system.skin_sums);
         system.set_skin_density(half, |k, _, rho| rho + rho0 * rates[k].dx * half);
         system.skin_sums = rates;
-        bodies.drift(system, over);
+        bodies::drift(system, over);
 
         system.relist();
         system.rates();
 
-        bodies.book_water(system, dt);
+        books.iter_mut().for_each(|books| books.water(system, dt));
         let shifts = system.shifts(dt);
         let whole = |rho_start: f64, rho_half: f64, dx: f64| {
             let epsilon = -dt * rho0 * dx / rho_half;
@@ -68,7 +72,7 @@ impl Symplectic {
             })
             .reduce(|| Seen::NOTHING, Seen::and);
         if let Some(shifts) = shifts {
-            bodies.book_shifts(system, &shifts);
+            books.iter_mut().for_each(|books| books.shifted(system, &shifts));
             let fluid = &mut system.fluid;
             fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
             system.look();
@@ -76,6 +80,6 @@ impl Symplectic {
         let rates = std::mem::take(&mut system.skin_sums);
         system.set_skin_density(dt, |k, i, rho| whole(start.1[i], rho, rates[k].dx));
         system.skin_sums = rates;
-        bodies.advance(system, over, 1.0)
+        1.0
     }
 }

@@ -15,9 +15,8 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Bodies, Interval};
+use super::{Books, Interval};
 use crate::{
-    error::Result,
     model::{Diffusion, Model, Viscosity},
     particles::PER_TASK,
     space::Vector,
@@ -73,8 +72,15 @@ impl<const D: usize> Verlet<D> {
         }
     }
 
-    /// Moves the system, whose rates at the start are known, over an interval.
-    pub fn step(&mut self, system: &mut System<D>, bodies: &mut Bodies<D>, over: Interval) -> Result<()> {
+    /// Forgets the step before: the next step is Euler's.
+    pub(crate) fn forget(&mut self) {
+        self.v_before.clear();
+        self.rho_before.clear();
+        self.skin_rho_before.clear();
+    }
+
+    /// Moves the water, whose rates at the start are known, over an interval; returns the weight of the loads on bodies.
+    pub(super) fn step(&mut self, system: &mut System<D>, over: Interval, mut books: Option<&mut Books<D>>) -> f64 {
         let dt = over.dt;
         let rho0 = system.medium().rho0;
         let first = self.v_before.is_empty() && self.skin_rho_before.is_empty();
@@ -87,7 +93,7 @@ impl<const D: usize> Verlet<D> {
             self.skin_rho_before.clone_from(&system.skin.rho);
         }
         let span = if euler { dt } else { self.dt_before + dt };
-        bodies.book_water(system, dt);
+        books.iter_mut().for_each(|books| books.water(system, dt));
         let shifts = system.shifts(dt);
 
         let guard = system.guard();
@@ -106,7 +112,7 @@ impl<const D: usize> Verlet<D> {
             })
             .reduce(|| Seen::NOTHING, Seen::and);
         if let Some(shifts) = shifts {
-            bodies.book_shifts(system, &shifts);
+            books.iter_mut().for_each(|books| books.shifted(system, &shifts));
             let fluid = &mut system.fluid;
             fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
             system.look();
@@ -115,11 +121,9 @@ impl<const D: usize> Verlet<D> {
         system.set_skin_density(span, |k, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * rates[k].dx * span);
         system.skin_sums = rates;
 
-        let weight = if euler { 1.0 } else { 0.5 * span / dt };
-        bodies.advance(system, over, weight)?;
         self.dt_before = dt;
         self.steps += 1;
         self.foldings += self.growth * dt;
-        Ok(())
+        if euler { 1.0 } else { 0.5 * span / dt }
     }
 }

@@ -2,12 +2,15 @@
 
 mod books;
 mod buoyancy;
+mod carried;
 mod checks;
 mod coupling;
 mod determinism;
+mod equilibrium;
 mod errors;
 mod guards;
 mod hostile;
+mod hosted;
 mod joints;
 mod kernels;
 mod lanes;

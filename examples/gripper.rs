@@ -1,0 +1,98 @@
+//! A gripper takes a float out of the water: a carriage on a lift, two jaws on it, one that is moved to its place and one that presses. What
+//! the lift's motor carries grows by the weight of the float, and friction alone holds that.
+//!
+//! `cargo run --release --example gripper`, some seconds.
+
+use pontoon::{
+    Result,
+    scene::{AtWords, JointKindWords, JointWords, MotorWords, Scene, ShapeWords, SolidWords, ValueWords},
+    simulation::Simulation,
+};
+
+const DEPTH: f64 = 0.2;
+
+/// Width, height (m) and density (kg/m³) of the float.
+const FLOAT: [f64; 2] = [0.16, 0.08];
+const DENSITY: f64 = 600.0;
+
+/// How far the lift goes (m), between which times (s).
+const LIFT: f64 = 0.2;
+const TIMES: [f64; 2] = [1.5, 3.0];
+
+fn slider(name: &str, between: &[&str], at: [f64; 2], along: [f64; 2], motor: MotorWords) -> JointWords {
+    let names = between.iter().map(|name| name.to_string()).collect();
+    let joint = JointWords::new::<0>(name, JointKindWords::Slider, [], at);
+    JointWords { between: names, along: Some(along.into()), motor: Some(motor), ..joint }
+}
+
+fn gripper() -> Scene {
+    let rise = format!("{LIFT}*min(max((t-{})/{},0),1)", TIMES[0], TIMES[1] - TIMES[0]);
+    let servo = |law: String| MotorWords {
+        position: Some(ValueWords::formula(law)),
+        stiffness: Some(2e5.into()),
+        damping: Some(5e3.into()),
+        ..MotorWords::default()
+    };
+    // Jaws 2 cm from the float close at 0.5 s; 150 N press, of which friction makes 0.6 on each side.
+    let close = "0.02*min(max((t-0.5)/0.3,0),1)".to_string();
+    let press = MotorWords {
+        force: Some(ValueWords::formula("-150*min(max((t-0.8)/0.2,0),1)")),
+        damping: Some(300.0.into()),
+        ..MotorWords::default()
+    };
+    let jaw = |name, x: f64| {
+        let mut jaw = SolidWords::free(name, ShapeWords::cuboid([0.04, 0.16]), 500.0);
+        jaw.friction = Some(0.6);
+        // Its tip is a little above the water, beside the float's dry part.
+        jaw.at(AtWords { bottom: Some(DEPTH + 0.004), ..AtWords::point(&[x]) })
+    };
+    let aside = 0.5 * FLOAT[0] + 0.04;
+    let mut float = SolidWords::free("float", ShapeWords::cuboid(FLOAT), DENSITY).at(AtWords::afloat(&[0.5]));
+    float.friction = Some(0.6);
+    Scene::new(2, 0.02, 4.0)
+        .title("A gripper and a float")
+        .water_box([0.0, 0.0], [1.0, DEPTH])
+        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 0.4])))
+        .solid(float)
+        .solid(
+            SolidWords::free("carriage", ShapeWords::cuboid([0.4, 0.06]), 500.0)
+                .at(AtWords::point(&[0.5, DEPTH + 0.24])),
+        )
+        .solid(jaw("left", 0.5 - aside))
+        .solid(jaw("right", 0.5 + aside))
+        .joint(slider("lift", &["carriage"], [0.5, DEPTH + 0.24], [0.0, 1.0], servo(rise)))
+        .joint(slider("mover", &["carriage", "left"], [0.5 - aside, DEPTH + 0.16], [1.0, 0.0], servo(close)))
+        .joint(slider("presser", &["carriage", "right"], [0.5 + aside, DEPTH + 0.16], [1.0, 0.0], press))
+}
+
+fn main() -> Result<()> {
+    let built = gripper().build::<2>()?;
+    let until = built.plan.until;
+    let mut sim = Simulation::new(built.setup)?;
+    let (lift, presser) = (sim.find_joint("lift")?, sim.find_joint("presser")?);
+    // What the lift carries before the jaws close, and at the end.
+    let (mut carried, mut weights, mut next) = ([0.0; 2], [0.0; 2], 0.0);
+    println!("{:>7} {:>11} {:>12} {:>14} {:>14}", "t (s)", "lift (mm)", "float (mm)", "lift (N/m)", "press (N/m)");
+    while sim.time() < until {
+        sim.step_to(until)?;
+        let (time, motor) = (sim.time(), sim.joint(lift).motor);
+        let float = sim.system().solids()[1].kinematics.centre[1] - DEPTH;
+        if time >= next {
+            let (up, press) = (1e3 * sim.joint(lift).position, sim.joint(presser).motor);
+            println!("{time:7.2} {up:11.2} {:12.2} {motor:14.2} {press:14.2}", 1e3 * float);
+            next += 0.25;
+        }
+        for (i, from, to) in [(0, 0.2, 0.5), (1, until - 0.5, until)] {
+            if time > from && time <= to {
+                carried[i] += motor * sim.dt();
+                weights[i] += sim.dt();
+            }
+        }
+    }
+    let [empty, laden] = [carried[0] / weights[0], carried[1] / weights[1]];
+    let weight = DENSITY * FLOAT[0] * FLOAT[1] * 9.81;
+    println!("lift alone {empty:.2} N/m, with the float {laden:.2} N/m: {:.2} N/m more", laden - empty);
+    println!("weight of the float {weight:.2} N/m");
+    assert!(((laden - empty) / weight - 1.0).abs() < 0.02, "it hangs in the air, held by friction");
+    Ok(())
+}

@@ -1,0 +1,154 @@
+//! Solids that come and go while a simulation runs.
+
+use super::Simulation;
+use crate::{
+    error::{Error, Kind, Result},
+    model::Dimension,
+    solid::{Dim, HasEngine as _, Kinematics, Links, Role, SolidSpec},
+    time::{Light, limit},
+};
+
+/// Deepest overlap of a solid that comes, in dp.
+const OVERLAP_MAX: f64 = 0.05;
+
+/// What came of adding a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Added {
+    /// Its number.
+    pub solid: usize,
+    /// Water particles that were in its place and have been taken out.
+    pub displaced: usize,
+}
+
+impl<const D: usize> Simulation<D>
+where
+    Dim<D>: Dimension<D>,
+{
+    /// Lets a solid come between two steps. A driven one comes where its law is now.
+    ///
+    /// Water whose particles lie inside it goes, as at set-up, and with it its mass and momentum; that is told. A run with such
+    /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with`].
+    ///
+    /// # Errors
+    /// `Scene` if the solid cannot be meant, has a name that another has or had, or lies deeper than 0.05 dp inside another:
+    /// says which and how deep. Nothing has changed then.
+    pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<Added> {
+        spec.check()?;
+        if self.system.solid(&spec.name).is_some() {
+            return Err(Error::scene(format!("a solid is or was called {:?} already", spec.name))
+                .help("give each its own name, also after one was removed"));
+        }
+        if let Some(axis) = self.system.periodic().iter().position(Option::is_some) {
+            let name = ["x", "y", "z"][axis];
+            return Err(Error::scene(format!("solids cannot come into a simulation that is periodic along {name}"))
+                .help("put them in at set-up, where it is seen whether they end at a periodic side"));
+        }
+        let start = match &spec.role {
+            Role::Driven(motion) => motion.kinematics(&spec.pose, self.clock.time),
+            Role::Fixed | Role::Free(_) => spec.start(),
+        };
+        self.refuse_overlap(&spec, &start)?;
+        self.join(spec, start)?;
+        let (renewal, displaced) = self.system.displace();
+        self.renewed(renewal);
+        Ok(Added { solid: self.system.solids().len() - 1, displaced })
+    }
+
+    /// Takes solid number `solid` out between two steps; the water closes over its place. It keeps its number and its name, stands
+    /// where it was, and has neither skin nor load any more. What the water had yet to give to it stays in the water.
+    ///
+    /// # Errors
+    /// `Usage` if there is no such solid, or something is tied to it: says what.
+    pub fn remove_solid(&mut self, solid: usize) -> Result<()> {
+        let Some(there) = self.system.solids().get(solid) else {
+            let last = self.system.solids().len();
+            return Err(Error::new(Kind::Usage, format!("there is no solid number {solid}")).help(format!(
+                "they are numbered from 0, and there are {last}; find_solid tells the number of a name"
+            )));
+        };
+        if let Some(tie) = self.system.links().of(solid) {
+            return Err(Error::new(Kind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
+                .help("only what nothing is tied to can be removed"));
+        }
+        if there.skin.is_empty() {
+            return Ok(());
+        }
+        let withheld = self.bodies.withheld(solid);
+        self.system.give_back(solid, &withheld);
+        self.leave(solid);
+        let renewal = self.system.renew();
+        self.renewed(renewal);
+        Ok(())
+    }
+
+    /// As [`Simulation::restore`], in a simulation made from the same setup, of a state to whose simulation the solids `added` had
+    /// been added, in this order.
+    ///
+    /// # Errors
+    /// `Restart` if the bytes are damaged or belong to another setup, or other solids had been added.
+    pub fn restore_with(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
+        for spec in added {
+            let start = spec.start();
+            self.join(spec, start)?;
+        }
+        for solid in Self::read(bytes)?.gone {
+            if solid as usize >= self.system.solids().len() {
+                return Err(Error::new(Kind::Restart, format!("the state says that solid number {solid} was removed"))
+                    .help("give all solids that had been added, in their order"));
+            }
+            self.leave(solid as usize);
+        }
+        self.restore(bytes)
+    }
+
+    /// Refuses a solid deeper inside another than is let pass.
+    fn refuse_overlap(&self, spec: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+        let Some(engine) = self.bodies.engine() else { return Ok(()) };
+        let allowed = OVERLAP_MAX * self.system.model().dp;
+        match engine.overlap(spec, start)? {
+            Some((other, depth)) if depth > allowed => {
+                let other = &self.system.solids()[other].spec.name;
+                Err(Error::scene(format!("\"{}\" would come {depth:.5} m inside \"{other}\"", spec.name))
+                    .help(format!("move it by that much or more; {allowed:.5} m (0.05 dp) is let pass")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Lets a solid come into water and world, unchecked and without making room for it.
+    fn join(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
+        let (free, longest) = (matches!(spec.role, Role::Free(_)), limit::sound(self.system.model()));
+        let founding = free && !self.bodies.hosted();
+        match self.bodies.engine_mut() {
+            Some(engine) => engine.admit(&spec, &start)?,
+            None if founding => {
+                let solids: Vec<_> =
+                    self.system.solids().iter().map(|s| s.spec.clone()).chain([spec.clone()]).collect();
+                let starts: Vec<_> = self.system.solids().iter().map(|s| s.kinematics).chain([start]).collect();
+                let (gravity, dp) = (self.system.gravity(), self.system.model().dp);
+                self.bodies.found(Dim::<D>::engine(&solids, &starts, &Links::default(), &gravity, dp)?);
+            }
+            None => {}
+        }
+        self.system.admit(spec, start)?;
+        let last = self.system.solids().len() - 1;
+        self.bodies.admit(Light::of(&mut self.system, last, longest), start);
+        Ok(())
+    }
+
+    /// Takes a solid out of water and world.
+    fn leave(&mut self, solid: usize) {
+        let skin = self.system.solids()[solid].skin.clone();
+        self.bodies.oust(solid, skin.len() as u32);
+        self.system.oust(solid);
+    }
+
+    /// Takes up new lists and makes the rates for them.
+    fn renewed(&mut self, renewal: Option<crate::system::Renewal<D>>) {
+        self.stepper.forget();
+        self.lost.extend(renewal.into_iter().flat_map(|renewal| renewal.lost).map(|lost| (self.clock.time, lost)));
+        let log = std::mem::take(&mut self.rescue.log);
+        self.rescue.begin_again(log);
+        self.system.rates();
+    }
+}
