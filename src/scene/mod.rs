@@ -7,6 +7,7 @@ pub mod bodies;
 pub mod build;
 mod build_links;
 mod build_solids;
+mod build_waves;
 mod checks;
 mod document;
 mod drawing;
@@ -26,6 +27,7 @@ pub mod table;
 pub mod values;
 mod verify;
 mod verify_links;
+mod waves;
 mod wording;
 
 pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
@@ -45,6 +47,7 @@ pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 pub use size::Size;
 pub use values::{ValueWords, ValuesWords};
+pub use waves::{ComponentsWords, ElevationWords, FocusedWords, RegularWords, SeaWords, SolitaryWords, WaveWords};
 
 use std::{
     io::Read,

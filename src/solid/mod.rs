@@ -18,6 +18,7 @@ pub mod skin;
 mod spatial;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 mod tests;
+pub mod wave;
 
 pub use driven::{Law, Motion};
 pub use engine::{Dim, Engine, EngineFault, HasEngine};
