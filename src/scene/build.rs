@@ -134,7 +134,9 @@ impl Scene {
             scatter(&mut filled.r, part * scene.dp);
         }
         let (limits, water) = (scene.limits(), filled.r);
-        let setup = Setup { model, water, levels, velocity, pressure, solids, links, domain, periodic, limits };
+        let damping = scene.zones(&still);
+        let setup =
+            Setup { model, water, levels, velocity, pressure, solids, links, domain, periodic, limits, damping };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
     }
 

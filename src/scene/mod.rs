@@ -9,6 +9,7 @@ mod build_links;
 mod build_solids;
 mod build_waves;
 mod checks;
+mod damping;
 mod document;
 mod drawing;
 pub mod flexible;
@@ -34,6 +35,7 @@ pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWords, PartWords, ShapeWords, SolidWords};
 pub(crate) use build::Stage;
 pub use build::{Built, Still};
+pub use damping::DampingWords;
 pub use document::Source;
 pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Unit};
 pub use flow::PeriodicWords;

@@ -304,7 +304,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 22] = [
+const ORDER: [&str; 23] = [
     "title",
     "dimension",
     "dp",
@@ -315,6 +315,7 @@ const ORDER: [&str; 22] = [
     "periodic",
     "guard",
     "water",
+    "damping",
     "solid",
     "joint",
     "spring",

@@ -58,9 +58,17 @@ impl<const D: usize> Stepper<D> {
     /// # Errors
     /// Whatever stops the bodies: see [`crate::solid::EngineFault`].
     pub fn step(&mut self, system: &mut System<D>, bodies: &mut Bodies<D>, over: Interval) -> Result<()> {
-        match self {
-            Self::Verlet(verlet) => verlet.step(system, bodies, over),
-            Self::Symplectic => Symplectic.step(system, bodies, over),
-        }
+        let before = match self {
+            Self::Verlet(verlet) => {
+                verlet.step(system, bodies, over)?;
+                Some(verlet.before_mut())
+            }
+            Self::Symplectic => {
+                Symplectic.step(system, bodies, over)?;
+                None
+            }
+        };
+        system.damp(over.dt, before);
+        Ok(())
     }
 }
