@@ -107,6 +107,7 @@ impl<const D: usize> Look<'_, D> {
             let Role::Driven(motion) = &solid.spec.role else { continue };
             let Some(wave) = self.wave(solid, motion) else { continue };
             self.low(&wave, findings);
+            self.undamped(&wave, findings);
             if let Law::Wave(law) = motion.law() {
                 self.named(&wave, solid, law, findings);
             }
@@ -133,6 +134,21 @@ impl<const D: usize> Look<'_, D> {
                 three(wave.length_dp)
             );
             findings.push(Finding::warning("short_waves", what, format!("dp = {}", down(wave.length_m / SHORTEST))));
+        }
+    }
+
+    /// Damping zones that are over before a wave is.
+    fn undamped(&self, wave: &Wave, findings: &mut Vec<Finding>) {
+        let least = 0.5 * wave.length_m;
+        if let Some(zone) = self.system.damping().iter().find(|zone| zone.length() < least * (1.0 - 1e-9)) {
+            let what = format!(
+                "a damping zone is {} m long, and the waves of \"{}\" are {} m: much of them will come back",
+                three(zone.length()),
+                wave.solid,
+                three(wave.length_m)
+            );
+            let mend = format!("half a wave length, {} m, is the least, a whole one is better", up(least));
+            findings.push(Finding::warning("short_damping", what, mend));
         }
     }
 

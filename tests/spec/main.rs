@@ -21,3 +21,4 @@ mod quiet;
 mod rig;
 mod scenes;
 mod steppers;
+mod waves;
