@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    preflight::{Body, Disk, Finding, Severity, three},
+    preflight::{Body, Disk, Finding, Severity, Wave, three},
     run::{self, Inspection, Report},
 };
 
@@ -114,11 +114,30 @@ fn facts(report: &Report) -> Vec<Vec<String>> {
     }
     row("disk", disk(&size.disk));
     for wave in &report.preflight.waves {
-        let high = format!("about {} m high, {} dp", three(wave.height_m), three(wave.height_dp));
-        let (stroke, period) = (three(wave.stroke_m), three(wave.period_s));
-        row("waves", format!("{high}, by \"{}\": stroke {stroke} m, period {period} s", wave.solid));
+        waves(wave).into_iter().for_each(|(name, text)| row(name, text));
     }
     rows
+}
+
+/// A wave and the paddle that makes it.
+fn waves(wave: &Wave) -> Vec<(&'static str, String)> {
+    let about = if wave.kind.is_some() { "" } else { "about " };
+    let kind = wave.kind.map_or("by the motion".into(), |kind| format!("{kind}, order {}", wave.order));
+    let period = wave.period_s.map_or(String::new(), |t| format!(", period {} s", three(t)));
+    let kd = wave.kd.map_or(String::new(), |kd| format!(", kd {}", three(kd)));
+    let high = format!("{about}{} m high, {} dp{period}", three(wave.height_m), three(wave.height_dp));
+    let long = format!("{} m long, {} dp", three(wave.length_m), three(wave.length_dp));
+    let water = format!("{} water{kd}, {} m deep; {}", wave.regime.word(), three(wave.depth_m), wave.region.word());
+    let speeds = format!("crests {} m/s, energy {} m/s", three(wave.celerity_mps), three(wave.group_mps));
+    let (stroke, speed) = (three(wave.stroke_m), three(wave.paddle_mps));
+    let ramp = if wave.ramp_s > 0.0 { format!(", ramp {} s", three(wave.ramp_s)) } else { String::new() };
+    let (far, back) = (three(wave.far_s), three(wave.back_s));
+    vec![
+        ("waves", format!("{high}, {long}")),
+        ("", format!("{water}; {speeds}")),
+        ("", format!("\"{}\", {kind}: stroke {stroke} m, up to {speed} m/s{ramp}", wave.solid)),
+        ("", format!("{} m to the far end: there after {far} s, back after {back} s", three(wave.reach_m))),
+    ]
 }
 
 /// The meshes among the solids, as their files have them.

@@ -30,11 +30,10 @@ impl Energy {
     /// Motion, height and compression of the water, motion and height of the bodies.
     fn parts<const D: usize>(&self, system: &System<D>) -> [f64; 5] {
         let (mass, fluid) = (system.particle_mass(), system.fluid());
-        let kinetic = 0.5 * mass * fluid.v.iter().map(|v| v.norm_squared()).sum::<f64>();
         let compressed = mass * fluid.rho.iter().map(|&rho| system.compression(rho)).sum::<f64>();
         let moving = system.solids().iter().map(body_kinetic).sum::<f64>();
         let (water, bodies) = (water_potential(system) - self.water, bodies_potential(system) - self.bodies);
-        [kinetic, water, compressed, moving, bodies]
+        [system.kinetic(), water, compressed, moving, bodies]
     }
 
     /// Their sum.

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::flexible::{Draft, LineWords, Numbers, Unit};
+use super::{
+    flexible::{Draft, LineWords, Numbers, Unit},
+    waves::WaveWords,
+};
 use crate::shape::Contact;
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
@@ -155,7 +158,7 @@ pub struct AtWords {
     pub turn_deg: Option<Vec<f64>>,
 }
 
-/// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`.
+/// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`; either with a `wave` instead.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DrivenWords {
@@ -177,6 +180,9 @@ pub struct DrivenWords {
     /// Angle about it, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<LawWords>,
+    /// The wave that it is to make.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wave: Option<WaveWords>,
 }
 
 /// How a driven coordinate moves: `formula`, or `file` with `column`.

@@ -3,6 +3,7 @@
 
 use super::{
     FillWords, FrameWords, Frames, Plan, ProbeEntry, ProbeKind, ProbeWords, Scene,
+    build_waves::Pool,
     flow::Flow,
     geometry::{pose, shape, vector, world_bounds},
     resolve::CHECKPOINT_WALL,
@@ -77,7 +78,7 @@ impl<const D: usize> Body<D> {
 }
 
 impl Still {
-    fn of<const D: usize>(water: &[Body<D>]) -> Self {
+    pub(super) fn of<const D: usize>(water: &[Body<D>]) -> Self {
         let level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
         let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
         Self { level, depth: level - bottom }
@@ -99,7 +100,7 @@ impl Scene {
         let water = scene.bodies_of_water::<D>()?;
         let still = Still::of(&water);
         let model = scene.laws(&water)?;
-        let solids = scene.solids::<D>(still.level)?;
+        let solids = scene.solids::<D>(&Pool::of(&water))?;
         let links = scene.links(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
@@ -133,7 +134,9 @@ impl Scene {
             scatter(&mut filled.r, part * scene.dp);
         }
         let (limits, water) = (scene.limits(), filled.r);
-        let setup = Setup { model, water, levels, velocity, pressure, solids, links, domain, periodic, limits };
+        let damping = scene.zones(&still);
+        let setup =
+            Setup { model, water, levels, velocity, pressure, solids, links, domain, periodic, limits, damping };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
     }
 
@@ -145,7 +148,7 @@ impl Scene {
         let (scene, _) = self.filled()?;
         let water = scene.bodies_of_water::<D>()?;
         let still = Still::of(&water);
-        Ok(Stage { solids: scene.solids::<D>(still.level)?, model: scene.laws(&water)?, still })
+        Ok(Stage { solids: scene.solids::<D>(&Pool::of(&water))?, model: scene.laws(&water)?, still })
     }
 
     /// What a run watches, keeps and judges; makes no particles.

@@ -2,6 +2,7 @@
 
 use super::{
     Draft, DrivenWords, FreeWords, LawWords, Lock, Numbers, Scene, SolidWords,
+    build_waves::Pool,
     geometry::{pose, shape, vector},
     table,
 };
@@ -23,12 +24,13 @@ const THIN: f64 = 1.5;
 const THIN_DENSITY: f64 = 0.2;
 
 impl Scene {
-    /// The solids of the scene; drafts are below `level` (m).
-    pub(super) fn solids<const D: usize>(&self, level: f64) -> Result<Vec<SolidSpec<D>>> {
-        self.solid.iter().enumerate().map(|(i, words)| self.solid_spec(&format!("solid.{i}"), words, level)).collect()
+    /// The solids of the scene; drafts are below the level of `pool`.
+    pub(super) fn solids<const D: usize>(&self, pool: &Pool<D>) -> Result<Vec<SolidSpec<D>>> {
+        self.solid.iter().enumerate().map(|(i, words)| self.solid_spec(&format!("solid.{i}"), words, pool)).collect()
     }
 
-    fn solid_spec<const D: usize>(&self, key: &str, words: &SolidWords, level: f64) -> Result<SolidSpec<D>> {
+    fn solid_spec<const D: usize>(&self, key: &str, words: &SolidWords, pool: &Pool<D>) -> Result<SolidSpec<D>> {
+        let level = pool.still.level;
         let place = |part: &str| {
             let key = format!("{key}.{part}");
             move |e: Error| self.origin.place(e, &key)
@@ -37,7 +39,13 @@ impl Scene {
         let (name, at) = (&words.name, words.at.clone().unwrap_or_default());
         let mut pose = pose(&at, &shape, level);
         let role = match (&words.driven, &words.free) {
-            (Some(words), _) => Role::Driven(self.motion(&format!("{key}.driven"), words)?),
+            (Some(words), _) => {
+                let key = format!("{key}.driven");
+                match self.paddle(&key, words, (&shape, &pose), pool)? {
+                    Some(motion) => Role::Driven(motion),
+                    None => Role::Driven(self.motion(&key, words)?),
+                }
+            }
             (None, Some(words)) => {
                 let body = free(words, &shape);
                 let part = if words.inertia.is_some() { "free.inertia" } else { "free" };

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     bodies::{AtWords, ShapeWords, SolidWords},
+    damping::DampingWords,
     document::Origin,
     flexible::{FieldWords, Frames},
     flow::PeriodicWords,
@@ -50,6 +51,9 @@ pub struct Scene {
     /// Bodies of water.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub water: Vec<WaterWords>,
+    /// Where water loses its motion.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub damping: Vec<DampingWords>,
     /// Solids.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub solid: Vec<SolidWords>,
@@ -325,6 +329,7 @@ impl Scene {
             periodic: None,
             guard: None,
             water: Vec::new(),
+            damping: Vec::new(),
             solid: Vec::new(),
             joint: Vec::new(),
             spring: Vec::new(),

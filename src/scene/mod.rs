@@ -7,7 +7,9 @@ pub mod bodies;
 pub mod build;
 mod build_links;
 mod build_solids;
+mod build_waves;
 mod checks;
+mod damping;
 mod document;
 mod drawing;
 pub mod flexible;
@@ -26,12 +28,14 @@ pub mod table;
 pub mod values;
 mod verify;
 mod verify_links;
+mod waves;
 mod wording;
 
 pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWords, PartWords, ShapeWords, SolidWords};
 pub(crate) use build::Stage;
 pub use build::{Built, Still};
+pub use damping::DampingWords;
 pub use document::Source;
 pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Unit};
 pub use flow::PeriodicWords;
@@ -45,6 +49,7 @@ pub use resolve::Resolved;
 pub use shipped::{Shipped, shipped};
 pub use size::Size;
 pub use values::{ValueWords, ValuesWords};
+pub use waves::{ComponentsWords, ElevationWords, FocusedWords, RegularWords, SeaWords, SolitaryWords, WaveWords};
 
 use std::{
     io::Read,

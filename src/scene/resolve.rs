@@ -156,6 +156,9 @@ impl Scene {
             let why = "the water between bodies takes the bounce";
             filler.fill(format!("{key}.restitution"), &mut solid.restitution, 0.0, why);
             let Some(driven) = &mut solid.driven else { continue };
+            if let Some(wave) = &mut driven.wave {
+                wave.fill(filler, &format!("{key}.driven.wave"));
+            }
             let laws = [
                 ("distance", &mut driven.distance),
                 ("angle", &mut driven.angle),
@@ -301,7 +304,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 22] = [
+const ORDER: [&str; 23] = [
     "title",
     "dimension",
     "dp",
@@ -312,6 +315,7 @@ const ORDER: [&str; 22] = [
     "periodic",
     "guard",
     "water",
+    "damping",
     "solid",
     "joint",
     "spring",

@@ -26,6 +26,10 @@ pub fn shipped() -> &'static [Shipped] {
     &[
         scene!("raft"),
         scene!("hinged-raft"),
+        scene!("regular-waves"),
+        scene!("buoy-in-waves"),
+        scene!("focused-box"),
+        scene!("solitary-runup"),
         scene!("still-tank"),
         scene!("still-wedge"),
         scene!("still-tank-3d"),

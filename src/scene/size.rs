@@ -1,6 +1,6 @@
 //! What a run of a scene will take, told from its words: no particle is made.
 
-use super::{Scene, build::Body, geometry::world_bounds};
+use super::{Scene, build::Body, build_waves::Pool, geometry::world_bounds};
 use crate::{error::Result, model::Scheme};
 
 /// About how large a run is.
@@ -66,8 +66,7 @@ impl Scene {
     fn sized<const D: usize>(&self) -> Result<Size> {
         let water = self.bodies_of_water::<D>()?;
         let model = self.laws(&water)?;
-        let still_level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
-        let solids = self.solids::<D>(still_level)?;
+        let solids = self.solids::<D>(&Pool::of(&water))?;
         self.affordable(&water, &solids)?;
         let (fluid, boundary) = self.counts(&water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);

@@ -57,11 +57,14 @@ impl Scene {
     fn driven(&self, key: &str, words: &DrivenWords) -> Result<()> {
         let laws = [("distance", &words.distance), ("angle", &words.angle), ("angle_deg", &words.angle_deg)];
         let laws: Vec<(&str, &LawWords)> = laws.into_iter().filter_map(|(word, l)| Some((word, l.as_ref()?))).collect();
-        let (law, fits) = match (&words.along, &words.hinge, &laws[..]) {
-            (Some(_), None, [("distance", law)]) => (law, words.axis.is_none()),
-            (None, Some(_), [("angle" | "angle_deg", law)]) => (law, words.axis.is_some() == (self.dimension == 3)),
+        let fits = match (&words.along, &words.hinge, &laws[..], &words.wave) {
+            (Some(_), None, [("distance", _)], None) | (Some(_), None, [], Some(_)) => words.axis.is_none(),
+            (None, Some(_), [("angle" | "angle_deg", _)], None) | (None, Some(_), [], Some(_)) => {
+                words.axis.is_some() == (self.dimension == 3)
+            }
             _ => {
-                let help = "either  along with distance, or  hinge (in 3-D with axis) with angle or angle_deg";
+                let help = "either  along with distance, or  hinge (in 3-D with axis) with angle or angle_deg; \
+                            either with wave instead";
                 return Err(self.wrong_with(key, "this does not say one motion", help));
             }
         };
@@ -78,8 +81,10 @@ impl Scene {
                 return Err(self.wrong(&key, format!("{word} points nowhere")));
             }
         }
-        let key = format!("{key}.{}", laws[0].0);
-        self.one_law(&key, law)
+        if let Some(wave) = &words.wave {
+            return self.verify_wave(&format!("{key}.wave"), wave);
+        }
+        laws.iter().try_for_each(|(word, law)| self.one_law(&format!("{key}.{word}"), law))
     }
 
     fn free(&self, key: &str, words: &FreeWords) -> Result<()> {

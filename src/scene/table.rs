@@ -52,17 +52,28 @@ fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
     names
 }
 
+/// The names of the columns of the table at `path`.
+///
+/// # Errors
+/// `File` if it cannot be read.
+pub fn header(path: &Path) -> Result<Vec<String>> {
+    let mut reader = reader(path)?;
+    let header = reader.headers().map_err(|e| Error::file(path, e))?;
+    Ok(header.iter().map(String::from).collect())
+}
+
+fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
+    let mut builder = csv::ReaderBuilder::new();
+    builder.comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(|e| Error::file(path, e))
+}
+
 /// The columns `names` of the table at `path`, one list each; rows in which one of them is blank are left
 /// out.
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if a column is missing or a cell is not a finite number: says which.
 pub fn columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(|e| Error::file(path, e))?;
+    let mut reader = reader(path)?;
     let file = path.display().to_string();
     let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
     let number = |name: &&str| {

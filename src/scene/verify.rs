@@ -78,6 +78,7 @@ impl Scene {
             return Err(self.wrong("water", "the scene has no water"));
         }
         self.water.iter().enumerate().try_for_each(|(i, water)| self.verify_water(&format!("water.{i}"), water))?;
+        self.verify_damping()?;
         self.verify_solids()?;
         self.verify_links()?;
         self.verify_laws()?;

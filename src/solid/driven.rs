@@ -7,7 +7,7 @@
 use crate::{
     error::{Error, Result},
     series::Series,
-    solid::{Formula, Kinematics},
+    solid::{Formula, Kinematics, wave::Wave},
     space::{Pose, Vector, Wedge},
 };
 
@@ -18,6 +18,8 @@ pub enum Law {
     Table(Series),
     /// A formula.
     Formula(Formula),
+    /// A paddle's, that makes a wave of theory.
+    Wave(Box<Wave>),
 }
 
 impl Law {
@@ -31,6 +33,7 @@ impl Law {
         match self {
             Self::Table(series) => series.smooth(t),
             Self::Formula(formula) => formula.at(t),
+            Self::Wave(wave) => wave.at(t),
         }
     }
 }
@@ -64,6 +67,19 @@ impl<const D: usize> Motion<D> {
         let axis = Wedge::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
         Self { path: Path::Hinge { centre, axis: axis * (1.0 / length) }, law }
+    }
+
+    /// Height (m) of the world point about which it turns; none of a slide.
+    pub fn hinge_height(&self) -> Option<f64> {
+        match &self.path {
+            Path::Slide(_) => None,
+            Path::Hinge { centre, .. } => Some(centre[D - 1]),
+        }
+    }
+
+    /// How it goes along its way.
+    pub fn law(&self) -> &Law {
+        &self.law
     }
 
     /// Where a solid that starts at `start` is at time `t` (s), and how it moves there: exact rates.

@@ -20,6 +20,7 @@ pub mod skin;
 pub mod spatial;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 mod tests;
+pub mod wave;
 
 pub use driven::{Law, Motion};
 pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};

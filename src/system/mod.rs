@@ -2,6 +2,7 @@
 //! It does not know the time step.
 
 mod change;
+mod damping;
 mod guard;
 mod kept;
 mod meter;
@@ -10,6 +11,7 @@ mod setup;
 mod view;
 mod walls;
 
+pub use damping::Damping;
 pub(crate) use guard::Seen;
 pub use guard::{Escape, Limits, Lost};
 pub(crate) use kept::SystemState;
@@ -71,6 +73,7 @@ pub struct System<const D: usize> {
     links: Links<D>,
     domain: Bounds<D>,
     limits: Limits,
+    damping: Vec<Damping<D>>,
     /// Height of the highest water at the start, m, and number of water particles then.
     top: f64,
     count: usize,
@@ -111,7 +114,8 @@ impl<const D: usize> System<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let Setup { model, water, levels, velocity, pressure, solids: specs, links, domain, periodic, limits } = setup;
+        let Setup { model, water, levels, velocity, pressure, solids: specs, links, domain, periodic, limits, damping } =
+            setup;
         let (medium, reach) = (model.medium::<D>(), model.reach());
         let state = State::new(medium.c0, medium.gamma);
         // Depth along g: the level is a height on the last axis.
@@ -162,6 +166,7 @@ impl<const D: usize> System<D> {
             links,
             domain: domain.unwrap_or_else(Bounds::empty),
             limits,
+            damping,
             top,
             count,
             images: Images::new(periodic, reach),

@@ -1,6 +1,7 @@
 //! What a simulation starts from.
 
 use super::{
+    Damping,
     guard::Limits,
     periodic::{self, Periodic},
 };
@@ -34,13 +35,16 @@ pub struct Setup<const D: usize> {
     pub periodic: Periodic<D>,
     /// The valid range of a water particle.
     pub limits: Limits,
+    /// Where water loses its motion.
+    pub damping: Vec<Damping<D>>,
 }
 
 impl<const D: usize> Setup<D> {
     /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
     pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
         let (velocity, pressure, links, limits) = (Vec::new(), Vec::new(), Links::default(), Limits::default());
-        Self { model, water, levels, solids, links, velocity, pressure, domain: None, periodic: [None; D], limits }
+        let (domain, periodic, damping) = (None, [None; D], Vec::new());
+        Self { model, water, levels, solids, links, velocity, pressure, domain, periodic, limits, damping }
     }
 
     /// Refuses a setup whose constants have no meaning.
@@ -77,6 +81,7 @@ impl<const D: usize> Setup<D> {
         if let Some(i) = self.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
             return Err(Error::scene(format!("water particle {i} has no finite place")));
         }
+        self.damping.iter().try_for_each(Damping::check)?;
         self.links.check(&self.solids)?;
         periodic::check(&self.periodic, m, &self.solids)
     }

@@ -113,6 +113,11 @@ impl<const D: usize> System<D> {
         self.medium.gravity
     }
 
+    /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).
+    pub fn kinetic(&self) -> f64 {
+        0.5 * self.particle_mass() * self.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>()
+    }
+
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
     pub fn height_gravity(&self) -> Vector<D> {
         Vector::from_fn(|i, _| if self.images.periodic[i].is_some() { 0.0 } else { self.medium.gravity[i] })

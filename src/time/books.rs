@@ -110,6 +110,8 @@ pub struct Ledger {
     pub diffusion: f64,
     /// What shifting gives.
     pub shifting: f64,
+    /// What damping zones give: negative.
+    pub damping: f64,
     /// What the boundary particles give.
     pub walls: f64,
     /// What bodies got beyond what the water gave.
@@ -120,7 +122,7 @@ pub struct Ledger {
 
 impl Ledger {
     /// All entries with their names.
-    pub fn entries(&self) -> [(&'static str, f64); 12] {
+    pub fn entries(&self) -> [(&'static str, f64); 13] {
         [
             ("driven", self.driven),
             ("motors", self.motors),
@@ -131,6 +133,7 @@ impl Ledger {
             ("viscous", self.viscous),
             ("diffusion", self.diffusion),
             ("shifting", self.shifting),
+            ("damping", self.damping),
             ("walls", self.walls),
             ("coupling", self.coupling),
             ("removed", self.removed),
@@ -229,6 +232,11 @@ impl<const D: usize> Books<D> {
         let energy =
             |p: &Lost<D>| 0.5 * p.v.norm_squared() - system.height_gravity().dot(&p.r) + system.compression(p.rho);
         self.ledger.removed -= system.particle_mass() * lost.iter().map(energy).sum::<f64>();
+    }
+
+    /// Books energy (J) that damping zones took.
+    pub(super) fn damped(&mut self, taken: f64) {
+        self.ledger.damping -= taken;
     }
 
     /// Books energy (J) that the water got back for a body.

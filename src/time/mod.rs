@@ -64,10 +64,14 @@ impl<const D: usize> Stepper<D> {
 
     /// Moves the water of the system, whose rates at the start are known, over an interval; returns the weight with which the
     /// loads of the last force pass then act on the bodies, –. Keeps the `books`, if there are any.
-    pub(crate) fn step(&mut self, system: &mut System<D>, over: Interval, books: Option<&mut Books<D>>) -> f64 {
-        match self {
-            Self::Verlet(verlet) => verlet.step(system, over, books),
-            Self::Symplectic => Symplectic.step(system, over, books),
-        }
+    pub(crate) fn step(&mut self, system: &mut System<D>, over: Interval, mut books: Option<&mut Books<D>>) -> f64 {
+        let weight = match self {
+            Self::Verlet(verlet) => verlet.step(system, over, books.as_deref_mut()),
+            Self::Symplectic => Symplectic.step(system, over, books.as_deref_mut()),
+        };
+        let before = if let Self::Verlet(verlet) = self { Some(verlet.before_mut()) } else { None };
+        let taken = system.damp(over.dt, before, books.is_some());
+        books.into_iter().for_each(|books| books.damped(taken));
+        weight
     }
 }

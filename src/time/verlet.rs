@@ -63,6 +63,11 @@ impl<const D: usize> Verlet<D> {
         }
     }
 
+    /// The velocities (m/s) from which the next step goes on.
+    pub(crate) fn before_mut(&mut self) -> &mut [Vector<D>] {
+        &mut self.v_before
+    }
+
     /// Follows the water into a new order; the dried boundary particles are at `rho0` (kg/m³).
     pub(crate) fn follow(&mut self, renewal: &Renewal<D>, rho0: f64) {
         permute(&mut self.v_before, &renewal.order);

@@ -25,3 +25,4 @@ mod quiet;
 mod rig;
 mod scenes;
 mod steppers;
+mod waves;

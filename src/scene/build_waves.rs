@@ -1,0 +1,189 @@
+//! From the words of a wave to the motion of its paddle.
+
+use std::f64::consts::TAU;
+
+use super::{
+    ComponentsWords, DrivenWords, ElevationWords, Scene, WaveWords,
+    build::{Body, Still},
+    geometry::{vector, world_bounds},
+    table,
+    waves::SeaWords,
+};
+use crate::{
+    error::{Error, Result},
+    series::Series,
+    shape::Shape,
+    solid::{
+        Law, Motion,
+        wave::{Component, Maker, Paddle, Spectrum, Wave},
+    },
+    space::{Bounds, Pose, Vector, Wedge},
+};
+
+/// The water at rest: what drafts and waves are measured in.
+pub(super) struct Pool<const D: usize> {
+    pub(super) still: Still,
+    pub(super) bounds: Bounds<D>,
+}
+
+impl<const D: usize> Pool<D> {
+    /// Of all bodies of water; there is one at least.
+    pub(super) fn of(water: &[Body<D>]) -> Self {
+        let mut bounds: Bounds<D> =
+            Bounds { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) };
+        for body in water {
+            let own = world_bounds(&body.region.shape, &body.region.pose);
+            bounds = Bounds { min: bounds.min.inf(&own.min), max: bounds.max.sup(&own.max) };
+        }
+        Self { still: Still::of(water), bounds }
+    }
+}
+
+/// The largest x·`way` in a box.
+fn furthest<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
+    (0..D).map(|i| (way[i] * bounds.min[i]).max(way[i] * bounds.max[i])).sum()
+}
+
+impl Scene {
+    /// The motion of the paddle of this shape and pose that makes a wave.
+    pub(super) fn paddle<const D: usize>(
+        &self,
+        key: &str,
+        words: &DrivenWords,
+        (shape, pose): (&Shape<D>, &Pose<D>),
+        pool: &Pool<D>,
+    ) -> Result<Option<Motion<D>>> {
+        let Some(wave) = &words.wave else { return Ok(None) };
+        let own = world_bounds(shape, pose);
+        let depth = wave.depth.unwrap_or(pool.still.depth);
+        let g = self.gravity.as_ref().and_then(|g| g.last()).map_or(0.0, |g| -g);
+        if let Some(along) = &words.along {
+            let along: Vector<D> = vector::<D>(along).normalize();
+            let key = format!("{key}.along");
+            if along[D - 1].abs() > 1e-6 {
+                return Err(self.wrong_with(
+                    &key,
+                    "a piston that makes waves slides level",
+                    "write  along = [1.0, 0.0]",
+                ));
+            }
+            if furthest(&pool.bounds, &along) <= furthest(&own, &along) + self.dp {
+                let help =
+                    "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
+                return Err(self.wrong_with(&key, "there is no water before the paddle in this direction", help));
+            }
+            let maker = Maker { depth, g, paddle: Paddle::Piston };
+            return Ok(Some(Motion::slide(along, self.waving(&key, wave, &maker)?)));
+        }
+        let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
+        let arm = pool.still.level - hinge[D - 1];
+        if arm <= 0.0 {
+            let what = format!("the hinge is {:.3} m above the still level: such a flap makes no wave by theory", -arm);
+            let help = format!("a flap is hinged below {:.3} m: at the bed, above or under it", pool.still.level);
+            return Err(self.wrong_with(&format!("{key}.hinge"), what, help));
+        }
+        let axis =
+            words.axis.as_ref().map_or_else(|| vec![1.0], |x| vector::<D>(x).normalize().iter().copied().collect());
+        let turn = Wedge::<D>::from_axial(&axis);
+        let mut up = Vector::zeros();
+        up[D - 1] = 1.0;
+        let way = turn.at(&up);
+        if axis.get(2).is_some_and(|x| x.abs() > 1e-6) {
+            let help = "write  axis = [0.0, 1.0, 0.0]";
+            return Err(self.wrong_with(&format!("{key}.axis"), "the axis of a flap that makes waves is level", help));
+        }
+        let middle = 0.5 * (pool.bounds.min + pool.bounds.max) - 0.5 * (own.min + own.max);
+        let sense = if way.dot(&middle) < 0.0 { -1.0 } else { 1.0 };
+        let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
+        let maker = Maker { depth, g, paddle: Paddle::Flap { arm } };
+        Ok(Some(Motion::hinge(hinge, &axis, self.waving(&format!("{key}.hinge"), wave, &maker)?)))
+    }
+
+    /// The law of a paddle; `beside` is a key beside the wave's.
+    fn waving(&self, beside: &str, words: &WaveWords, maker: &Maker) -> Result<Law> {
+        let key = format!("{}.wave", beside.rsplit_once('.').map_or("", |(above, _)| above));
+        let place = |word: &str| {
+            let key = format!("{key}.{word}");
+            move |e: Error| self.origin.place(e, &key)
+        };
+        let gamma = |gamma: Option<f64>| gamma.unwrap_or(3.3);
+        let wave = match words {
+            WaveWords { regular: Some(words), .. } => {
+                let (order, phase) = (words.order.unwrap_or(2), words.phase_deg.unwrap_or(0.0).to_radians());
+                maker.regular(words.height, words.period, phase, order).map_err(place("regular.height"))?
+            }
+            WaveWords { jonswap: Some(sea), .. } => {
+                let spectrum = Spectrum::jonswap(sea.peak_period.unwrap_or_default(), gamma(sea.gamma));
+                sail(sea, &spectrum, maker).map_err(place("jonswap.height"))?
+            }
+            WaveWords { bretschneider: Some(sea), .. } => {
+                let spectrum = Spectrum::bretschneider(sea.peak_period.unwrap_or_default());
+                sail(sea, &spectrum, maker).map_err(place("bretschneider.height"))?
+            }
+            WaveWords { pierson_moskowitz: Some(sea), .. } => {
+                let spectrum = Spectrum::pierson_moskowitz(sea.height, maker.g);
+                sail(sea, &spectrum, maker).map_err(place("pierson_moskowitz.height"))?
+            }
+            WaveWords { focused: Some(words), .. } => {
+                let spectrum = Spectrum::jonswap(words.peak_period, gamma(words.gamma));
+                let count = words.components.unwrap_or_default();
+                let made = maker.focused(words.crest, &spectrum, words.distance, words.time, count);
+                made.map_err(place("focused.crest"))?
+            }
+            WaveWords { solitary: Some(words), .. } => {
+                let made = maker.solitary(words.height, words.theory.unwrap_or_default());
+                made.map_err(place("solitary.height"))?
+            }
+            WaveWords { components: Some(words), .. } => {
+                let components = self.spelt(words).map_err(place("components.file"))?;
+                maker.components(&components).map_err(place("components"))?
+            }
+            WaveWords { elevation: Some(words), .. } => {
+                let series = self.measured(words).map_err(place("elevation.column"))?;
+                let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
+                maker.recorded(&series, distance, delay).map_err(place("elevation"))?
+            }
+            _ => return Err(self.wrong(&key, "which wave?")),
+        };
+        let wave = match words.ramp {
+            Some(ramp) => wave.ramp(ramp),
+            None => wave,
+        };
+        Ok(Law::Wave(Box::new(wave)))
+    }
+
+    /// The components of a table.
+    fn spelt(&self, words: &ComponentsWords) -> Result<Vec<Component>> {
+        let path = table::beside(&self.origin.folder, &words.file)?;
+        let names = table::header(&path)?;
+        let either = |one: &'static str, other: &'static str| {
+            if names.iter().any(|name| name == one) { (one, true) } else { (other, false) }
+        };
+        let ((time, is_period), (phase, in_degrees)) =
+            (either("period_s", "frequency_hz"), either("phase_deg", "phase_rad"));
+        let columns = table::columns(&path, &["amplitude_m", time, phase])?;
+        let component = |i: usize| {
+            let (x, phase) = (columns[1][i], columns[2][i]);
+            if x <= 0.0 {
+                let what = format!("{}: component {} has {time} = {x}", path.display(), i + 1);
+                return Err(Error::scene(what).help("periods and frequencies are positive"));
+            }
+            let omega = if is_period { TAU / x } else { TAU * x };
+            let phase = if in_degrees { phase.to_radians() } else { phase };
+            Ok(Component { amplitude: columns[0][i], omega, phase })
+        };
+        (0..columns[0].len()).map(component).collect()
+    }
+
+    /// The elevation of a table.
+    fn measured(&self, words: &ElevationWords) -> Result<Series> {
+        let path = table::beside(&self.origin.folder, &words.file)?;
+        let series = table::series(&path, words.time.as_deref().unwrap_or("t_s"), &words.column)?;
+        let scale = words.scale.unwrap_or(1.0);
+        Series::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
+    }
+}
+
+fn sail(words: &SeaWords, spectrum: &Spectrum, maker: &Maker) -> Result<Wave> {
+    maker.sea(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
+}

@@ -1,0 +1,72 @@
+//! The words of damping zones.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Scene, build::Still, geometry::vector};
+use crate::{error::Result, space::Vector, system::Damping};
+
+/// β ℓ/√(gd) where nobody says it: what goes through the zone and back with the speed of long waves has e⁻⁴ = 2 % left.
+const PASSES: f64 = 12.0;
+
+/// One `[[damping]]`: from one plane to another, and beyond.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DampingWords {
+    /// A point of the plane on which it begins, m.
+    pub from: Vec<f64>,
+    /// A point of the plane from which on it is full, m.
+    pub to: Vec<f64>,
+    /// What part of its velocity the water loses in a second where it is full, 1/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength: Option<f64>,
+}
+
+impl DampingWords {
+    /// The zone that begins at `from` and is full at `to` (m).
+    pub fn between(from: impl Into<Vec<f64>>, to: impl Into<Vec<f64>>) -> Self {
+        Self { from: from.into(), to: to.into(), strength: None }
+    }
+}
+
+impl Scene {
+    /// The same scene with a damping zone more.
+    pub fn damped(mut self, zone: DampingWords) -> Self {
+        self.damping.push(zone);
+        self
+    }
+
+    pub(super) fn verify_damping(&self) -> Result<()> {
+        for (i, words) in self.damping.iter().enumerate() {
+            let key = format!("damping.{i}");
+            self.vector(&format!("{key}.from"), &words.from)?;
+            self.vector(&format!("{key}.to"), &words.to)?;
+            self.positive(&format!("{key}.strength"), words.strength)?;
+            let way: Vec<f64> = words.to.iter().zip(&words.from).map(|(to, from)| to - from).collect();
+            if way.iter().all(|x| x.abs() < self.dp) {
+                let help = "the water loses its motion from `from` on, and fully at `to`, a wave length further";
+                return Err(self.wrong_with(&format!("{key}.to"), "the zone is shorter than dp", help));
+            }
+            let sides = self.periodic.iter().flat_map(|p| [p.x, p.y, p.z]).collect::<Vec<_>>();
+            if way.iter().zip(&sides).any(|(x, side)| *x != 0.0 && side.is_some()) {
+                let what = "the zone goes along a periodic axis, on which it has neither beginning nor end";
+                return Err(self.wrong_with(&key, what, "make it across the period"));
+            }
+            if words.strength.is_none() && self.gravity.iter().flatten().all(|g| *g == 0.0) && self.gravity.is_some() {
+                let what = "without gravity nothing says how strong the zone is";
+                return Err(self.wrong_with(&format!("{key}.strength"), what, "write  strength = 5.0        # 1/s"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The zones; of those without a strength it follows from their length and the depth.
+    pub(super) fn zones<const D: usize>(&self, still: &Still) -> Vec<Damping<D>> {
+        let g = self.gravity.iter().flatten().map(|g| g * g).sum::<f64>().sqrt();
+        let zone = |words: &DampingWords| {
+            let (from, to): (Vector<D>, Vector<D>) = (vector(&words.from), vector(&words.to));
+            let usual = PASSES * (g * still.depth).sqrt() / (to - from).norm();
+            Damping { from, to, strength: words.strength.unwrap_or(usual) }
+        };
+        self.damping.iter().map(zone).collect()
+    }
+}

@@ -1,0 +1,299 @@
+//! The words of waves that a paddle makes, and what holds them against one another.
+
+use serde::{Deserialize, Serialize};
+
+use super::{DrivenWords, Scene, resolve::Filler, verify::said};
+use crate::{
+    error::Result,
+    solid::wave::{COMPONENTS, Theory},
+};
+
+/// A wave by name: exactly one kind.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct WaveWords {
+    /// One height and one period.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regular: Option<RegularWords>,
+    /// A sea of JONSWAP's spectrum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jonswap: Option<SeaWords>,
+    /// A sea of Bretschneider's spectrum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bretschneider: Option<SeaWords>,
+    /// A fully grown sea: its height says its period.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pierson_moskowitz: Option<SeaWords>,
+    /// A group with its crest at one place and time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub focused: Option<FocusedWords>,
+    /// One crest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solitary: Option<SolitaryWords>,
+    /// A sum of components from a table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub components: Option<ComponentsWords>,
+    /// The surface that was measured somewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elevation: Option<ElevationWords>,
+    /// How long the paddle takes to its full motion, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ramp: Option<f64>,
+    /// Depth of the still water at the paddle, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth: Option<f64>,
+}
+
+/// A regular wave.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RegularWords {
+    /// From trough to crest, m.
+    pub height: f64,
+    /// s.
+    pub period: f64,
+    /// Order of the paddle's theory, 1 or 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<usize>,
+    /// Phase of the surface at the paddle, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase_deg: Option<f64>,
+}
+
+/// An irregular sea.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SeaWords {
+    /// Significant height, 4 √m₀, m.
+    pub height: f64,
+    /// Period at the spectrum's peak, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_period: Option<f64>,
+    /// JONSWAP's peakedness, –.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gamma: Option<f64>,
+    /// Which of the seas of this spectrum.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// How many components.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub components: Option<usize>,
+}
+
+/// A focused group.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FocusedWords {
+    /// Height of its crest over the still level, m.
+    pub crest: f64,
+    /// Period at the spectrum's peak, s.
+    pub peak_period: f64,
+    /// Where the crest stands: distance from the paddle's face at rest, m.
+    pub distance: f64,
+    /// When, s.
+    pub time: f64,
+    /// JONSWAP's peakedness, –.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gamma: Option<f64>,
+    /// How many components.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub components: Option<usize>,
+}
+
+/// A solitary wave.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolitaryWords {
+    /// Of its crest over the still level, m.
+    pub height: f64,
+    /// Whose theory.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub theory: Option<Theory>,
+}
+
+/// A table of components.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ComponentsWords {
+    /// The table, beside the scene: `amplitude_m`; `period_s` or `frequency_hz`; `phase_rad` or `phase_deg`.
+    pub file: String,
+}
+
+/// A measured elevation.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ElevationWords {
+    /// The table, beside the scene.
+    pub file: String,
+    /// Its column of elevations, m.
+    pub column: String,
+    /// Its column of times, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
+    /// Factor on the elevations, –.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+    /// Where it was measured: distance from the paddle's face at rest, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distance: Option<f64>,
+    /// Added to its times, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delay: Option<f64>,
+}
+
+impl WaveWords {
+    /// A regular wave of `height` (m) and `period` (s).
+    pub fn regular(height: f64, period: f64) -> Self {
+        Self { regular: Some(RegularWords { height, period, ..Default::default() }), ..Self::default() }
+    }
+
+    /// The sea number `seed` of significant height `height` (m) and JONSWAP's spectrum.
+    pub fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self {
+        let sea = SeaWords { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
+        Self { jonswap: Some(sea), ..Self::default() }
+    }
+
+    /// The group whose crest of `crest` (m) stands `distance` (m) from the paddle at `time` (s).
+    pub fn focused(crest: f64, peak_period: f64, distance: f64, time: f64) -> Self {
+        let group = FocusedWords { crest, peak_period, distance, time, ..Default::default() };
+        Self { focused: Some(group), ..Self::default() }
+    }
+
+    /// The solitary wave of `height` (m).
+    pub fn solitary(height: f64) -> Self {
+        Self { solitary: Some(SolitaryWords { height, theory: None }), ..Self::default() }
+    }
+
+    /// The kinds that it names.
+    fn kinds(&self) -> Vec<&'static str> {
+        let all = [
+            ("regular", self.regular.is_some()),
+            ("jonswap", self.jonswap.is_some()),
+            ("bretschneider", self.bretschneider.is_some()),
+            ("pierson_moskowitz", self.pierson_moskowitz.is_some()),
+            ("focused", self.focused.is_some()),
+            ("solitary", self.solitary.is_some()),
+            ("components", self.components.is_some()),
+            ("elevation", self.elevation.is_some()),
+        ];
+        all.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()
+    }
+
+    /// Fills in what a wave does not say.
+    pub(super) fn fill(&mut self, filler: &mut Filler, key: &str) {
+        let peaked = "JONSWAP's mean";
+        let many = "the spectrum's form, and a sea that does not repeat";
+        if let Some(words) = &mut self.regular {
+            let why = "without the free wave of twice the frequency that a plain paddle makes";
+            filler.fill(format!("{key}.regular.order"), &mut words.order, 2, why);
+            filler.fill(format!("{key}.regular.phase_deg"), &mut words.phase_deg, 0.0, "the paddle sets out forwards");
+        }
+        for (word, sea) in self.seas() {
+            let Some(sea) = sea else { continue };
+            if word == "jonswap" {
+                filler.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
+            }
+            filler.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
+            filler.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS, many);
+        }
+        if let Some(words) = &mut self.focused {
+            filler.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
+            filler.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS, many);
+        }
+        if let Some(words) = &mut self.solitary {
+            let why = "its wave keeps its height better than Boussinesq's";
+            filler.fill(format!("{key}.solitary.theory"), &mut words.theory, Theory::Rayleigh, why);
+        }
+        if let Some(words) = &mut self.elevation {
+            let key = format!("{key}.elevation");
+            filler.fill(format!("{key}.time"), &mut words.time, "t_s".into(), "the name our own tables have");
+            filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "as in the table");
+            filler.fill(format!("{key}.distance"), &mut words.distance, 0.0, "measured at the paddle");
+            filler.fill(format!("{key}.delay"), &mut words.delay, 0.0, "the clocks agree");
+        }
+    }
+
+    fn seas(&mut self) -> [(&'static str, &mut Option<SeaWords>); 3] {
+        [
+            ("jonswap", &mut self.jonswap),
+            ("bretschneider", &mut self.bretschneider),
+            ("pierson_moskowitz", &mut self.pierson_moskowitz),
+        ]
+    }
+}
+
+impl DrivenWords {
+    /// A piston that makes `wave` in the direction `along`.
+    pub fn piston(along: impl Into<Vec<f64>>, wave: WaveWords) -> Self {
+        Self { along: Some(along.into()), wave: Some(wave), ..Self::default() }
+    }
+
+    /// A flap hinged at the world point `hinge` (m) that makes `wave`; 2-D, in 3-D it needs an `axis` too.
+    pub fn flap(hinge: impl Into<Vec<f64>>, wave: WaveWords) -> Self {
+        Self { hinge: Some(hinge.into()), wave: Some(wave), ..Self::default() }
+    }
+}
+
+impl Scene {
+    pub(super) fn verify_wave(&self, key: &str, words: &WaveWords) -> Result<()> {
+        let kinds = words.kinds();
+        if kinds.len() != 1 {
+            let what = match kinds.len() {
+                0 => "which wave?".to_string(),
+                _ => format!("a paddle makes one kind of wave; this one {}", said(&kinds)),
+            };
+            return Err(self.wrong(key, what));
+        }
+        let gravity = self.gravity.as_ref().is_none_or(|g| {
+            let (up, rest) = g.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
+            up < 0.0 && rest.iter().all(|x| *x == 0.0)
+        });
+        if !gravity {
+            return Err(self.wrong_with(
+                "gravity",
+                "waves need gravity straight down",
+                "write  gravity = [0.0, -9.81]",
+            ));
+        }
+        let key = &format!("{key}.{}", kinds[0]);
+        let mut numbers = Vec::new();
+        if let Some(words) = &words.regular {
+            numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
+            if let Some(order) = words.order.filter(|order| !(1..=2).contains(order)) {
+                let help = "order = 1, or  order = 2  without free waves of twice the frequency";
+                return Err(self.wrong_with(&format!("{key}.order"), format!("order is 1 or 2, not {order}"), help));
+            }
+        }
+        for sea in [&words.jonswap, &words.bretschneider, &words.pierson_moskowitz].into_iter().flatten() {
+            numbers.extend([("height", Some(sea.height)), ("peak_period", sea.peak_period), ("gamma", sea.gamma)]);
+            self.verify_sea(key, sea)?;
+        }
+        if let Some(words) = &words.focused {
+            numbers.extend([("crest", Some(words.crest)), ("peak_period", Some(words.peak_period))]);
+            numbers.extend([("time", Some(words.time)), ("gamma", words.gamma)]);
+        }
+        numbers.extend(words.solitary.iter().map(|words| ("height", Some(words.height))));
+        numbers.into_iter().try_for_each(|(word, x)| self.positive(&format!("{key}.{word}"), x))?;
+        let above = key.rsplit_once('.').map_or("", |(above, _)| above);
+        self.positive(&format!("{above}.ramp"), words.ramp)?;
+        self.positive(&format!("{above}.depth"), words.depth)
+    }
+
+    /// What belongs to which spectrum.
+    fn verify_sea(&self, key: &str, sea: &SeaWords) -> Result<()> {
+        let grown = key.ends_with("pierson_moskowitz");
+        let place = |word: &str| format!("{key}.{word}");
+        if grown && sea.peak_period.is_some() {
+            let what = "the height of a fully grown sea says its period: 5 s √(height in m)";
+            let help = "leave it out, or write  bretschneider = { height = 0.1, peak_period = 1.4 }";
+            return Err(self.wrong_with(&place("peak_period"), what, help));
+        }
+        if !grown && sea.peak_period.is_none() {
+            return Err(self.wrong(&place("peak_period"), "peak_period is missing"));
+        }
+        if sea.gamma.is_some() && !key.ends_with("jonswap") {
+            return Err(self.wrong_with(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
+        }
+        Ok(())
+    }
+}

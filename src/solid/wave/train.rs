@@ -1,0 +1,186 @@
+//! A regular wave of small height over a level bed: its length, its speeds, and the theory that holds for its height.
+
+use std::f64::consts::{PI, TAU};
+
+use serde::Serialize;
+
+/// Largest height of a wave over the depth [@mccowan1894].
+pub const MCCOWAN: f64 = 0.78;
+
+/// Largest height of a wave over its length in deep water [@miche1944].
+const MICHE: f64 = 0.142;
+
+/// H L²/d³ above which waves are cnoidal, on the chart of [@lemehaute1976].
+const URSELL: f64 = 26.0;
+
+/// A wave of small height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Train {
+    /// Depth, m.
+    pub depth: f64,
+    /// Acceleration of gravity, m/s².
+    pub g: f64,
+    /// ω, rad/s.
+    pub omega: f64,
+    /// k, 1/m.
+    pub k: f64,
+}
+
+/// How deep the water is for a wave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Regime {
+    /// kd > π.
+    Deep,
+    /// Between.
+    Intermediate,
+    /// kd < π/10.
+    Shallow,
+}
+
+/// Where a wave lies on the chart of [@lemehaute1976].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Region {
+    /// Stokes' second term is less than a hundredth of the first.
+    Airy,
+    /// Below a quarter of the breaking height.
+    #[serde(rename = "Stokes 2")]
+    Stokes2,
+    /// Higher.
+    #[serde(rename = "Stokes 3 to 5")]
+    Stokes5,
+    /// H L²/d³ > 26.
+    #[serde(rename = "cnoidal")]
+    Cnoidal,
+    /// One crest.
+    #[serde(rename = "solitary")]
+    Solitary,
+    /// Above the breaking height.
+    #[serde(rename = "breaking")]
+    Breaking,
+}
+
+impl Regime {
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Deep => "deep",
+            Self::Intermediate => "intermediate",
+            Self::Shallow => "shallow",
+        }
+    }
+}
+
+impl Region {
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Airy => "Airy",
+            Self::Stokes2 => "Stokes 2",
+            Self::Stokes5 => "Stokes 3 to 5",
+            Self::Cnoidal => "cnoidal",
+            Self::Solitary => "solitary",
+            Self::Breaking => "breaking",
+        }
+    }
+}
+
+impl Train {
+    /// The wave of angular frequency `omega` (rad/s) in water `depth` (m) deep.
+    pub fn of(omega: f64, depth: f64, g: f64) -> Self {
+        Self { depth, g, omega, k: wave_number(omega, depth, g) }
+    }
+
+    /// Period, s.
+    pub fn period(&self) -> f64 {
+        TAU / self.omega
+    }
+
+    /// Length, m.
+    pub fn length(&self) -> f64 {
+        TAU / self.k
+    }
+
+    /// kd, –.
+    pub fn kd(&self) -> f64 {
+        self.k * self.depth
+    }
+
+    /// Speed of its crests, m/s.
+    pub fn celerity(&self) -> f64 {
+        self.omega / self.k
+    }
+
+    /// Speed of its energy, m/s: ½ (1 + 2kd/sinh 2kd) ω/k.
+    pub fn group(&self) -> f64 {
+        let x = 2.0 * self.kd();
+        0.5 * (1.0 + if x > 600.0 { 0.0 } else { x / x.sinh() }) * self.celerity()
+    }
+
+    /// How deep the water is for it.
+    pub fn regime(&self) -> Regime {
+        match self.kd() {
+            kd if kd > PI => Regime::Deep,
+            kd if kd < 0.1 * PI => Regime::Shallow,
+            _ => Regime::Intermediate,
+        }
+    }
+
+    /// Height (m) of the highest of its length: the lesser of 0.142 L tanh kd and 0.78 d.
+    pub fn highest(&self) -> f64 {
+        (MICHE * self.length() * self.kd().tanh()).min(MCCOWAN * self.depth)
+    }
+
+    /// H L²/d³ of a wave of `height` (m), –.
+    pub fn ursell(&self, height: f64) -> f64 {
+        height * self.length().powi(2) / self.depth.powi(3)
+    }
+
+    /// The greatest height (m) for which two terms of Stokes are enough: H L²/d³ = 26.
+    pub fn highest_of_stokes(&self) -> f64 {
+        URSELL / self.ursell(1.0)
+    }
+
+    /// Which theory holds for a wave of `height` (m).
+    pub fn region(&self, height: f64) -> Region {
+        match height {
+            h if h >= self.highest() => Region::Breaking,
+            h if self.second(h) < 0.01 => Region::Airy,
+            h if self.ursell(h) > URSELL => Region::Cnoidal,
+            h if h < 0.25 * self.highest() => Region::Stokes2,
+            _ => Region::Stokes5,
+        }
+    }
+
+    /// Stokes' second term over the first: (πH/4L) cosh kd (2 + cosh 2kd)/sinh³ kd.
+    pub fn second(&self, height: f64) -> f64 {
+        let kd = self.kd().min(100.0);
+        0.25 * PI * height / self.length() * kd.cosh() * (2.0 + (2.0 * kd).cosh()) / kd.sinh().powi(3)
+    }
+}
+
+/// k (1/m) of a wave of angular frequency `omega` (rad/s) in water `depth` (m) deep: ω² = g k tanh kd, by Newton.
+pub fn wave_number(omega: f64, depth: f64, g: f64) -> f64 {
+    let deep = omega * omega * depth / g;
+    let mut kd = deep.max(deep.sqrt());
+    for _ in 0..50 {
+        let tanh = kd.tanh();
+        kd -= (kd * tanh - deep) / (tanh + kd * (1.0 - tanh * tanh));
+    }
+    kd / depth
+}
+
+/// The first `count` solutions κ (1/m) of ω² = −g κ tan κd: the standing waves that stay at the paddle.
+pub(super) fn evanescent(omega: f64, depth: f64, g: f64, count: usize) -> Vec<f64> {
+    let deep = omega * omega * depth / g;
+    let root = |j: usize| {
+        let (mut low, mut high) = ((j as f64 - 0.5) * PI, j as f64 * PI);
+        // κd tan κd rises from −∞ to 0; sixty halvings reach the last bit.
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if middle * middle.tan() < -deep { low = middle } else { high = middle }
+        }
+        0.5 * (low + high) / depth
+    };
+    (1..=count).map(root).collect()
+}

@@ -1,0 +1,263 @@
+//! Waves by name: words that cannot be meant, what is told of a wave before a run, and that the water makes it.
+
+use std::{f64::consts::TAU, path::Path};
+
+use pontoon::{
+    Error,
+    model::{Dimension, Model, Scheme, Viscosity},
+    preflight::{self, Preflight, Wave},
+    scene::{Built, DampingWords, DrivenWords, ProbeEntry, Scene, ShapeWords, SolidWords, WaveWords},
+    simulation::{Setup, Simulation},
+    solid::{Dim, wave::Region},
+    space::Vector,
+    system::Damping,
+};
+
+use crate::rig;
+
+/// A flume with nothing wrong: 1.2 s, 1.78 m, kd = 1.06.
+const FLUME: &str = r#"title     = "A flume"
+dimension = 2
+dp        = 0.02
+until     = 6.0
+frames    = "off"
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [5.0, 0.3] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [5.2, 0.6] } }
+at    = { x = -0.2 }
+
+[[solid]]
+name   = "paddle"
+shape  = { box = { size = [0.1, 0.6] } }
+at     = { x = -0.05, bottom = 0.0 }
+driven = { along = [1.0, 0.0], wave = { regular = { height = 0.1, period = 1.2 } } }
+"#;
+
+const PISTON: &str = "along = [1.0, 0.0], wave = { regular = { height = 0.1, period = 1.2 } }";
+
+fn with(driven: &str) -> String {
+    assert!(FLUME.contains(PISTON));
+    FLUME.replacen(PISTON, driven, 1)
+}
+
+fn built(text: &str) -> Result<Built<2>, Error> {
+    Scene::parse(text, Path::new(""), &[])?.build()
+}
+
+fn look<const D: usize>(built: Built<D>) -> Preflight
+where
+    Dim<D>: Dimension<D>,
+{
+    let Built { setup, plan, overlapped, still, .. } = built;
+    preflight::look(&Simulation::new(setup).unwrap(), &plan, still, overlapped, &[])
+}
+
+fn told(driven: &str) -> Preflight {
+    look(built(&with(driven)).unwrap())
+}
+
+fn wave(driven: &str) -> Wave {
+    told(driven).waves.remove(0)
+}
+
+#[test]
+fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
+    let piston = |wave: &str| format!("along = [1.0, 0.0], wave = {{ {wave} }}");
+    let flap =
+        |height: f64| format!("hinge = [0.0, {height:?}], wave = {{ regular = {{ height = 0.1, period = 1.2 }} }}");
+    let cases: [(String, &str, &str); 16] = [
+        (piston("regular = { height = 0.3, period = 1.2 }"), "wave.regular.height", "highest that does not is 0.199 m"),
+        (piston("regular = { height = 0.1, period = 0.0 }"), "wave.regular.period", "positive"),
+        (piston("regular = { height = -0.1, period = 1.0 }"), "wave.regular.height", "positive"),
+        (piston("regular = { height = 0.1 }"), "wave.regular.period", "missing"),
+        (piston("regular = { height = 0.1, period = 1.2, order = 3 }"), "wave.regular.order", "order = 1"),
+        (piston("reglar = { height = 0.1, period = 1.2 }"), "wave.reglar", "did you mean \"regular\""),
+        (
+            piston("solitary = { height = 0.1 }, jonswap = { height = 0.1, peak_period = 1.2 }"),
+            "driven.wave",
+            "jonswap",
+        ),
+        (piston("ramp = 2.0"), "driven.wave", "which wave"),
+        (piston("solitary = { height = 0.25 }"), "wave.solitary.height", "0.234 m"),
+        (piston("jonswap = { height = 0.1 }"), "wave.jonswap.peak_period", "missing"),
+        (piston("jonswap = { height = 0.1, peak_period = 1.2, components = 0 }"), "wave.jonswap", "components"),
+        (piston("bretschneider = { height = 0.1, peak_period = 1.2, gamma = 3.3 }"), "bretschneider.gamma", "jonswap"),
+        (piston("pierson_moskowitz = { height = 0.1, peak_period = 1.2 }"), "moskowitz.peak_period", "bretschneider"),
+        (piston("components = { file = \"none.csv\" }"), "wave.components.file", "no file"),
+        (flap(0.35), "driven.hinge", "above the still level"),
+        (PISTON.replace("[1.0, 0.0]", "[-1.0, 0.0]"), "driven.along", "no water before the paddle"),
+    ];
+    for (driven, key, advice) in cases {
+        let message = built(&with(&driven)).map(|_| ()).expect_err(&driven).to_string();
+        assert!(message.contains(key) && message.contains(advice), "{driven}:\n{message}");
+        // The line of the words themselves.
+        assert!(message.contains("scene.toml:19:"), "{message}");
+    }
+    let flap = with("hinge = [0.0, 0.0], wave = { solitary = { height = 0.1 } }");
+    assert!(built(&flap).map(|_| ()).unwrap_err().to_string().contains("needs a piston"));
+    let both = with("along = [1.0, 0.0], distance = { formula = \"t\" }, wave = { solitary = { height = 0.1 } }");
+    assert!(built(&both).map(|_| ()).unwrap_err().to_string().contains("one motion"));
+}
+
+#[test]
+fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
+    let paddle = |motion: DrivenWords| {
+        let at = pontoon::scene::AtWords { x: Some(-0.05), bottom: Some(0.0), ..Default::default() };
+        let tank = SolidWords::fixed("tank", ShapeWords::tank([5.2, 0.6])).at(pontoon::scene::AtWords::point(&[-0.2]));
+        Scene::new(2, 0.02, 6.0)
+            .title("A flume")
+            .water_box([0.0, 0.0], [5.0, 0.3])
+            .solid(tank)
+            .solid(SolidWords::driven("paddle", ShapeWords::cuboid([0.1, 0.6]), motion).at(at))
+            .without_frames()
+    };
+    let piston = paddle(DrivenWords::piston([1.0, 0.0], WaveWords::regular(0.1, 1.2)));
+    assert_eq!(piston, Scene::parse(FLUME, Path::new(""), &[]).unwrap());
+    let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
+    assert_eq!(piston, again);
+    let flap = paddle(DrivenWords::flap([0.0, -0.1], WaveWords::jonswap(0.06, 1.4, 7)))
+        .damped(DampingWords::between([4.0, 0.0], [5.0, 0.0]))
+        .probe(ProbeEntry::motion("paddle"));
+    assert_eq!(look(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
+}
+
+#[test]
+fn what_is_told_of_a_wave_is_what_the_books_say() {
+    let wave = wave(PISTON);
+    // ω²d/g = 0.8384: kd tanh kd.
+    let kd = wave.kd.unwrap();
+    assert!((kd * kd.tanh() - (TAU / 1.2).powi(2) * 0.3 / 9.81).abs() < 1e-9);
+    assert!((wave.length_m - TAU * 0.3 / kd).abs() < 1e-9 && (wave.celerity_mps - wave.length_m / 1.2).abs() < 1e-9);
+    let group = 0.5 * wave.celerity_mps * (1.0 + 2.0 * kd / (2.0 * kd).sinh());
+    assert!((wave.group_mps - group).abs() < 1e-9);
+    // 5 m of water less the half dp to the last particle, there and back.
+    assert!((wave.back_s - 2.0 * 4.99 / group).abs() < 1e-3, "{wave:?}");
+    assert!((wave.height_dp - 5.0).abs() < 1e-9 && wave.region == Region::Stokes5 && wave.order == 2);
+    // S = H (sinh 2kd + 2kd)/2(cosh 2kd − 1), and a tenth of a per cent of the second order's.
+    let stroke = 0.1 * ((2.0 * kd).sinh() + 2.0 * kd) / (2.0 * ((2.0 * kd).cosh() - 1.0));
+    assert!((wave.stroke_m / stroke - 1.0).abs() < 0.02, "{} against {stroke}", wave.stroke_m);
+    assert!((wave.paddle_mps / (0.5 * stroke * TAU / 1.2) - 1.0).abs() < 0.2);
+    let lone = self::wave("along = [1.0, 0.0], wave = { solitary = { height = 0.1 } }");
+    assert!((lone.celerity_mps - (9.81_f64 * 0.4).sqrt()).abs() < 1e-12 && lone.period_s.is_none());
+    assert_eq!(lone.region, Region::Solitary);
+}
+
+#[test]
+fn a_doubtful_wave_is_told_with_the_number_that_mends_it() {
+    let topics = |driven: &str| told(driven).findings.iter().map(|f| f.topic).collect::<Vec<_>>();
+    assert_eq!(topics(PISTON), Vec::<&str>::new());
+    let regular = |height: f64, period: f64| {
+        format!("along = [1.0, 0.0], wave = {{ regular = {{ height = {height:?}, period = {period:?} }} }}")
+    };
+    let found = told(&regular(0.12, 3.0));
+    let finding = found.findings.iter().find(|f| f.topic == "beyond_stokes").expect("H L²/d³ = 110");
+    let height: f64 = finding.mend.rsplit(' ').next().unwrap().parse().unwrap();
+    assert!(!topics(&regular(height, 3.0)).contains(&"beyond_stokes"), "{finding:?}");
+    assert!(topics(&regular(0.01, 0.4)).contains(&"short_waves"));
+    let flap = "hinge = [0.0, 0.2], wave = { regular = { height = 0.1, period = 1.2 } }";
+    assert!(topics(flap).contains(&"steep_flap"));
+    let sea = "along = [1.0, 0.0], wave = { jonswap = { height = 0.12, peak_period = 1.2 } }";
+    assert!(topics(sea).contains(&"breaking_waves"));
+    let low = with(PISTON).replace("size = [0.1, 0.6] }", "size = [0.1, 0.33] }");
+    assert!(look(built(&low).unwrap()).findings.iter().any(|f| f.topic == "overtopped_paddle"));
+}
+
+#[test]
+fn a_flap_leans_towards_the_water_where_the_waves_go() {
+    for (side, hinge) in [(1.0, 0.0), (-1.0, 5.0)] {
+        let text = with(&format!(
+            "hinge = [{hinge:?}, -0.1], wave = {{ regular = {{ height = 0.05, period = 1.2, phase_deg = 90.0 }}, ramp = 0.1 }}"
+        ));
+        let at = if side > 0.0 { "x = -0.05" } else { "x = 5.05" };
+        let text = text
+            .replace("x = -0.05", at)
+            .replace("size = [5.2, 0.6] } }\nat    = { x = -0.2 }", "size = [5.4, 0.6] } }\nat    = { x = -0.2 }");
+        let setup = built(&text).unwrap().setup;
+        let paddle = &setup.solids[1];
+        let pontoon::solid::Role::Driven(motion) = &paddle.role else { panic!("it is driven") };
+        // cos(ωt + 90°)/ω in the surface: the paddle is foremost at t = T.
+        let now = motion.kinematics(&paddle.pose, 1.2);
+        let top = now.pose.point(&Vector::from([0.0, 0.0]))[0] - paddle.pose.position[0];
+        assert!(top * side > 0.005, "{side}: {top}");
+    }
+}
+
+/// The largest less the smallest reading of the surface at `x` (m) over times `from` to `until` (s).
+fn height_at(sim: &mut Simulation<2>, x: f64, from: f64, until: f64) -> f64 {
+    let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut next = 0.0;
+    while sim.time() < until {
+        sim.step().expect("a sound step");
+        if sim.time() >= next.max(from) {
+            next = sim.time() + 0.04;
+            let top = surface(sim, x);
+            range = (range.0.min(top), range.1.max(top));
+        }
+    }
+    range.1 - range.0
+}
+
+/// Height of the highest water within a smoothing length of `x`, and half a dp.
+fn surface(sim: &Simulation<2>, x: f64) -> f64 {
+    let (h, dp) = (sim.system().model().h, sim.system().model().dp);
+    let beside = sim.system().fluid().r.iter().filter(|r| (r[0] - x).abs() < h);
+    beside.map(|r| r[1]).fold(f64::NEG_INFINITY, f64::max) + 0.5 * dp
+}
+
+#[test]
+fn a_piston_makes_waves_of_the_height_that_was_asked_for() {
+    let text = format!("{FLUME}\n[model]\nviscosity = {{ laminar = {{ nu0 = 1e-6 }} }}\n");
+    let mut sim = Simulation::new(built(&text).unwrap().setup).unwrap();
+    // At 1.2 m the front (1.2 m/s) has passed with its ramp at 4.2 s, the far end's answer comes after 7 s.
+    let height = height_at(&mut sim, 1.2, 4.4, 5.8);
+    // A tenth: a dp is a fifth of the wave, and tops of particles stand up to half a dp off the surface, both ways.
+    assert!((height / 0.1 - 1.0).abs() < 0.1, "{height}");
+}
+
+#[test]
+fn a_damping_zone_slows_water_by_its_law_whatever_the_scheme() {
+    let water = rig::lattice([0.0, 0.0], [0.4, 0.4], 0.05);
+    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
+        let mut model = Model::water(2, 0.05, 1.0);
+        (model.c0, model.gravity, model.viscosity, model.scheme) = (20.0, vec![0.0, 0.0], Viscosity::None, scheme);
+        let levels = vec![0.0; water.len()];
+        // It begins far to the left: s = 1 where the water is.
+        let zone = Damping { from: [-9.0, 0.0].into(), to: [-8.0, 0.0].into(), strength: 3.0 };
+        let velocity = vec![Vector::from([0.2, 0.1]); water.len()];
+        let setup = Setup { velocity, damping: vec![zone], ..Setup::new(model, water.clone(), levels, vec![]) };
+        let mut sim = Simulation::new(setup).unwrap();
+        while sim.time() < 0.5 {
+            sim.step_to(0.5).unwrap();
+        }
+        // Water that moves as one has no forces: exp(−β t), to round-off.
+        let left = (-3.0_f64 * 0.5).exp();
+        for v in sim.system().fluid().v {
+            assert!((v - Vector::from([0.2, 0.1]) * left).norm() < 1e-9, "{scheme:?}: {v}");
+        }
+    }
+}
+
+#[test]
+fn a_zone_that_no_water_reaches_changes_no_bit_and_a_run_goes_on_to_the_same_ones() {
+    let small = FLUME.replace("max = [5.0, 0.3]", "max = [1.0, 0.3]").replace("size = [5.2, 0.6]", "size = [1.2, 0.6]");
+    let zoned = format!("{small}\n[[damping]]\nfrom = [2.0, 0.0]\nto = [3.0, 0.0]\n");
+    let run = |text: &str, steps: usize| {
+        let mut sim = Simulation::new(built(text).unwrap().setup).unwrap();
+        (0..steps).for_each(|_| sim.step().unwrap());
+        sim
+    };
+    let bits = |sim: &Simulation<2>| sim.system().fluid().v.iter().map(|v| v[0].to_bits()).collect::<Vec<_>>();
+    let (plain, beyond) = (run(&small, 120), run(&zoned, 120));
+    assert_eq!(bits(&plain), bits(&beyond));
+    // The paddle's law is made anew from the words.
+    let kept = run(&small, 60).save().unwrap();
+    let mut again = Simulation::new(built(&small).unwrap().setup).unwrap();
+    again.restore(&kept).unwrap();
+    (0..60).for_each(|_| again.step().unwrap());
+    assert_eq!(bits(&plain), bits(&again));
+}
