@@ -9,6 +9,7 @@ mod page;
 mod progress;
 mod report;
 mod shelf;
+mod stats;
 mod stress;
 mod study;
 mod validate;
@@ -142,6 +143,15 @@ Examples:
   pontoon compare runs/plain runs/delta runs/shifted --png fields.png --time 0.5,1.0
 Players go at equal times, with equal colours; pictures have a column for each run and a row for each time.")]
     Compare(page::CompareArgs),
+    /// Tell the figures of a run's series: means, waves, spectra, reflection, RAOs
+    #[command(after_help = "\
+Examples:
+  pontoon stats runs/raft
+  pontoon stats runs/raft --series gauge --from 5 --until 20
+  pontoon stats runs/raft --json
+A run writes them at its end, to statistics.csv; [[statistic]] in the scene asks for more. H_third is the
+mean of the highest third of the waves, H_m0 four standard deviations.")]
+    Stats(stats::StatsArgs),
     /// List the scenes that come with the program
     Scenes,
     /// Time standard works on this machine: particle-steps per second, where a step goes, memory
@@ -245,6 +255,10 @@ fn obey(command: Command) -> Result<u8> {
         }
         Command::Report(args) => page::report(&args),
         Command::Compare(args) => page::compare(&args),
+        Command::Stats(args) => {
+            say(&stats::stats(&args)?);
+            Ok(0)
+        }
         Command::Scenes => {
             say(&report::shelf(&shelf::all()));
             Ok(0)

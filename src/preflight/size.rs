@@ -6,7 +6,7 @@ use super::{
     Finding, Look, Step,
     words::{three, up},
 };
-use crate::{model::Viscosity, plan::FrameWords};
+use crate::{model::Viscosity, plan::FrameWords, words::bytes};
 
 /// Disk that frames may take without a word, B.
 const BUDGET: f64 = 10e9;
@@ -72,7 +72,7 @@ impl<const D: usize> Look<'_, D> {
             });
         }
         if disk.frames_bytes > BUDGET {
-            let what = format!("{} frames will take {} GB", disk.frames, three(disk.frames_bytes / 1e9));
+            let what = format!("{} frames will take {}", disk.frames, bytes(disk.frames_bytes));
             let every = self.plan.frames.as_ref().map_or(0.0, |f| f.every).max(step.dt_s);
             let mend = format!("frames.every = {} keeps them to 10 GB", up(every * disk.frames_bytes / BUDGET));
             findings.push(Finding::warning("large_frames", what, mend));

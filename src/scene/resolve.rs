@@ -9,6 +9,7 @@ use super::{
 use crate::{
     error::Result,
     model::{C0_FACTOR, Model, Scheme},
+    plan::Surface,
     shape::Contact,
 };
 
@@ -205,6 +206,10 @@ impl Scene {
             let probe = &mut self.probe[i];
             filler.fill(format!("probe.{i}.name"), &mut probe.name, name, "after what it looks at");
             filler.fill(format!("probe.{i}.every"), &mut probe.every, self.until / 1000.0, "1000 readings a run");
+            if let Some(gauge) = &mut probe.elevation {
+                let key = format!("probe.{i}.elevation.surface");
+                filler.fill(key, &mut gauge.surface, Surface::Highest, "a jet counts, spray does not");
+            }
         }
         let frames = self.frames.get_or_insert(Frames::On(FramesWords::default()));
         if let Frames::On(words) = frames {
@@ -217,6 +222,9 @@ impl Scene {
         for (i, check) in self.check.iter_mut().enumerate().filter(|(_, check)| check.formula.is_none()) {
             filler.fill(format!("check.{i}.time"), &mut check.time, "t_s".into(), "the name our own tables have");
             filler.fill(format!("check.{i}.delay"), &mut check.delay, 0.0, "the clocks agree");
+        }
+        for (i, name) in self.statistic_names().into_iter().enumerate() {
+            filler.fill(format!("statistic.{i}.name"), &mut self.statistic[i].name, name, "after what it is");
         }
     }
 
@@ -301,7 +309,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 22] = [
+const ORDER: [&str; 23] = [
     "title",
     "dimension",
     "dp",
@@ -324,6 +332,7 @@ const ORDER: [&str; 22] = [
     "frames",
     "checkpoint",
     "check",
+    "statistic",
 ];
 
 /// Fills in what a law that is a table does not say.
