@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a run does besides stepping.
@@ -41,7 +42,7 @@ pub struct ProbeWords {
 }
 
 /// Which surface of the water an elevation gauge tells, where there are several above one another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Surface {
     /// The highest: a breaker's jet, water on a deck.
@@ -133,6 +134,8 @@ pub struct FrameWords {
     pub every: f64,
     /// Fields of the particles, by name.
     pub fields: Vec<String>,
+    /// Lowest and highest corner (m) of the box whose water is kept; all if none.
+    pub crop: Option<[Vec<f64>; 2]>,
 }
 
 /// What is said of series of the run.
@@ -240,7 +243,7 @@ pub enum Reference {
 }
 
 /// How a run is moved in time, as a whole, to lie on its reference.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Align {
     /// So that |x| of both first passes this threshold at one time. In the unit of the series.
@@ -250,7 +253,7 @@ pub enum Align {
 }
 
 /// Figures of a comparison; one that is not given is not judged.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Score {
     /// Relative deviation N, –: 0 is perfect. As a bound: the largest that passes.

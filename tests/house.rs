@@ -131,13 +131,14 @@ fn rooms_import_only_from_rooms_above() {
 
 #[test]
 fn engines_threads_and_printing_stay_in_their_rooms() {
-    let places: [(&str, &[&str]); 7] = [
+    let places: [(&str, &[&str]); 8] = [
         ("rapier", &["solid"]),
         ("parry", &["solid", "shape"]),
         ("rayon", &["near", "sweep", "system", "time", "simulation", "shape", "run"]),
         ("fearless_simd", &["lanes", "law", "near", "sweep"]),
         ("vtkio", &["record"]),
         ("realfft", &["stats"]),
+        ("zip::", &["record"]),
         ("println!", &[]),
     ];
     findings(|path, text| {

@@ -134,12 +134,12 @@ fn line(page: &Page) -> String {
 }
 
 /// Writes the page of the run in `folder` at its end. The run is what it is, with a page or without: what hinders the
-/// page is a warning.
-pub fn at_end(folder: &Path, quiet: bool) {
+/// page is `told`.
+pub fn at_end(folder: &Path, quiet: bool, told: impl Fn(&Error)) {
     match report::write(folder) {
         Ok(_) if quiet => {}
         Ok(page) => say(&line(&page)),
-        Err(why) => complain(&format!("warning: the page of the run was not written: {why}\n")),
+        Err(why) => told(&why),
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is kept of a run: tables (CSV), frames (VTK), checkpoints, the manifest. No opinion on any of it.
 
+pub mod arrays;
 pub mod film;
 pub mod frame;
 pub mod manifest;

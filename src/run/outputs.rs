@@ -125,7 +125,7 @@ impl<const D: usize> Outputs<D> {
             Some(words) => {
                 let times = from.map_or_else(Vec::new, |c| c.frames.clone());
                 let due = Due { every: words.every, next: next(count, 0) };
-                Some((Frames::new(folder, &words.fields, times)?, due))
+                Some((Frames::new(folder, words, times)?, due))
             }
             None => None,
         };

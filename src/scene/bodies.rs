@@ -1,12 +1,13 @@
 //! The words of solids: shape, place, and what moves them.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::flexible::{Draft, LineWords, Numbers, Unit};
 use crate::shape::Contact;
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidWords {
     /// Name: letters, digits, `_` and `-`.
@@ -34,7 +35,7 @@ pub struct SolidWords {
 }
 
 /// A shape in its own frame; lengths in m.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShapeWords {
     /// A box around its centre.
@@ -86,7 +87,7 @@ pub enum ShapeWords {
 }
 
 /// A closed surface in a file beside the scene: STL or OBJ.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshWords {
     /// Name of the file.
@@ -106,7 +107,7 @@ pub struct MeshWords {
 }
 
 /// A coordinate direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// First.
@@ -118,7 +119,7 @@ pub enum Axis {
 }
 
 /// A part of a compound.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartWords {
     /// Its shape.
@@ -129,7 +130,7 @@ pub struct PartWords {
 }
 
 /// A place and a turn. The height may instead be given by the lowest point or by the draft.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AtWords {
     /// m.
@@ -156,7 +157,7 @@ pub struct AtWords {
 }
 
 /// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DrivenWords {
     /// Direction of a translation (its length does not matter).
@@ -180,7 +181,7 @@ pub struct DrivenWords {
 }
 
 /// How a driven coordinate moves: `formula`, or `file` with `column`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LawWords {
     /// A formula in t (s), with sin, cos, exp, …, and pi.
@@ -201,7 +202,7 @@ pub struct LawWords {
 }
 
 /// A body that water, weight and contacts move.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FreeWords {
     /// Density, kg/m³.
@@ -232,7 +233,7 @@ pub struct FreeWords {
 }
 
 /// A motion that can be locked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Lock {
     /// Translation along x.

@@ -284,6 +284,7 @@ impl Scene {
             Some(Frames::On(words)) => Some(FrameWords {
                 every: words.every.unwrap_or(self.until),
                 fields: words.fields.clone().unwrap_or_default(),
+                crop: words.corners.as_ref().map(|corners| [corners.min.clone(), corners.max.clone()]),
             }),
             _ => None,
         };

@@ -4,6 +4,7 @@
 //! says why. Vectors are lists of as many numbers as the scene has dimensions. Units are SI; keys that
 //! end in `_deg` are in degrees. `docs/scene.md` explains every key.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -22,7 +23,7 @@ use crate::{
 };
 
 /// A scene: the caption of an experiment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Caption.
@@ -97,7 +98,7 @@ pub struct Scene {
 }
 
 /// A box given by two corners.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxWords {
     /// Lowest corner, m.
@@ -107,7 +108,7 @@ pub struct BoxWords {
 }
 
 /// A body of water.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaterWords {
     /// What it fills, minus the solids.
@@ -124,7 +125,7 @@ pub struct WaterWords {
 }
 
 /// What a body of water fills: a box by its corners, or any shape somewhere.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FillWords {
     /// A box by its corners.
@@ -139,7 +140,7 @@ pub struct FillWords {
 }
 
 /// The chosen laws.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ModelWords {
     /// Kernel.
@@ -184,7 +185,7 @@ pub struct ModelWords {
 }
 
 /// The time scheme.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TimeWords {
     /// Scheme.
@@ -199,7 +200,7 @@ pub struct TimeWords {
 }
 
 /// Checkpoints.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CheckpointWords {
     /// Simulated time between them, s.
@@ -211,7 +212,7 @@ pub struct CheckpointWords {
 }
 
 /// One `[[check]]`: a column of a probe held against a column of a reference table, or against a formula.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CheckEntry {
     /// `probe.column`, as in `box.heave_m`.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
@@ -11,7 +12,7 @@ use super::{BoxWords, Numbers, ProbeKind, ProbeWords};
 use crate::plan::Surface;
 
 /// One `[[probe]]`: exactly one of the words that say what it looks at.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ProbeEntry {
     /// Stem of the file it writes.
@@ -65,7 +66,7 @@ pub struct ProbeEntry {
 }
 
 /// Where elevation gauges stand: x in 2-D, x and y in 3-D, or a row of them; and which surface they tell.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GaugeWords {
     /// m.
@@ -92,7 +93,8 @@ pub struct GaugeWords {
 }
 
 /// A point, or a row of them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
+#[schemars(untagged)]
 pub enum PointWords {
     /// One, m.
     At(Vec<f64>),
@@ -101,7 +103,7 @@ pub enum PointWords {
 }
 
 /// Points in a row, evenly spaced: `count` of them, or as many as there are `spacing` apart.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RowWords {
     /// The first, m.
@@ -117,7 +119,7 @@ pub struct RowWords {
 }
 
 /// A section that water flows through: a segment in 2-D, a rectangle upright to an axis in 3-D.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SectionWords {
     /// One end or corner, m.
@@ -127,7 +129,7 @@ pub struct SectionWords {
 }
 
 /// A part of a solid's face.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatchWords {
     /// The solid.

@@ -1,5 +1,6 @@
 //! The words of `[[statistic]]`: what is said of series after a run.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -15,7 +16,7 @@ use crate::{
 
 /// One `[[statistic]]`: exactly one of waves, reflection and rao. A series is `probe.column`; the name of a probe alone
 /// means the elevations of a gauge or of a row of them, the displacements and turns of a motion.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StatisticEntry {
     /// What it is called.
@@ -45,7 +46,7 @@ pub struct StatisticEntry {
 }
 
 /// A motion and the wave that it answers.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RaoWords {
     /// A series, or the name of a motion.

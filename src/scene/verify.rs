@@ -180,11 +180,14 @@ impl Scene {
     }
 
     fn verify_records(&self) -> Result<()> {
-        if let Some(Frames::On(FramesWords { every, fields })) = &self.frames {
+        if let Some(Frames::On(FramesWords { every, fields, corners })) = &self.frames {
             self.positive("frames.every", *every)?;
             if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
                 let what = format!("no field is called \"{field}\"{}", guess(field, &FIELDS));
                 return Err(self.wrong_with("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
+            }
+            if let Some(corners) = corners {
+                self.corners("frames.box", corners)?;
             }
         }
         if let Some(checkpoint) = &self.checkpoint {

@@ -21,5 +21,6 @@ mod probes;
 mod quiet;
 mod rig;
 mod scenes;
+mod schema;
 mod statistics;
 mod steppers;
