@@ -4,14 +4,19 @@
 //! is wrong; 3 a check misses its bound; 130 interrupted.
 
 mod bench;
+mod export;
 mod inspect;
+mod journal;
 mod page;
 mod progress;
 mod report;
+mod run;
 mod shelf;
+mod stats;
 mod stress;
 mod study;
 mod validate;
+mod watch;
 
 use std::{
     io::Write,
@@ -23,14 +28,8 @@ use std::{
     },
 };
 
-use clap::{Args, Parser, Subcommand};
-use pontoon::{
-    error::{Error, Kind, Result},
-    record::manifest::Status,
-    run::{self, Options, Outcome},
-};
-
-use progress::Follow;
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use pontoon::error::{Error, Kind, Result};
 
 /// Rigid bodies that float, collide and are driven in water.
 #[derive(Parser)]
@@ -64,23 +63,10 @@ Ctrl-C stops after the present step with a checkpoint; `pontoon resume` goes on 
 the same bits. The number of threads changes the speed, never the result.
 Exit codes: 0 all well; 1 the computation could not go on; 2 something in the command, the scene
 or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
-    Run(RunArgs),
+    Run(run::RunArgs),
     /// Go on with an interrupted run, to the same bits as an unbroken one
     #[command(after_help = "Example:\n  pontoon resume runs/raft")]
-    Resume {
-        /// Folder of the run
-        #[arg(value_name = "DIR")]
-        folder: PathBuf,
-        /// Threads [default: one for each processor]
-        #[arg(long, value_name = "N")]
-        threads: Option<usize>,
-        /// Leave out the page at the end, report.html
-        #[arg(long)]
-        no_report: bool,
-        /// Say nothing but errors
-        #[arg(long, short)]
-        quiet: bool,
-    },
+    Resume(run::ResumeArgs),
     /// Tell what a scene would cost and what looks wrong with it, and print every value in force
     #[command(after_help = "\
 Examples:
@@ -142,6 +128,47 @@ Examples:
   pontoon compare runs/plain runs/delta runs/shifted --png fields.png --time 0.5,1.0
 Players go at equal times, with equal colours; pictures have a column for each run and a row for each time.")]
     Compare(page::CompareArgs),
+    /// Write the series of a run for other programs
+    #[command(after_help = "\
+Examples:
+  pontoon export runs/raft --npz                    runs/raft/series.npz
+  pontoon export runs/raft --npz raft.npz
+In Python: numpy.load(\"raft.npz\")[\"box.heave_m\"], and \"box.t_s\" for its times. For pandas the tables are
+as they should be: pandas.read_csv(\"runs/raft/series/box.csv\").")]
+    Export(export::ExportArgs),
+    /// Watch a run's latest curves in the terminal, running or finished
+    #[command(after_help = "\
+Examples:
+  pontoon watch runs/raft
+  pontoon watch runs/raft --series box.heave_m --once
+q or Ctrl-C leaves; the run goes on. In a pipe it prints once.")]
+    Watch(watch::WatchArgs),
+    /// Print the JSON schema of scenes, for editors
+    #[command(after_help = "\
+Example:
+  pontoon schema > scene.schema.json
+An editor with a TOML language server checks and completes a scene that begins with the line
+  #:schema scene.schema.json")]
+    Schema,
+    /// Print the completions of a shell
+    #[command(after_help = "\
+Examples:
+  pontoon completions bash > ~/.local/share/bash-completion/completions/pontoon
+  pontoon completions fish > ~/.config/fish/completions/pontoon.fish")]
+    Completions {
+        /// Which shell
+        #[arg(value_name = "SHELL")]
+        shell: clap_complete::Shell,
+    },
+    /// Tell the figures of a run's series: means, waves, spectra, reflection, RAOs
+    #[command(after_help = "\
+Examples:
+  pontoon stats runs/raft
+  pontoon stats runs/raft --series gauge --from 5 --until 20
+  pontoon stats runs/raft --json
+A run writes them at its end, to statistics.csv; [[statistic]] in the scene asks for more. H_third is the
+mean of the highest third of the waves, H_m0 four standard deviations.")]
+    Stats(stats::StatsArgs),
     /// List the scenes that come with the program
     Scenes,
     /// Time standard works on this machine: particle-steps per second, where a step goes, memory
@@ -170,24 +197,6 @@ struct SceneArgs {
     set: Vec<(String, String)>,
 }
 
-#[derive(Args)]
-struct RunArgs {
-    #[command(flatten)]
-    scene: SceneArgs,
-    /// Folder for the results, new or empty [default: runs/<scene>, numbered if taken]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Threads [default: one for each processor]
-    #[arg(long, value_name = "N")]
-    threads: Option<usize>,
-    /// Leave out the page at the end, report.html
-    #[arg(long)]
-    no_report: bool,
-    /// Say nothing but errors
-    #[arg(long, short)]
-    quiet: bool,
-}
-
 impl SceneArgs {
     /// The scene keys that the arguments change.
     fn sets(&self) -> Vec<(String, String)> {
@@ -213,25 +222,20 @@ pub fn main() -> ExitCode {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             complain(&format!("error: {error}\n"));
-            ExitCode::from(if error.kind == Kind::Fault { 1 } else { 2 })
+            ExitCode::from(code(&error))
         }
     }
 }
 
+/// The exit code of an error.
+fn code(error: &Error) -> u8 {
+    if error.kind == Kind::Fault { 1 } else { 2 }
+}
+
 fn obey(command: Command) -> Result<u8> {
     match command {
-        Command::Run(args) => {
-            let found = shelf::find(&args.scene.scene)?;
-            let options = Options { out: args.out, sets: args.scene.sets(), threads: args.threads };
-            let mut follow = Follow::new(args.quiet, stopper()?);
-            let outcome = run::run(found.path(), &options, &mut follow);
-            end(outcome, follow, !args.no_report, args.quiet)
-        }
-        Command::Resume { folder, threads, no_report, quiet } => {
-            let mut follow = Follow::new(quiet, stopper()?);
-            let outcome = run::resume(&folder, threads, &mut follow);
-            end(outcome, follow, !no_report, quiet)
-        }
+        Command::Run(args) => run::run(&args),
+        Command::Resume(args) => run::resume(&args),
         Command::Inspect(args) => {
             say(&inspect::inspect(&args)?);
             Ok(0)
@@ -245,30 +249,30 @@ fn obey(command: Command) -> Result<u8> {
         }
         Command::Report(args) => page::report(&args),
         Command::Compare(args) => page::compare(&args),
+        Command::Export(args) => {
+            say(&export::export(&args)?);
+            Ok(0)
+        }
+        Command::Watch(args) => watch::watch(&args),
+        Command::Schema => {
+            say(&format!("{:#}\n", pontoon::scene::schema()));
+            Ok(0)
+        }
+        Command::Completions { shell } => {
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "pontoon", &mut text);
+            say(&String::from_utf8_lossy(&text));
+            Ok(0)
+        }
+        Command::Stats(args) => {
+            say(&stats::stats(&args)?);
+            Ok(0)
+        }
         Command::Scenes => {
             say(&report::shelf(&shelf::all()));
             Ok(0)
         }
     }
-}
-
-/// Closes the progress, prints the table, writes the `page` of the run if it is wanted, chooses the exit code.
-fn end(outcome: Result<Outcome>, follow: Follow, page: bool, quiet: bool) -> Result<u8> {
-    let folder = follow.close();
-    if let Ok(outcome) = &outcome
-        && !quiet
-    {
-        say(&report::ended(outcome));
-    }
-    if let Some(folder) = folder.filter(|_| page) {
-        page::at_end(&folder, quiet);
-    }
-    let outcome = outcome?;
-    Ok(match outcome.manifest.status {
-        Status::Interrupted => 130,
-        _ if outcome.failed_checks() => 3,
-        _ => 0,
-    })
 }
 
 /// What the user typed, for records.
@@ -280,7 +284,7 @@ fn command_line() -> String {
 
 /// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
 fn stopper() -> Result<Arc<AtomicBool>> {
-    stopper_saying("stopping after this step, with a checkpoint; Ctrl-C again stops at once, without")
+    stopper_saying("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n")
 }
 
 /// As [`stopper`], in these words.
@@ -291,7 +295,7 @@ fn stopper_saying(words: &'static str) -> Result<Arc<AtomicBool>> {
         if raised.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        complain(&format!("\n{words}\n"));
+        complain(words);
     };
     ctrlc::set_handler(handler).map_err(|why| Error::new(Kind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
     Ok(flag)
@@ -310,7 +314,6 @@ fn complain(text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_arguments_are_sound() {

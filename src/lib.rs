@@ -6,6 +6,7 @@
 
 // words
 pub mod error;
+pub mod words;
 pub mod series;
 pub mod space;
 pub mod lanes;
@@ -27,6 +28,7 @@ pub mod simulation;
 pub mod plan;
 pub mod probe;
 pub mod check;
+pub mod stats;
 pub mod record;
 // entrance
 pub mod scene;

@@ -2,6 +2,7 @@
 
 pub use crate::law::wall::Slip;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -23,7 +24,7 @@ use crate::{
 };
 
 /// Which kernel weighs the neighbours. Scene word `model.kernel`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Kernel {
     /// Cubic spline (Monaghan & Lattanzio 1985), by default with Monaghan's (2000) tensile correction.
@@ -41,7 +42,7 @@ fn yes() -> bool {
 }
 
 /// Which viscosity acts. Scene word `model.viscosity`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Viscosity {
     /// None: the ideal fluid.
@@ -55,7 +56,7 @@ pub enum Viscosity {
 }
 
 /// Which density diffusion acts. Scene word `model.diffusion`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Diffusion {
     /// None.
@@ -67,7 +68,7 @@ pub enum Diffusion {
 }
 
 /// Which particles are shifted. Scene word `model.shifting`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Shifting {
     /// None (the paper's type 0).
@@ -81,7 +82,7 @@ pub enum Shifting {
 }
 
 /// Which sweep adds up the pairs. Scene word `model.sweep`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Sweeping {
     /// Eight pairs at a time in single precision, where the processor can (x86-64 with AVX2, ARM); else the oracle.
@@ -102,7 +103,7 @@ impl Sweeping {
 }
 
 /// How a solid's skin acts on the water. Scene word `model.walls`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Walls {
     /// Dynamic boundary particles: they obey continuity, and their density never falls below ρ₀.
@@ -112,7 +113,7 @@ pub enum Walls {
 }
 
 /// Which scheme advances time. Scene word `time.scheme`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Scheme {
     /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.

@@ -68,4 +68,16 @@ impl<const D: usize> View<'_, D> {
     pub fn is_empty(&self) -> bool {
         self.r.is_empty()
     }
+
+    /// Those of these numbers, in this order.
+    pub fn chosen(&self, numbers: impl IntoIterator<Item = usize>) -> Particles<D> {
+        let mut chosen = Particles::default();
+        for i in numbers {
+            chosen.r.push(self.r[i]);
+            chosen.v.push(self.v[i]);
+            chosen.rho.push(self.rho[i]);
+            chosen.id.push(self.id[i]);
+        }
+        chosen
+    }
 }

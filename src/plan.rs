@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a run does besides stepping.
@@ -21,6 +22,8 @@ pub struct Plan {
     pub checkpoint_wall: f64,
     /// What the run is held against.
     pub checks: Vec<CheckWords>,
+    /// What is said of its series besides what is said of all.
+    pub statistics: Vec<StatisticWords>,
     /// Folder of the scene file: where the tables it names lie.
     pub folder: PathBuf,
 }
@@ -34,6 +37,21 @@ pub struct ProbeWords {
     pub what: ProbeKind,
     /// Simulated time from one reading to the next, s.
     pub every: f64,
+    /// Whether a reading is the mean since the one before.
+    pub average: bool,
+}
+
+/// Which surface of the water an elevation gauge tells, where there are several above one another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Surface {
+    /// The highest: a breaker's jet, water on a deck.
+    #[default]
+    Highest,
+    /// The lowest: the water under the jet.
+    Lowest,
+    /// The highest, and those below it.
+    All,
 }
 
 /// What a probe looks at.
@@ -65,20 +83,43 @@ pub enum ProbeKind {
         /// The rope's name.
         rope: String,
     },
-    /// Height of the free surface above a place.
+    /// Height of the free surface above places.
     Elevation {
-        /// Horizontal coordinates, m: D − 1 of them.
-        at: Vec<f64>,
+        /// Horizontal coordinates, m: D − 1 of each.
+        places: Vec<Vec<f64>>,
+        /// Which surface.
+        surface: Surface,
     },
-    /// Velocity of the water at a point.
+    /// Velocity of the water at points.
     Velocity {
-        /// The point, m.
-        at: Vec<f64>,
+        /// The points, m.
+        places: Vec<Vec<f64>>,
     },
-    /// Pressure at a point.
+    /// Pressure at points.
     Pressure {
-        /// The point, m.
-        at: Vec<f64>,
+        /// The points, m.
+        places: Vec<Vec<f64>>,
+    },
+    /// Flow through a section.
+    Flow {
+        /// One end or corner, m.
+        from: Vec<f64>,
+        /// The other, m.
+        to: Vec<f64>,
+    },
+    /// The highest waterline on a solid.
+    Runup {
+        /// The solid's name.
+        solid: String,
+    },
+    /// Force and pressure on a part of a solid's face.
+    Patch {
+        /// The solid's name.
+        solid: String,
+        /// Lowest corner of the box in which that part is at the start, m.
+        min: Vec<f64>,
+        /// Highest corner, m.
+        max: Vec<f64>,
     },
     /// The leading edge of the water along x.
     Front,
@@ -105,6 +146,63 @@ pub struct FrameWords {
     pub every: f64,
     /// Fields of the particles, by name.
     pub fields: Vec<String>,
+    /// Lowest and highest corner (m) of the box whose water is kept; all if none.
+    pub crop: Option<[Vec<f64>; 2]>,
+}
+
+/// What is said of series of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StatisticWords {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub what: StatisticKind,
+    /// First time of the run that counts, s.
+    pub from: Option<f64>,
+    /// Last time of the run that counts, s.
+    pub until: Option<f64>,
+}
+
+/// What is said of series. A series is `probe.column`, as in `box.heave_m`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StatisticKind {
+    /// Extremes, means, waves and spectrum.
+    Waves {
+        /// Of these.
+        series: Vec<String>,
+    },
+    /// What comes and what goes back, from gauges in a row.
+    Reflection {
+        /// Elevations, and how far along the way of the waves that come, m.
+        gauges: Vec<(String, f64)>,
+        /// Depth of the water, m.
+        depth: f64,
+        /// Gravity, m/s².
+        g: f64,
+        /// Period of regular waves, s.
+        period: Option<f64>,
+    },
+    /// How motions answer a wave.
+    Rao {
+        /// The motions.
+        motions: Vec<String>,
+        /// The wave.
+        wave: String,
+        /// Period of regular waves, s.
+        period: Option<f64>,
+    },
+}
+
+impl StatisticKind {
+    /// The series that it is about.
+    pub fn series(&self) -> Vec<&str> {
+        match self {
+            Self::Waves { series } => series.iter().map(String::as_str).collect(),
+            Self::Reflection { gauges, .. } => gauges.iter().map(|(series, _)| series.as_str()).collect(),
+            Self::Rao { motions, wave, .. } => motions.iter().chain([wave]).map(String::as_str).collect(),
+        }
+    }
 }
 
 /// A series of the run held against a reference.
@@ -157,7 +255,7 @@ pub enum Reference {
 }
 
 /// How a run is moved in time, as a whole, to lie on its reference.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Align {
     /// So that |x| of both first passes this threshold at one time. In the unit of the series.
@@ -167,7 +265,7 @@ pub enum Align {
 }
 
 /// Figures of a comparison; one that is not given is not judged.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Score {
     /// Relative deviation N, –: 0 is perfect. As a bound: the largest that passes.

@@ -16,12 +16,15 @@ mod inspect;
 mod kept;
 mod lock;
 pub(crate) mod outputs;
+pub(crate) mod statistics;
 
 pub(crate) use folder::{same_tables, scene_file};
 pub use inspect::{Inspection, MeshFacts, Report, SeriesColumns, SolidCount, Timing, inspect};
 pub(crate) use kept::any as has_checkpoint;
 pub(crate) use lock::Lock;
 pub(crate) use outputs::series_folder;
+pub(crate) use statistics::told;
+pub use statistics::{Asked, Statistic, Told, statistics};
 
 use std::path::{Path, PathBuf};
 

@@ -499,3 +499,68 @@ fn a_full_disk_ends_the_run_with_whole_rows() {
         assert!(table.lines().count() > 50, "{name} keeps the rows before");
     }
 }
+
+#[test]
+fn a_run_is_told_in_figures_watched_and_exported() {
+    let desk = Desk::new("figures");
+    let said = desk.pontoon(&["run", "still-tank", "--until", "0.05", "--out", "a", "--quiet", "--no-report"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let figures = desk.read("a/statistics.csv");
+    assert!(figures.starts_with("name,series,quantity,value,unit,from_s,until_s\n"));
+    whole("statistics.csv", &figures);
+    let stats = desk.pontoon(&["stats", "a", "--series", "low"]);
+    assert!(stats.code == Some(0) && stats.out.contains("low.p_Pa") && !stats.out.contains("tank"), "{}", stats.out);
+    let json = desk.pontoon(&["stats", "a", "--json", "--from", "0.01"]);
+    let rows: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    assert!(rows.as_array().is_some_and(|rows| rows.iter().all(|row| row["from_s"].as_f64() >= Some(0.01))));
+    desk.pontoon(&["stats", "a", "--series", "lo"]).refused(2, &["nothing to tell", "low"]);
+    desk.pontoon(&["stats", "b"]).refused(2, &["b"]);
+
+    let watched = desk.pontoon(&["watch", "a", "--series", "low.p_Pa"]);
+    assert_eq!(watched.code, Some(0), "{}", watched.err);
+    for word in ["finished: t = 0.050 of 0.05 s", "low.p_Pa", "now"] {
+        assert!(watched.out.contains(word), "\"{word}\" is not in:\n{}", watched.out);
+    }
+    assert!(watched.out.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c)), "a curve in dots:\n{}", watched.out);
+    desk.pontoon(&["watch", "a", "--once", "--series", "low.p_pa"]).refused(2, &["did you mean \"low.p_Pa\"?"]);
+
+    let exported = desk.pontoon(&["export", "a", "--npz", "b.npz"]);
+    assert_eq!(exported.code, Some(0), "{}", exported.err);
+    let bytes = fs::read(desk.path("b.npz")).unwrap();
+    let holds = |word: &[u8]| bytes.windows(word.len()).any(|w| w == word);
+    assert!(bytes.starts_with(b"PK") && holds(b"low.t_s.npy") && holds(b"low.p_Pa.npy"));
+    desk.pontoon(&["export", "a"]).refused(2, &["--npz"]);
+}
+
+#[test]
+fn a_log_for_programs_is_an_object_a_line_from_start_to_end_or_error() {
+    let desk = Desk::new("log");
+    let run = |more: &[&str]| desk.pontoon(&[&["run", "still-tank", "--log", "json"], more].concat());
+    let events = |said: &Said| -> Vec<serde_json::Value> {
+        said.err.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}"))).collect()
+    };
+    let said = run(&["--until", "0.02", "--out", "a"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{}", said.err);
+    let told = events(&said);
+    assert_eq!((&told[0]["event"], &told[told.len() - 1]["event"]), (&"start".into(), &"end".into()));
+    assert_eq!(told[told.len() - 1]["status"], "finished");
+    let last = told.iter().rfind(|event| event["event"] == "progress").unwrap();
+    assert_eq!((last["t_s"].as_f64(), last["until_s"].as_f64()), (Some(0.02), Some(0.02)));
+    let wrong = run(&["--dp", "-1"]);
+    assert_eq!(wrong.code, Some(2));
+    assert_eq!(events(&wrong)[0]["event"], "error");
+    assert!(events(&wrong)[0]["text"].as_str().is_some_and(|text| text.contains("dp must be a positive number")));
+}
+
+#[test]
+fn editors_and_shells_are_told_what_there_is() {
+    let desk = Desk::new("schema");
+    let schema: serde_json::Value = serde_json::from_str(&desk.pontoon(&["schema"]).out).unwrap();
+    assert_eq!(schema["title"], "A scene of pontoon");
+    assert!(schema["properties"]["water"].is_object());
+    for shell in ["bash", "zsh", "fish"] {
+        let said = desk.pontoon(&["completions", shell]);
+        assert!(said.code == Some(0) && said.out.contains("inspect"), "{shell}: {}", said.err);
+    }
+    desk.pontoon(&["completions", "dos"]).refused(2, &["bash"]);
+}

@@ -196,7 +196,7 @@ impl Check {
 
     /// The run's series, and what the instrument shows of it.
     fn run(&self, folder: &Path) -> Result<(Series, Option<Series>)> {
-        let (probe, column) = self.words.series.rsplit_once('.').unwrap_or((&self.words.series, ""));
+        let (probe, column) = self.words.series.split_once('.').unwrap_or((&self.words.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
         let mut sim = table::read(&path, "t_s", column, 0.0)?;
         if let Some(at) = self.words.zero {

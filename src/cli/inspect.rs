@@ -11,7 +11,7 @@ use pontoon::{
 
 use super::{
     SceneArgs,
-    report::{duration, short, table, threads},
+    report::{bytes, duration, short, table, threads},
     shelf,
 };
 
@@ -166,15 +166,6 @@ fn disk(disk: &Disk) -> String {
         n => format!("{n} frames {}", bytes(disk.frames_bytes)),
     };
     format!("{frames}, tables {}, a checkpoint {}", bytes(disk.tables_bytes), bytes(disk.checkpoint_bytes))
-}
-
-/// A number of bytes as a user says it.
-fn bytes(n: f64) -> String {
-    match n {
-        n if n >= 1e9 => format!("{:.1} GB", n / 1e9),
-        n if n >= 1e6 => format!("{:.0} MB", n / 1e6),
-        n => format!("{:.0} kB", (n / 1e3).ceil()),
-    }
 }
 
 /// How the free bodies float, and whether particles carry them.

@@ -8,7 +8,11 @@ use pontoon::{
     report::{self, Field, Page, Shot},
 };
 
-use super::{complain, report::duration, say};
+use super::{
+    complain,
+    report::{bytes, duration},
+    say,
+};
 
 /// A page of one run.
 #[derive(Args)]
@@ -125,17 +129,17 @@ fn told(page: &Page) {
 }
 
 fn line(page: &Page) -> String {
-    let size = page.bytes as f64 / 1e6;
-    format!("page: {} ({size:.1} MB, written in {})\n", page.path.display(), duration(page.seconds))
+    let size = bytes(page.bytes as f64);
+    format!("page: {} ({size}, written in {})\n", page.path.display(), duration(page.seconds))
 }
 
 /// Writes the page of the run in `folder` at its end. The run is what it is, with a page or without: what hinders the
-/// page is a warning.
-pub fn at_end(folder: &Path, quiet: bool) {
+/// page is `told`.
+pub fn at_end(folder: &Path, quiet: bool, told: impl Fn(&Error)) {
     match report::write(folder) {
         Ok(_) if quiet => {}
         Ok(page) => say(&line(&page)),
-        Err(why) => complain(&format!("warning: the page of the run was not written: {why}\n")),
+        Err(why) => told(&why),
     }
 }
 

@@ -29,6 +29,19 @@ pub struct Follow {
     next: Option<Instant>,
 }
 
+/// Someone who follows a run for the user.
+pub trait Follower: Watch {
+    /// Ends what is shown; the folder of the run, if one has begun.
+    fn close(self: Box<Self>) -> Option<PathBuf>;
+}
+
+impl Follower for Follow {
+    fn close(self: Box<Self>) -> Option<PathBuf> {
+        self.bar.finish_and_clear();
+        self.folder
+    }
+}
+
 impl Follow {
     /// Shows nothing if `quiet`; asks the run to stop once `stop` is raised.
     pub fn new(quiet: bool, stop: Arc<AtomicBool>) -> Self {
@@ -38,12 +51,6 @@ impl Follow {
             bar.set_style(style);
         }
         Self { quiet, stop, bar, folder: None, begun: None, next: None }
-    }
-
-    /// Takes the bar away; the folder of the run, if one has begun.
-    pub fn close(self) -> Option<PathBuf> {
-        self.bar.finish_and_clear();
-        self.folder
     }
 
     fn line(&self, now: &Progress) -> String {

@@ -8,7 +8,7 @@ use pontoon::{
     run::{Body, Outcome, Start},
 };
 
-pub use pontoon::report::duration;
+pub use pontoon::words::{bytes, duration};
 
 use super::shelf::Listed;
 

@@ -60,7 +60,7 @@ pub fn stress(args: StressArgs) -> Result<u8> {
         say(&format!("{} cases, {due} to be run\n", ledger.entries.len()));
         return Ok(0);
     }
-    let stop = stopper_saying("stopping after the cases in hand; Ctrl-C again stops at once, without them")?;
+    let stop = stopper_saying("\nstopping after the cases in hand; Ctrl-C again stops at once, without them\n")?;
     let threads = args.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, |n| n.get()));
     let mut done = 0;
     ledger.work(threads, &stop, |entry| {

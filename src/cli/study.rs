@@ -14,7 +14,7 @@ use pontoon::{
 
 use super::{
     complain, pair,
-    progress::Follow,
+    progress::{Follow, Follower as _},
     report::{duration, short, table},
     say, shelf, stopper,
 };
@@ -92,8 +92,8 @@ impl List<'_> {
             if !self.quiet {
                 complain(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.name));
             }
-            let mut follow = Follow::new(self.quiet, stop.clone());
-            let outcome = job.attempt(self.threads, &mut follow);
+            let mut follow = Box::new(Follow::new(self.quiet, stop.clone()));
+            let outcome = job.attempt(self.threads, &mut *follow);
             follow.close();
             let outcome = outcome?;
             if let State::Failed(why) = &outcome.state {

@@ -3,13 +3,14 @@
 //!
 //! What the paper's eqs. (19)–(21) mean: no shift where ∇·r < A_FST, A_FSC of it above, the whole in the interior.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Extra, Medium, Num, Pair, Term};
 use crate::space::Vector;
 
 /// Fickian shifting with a free-surface factor [@skillen2013], [@lee2008]; eqs. (16)–(22) of [@pirkhalili2023].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Shift {
     /// A, – (1 to 6).

@@ -21,11 +21,15 @@ impl<const D: usize> Look<'_, D> {
         let all = solids.fold(Bounds::around(self.system.fluid().r), |a, b| a.union(&b));
         for probe in &self.plan.probes {
             match &probe.what {
-                ProbeKind::Velocity { at } | ProbeKind::Pressure { at } if at.len() == D => {
-                    findings.extend(self.point(&probe.name, Vector::from_fn(|i, _| at[i]), &all, sound));
+                ProbeKind::Velocity { places } | ProbeKind::Pressure { places } => {
+                    let points = places.iter().filter(|at| at.len() == D);
+                    findings.extend(
+                        points.filter_map(|at| self.point(&probe.name, Vector::from_fn(|i, _| at[i]), &all, sound)),
+                    );
                 }
-                ProbeKind::Elevation { at } if at.len() == D - 1 => {
-                    findings.extend(self.gauge(&probe.name, at, &all, sound));
+                ProbeKind::Elevation { places, .. } => {
+                    let places = places.iter().filter(|at| at.len() == D - 1);
+                    findings.extend(places.filter_map(|at| self.gauge(&probe.name, at, &all, sound)));
                 }
                 _ => {}
             }

@@ -6,7 +6,7 @@ use super::{
     Finding, Look, Step,
     words::{three, up},
 };
-use crate::{model::Viscosity, plan::FrameWords};
+use crate::{model::Viscosity, record::frame::particle_bytes, words::bytes};
 
 /// Disk that frames may take without a word, B.
 const BUDGET: f64 = 10e9;
@@ -72,7 +72,7 @@ impl<const D: usize> Look<'_, D> {
             });
         }
         if disk.frames_bytes > BUDGET {
-            let what = format!("{} frames will take {} GB", disk.frames, three(disk.frames_bytes / 1e9));
+            let what = format!("{} frames will take {}", disk.frames, bytes(disk.frames_bytes));
             let every = self.plan.frames.as_ref().map_or(0.0, |f| f.every).max(step.dt_s);
             let mend = format!("frames.every = {} keeps them to 10 GB", up(every * disk.frames_bytes / BUDGET));
             findings.push(Finding::warning("large_frames", what, mend));
@@ -103,7 +103,7 @@ impl<const D: usize> Look<'_, D> {
         let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + extra;
         let skin = particle + (2.0 * d + 2.0) * number;
         // A frame is put together as numbers, as text and as the file's text.
-        let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * picture(frames).0.max(picture(frames).1));
+        let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * particle_bytes(&frames.fields).1);
         // States to go back to: two, and what it takes to make one.
         let states = 3.0 * (fluid * (particle + d * number) + boundary * particle);
         fluid * water + boundary * skin + states + system.list_bytes() as f64 + fluid.max(boundary) * picture
@@ -116,7 +116,7 @@ impl<const D: usize> Look<'_, D> {
         let tables = self.plan.probes.iter().zip(columns);
         let tables_bytes = tables.map(|(probe, n)| count(probe.every) * (n + 1) as f64 * NUMBER).sum();
         let frames = self.plan.frames.as_ref().map_or(0.0, |f| count(f.every));
-        let (water, solids) = self.plan.frames.as_ref().map_or((0.0, 0.0), picture);
+        let (water, solids) = self.plan.frames.as_ref().map_or((0.0, 0.0), |frames| particle_bytes(&frames.fields));
         let d = D as f64;
         Disk {
             tables_bytes,
@@ -125,11 +125,4 @@ impl<const D: usize> Look<'_, D> {
             checkpoint_bytes: fluid * (3.0 * d * 8.0 + 11.0) + boundary * (2.0 * d * 8.0 + 11.0),
         }
     }
-}
-
-/// Bytes of a particle of water and of a boundary particle in a frame: place, vertex and fields, in base 64.
-fn picture(frames: &FrameWords) -> (f64, f64) {
-    let fields: f64 = frames.fields.iter().map(|field| if field == "velocity" { 12.0 } else { 4.0 }).sum();
-    let place = 12.0 + 8.0 + 8.0 + 1.0;
-    (4.0 / 3.0 * (place + fields), 4.0 / 3.0 * (place + fields + 4.0))
 }

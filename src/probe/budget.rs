@@ -27,6 +27,10 @@ impl<const D: usize> Probe<D> for Budget {
         ["stored"].into_iter().chain(entries).chain(["residual"]).map(|name| format!("{name}_{unit}")).collect()
     }
 
+    fn totals(&self) -> usize {
+        Probe::<D>::columns(self).len()
+    }
+
     fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
         let Some(ledger) = sim.ledger() else { return vec![f64::NAN; Probe::<D>::columns(self).len()] };
         let stored = self.energy.total(sim.system()) - self.start;

@@ -64,10 +64,14 @@ impl<const D: usize> Probe<D> for Joint {
         row
     }
 
-    fn follow(&self, before: &[f64], now: &mut [f64]) {
+    fn follow(&self, before: &[f64], now: &mut [f64], _: f64) {
         if self.kind == JointKind::Hinge {
             let angle = carried::<D>();
             now[angle] = super::motion::unwrapped(before[angle], now[angle]);
         }
+    }
+
+    fn totals(&self) -> usize {
+        usize::from(matches!(self.kind, JointKind::Hinge | JointKind::Slider))
     }
 }

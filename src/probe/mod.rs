@@ -8,12 +8,16 @@ mod budget;
 mod contact;
 mod elevation;
 mod energy;
+mod flow;
 mod force;
 mod front;
 mod joint;
 mod line;
 mod motion;
+mod patch;
 mod pressure;
+mod row;
+mod runup;
 mod velocity;
 
 pub use balance::Balance;
@@ -21,12 +25,16 @@ pub use budget::Budget;
 pub use contact::Contact;
 pub use elevation::Elevation;
 pub use energy::Energy;
+pub use flow::Flow;
 pub use force::Force;
 pub use front::Front;
 pub use joint::Joint;
 pub use line::Line;
 pub use motion::Motion;
+pub use patch::Patch;
 pub use pressure::Pressure;
+pub use row::{Row, named};
+pub use runup::Runup;
 pub use velocity::Velocity;
 
 use crate::{
@@ -45,9 +53,14 @@ pub trait Probe<const D: usize>: Send {
     fn look(&self, sim: &Simulation<D>) -> Vec<f64>;
 
     /// Makes the reading `now` continue the reading `before` it, for quantities that wind round, such as
-    /// an angle past 180°. By default leaves it as it is.
-    fn follow(&self, before: &[f64], now: &mut [f64]) {
-        let _ = (before, now);
+    /// an angle past 180°, or add up, such as a volume; `dt` (s) lies between them. By default leaves it as it is.
+    fn follow(&self, before: &[f64], now: &mut [f64], dt: f64) {
+        let _ = (before, now, dt);
+    }
+
+    /// How many of the last columns are sums since the start, of which no mean over time is taken.
+    fn totals(&self) -> usize {
+        0
     }
 }
 

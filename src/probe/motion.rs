@@ -64,7 +64,7 @@ impl<const D: usize> Probe<D> for Motion<D> {
         row
     }
 
-    fn follow(&self, before: &[f64], now: &mut [f64]) {
+    fn follow(&self, before: &[f64], now: &mut [f64], _: f64) {
         for i in first_angle::<D>()..first_angle::<D>() + angles::<D>() {
             now[i] = unwrapped(before[i], now[i]);
         }

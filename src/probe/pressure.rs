@@ -3,7 +3,7 @@
 //! the water that it sees is added as still water's weight, so that the point may lie on a wall.
 
 use super::{Probe, interpolate, point};
-use crate::{error::Result, simulation::Simulation, space::Vector};
+use crate::{error::Result, simulation::Simulation, space::Vector, system::System};
 
 /// Watches the pressure (Pa, above the air's) at a fixed point; 0 while the point is dry.
 pub struct Pressure<const D: usize> {
@@ -26,12 +26,16 @@ impl<const D: usize> Probe<D> for Pressure<D> {
     }
 
     fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let system = sim.system();
-        let (fluid, gravity) = (system.fluid(), system.gravity());
-        let pressure = |b: usize, r: &Vector<D>| {
-            let head = gravity.dot(&(self.at - r));
-            [system.acting_pressure(fluid.rho[b]) + system.medium().rho0 * head]
-        };
-        interpolate(system, &self.at, pressure).unwrap_or([0.0]).to_vec()
+        vec![pressure(sim.system(), &self.at)]
     }
+}
+
+/// The pressure (Pa) at the point `at` (m); 0 where it is dry.
+pub(super) fn pressure<const D: usize>(system: &System<D>, at: &Vector<D>) -> f64 {
+    let (fluid, gravity) = (system.fluid(), system.gravity());
+    let read = |b: usize, r: &Vector<D>| {
+        let head = gravity.dot(&(at - r));
+        [system.acting_pressure(fluid.rho[b]) + system.medium().rho0 * head]
+    };
+    interpolate(system, at, read).unwrap_or([0.0])[0]
 }

@@ -15,12 +15,21 @@ use super::{cannot_write, settle, write_whole};
 use crate::{
     error::{Error, Kind, Result, nearest},
     particles::View,
+    plan::FrameWords,
     space::Vector,
     system::System,
 };
 
 /// Fields that a frame may hold.
 pub const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
+
+/// Bytes of a particle of water and of a boundary particle in a frame with these `fields`, about: place, vertex and fields,
+/// in base 64.
+pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
+    let fields: f64 = fields.iter().map(|field| if field == "velocity" { 12.0 } else { 4.0 }).sum();
+    let place = 12.0 + 8.0 + 8.0 + 1.0;
+    (4.0 / 3.0 * (place + fields), 4.0 / 3.0 * (place + fields + 4.0))
+}
 
 /// The pictures of a frame.
 const PARTS: [&str; 2] = ["water", "solids"];
@@ -29,18 +38,21 @@ const PARTS: [&str; 2] = ["water", "solids"];
 pub struct Frames {
     folder: PathBuf,
     fields: Vec<String>,
+    /// Lowest and highest corner (m) of the box whose water is kept; all if none.
+    crop: Option<[Vec<f64>; 2]>,
     times: Vec<f64>,
     /// How many of them are on the disk itself.
     settled: usize,
 }
 
 impl Frames {
-    /// The frames in the run's `folder`, holding `fields` (of [`FIELDS`]); `times` (s) are those that are
+    /// The frames in the run's `folder`, holding what `words` say (fields of [`FIELDS`]); `times` (s) are those that are
     /// there already.
     ///
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
-    pub fn new(folder: &Path, fields: &[String], times: Vec<f64>) -> Result<Self> {
+    pub fn new(folder: &Path, words: &FrameWords, times: Vec<f64>) -> Result<Self> {
+        let FrameWords { fields, crop, .. } = words.clone();
         if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
             let help = match nearest(word, FIELDS) {
                 Some(near) => format!("did you mean {near:?}?"),
@@ -50,7 +62,7 @@ impl Frames {
         }
         let pictures = folder.join("frames");
         std::fs::create_dir_all(&pictures).map_err(|e| cannot_write(&pictures, &e))?;
-        Ok(Self { folder: folder.to_owned(), fields: fields.to_vec(), settled: times.len(), times })
+        Ok(Self { folder: folder.to_owned(), fields, crop, settled: times.len(), times })
     }
 
     /// Times of the frames so far, s.
@@ -64,7 +76,13 @@ impl Frames {
     /// `File` if it cannot be written; the frames before stay as they are.
     pub fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> {
         let number = self.times.len();
-        self.picture(&format!("water_{number:05}.vtu"), system, system.fluid(), None)?;
+        let water = system.fluid();
+        let kept = self.crop.as_ref().map(|[min, max]| {
+            let inside = |i: &usize| (0..D).all(|k| (min[k]..=max[k]).contains(&water.r[*i][k]));
+            water.chosen((0..water.len()).filter(inside))
+        });
+        let water = kept.as_ref().map_or(water, |kept| kept.first(kept.len()));
+        self.picture(&format!("water_{number:05}.vtu"), system, water, None)?;
         let mut owner = vec![0.0; system.skin().len()];
         for (i, solid) in system.solids().iter().enumerate() {
             owner[solid.skin.clone()].fill(i as f32);
@@ -204,7 +222,8 @@ mod tests {
 
     #[test]
     fn an_unknown_field_names_the_nearest() {
-        let error = Frames::new(&std::env::temp_dir(), &["presure".into()], vec![]).err();
+        let words = FrameWords { every: 1.0, fields: vec!["presure".into()], crop: None };
+        let error = Frames::new(&std::env::temp_dir(), &words, vec![]).err();
         assert_eq!(error.and_then(|e| e.help), Some("did you mean \"pressure\"?".into()));
     }
 }

@@ -1,8 +1,10 @@
 //! What is kept of a run: tables (CSV), frames (VTK), checkpoints, the manifest. No opinion on any of it.
 
+pub mod arrays;
 pub mod film;
 pub mod frame;
 pub mod manifest;
+pub mod mean;
 pub mod removed;
 pub mod restart;
 pub mod table;
@@ -10,8 +12,9 @@ pub mod table;
 pub use film::{Cloud, Film};
 pub use frame::Frames;
 pub use manifest::Manifest;
+pub use mean::Mean;
 pub use restart::Checkpoint;
-pub use table::Table;
+pub use table::{Readings, Table};
 
 use std::{
     fs::{self, File},

@@ -14,7 +14,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{cannot_write, part_of, put_part, settle, write_part};
+use super::{Mean, cannot_write, part_of, put_part, settle, write_part};
 use crate::error::{Error, Kind, Result};
 
 /// The last checkpoint, in the run's folder.
@@ -46,6 +46,8 @@ pub struct Checkpoint {
     pub time: f64,
     /// Length of each table, bytes, in the order of the probes.
     pub tables: Vec<u64>,
+    /// Means in the making, of the probes that take some.
+    pub means: Vec<Option<Mean>>,
     /// Times of the frames written, s.
     pub frames: Vec<f64>,
     /// Numbers of the next looks, frame and checkpoint that are due.
@@ -204,6 +206,7 @@ mod tests {
             sets: vec![("dp".into(), "0.02".into())],
             time: 0.25,
             tables: vec![12, 40],
+            means: vec![None, Some(Mean::default())],
             frames: vec![0.0, 0.1],
             due: vec![3, 1],
             wall: 1.5,

@@ -7,7 +7,10 @@ use std::{
 };
 
 use super::cannot_write;
-use crate::error::{Error, Kind, Result};
+use crate::{
+    error::{Error, Kind, Result},
+    series::Series,
+};
 
 /// A CSV file that grows by whole rows.
 ///
@@ -106,6 +109,47 @@ impl Table {
         }
         self.bytes += line.len() as u64;
         Ok(())
+    }
+}
+
+/// A table as it stands in its file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Readings {
+    /// Names of the columns after the time.
+    pub columns: Vec<String>,
+    /// Times, s.
+    pub t: Vec<f64>,
+    /// A row of numbers for each column; NaN where there was nothing to measure.
+    pub x: Vec<Vec<f64>>,
+}
+
+impl Readings {
+    /// The table at `path`. A last row that is cut, as that of a killed run may be, is left out.
+    ///
+    /// # Errors
+    /// `File` if it cannot be read.
+    pub fn read(path: &Path) -> Result<Self> {
+        let broken = |why: csv::Error| Error::file(path, why);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path).map_err(broken)?;
+        let columns: Vec<String> = reader.headers().map_err(broken)?.iter().skip(1).map(String::from).collect();
+        let (mut t, mut x) = (Vec::new(), vec![Vec::new(); columns.len()]);
+        for record in reader.records() {
+            let record = record.map_err(broken)?;
+            let field = |i: usize| record.get(i).and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
+            if record.len() == columns.len() + 1 && field(0).is_finite() {
+                t.push(field(0));
+                x.iter_mut().enumerate().for_each(|(i, column)| column.push(field(i + 1)));
+            }
+        }
+        Ok(Self { columns, t, x })
+    }
+
+    /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.
+    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<Series> {
+        let column = &self.x[self.columns.iter().position(|column| column == name)?];
+        let known = self.t.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
+        let (t, x): (Vec<f64>, Vec<f64>) = known.unzip();
+        Series::new(t, x).ok()
     }
 }
 

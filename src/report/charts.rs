@@ -84,16 +84,20 @@ pub struct Line {
 }
 
 /// Columns that belong together, by their names without units. The first sets are shown, the others wait behind a fold.
-const FAMILIES: [(&[&str], bool); 12] = [
+const FAMILIES: [(&[&str], bool); 16] = [
     (&["surge", "sway", "heave"], false),
     (&["roll", "pitch", "yaw"], false),
     (&["fx", "fy", "fz"], false),
     (&["torque", "tx", "ty", "tz"], false),
     (&["eta"], false),
     (&["p"], false),
+    (&["p mean", "p max"], false),
+    (&["runup"], false),
+    (&["flow"], false),
+    (&["volume"], false),
     (&["front"], false),
     (&["water kinetic", "water potential", "water compression", "bodies kinetic", "bodies potential", "total"], false),
-    (&["level"], true),
+    (&["level", "below 1", "below 2", "below 3"], true),
     (&["vx", "vy", "vz"], true),
     (&["spin", "spin x", "spin y", "spin z"], true),
     (&["x", "y", "z"], true),
@@ -145,7 +149,8 @@ fn thinned(table: &Table) -> Vec<usize> {
 
 /// The columns as charts: those that belong together, then every other one by itself.
 fn charts(columns: &[String]) -> Vec<Chart> {
-    let names: Vec<String> = columns.iter().map(|name| bare(name)).collect();
+    // A row of gauges is one chart, wherever they stand.
+    let names: Vec<String> = columns.iter().map(|name| bare(name.split("_at_").next().unwrap_or(name))).collect();
     let mut left: Vec<usize> = (0..columns.len()).collect();
     let mut charts = Vec::new();
     for (family, folded) in FAMILIES {
@@ -186,7 +191,7 @@ pub fn held(run: &Kept, caption: impl Fn(&Verdict) -> String, blob: &mut Blob) -
     for (i, (check, curves)) in run.checks.iter().enumerate() {
         let Some(curves) = curves else { continue };
         let series = check.words().label();
-        let column = series.rsplit_once('.').map_or(series.as_str(), |(_, column)| column);
+        let column = series.split_once('.').map_or(series.as_str(), |(_, column)| column);
         held.push(Held {
             label: bare(column.split(',').next().unwrap_or(column)),
             unit: unit(column),

@@ -103,11 +103,16 @@ pub fn reel(run: &Kept, film: &Film, samples: usize, blob: &mut Blob) -> Result<
     let most = (samples / left(apart)).clamp(2, FRAMES[0]).min(readable.max(2)).min(frames);
     let kept: Vec<usize> = (0..most).map(|k| (k * (frames - 1)).checked_div(most - 1).unwrap_or(0)).collect();
     let distance = (apart > 1).then_some((apart as f32, dp));
+    // Into a cropped film come particles that were not there at first.
+    let cropped = set.is_some_and(|set| set.plan.frames.as_ref().is_some_and(|frames| frames.crop.is_some()));
     let chosen: HashSet<u32> = sparse(&first, distance).into_iter().filter_map(|i| first.id.get(i).copied()).collect();
     let mut shown = Vec::new();
     for &number in &kept {
         let cloud = film.water(number)?;
-        let order = if cloud.id.is_empty() { sparse(&cloud, distance) } else { ordered(&cloud, &chosen) };
+        let order = match cloud.id.is_empty() || (cropped && apart > 1) {
+            true => sparse(&cloud, distance),
+            false => ordered(&cloud, |id| cropped || chosen.contains(id)),
+        };
         shown.push(show(&cloud, film.times()[number], dimension, &order));
     }
     let channels = channels(&shown, &first, dimension, dp);
@@ -132,9 +137,9 @@ fn sparse(cloud: &Cloud, distance: Option<(f32, f32)>) -> Vec<usize> {
 }
 
 /// The `chosen` particles in the order of their numbers.
-fn ordered(cloud: &Cloud, chosen: &HashSet<u32>) -> Vec<usize> {
+fn ordered(cloud: &Cloud, chosen: impl Fn(&u32) -> bool) -> Vec<usize> {
     let finite = |i: usize| cloud.r[i].iter().all(|x| x.is_finite());
-    let mut order: Vec<usize> = (0..cloud.r.len()).filter(|&i| chosen.contains(&cloud.id[i]) && finite(i)).collect();
+    let mut order: Vec<usize> = (0..cloud.r.len()).filter(|&i| chosen(&cloud.id[i]) && finite(i)).collect();
     order.sort_by_key(|&i| cloud.id[i]);
     order
 }

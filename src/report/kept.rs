@@ -14,7 +14,7 @@ use crate::{
     check::{Check, Curves},
     error::{Error, Result},
     plan::{Plan, ProbeKind},
-    record::{Film, Manifest},
+    record::{Film, Manifest, Readings},
     run,
     scene::{Scene, Stage},
     solid::Role,
@@ -204,31 +204,23 @@ impl Set {
 
     /// Where gauges stand: the name of each, what it measures, and its place (m) with as many coordinates as it has.
     pub fn gauges(&self) -> impl Iterator<Item = (&str, &'static str, &[f64])> {
-        self.plan.probes.iter().filter_map(|probe| match &probe.what {
-            ProbeKind::Elevation { at } => Some((probe.name.as_str(), "elevation", &at[..])),
-            ProbeKind::Velocity { at } => Some((probe.name.as_str(), "velocity", &at[..])),
-            ProbeKind::Pressure { at } => Some((probe.name.as_str(), "pressure", &at[..])),
-            _ => None,
+        self.plan.probes.iter().flat_map(|probe| {
+            let (what, places) = match &probe.what {
+                ProbeKind::Elevation { places, .. } => ("elevation", &places[..]),
+                ProbeKind::Velocity { places } => ("velocity", &places[..]),
+                ProbeKind::Pressure { places } => ("pressure", &places[..]),
+                _ => ("", &[][..]),
+            };
+            // A row bears its name once.
+            let name = move |i: usize| if i == 0 { probe.name.as_str() } else { "" };
+            places.iter().enumerate().map(move |(i, at)| (name(i), what, &at[..]))
         })
     }
 }
 
 impl Table {
     fn read(series: &Path, name: &str, plan: Option<&Plan>) -> Result<Self> {
-        let path = series.join(format!("{name}.csv"));
-        let broken = |why: csv::Error| Error::file(&path, why);
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(&path).map_err(broken)?;
-        let columns: Vec<String> = reader.headers().map_err(broken)?.iter().skip(1).map(String::from).collect();
-        let (mut t, mut x) = (Vec::new(), vec![Vec::new(); columns.len()]);
-        for record in reader.records() {
-            let record = record.map_err(broken)?;
-            let field = |i: usize| record.get(i).and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
-            // The last row of a killed run may be cut.
-            if record.len() == columns.len() + 1 && field(0).is_finite() {
-                t.push(field(0));
-                x.iter_mut().enumerate().for_each(|(i, column)| column.push(field(i + 1)));
-            }
-        }
+        let Readings { columns, t, x } = Readings::read(&series.join(format!("{name}.csv")))?;
         let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));
         let what = probe.map_or("table", |probe| match &probe.what {
             ProbeKind::Motion { .. } => "motion",
@@ -239,6 +231,9 @@ impl Table {
             ProbeKind::Elevation { .. } => "level of the water",
             ProbeKind::Velocity { .. } => "velocity of the water",
             ProbeKind::Pressure { .. } => "pressure",
+            ProbeKind::Flow { .. } => "flow through a section",
+            ProbeKind::Runup { .. } => "run-up",
+            ProbeKind::Patch { .. } => "force and pressure on a part of a face",
             ProbeKind::Front => "leading edge of the water",
             ProbeKind::Energy => "energy",
             ProbeKind::Balance { .. } => "loads by kind",

@@ -23,7 +23,6 @@ mod sections;
 pub(crate) mod words;
 
 pub use picture::{Field, Shot, picture};
-pub use words::duration;
 
 use std::{
     path::{Path, PathBuf},

@@ -173,6 +173,7 @@ fn single(run: &Kept, told: &Run) -> String {
         + &section("player", "Player", &player(std::slice::from_ref(told)))
         + &section("checks", "Against references", &(held + &charts("held", !told.checks.is_empty())))
         + &section("series", "Series", &charts("charts", !told.tables.is_empty()))
+        + &section("statistics", "Statistics", &sections::statistics(run))
         + &section("energy", "Energy", &sections::energy(run))
         + &section(
             "figures",
@@ -183,7 +184,7 @@ fn single(run: &Kept, told: &Run) -> String {
         + &section("files", "Files", &sections::files(run))
 }
 
-const WAVES: &str = "<p class=\"quiet\">Waves are counted between crossings of the mean upwards; one counts if it goes a third of the \
+const WAVES: &str = "<p class=\"quiet\">Waves are counted between crossings of the mean upwards; one counts if it goes a tenth of the \
     standard deviation to both sides. Means are over time.</p>\n";
 
 fn several(runs: &[Kept], told: &[Run]) -> String {

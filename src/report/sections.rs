@@ -11,6 +11,7 @@ use super::{
 use crate::{
     check::{Verdict, said},
     record::{Manifest, manifest::Status},
+    run::{Asked, told},
 };
 
 /// How a run stands, in a word, and the class of its badge.
@@ -152,6 +153,21 @@ pub fn verdicts(runs: &[Kept]) -> String {
     wide(&said::rows(&pairs, if several { &["run"] } else { &[] })) + said
 }
 
+/// What the scene asks for of its series; empty if it asks for nothing.
+pub fn statistics(run: &Kept) -> String {
+    let Some(set) = &run.set else { return String::new() };
+    let told = told(&run.folder, &set.plan, &Asked::default());
+    let mut rows =
+        vec![["statistic", "series", "figure", "value", "unit", "from, s", "until, s"].map(String::from).to_vec()];
+    rows.extend(told.rows.into_iter().filter(|row| !row.name.is_empty()).map(|row| {
+        let [from, until] = [row.from_s, row.until_s].map(|t| format!("{t:.3}"));
+        vec![row.name, row.series, row.quantity.into(), digits(row.value), row.unit, from, until]
+    }));
+    let remarks = told.remarks.iter().map(|remark| format!("<p class=\"quiet\">{}</p>\n", escape(remark)));
+    let table = if rows.len() > 1 { wide(&rows) } else { String::new() };
+    table + &remarks.collect::<String>()
+}
+
 /// Energies and where they went; empty without a table of them.
 pub fn energy(run: &Kept) -> String {
     let budgets = run.tables.iter().filter_map(|table| figures::energy(table).or_else(|| figures::budget(table)));
@@ -198,14 +214,14 @@ pub fn files(run: &Kept) -> String {
     let mut rows = vec![["file", "size"].map(String::from).to_vec()];
     for file in &run.manifest.files {
         let size = fs::metadata(run.folder.join(file))
-            .map_or("–".into(), |f| if f.is_dir() { String::new() } else { bytes(f.len()) });
+            .map_or("–".into(), |f| if f.is_dir() { String::new() } else { bytes(f.len() as f64) });
         rows.push(vec![file.clone(), size]);
     }
     if let Some(film) = &run.film {
         let count = film.times().len();
         rows.push(vec![
             format!("frames/ ({count} frames)"),
-            format!("about {}", bytes(film.bytes(count / 2) * count as u64)),
+            format!("about {}", bytes((film.bytes(count / 2) * count as u64) as f64)),
         ]);
     }
     format!("<p>In <code>{}</code>:</p>\n{}", escape(&folder.display().to_string()), wide(&rows))

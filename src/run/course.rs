@@ -8,6 +8,7 @@ use super::{
     Body, Origin, Outcome, Progress, Start, Watch, folder, kept,
     lock::Lock,
     outputs::{self, Outputs, series_folder},
+    statistics,
 };
 use crate::{
     check::Check,
@@ -29,6 +30,7 @@ pub struct Course<const D: usize> {
     sim: Simulation<D>,
     outputs: Outputs<D>,
     checks: Vec<Check>,
+    plan: Plan,
     manifest: Manifest,
     folder: PathBuf,
     /// What the next checkpoint says, but for what changes.
@@ -91,6 +93,7 @@ where
             sim,
             outputs,
             checks,
+            plan,
             manifest,
             folder,
             checkpoint,
@@ -117,6 +120,7 @@ impl<const D: usize> Course<D> {
                 if status == Status::Finished {
                     let series = series_folder(&self.folder);
                     self.manifest.checks = self.checks.iter().map(|check| check.judge(&series)).collect();
+                    self.manifest.warnings.extend(statistics::write(&self.folder, &self.plan)?);
                 }
                 self.update();
                 self.manifest.write(&self.folder)?;
@@ -229,7 +233,15 @@ impl<const D: usize> Course<D> {
         self.manifest.particle_steps = self.checkpoint.particle_steps;
         self.manifest.particle_steps_per_second = now.rate;
         let there = |name: &&str| self.folder.join(name).exists();
-        let fixed = ["frames.pvd", restart::LAST, restart::PREVIOUS, removed::REMOVED, folder::FAILURE, folder::SCENE];
+        let fixed = [
+            statistics::STATISTICS,
+            "frames.pvd",
+            restart::LAST,
+            restart::PREVIOUS,
+            removed::REMOVED,
+            folder::FAILURE,
+            folder::SCENE,
+        ];
         let mut files: Vec<String> = self.outputs.tables().collect();
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
         files.push("manifest.json".into());
@@ -271,6 +283,7 @@ fn first_checkpoint(scene: &str, sets: &[(String, String)]) -> Checkpoint {
         sets: sets.to_vec(),
         time: 0.0,
         tables: vec![],
+        means: vec![],
         frames: vec![],
         due: vec![],
         wall: 0.0,

@@ -13,7 +13,7 @@ use crate::{
     error::{Error, Kind, Result, nearest},
     model::Dimension,
     probe::{self, Probe},
-    record::{Checkpoint, Frames, Table},
+    record::{Checkpoint, Frames, Mean, Table},
     scene::{CheckWords, Plan, ProbeKind, ProbeWords},
     simulation::Simulation,
     solid::Dim,
@@ -45,19 +45,40 @@ struct Watched<const D: usize> {
     probe: Box<dyn Probe<D>>,
     table: Table,
     due: Due,
+    /// What it has read since the last row, at every step, if it takes means.
+    mean: Option<Mean>,
 }
 
 impl<const D: usize> Watched<D> {
-    fn look(&mut self, sim: &Simulation<D>) -> Result<()> {
+    /// Reads if it must, and writes a row if one is `due`.
+    fn look(&mut self, sim: &Simulation<D>, due: bool) -> Result<()> {
+        let t = sim.time();
         // A run that went back after an alarm makes again what is written already.
-        if self.table.last().is_some_and(|(t, _)| t >= sim.time()) {
+        let due = due && self.table.last().is_none_or(|(last, _)| last < t);
+        let before = match &self.mean {
+            Some(mean) => mean.last(),
+            None => self.table.last(),
+        };
+        let fresh = before.is_none_or(|(last, _)| last < t);
+        if !due && (self.mean.is_none() || !fresh) {
             return Ok(());
         }
-        let mut row = self.probe.look(sim);
-        if let Some((_, before)) = self.table.last() {
-            self.probe.follow(before, &mut row);
-        }
-        self.table.row(sim.time(), &row)
+        let read = || {
+            let mut row = self.probe.look(sim);
+            if let Some((last, before)) = before {
+                self.probe.follow(before, &mut row, t - last);
+            }
+            row
+        };
+        let row = fresh.then(read);
+        let row = match (&mut self.mean, row) {
+            (Some(mean), row) => {
+                row.into_iter().for_each(|row| mean.add(t, row));
+                due.then(|| mean.take(self.probe.totals()))
+            }
+            (None, row) => row,
+        };
+        row.map_or(Ok(()), |row| self.table.row(t, &row))
     }
 }
 
@@ -97,14 +118,16 @@ impl<const D: usize> Outputs<D> {
                 Some(checkpoint) => Table::resume(&path, &probe.columns(), checkpoint.tables[i])?,
                 None => Table::create(&path, &probe.columns())?,
             };
-            watched.push(Watched { probe, table, due: Due { every: words.every, next: next(i, 0) } });
+            let due = Due { every: words.every, next: next(i, 0) };
+            let kept = from.and_then(|checkpoint| checkpoint.means.get(i).cloned().flatten());
+            watched.push(Watched { probe, table, due, mean: words.average.then(|| kept.unwrap_or_default()) });
         }
         let count = watched.len();
         let frames = match &plan.frames {
             Some(words) => {
                 let times = from.map_or_else(Vec::new, |c| c.frames.clone());
                 let due = Due { every: words.every, next: next(count, 0) };
-                Some((Frames::new(folder, &words.fields, times)?, due))
+                Some((Frames::new(folder, words, times)?, due))
             }
             None => None,
         };
@@ -120,9 +143,8 @@ impl<const D: usize> Outputs<D> {
         let t = sim.time();
         let mut written = Written::default();
         for watched in &mut self.watched {
-            if watched.due.take(t) {
-                watched.look(sim)?;
-            }
+            let due = watched.due.take(t);
+            watched.look(sim, due)?;
         }
         if let Some((frames, due)) = &mut self.frames
             && due.take(t)
@@ -141,9 +163,7 @@ impl<const D: usize> Outputs<D> {
     /// `File` if something cannot be written.
     pub fn finish(&mut self, sim: &Simulation<D>) -> Result<()> {
         for watched in &mut self.watched {
-            if watched.table.last().is_none_or(|(t, _)| t < sim.time()) {
-                watched.look(sim)?;
-            }
+            watched.look(sim, true)?;
             watched.table.sync()?;
         }
         self.last_frame(sim)
@@ -177,6 +197,7 @@ impl<const D: usize> Outputs<D> {
             frames.sync()?;
         }
         checkpoint.tables = self.watched.iter().map(|w| w.table.bytes()).collect();
+        checkpoint.means = self.watched.iter().map(|w| w.mean.clone()).collect();
         checkpoint.frames = self.frames.as_ref().map_or_else(Vec::new, |(frames, _)| frames.times().to_vec());
         checkpoint.due = self.watched.iter().map(|w| w.due.next).collect();
         checkpoint.due.push(self.frames.as_ref().map_or(0, |(_, due)| due.next));
@@ -218,9 +239,14 @@ fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dy
         ProbeKind::Joint { joint } => Box::new(probe::Joint::new(system, joint)?),
         ProbeKind::Spring { spring } => Box::new(probe::Line::spring(system, spring)?),
         ProbeKind::Rope { rope } => Box::new(probe::Line::rope(system, rope)?),
-        ProbeKind::Elevation { at } => Box::new(probe::Elevation::new(system, at)?),
-        ProbeKind::Velocity { at } => Box::new(probe::Velocity::new(at)?),
-        ProbeKind::Pressure { at } => Box::new(probe::Pressure::new(at)?),
+        ProbeKind::Elevation { places, surface } => {
+            row(places, |at| Ok(Box::new(probe::Elevation::of(system, at, *surface)?)))?
+        }
+        ProbeKind::Velocity { places } => row(places, |at| Ok(Box::new(probe::Velocity::new(at)?)))?,
+        ProbeKind::Pressure { places } => row(places, |at| Ok(Box::new(probe::Pressure::new(at)?)))?,
+        ProbeKind::Flow { from, to } => Box::new(probe::Flow::new(from, to)?),
+        ProbeKind::Runup { solid } => Box::new(probe::Runup::new(system, solid)?),
+        ProbeKind::Patch { solid, min, max } => Box::new(probe::Patch::new(system, solid, min, max)?),
         ProbeKind::Front => Box::new(probe::Front),
         ProbeKind::Energy => Box::new(probe::Energy::new(system)),
         ProbeKind::Balance { solid } => Box::new(probe::Balance::new(system, solid)?),
@@ -229,23 +255,44 @@ fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dy
     })
 }
 
+/// A probe at each of `places`; of a single place the probe itself.
+fn row<const D: usize>(
+    places: &[Vec<f64>],
+    make: impl Fn(&[f64]) -> Result<Box<dyn Probe<D>>>,
+) -> Result<Box<dyn Probe<D>>> {
+    match places {
+        [at] => make(at),
+        _ => {
+            let members: Result<Vec<_>> = places.iter().map(|at| Ok((at.clone(), make(at)?))).collect();
+            Ok(Box::new(probe::Row::new(members?)))
+        }
+    }
+}
+
+/// That `series`, which a check or a statistic names, is none of `known`.
+fn unknown(series: &str, known: &[String]) -> Error {
+    let help = match nearest(series, known.iter().map(String::as_str)) {
+        Some(near) => format!("did you mean {near:?}?"),
+        None => format!("the series are: {}", known.join(", ")),
+    };
+    Error::scene(format!("no probe writes the series {series:?}")).help(help)
+}
+
 /// The checks that `plan` asks for, their references read.
 ///
 /// # Errors
-/// `Scene` if one names no series of `probes`; else as [`Check::new`].
+/// `Scene` if one, or a statistic, names no series of `probes`; else as [`Check::new`].
 pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Result<Vec<Check>> {
     let columns = plan.probes.iter().zip(probes);
     let known: Vec<String> =
         columns.flat_map(|(words, p)| p.columns().into_iter().map(move |c| format!("{}.{c}", words.name))).collect();
+    let told = plan.statistics.iter().flat_map(|words| words.what.series());
+    if let Some(series) = told.into_iter().find(|series| !known.iter().any(|known| known == series)) {
+        return Err(unknown(series, &known));
+    }
     let check = |words: &CheckWords| {
         if !known.contains(&words.series) {
-            let help = match nearest(&words.series, known.iter().map(String::as_str)) {
-                Some(near) => format!("did you mean {near:?}?"),
-                None => format!("the series are: {}", known.join(", ")),
-            };
-            return Err(
-                Error::scene(format!("a check names the series {:?}, which no probe writes", words.series)).help(help)
-            );
+            return Err(unknown(&words.series, &known));
         }
         Check::new(words, &plan.folder)
     };

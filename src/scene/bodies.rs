@@ -1,5 +1,6 @@
 //! The words of solids: shape, place, and what moves them.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -9,7 +10,7 @@ use super::{
 use crate::shape::Contact;
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidWords {
     /// Name: letters, digits, `_` and `-`.
@@ -37,7 +38,7 @@ pub struct SolidWords {
 }
 
 /// A shape in its own frame; lengths in m.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShapeWords {
     /// A box around its centre.
@@ -89,7 +90,7 @@ pub enum ShapeWords {
 }
 
 /// A closed surface in a file beside the scene: STL or OBJ.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshWords {
     /// Name of the file.
@@ -109,7 +110,7 @@ pub struct MeshWords {
 }
 
 /// A coordinate direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// First.
@@ -121,7 +122,7 @@ pub enum Axis {
 }
 
 /// A part of a compound.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartWords {
     /// Its shape.
@@ -132,7 +133,7 @@ pub struct PartWords {
 }
 
 /// A place and a turn. The height may instead be given by the lowest point or by the draft.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AtWords {
     /// m.
@@ -159,7 +160,7 @@ pub struct AtWords {
 }
 
 /// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`; either with a `wave` instead.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DrivenWords {
     /// Direction of a translation (its length does not matter).
@@ -186,7 +187,7 @@ pub struct DrivenWords {
 }
 
 /// How a driven coordinate moves: `formula`, or `file` with `column`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LawWords {
     /// A formula in t (s), with sin, cos, exp, …, and pi.
@@ -207,7 +208,7 @@ pub struct LawWords {
 }
 
 /// A body that water, weight and contacts move.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FreeWords {
     /// Density, kg/m³.
@@ -238,7 +239,7 @@ pub struct FreeWords {
 }
 
 /// A motion that can be locked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Lock {
     /// Translation along x.

@@ -2,7 +2,7 @@
 //! the water.
 
 use super::{
-    FillWords, FrameWords, Frames, Plan, ProbeEntry, ProbeKind, ProbeWords, Scene,
+    FillWords, FrameWords, Frames, Plan, Scene,
     build_waves::Pool,
     flow::Flow,
     geometry::{pose, shape, vector, world_bounds},
@@ -122,7 +122,7 @@ impl Scene {
         if filled.r.is_empty() {
             return Err(scene.wrong("water", "no water is left: it is thinner than dp, or solids fill it"));
         }
-        let plan = scene.planned()?;
+        let plan = scene.planned(&still)?;
         // Packing may have moved a particle a little way out of its water.
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
         let level = |x: &Vector<D>| nearest(x).map_or(still.level, |body| body.level);
@@ -156,7 +156,12 @@ impl Scene {
     /// # Errors
     /// `Scene` if the words contradict one another, or a table that a check names is missing or wrong.
     pub fn plan(&self) -> Result<Plan> {
-        self.filled()?.0.planned()
+        let (scene, _) = self.filled()?;
+        let still = match scene.dimension {
+            2 => Still::of(&scene.bodies_of_water::<2>()?),
+            _ => Still::of(&scene.bodies_of_water::<3>()?),
+        };
+        scene.planned(&still)
     }
 
     /// Speed of sound, m/s: given, or from the depth.
@@ -277,27 +282,24 @@ impl Scene {
     }
 
     /// What the run watches, keeps and judges, from a scene with its defaults filled in.
-    fn planned(&self) -> Result<Plan> {
-        let probe = |probe: &ProbeEntry| ProbeWords {
-            name: probe.name.clone().unwrap_or_default(),
-            what: kind(probe),
-            every: probe.every.unwrap_or(self.until),
-        };
+    fn planned(&self, still: &Still) -> Result<Plan> {
         let frames = match &self.frames {
             Some(Frames::On(words)) => Some(FrameWords {
                 every: words.every.unwrap_or(self.until),
                 fields: words.fields.clone().unwrap_or_default(),
+                crop: words.corners.as_ref().map(|corners| [corners.min.clone(), corners.max.clone()]),
             }),
             _ => None,
         };
         Ok(Plan {
             title: self.title.clone().unwrap_or_default(),
             until: self.until,
-            probes: self.probe.iter().map(probe).collect(),
+            probes: self.probe.iter().map(|probe| probe.planned(self.until)).collect(),
             frames,
             checkpoint_every: self.checkpoint.as_ref().and_then(|c| c.every),
             checkpoint_wall: self.checkpoint.as_ref().and_then(|c| c.wall).unwrap_or(CHECKPOINT_WALL),
             checks: self.check_words()?,
+            statistics: self.statistic_words(still)?,
             folder: self.origin.folder.clone(),
         })
     }
@@ -318,25 +320,5 @@ fn scatter<const D: usize>(points: &mut [Vector<D>], by: f64) {
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         let part = ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64;
         *x += by * (2.0 * part - 1.0);
-    }
-}
-
-fn kind(probe: &ProbeEntry) -> ProbeKind {
-    match probe {
-        ProbeEntry { motion: Some(solid), .. } => ProbeKind::Motion { solid: solid.clone() },
-        ProbeEntry { force: Some(solid), .. } => ProbeKind::Force { solid: solid.clone() },
-        ProbeEntry { joint: Some(joint), .. } => ProbeKind::Joint { joint: joint.clone() },
-        ProbeEntry { spring: Some(spring), .. } => ProbeKind::Spring { spring: spring.clone() },
-        ProbeEntry { rope: Some(rope), .. } => ProbeKind::Rope { rope: rope.clone() },
-        ProbeEntry { elevation: Some(place), .. } => {
-            ProbeKind::Elevation { at: [Some(place.x), place.y].into_iter().flatten().collect() }
-        }
-        ProbeEntry { velocity: Some(at), .. } => ProbeKind::Velocity { at: at.clone() },
-        ProbeEntry { pressure: Some(at), .. } => ProbeKind::Pressure { at: at.clone() },
-        ProbeEntry { front: Some(_), .. } => ProbeKind::Front,
-        ProbeEntry { balance: Some(solid), .. } => ProbeKind::Balance { solid: solid.clone() },
-        ProbeEntry { contact: Some(between), .. } => ProbeKind::Contact { between: between.clone() },
-        ProbeEntry { budget: Some(_), .. } => ProbeKind::Budget,
-        _ => ProbeKind::Energy,
     }
 }

@@ -15,7 +15,7 @@ impl Scene {
         let names = self.probe_names();
         for (i, check) in self.check.iter().enumerate() {
             let key = format!("check.{i}");
-            let Some((probe, _)) = check.series.rsplit_once('.') else {
+            let Some((probe, _)) = check.series.split_once('.') else {
                 let what = "a series is a probe and its column, with a point between";
                 return Err(self.wrong(&format!("{key}.series"), what));
             };

@@ -1,5 +1,6 @@
 //! The words of damping zones.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, build::Still, geometry::vector};
@@ -9,7 +10,7 @@ use crate::{error::Result, space::Vector, system::Damping};
 const PASSES: f64 = 12.0;
 
 /// One `[[damping]]`: from one plane to another, and beyond.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DampingWords {
     /// A point of the plane on which it begins, m.

@@ -2,22 +2,27 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
 };
 
+use super::BoxWords;
+
 /// Frames for ParaView: `"off"`, or when and which fields.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
+#[schemars(rename_all = "snake_case")]
 pub enum Frames {
     /// None are written.
     Off,
     /// Some are.
+    #[schemars(untagged)]
     On(FramesWords),
 }
 
 /// When frames are written, and with which fields.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FramesWords {
     /// Simulated time between frames, s.
@@ -26,6 +31,9 @@ pub struct FramesWords {
     /// Fields of the particles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fields: Option<Vec<String>>,
+    /// Only water in this box is kept.
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    pub corners: Option<BoxWords>,
 }
 
 impl Serialize for Frames {
@@ -60,11 +68,13 @@ impl<'de> Deserialize<'de> for Frames {
 }
 
 /// A draft: in metres, or the one at which the body floats at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
+#[schemars(rename_all = "snake_case")]
 pub enum Draft {
     /// Where weight and buoyancy balance.
     Equilibrium,
     /// Depth of the lowest point below the still level, m.
+    #[schemars(untagged)]
     Metres(f64),
 }
 
@@ -103,8 +113,19 @@ impl<'de> Deserialize<'de> for Draft {
 }
 
 /// A formula in the place, or a number.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FieldWords(pub String);
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct FieldWords(#[schemars(with = "NumberOrText")] pub String);
+
+/// How a formula may be written, for the schema.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[allow(dead_code, reason = "only its shape counts")]
+pub(super) enum NumberOrText {
+    /// A number.
+    Number(f64),
+    /// A formula.
+    Text(String),
+}
 
 impl<'de> Deserialize<'de> for FieldWords {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
@@ -129,7 +150,7 @@ impl<'de> Deserialize<'de> for FieldWords {
 }
 
 /// A number, a list of numbers, or a list of rows.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Numbers {
     /// One.
@@ -175,7 +196,7 @@ impl<'de> Deserialize<'de> for Numbers {
 }
 
 /// The unit of lengths in a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Unit {
     /// Metres.
@@ -205,7 +226,8 @@ impl Unit {
 }
 
 /// A line: its points, a table with the columns `x_m` and `y_m`, or a drawing; as a wall it may have a thickness.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[schemars(with = "PointsOrTable")]
 pub struct LineWords {
     /// Points, m.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -239,18 +261,37 @@ impl LineWords {
     }
 }
 
+/// A line as a table.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct LineTable {
+    /// Points, m.
+    points: Option<Vec<Vec<f64>>>,
+    /// A table of points, or a drawing (.svg), beside the scene.
+    file: Option<String>,
+    /// The outline's id in the drawing.
+    id: Option<String>,
+    /// Factor on the drawing's lengths, –; 1 if not said.
+    scale: Option<f64>,
+    /// Unit of the drawing's lengths; m if not said.
+    unit: Option<Unit>,
+    /// Thickness of a wall, m; as many dp as the kernel reaches if not said.
+    thickness: Option<f64>,
+}
+
+/// How a line may be written, for the schema.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[allow(dead_code, reason = "only its shape counts")]
+enum PointsOrTable {
+    /// Points, m.
+    Points(Vec<Vec<f64>>),
+    /// A table.
+    Table(LineTable),
+}
+
 impl<'de> Deserialize<'de> for LineWords {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
-        #[derive(Default, Deserialize)]
-        #[serde(deny_unknown_fields, default)]
-        struct Table {
-            points: Option<Vec<Vec<f64>>>,
-            file: Option<String>,
-            id: Option<String>,
-            scale: Option<f64>,
-            unit: Option<Unit>,
-            thickness: Option<f64>,
-        }
         struct Words;
         impl<'de> Visitor<'de> for Words {
             type Value = LineWords;
@@ -262,8 +303,8 @@ impl<'de> Deserialize<'de> for LineWords {
                 Ok(LineWords { points: Some(points), ..LineWords::default() })
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LineWords, A::Error> {
-                let Table { points, file, id, scale, unit, thickness } =
-                    Table::deserialize(MapAccessDeserializer::new(map))?;
+                let LineTable { points, file, id, scale, unit, thickness } =
+                    LineTable::deserialize(MapAccessDeserializer::new(map))?;
                 Ok(LineWords { points, file, id, scale, unit, thickness })
             }
         }

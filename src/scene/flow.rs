@@ -1,12 +1,13 @@
 //! Which sides are periodic, and how the water moves at the start.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, WaterWords, flexible::FieldWords};
 use crate::{error::Result, solid::Field, space::Vector, system::Periodic};
 
 /// Where a period begins and ends along each axis that has one, m.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PeriodicWords {
     /// m.

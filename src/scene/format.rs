@@ -4,6 +4,7 @@
 //! says why. Vectors are lists of as many numbers as the scene has dimensions. Units are SI; keys that
 //! end in `_deg` are in degrees. `docs/scene.md` explains every key.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -14,6 +15,8 @@ use super::{
     flow::PeriodicWords,
     guard::GuardWords,
     links::{ContactWords, ForceWords, JointWords, RopeWords, SpringWords},
+    probes::ProbeEntry,
+    statistics::StatisticEntry,
 };
 use crate::{
     model::{Diffusion, Kernel, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
@@ -21,7 +24,7 @@ use crate::{
 };
 
 /// A scene: the caption of an experiment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Caption.
@@ -90,13 +93,16 @@ pub struct Scene {
     /// What the run is held against.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub check: Vec<CheckEntry>,
+    /// What is said of its series.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub statistic: Vec<StatisticEntry>,
     /// Where each word was written.
     #[serde(skip)]
     pub(super) origin: Origin,
 }
 
 /// A box given by two corners.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxWords {
     /// Lowest corner, m.
@@ -106,7 +112,7 @@ pub struct BoxWords {
 }
 
 /// A body of water.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaterWords {
     /// What it fills, minus the solids.
@@ -123,7 +129,7 @@ pub struct WaterWords {
 }
 
 /// What a body of water fills: a box by its corners, or any shape somewhere.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FillWords {
     /// A box by its corners.
@@ -138,7 +144,7 @@ pub struct FillWords {
 }
 
 /// The chosen laws.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ModelWords {
     /// Kernel.
@@ -183,7 +189,7 @@ pub struct ModelWords {
 }
 
 /// The time scheme.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TimeWords {
     /// Scheme.
@@ -197,70 +203,8 @@ pub struct TimeWords {
     pub dt_max: Option<f64>,
 }
 
-/// One `[[probe]]`: exactly one of the words that say what it looks at.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ProbeEntry {
-    /// Stem of the file it writes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-    /// Simulated time between readings, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub every: Option<f64>,
-    /// Motion of the solid of this name.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub motion: Option<String>,
-    /// Force and torque on the solid of this name.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub force: Option<String>,
-    /// What the joint of this name carries, and how it moves.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub joint: Option<String>,
-    /// Length and tension of the spring of this name.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub spring: Option<String>,
-    /// Length and tension of the rope of this name.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rope: Option<String>,
-    /// Surface elevation at a place.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub elevation: Option<PlaceWords>,
-    /// Velocity at a point, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<Vec<f64>>,
-    /// Pressure at a point, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pressure: Option<Vec<f64>>,
-    /// The leading edge of the water along x.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub front: Option<bool>,
-    /// Energies of water and bodies.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub energy: Option<bool>,
-    /// All loads on the free solid of this name, by kind.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub balance: Option<String>,
-    /// How the two solids of these names press on each other.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub contact: Option<[String; 2]>,
-    /// Where energy came from and went.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub budget: Option<bool>,
-}
-
-/// A place on the plan: x in 2-D, x and y in 3-D.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlaceWords {
-    /// m.
-    pub x: f64,
-    /// m; 3-D only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub y: Option<f64>,
-}
-
 /// Checkpoints.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CheckpointWords {
     /// Simulated time between them, s.
@@ -272,7 +216,7 @@ pub struct CheckpointWords {
 }
 
 /// One `[[check]]`: a column of a probe held against a column of a reference table, or against a formula.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CheckEntry {
     /// `probe.column`, as in `box.heave_m`.
@@ -342,6 +286,7 @@ impl Scene {
             frames: None,
             checkpoint: None,
             check: Vec::new(),
+            statistic: Vec::new(),
             origin: Origin::default(),
         }
     }
@@ -382,27 +327,5 @@ impl Scene {
     pub fn without_frames(mut self) -> Self {
         self.frames = Some(Frames::Off);
         self
-    }
-}
-
-impl ProbeEntry {
-    /// The motion of the solid of this name.
-    pub fn motion(solid: impl Into<String>) -> Self {
-        Self { motion: Some(solid.into()), ..Self::default() }
-    }
-
-    /// Force and torque on the solid of this name.
-    pub fn force(solid: impl Into<String>) -> Self {
-        Self { force: Some(solid.into()), ..Self::default() }
-    }
-
-    /// What the joint of this name carries, and how it moves.
-    pub fn joint(joint: impl Into<String>) -> Self {
-        Self { joint: Some(joint.into()), ..Self::default() }
-    }
-
-    /// Length and tension of the spring of this name.
-    pub fn spring(spring: impl Into<String>) -> Self {
-        Self { spring: Some(spring.into()), ..Self::default() }
     }
 }

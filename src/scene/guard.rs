@@ -1,5 +1,6 @@
 //! What a run's guards let pass.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, resolve::Filler};
@@ -9,7 +10,7 @@ use crate::{
 };
 
 /// What a run's guards let pass.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GuardWords {
     /// Largest speed of water over c₀, –.

@@ -1,5 +1,6 @@
 //! The words of what ties solids: joints with their motors, springs, ropes, forces, contacts of pairs.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -8,7 +9,7 @@ use super::{
 };
 
 /// One `[[joint]]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointWords {
     /// Name: letters, digits, `_` and `-`.
@@ -40,7 +41,7 @@ pub struct JointWords {
 }
 
 /// What a joint leaves free.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JointKindWords {
     /// Turning about an axis.
@@ -59,7 +60,7 @@ pub enum JointKindWords {
 }
 
 /// A motor, brake or power take-off: F = F₀ + k (x* − x) + c (v* − ẋ).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MotorWords {
     /// F₀ of a slider, N.
@@ -119,7 +120,7 @@ impl MotorWords {
 }
 
 /// One `[[spring]]`: a spring or, if it goes slack, a mooring line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringWords {
     /// Name: letters, digits, `_` and `-`.
@@ -144,7 +145,7 @@ pub struct SpringWords {
 }
 
 /// One `[[rope]]`: it goes slack and cannot be stretched.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RopeWords {
     /// Name: letters, digits, `_` and `-`.
@@ -161,7 +162,7 @@ pub struct RopeWords {
 }
 
 /// One `[[force]]`: a force and a torque on a free solid, after laws of time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForceWords {
     /// Name: letters, digits, `_` and `-`.
@@ -183,7 +184,7 @@ pub struct ForceWords {
 }
 
 /// Whose axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FrameOf {
     /// The world's.
@@ -193,7 +194,7 @@ pub enum FrameOf {
 }
 
 /// One `[[contact]]`: how two solids touch, or one and all others.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactWords {
     /// The two; or one, for all its pairs.

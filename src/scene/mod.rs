@@ -19,19 +19,26 @@ mod geometry;
 mod guard;
 mod mesh;
 pub mod links;
+pub mod probes;
 pub mod resolve;
+mod schema;
 mod sets;
 pub mod shipped;
 mod size;
 mod solids;
+pub mod statistics;
 pub mod table;
 pub mod values;
 mod verify;
 mod verify_links;
 mod waves;
+mod verify_probes;
 mod wording;
 
-pub use crate::plan::{Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score};
+pub use crate::plan::{
+    Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score, StatisticKind, StatisticWords,
+    Surface,
+};
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWords, PartWords, ShapeWords, SolidWords};
 pub(crate) use build::Stage;
 pub use build::{Built, Still};
@@ -39,15 +46,16 @@ pub use damping::DampingWords;
 pub use document::Source;
 pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Unit};
 pub use flow::PeriodicWords;
-pub use format::{
-    BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, PlaceWords, ProbeEntry, Scene, TimeWords, WaterWords,
-};
+pub use format::{BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, Scene, TimeWords, WaterWords};
 pub(crate) use geometry::world_bounds;
 pub use guard::GuardWords;
 pub use links::{ContactWords, ForceWords, FrameOf, JointKindWords, JointWords, MotorWords, RopeWords, SpringWords};
+pub use probes::{GaugeWords, PatchWords, PointWords, ProbeEntry, RowWords, SectionWords};
 pub use resolve::Resolved;
+pub use schema::schema;
 pub use shipped::{Shipped, shipped};
 pub use size::Size;
+pub use statistics::{RaoWords, StatisticEntry};
 pub use values::{ValueWords, ValuesWords};
 pub use waves::{ComponentsWords, ElevationWords, FocusedWords, RegularWords, SeaWords, SolitaryWords, WaveWords};
 

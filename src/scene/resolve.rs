@@ -9,7 +9,10 @@ use super::{
 use crate::{
     error::Result,
     model::{C0_FACTOR, Model, Scheme},
+    plan::Surface,
+    record::frame::particle_bytes,
     shape::Contact,
+    words::bytes,
 };
 
 /// A value in force and who said it.
@@ -42,6 +45,10 @@ impl fmt::Display for Source {
 
 /// Reasons of the defaults that were filled in, by key.
 pub(super) type Reasons = BTreeMap<String, String>;
+
+/// Disk that frames take at most where nobody says how many there are, B; and how few and how many they are then.
+const DISK: f64 = 200e6;
+const FRAMES: [f64; 2] = [20.0, 100.0];
 
 /// Wall time from one checkpoint to the next where nobody says it, s.
 pub(super) const CHECKPOINT_WALL: f64 = 600.0;
@@ -203,15 +210,37 @@ impl Scene {
         }
     }
 
+    /// How many frames a run has where nobody says it, and why.
+    fn default_frames(&self) -> (f64, String) {
+        let fields = match &self.frames {
+            Some(Frames::On(FramesWords { fields: Some(fields), .. })) => fields.clone(),
+            _ => FIELDS.map(String::from).to_vec(),
+        };
+        let frame = particle_bytes(&fields).0 * self.water_particles();
+        let count = (DISK / frame).floor().clamp(FRAMES[0], FRAMES[1]);
+        match count {
+            _ if count == FRAMES[1] => (count, format!("{count} frames a run")),
+            _ => (
+                count,
+                format!("{count} frames a run of about {} each: more would take over {}", bytes(frame), bytes(DISK)),
+            ),
+        }
+    }
+
     fn fill_records(&mut self, filler: &mut Filler) {
         for (i, name) in self.probe_names().into_iter().enumerate() {
             let probe = &mut self.probe[i];
             filler.fill(format!("probe.{i}.name"), &mut probe.name, name, "after what it looks at");
             filler.fill(format!("probe.{i}.every"), &mut probe.every, self.until / 1000.0, "1000 readings a run");
+            if let Some(gauge) = &mut probe.elevation {
+                let key = format!("probe.{i}.elevation.surface");
+                filler.fill(key, &mut gauge.surface, Surface::Highest, "a jet counts, spray does not");
+            }
         }
+        let (count, why) = self.default_frames();
         let frames = self.frames.get_or_insert(Frames::On(FramesWords::default()));
         if let Frames::On(words) = frames {
-            filler.fill("frames.every", &mut words.every, self.until / 100.0, "100 frames a run");
+            filler.fill("frames.every", &mut words.every, self.until / count, why);
             let fields = FIELDS.map(String::from).to_vec();
             filler.fill("frames.fields", &mut words.fields, fields, "all that there are");
         }
@@ -220,6 +249,9 @@ impl Scene {
         for (i, check) in self.check.iter_mut().enumerate().filter(|(_, check)| check.formula.is_none()) {
             filler.fill(format!("check.{i}.time"), &mut check.time, "t_s".into(), "the name our own tables have");
             filler.fill(format!("check.{i}.delay"), &mut check.delay, 0.0, "the clocks agree");
+        }
+        for (i, name) in self.statistic_names().into_iter().enumerate() {
+            filler.fill(format!("statistic.{i}.name"), &mut self.statistic[i].name, name, "after what it is");
         }
     }
 
@@ -304,7 +336,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 23] = [
+const ORDER: [&str; 24] = [
     "title",
     "dimension",
     "dp",
@@ -328,6 +360,7 @@ const ORDER: [&str; 23] = [
     "frames",
     "checkpoint",
     "check",
+    "statistic",
 ];
 
 /// Fills in what a law that is a table does not say.

@@ -63,6 +63,15 @@ impl Scene {
         }
     }
 
+    /// About how many particles of water there are, solids not taken off; none of water that is no shape.
+    pub(super) fn water_particles(&self) -> f64 {
+        fn count<const D: usize>(scene: &Scene) -> Result<f64> {
+            Ok(scene.counts::<D>(&scene.bodies_of_water()?, &[]).0)
+        }
+        let counted = if self.dimension == 2 { count::<2>(self) } else { count::<3>(self) };
+        counted.unwrap_or(0.0)
+    }
+
     fn sized<const D: usize>(&self) -> Result<Size> {
         let water = self.bodies_of_water::<D>()?;
         let model = self.laws(&water)?;

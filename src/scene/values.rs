@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer},
@@ -10,8 +11,21 @@ use serde::{
 use super::bodies::LawWords;
 
 /// A value in time: a number, a formula in t, or a law's table.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ValueWords(pub LawWords);
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema)]
+pub struct ValueWords(#[schemars(with = "OneWord")] pub LawWords);
+
+/// How a value may be written, for the schema.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[allow(dead_code, reason = "only its shape counts")]
+enum OneWord {
+    /// A number.
+    Number(f64),
+    /// A formula.
+    Text(String),
+    /// A law.
+    Law(LawWords),
+}
 
 impl ValueWords {
     /// The formula `text`, in t (s).
@@ -51,10 +65,11 @@ impl<'de> Deserialize<'de> for ValueWords {
 }
 
 /// One value in time, or one for each component.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
 pub struct ValuesWords(Read);
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
+#[schemars(untagged)]
 enum Read {
     One(ValueWords),
     Many(Vec<ValueWords>),

@@ -1,10 +1,8 @@
 //! Holds the words of a scene against one another, before any file is opened: what cannot be meant is
 //! refused with its place.
 
-use std::collections::{HashMap, HashSet};
-
 use super::{
-    BoxWords, Frames, ProbeEntry, Scene, WaterWords,
+    BoxWords, Frames, Scene, WaterWords,
     flexible::FramesWords,
     solids::{at, shape},
     wording,
@@ -86,7 +84,7 @@ impl Scene {
         self.verify_records()
     }
 
-    fn corners(&self, key: &str, corners: &BoxWords) -> Result<()> {
+    pub(super) fn corners(&self, key: &str, corners: &BoxWords) -> Result<()> {
         self.vector(&format!("{key}.min"), &corners.min)?;
         self.vector(&format!("{key}.max"), &corners.max)?;
         match (0..self.dimension).find(|&i| corners.min[i] >= corners.max[i]) {
@@ -162,66 +160,6 @@ impl Scene {
         }
     }
 
-    fn verify_probes(&self) -> Result<()> {
-        for (i, probe) in self.probe.iter().enumerate() {
-            let key = format!("probe.{i}");
-            self.positive(&format!("{key}.every"), probe.every)?;
-            if kinds(probe).len() != 1 {
-                let what = format!("a probe looks at one thing; this one at {}", said(&kinds(probe)));
-                let help = "one of motion, force, balance, contact, joint, spring, rope, elevation, velocity, pressure, front, \
-                     energy, budget; a [[probe]] section for each";
-                return Err(self.wrong_with(&key, what, help));
-            }
-            let solids = [("motion", &probe.motion), ("force", &probe.force), ("balance", &probe.balance)];
-            let pair = probe.contact.iter().flatten().map(|name| ("contact", name));
-            for (word, name) in solids.into_iter().filter_map(|(word, name)| Some((word, name.as_ref()?))).chain(pair) {
-                self.known_solid(&format!("{key}.{word}"), name)?;
-            }
-            let free = |name: &String| self.solid.iter().any(|solid| solid.name == *name && solid.free.is_some());
-            if let Some(name) = probe.balance.as_ref().filter(|name| !free(name)) {
-                let what = format!("\"{name}\" is not free: what it weighs and carries is not known");
-                let help = format!("the water's load on any solid is  force = \"{name}\"");
-                return Err(self.wrong_with(&format!("{key}.balance"), what, help));
-            }
-            self.known_ties(&key, probe)?;
-            for (word, at) in [("velocity", &probe.velocity), ("pressure", &probe.pressure)] {
-                if let Some(at) = at {
-                    self.vector(&format!("{key}.{word}"), at)?;
-                }
-            }
-            match &probe.elevation {
-                Some(place) if place.y.is_some() != (self.dimension == 3) => {
-                    let help = "write  elevation = { x = 1.16 } in 2-D, elevation = { x = 1.16, y = 0.3 } in 3-D";
-                    return Err(self.wrong_with(
-                        &format!("{key}.elevation"),
-                        "a gauge stands at x in 2-D, at x and y in 3-D",
-                        help,
-                    ));
-                }
-                _ => {}
-            }
-            for (word, given) in [("front", probe.front), ("energy", probe.energy), ("budget", probe.budget)] {
-                if given == Some(false) {
-                    let what = format!("{word} = false watches nothing");
-                    return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
-                }
-            }
-            if let Some(name) = &probe.name {
-                self.good_name(&format!("{key}.name"), name)?;
-            }
-        }
-        let names: Vec<String> = self.probe_names();
-        let mut seen = HashSet::new();
-        match names.iter().position(|name| !seen.insert(name)) {
-            Some(i) => Err(self.wrong_with(
-                &format!("probe.{i}"),
-                format!("two probes are called \"{}\"", names[i]),
-                "give each its own:  name = \"...\"",
-            )),
-            None => Ok(()),
-        }
-    }
-
     pub(super) fn known_solid(&self, key: &str, name: &str) -> Result<()> {
         if self.solid.iter().any(|solid| solid.name == name) {
             return Ok(());
@@ -243,68 +181,23 @@ impl Scene {
     }
 
     fn verify_records(&self) -> Result<()> {
-        if let Some(Frames::On(FramesWords { every, fields })) = &self.frames {
+        if let Some(Frames::On(FramesWords { every, fields, corners })) = &self.frames {
             self.positive("frames.every", *every)?;
             if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
                 let what = format!("no field is called \"{field}\"{}", guess(field, &FIELDS));
                 return Err(self.wrong_with("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
+            }
+            if let Some(corners) = corners {
+                self.corners("frames.box", corners)?;
             }
         }
         if let Some(checkpoint) = &self.checkpoint {
             self.positive("checkpoint.every", checkpoint.every)?;
             self.positive("checkpoint.wall", checkpoint.wall)?;
         }
-        self.verify_checks()
+        self.verify_checks()?;
+        self.verify_statistics()
     }
-
-    /// Stem of each probe's file: its name, or else the solid's name for a motion, `solid_force` for a
-    /// force, and the kind with a number from the second on.
-    pub(super) fn probe_names(&self) -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
-        // How many of each kind before have no name of their own.
-        let mut nameless: HashMap<&str, usize> = HashMap::new();
-        for probe in &self.probe {
-            let kind = kinds(probe).first().copied().unwrap_or("probe");
-            let before = nameless.entry(kind).or_default();
-            let alike = *before;
-            *before += usize::from(probe.name.is_none());
-            let own = match probe {
-                ProbeEntry { name: Some(name), .. } => name.clone(),
-                ProbeEntry { motion: Some(solid), .. } => solid.clone(),
-                ProbeEntry { force: Some(solid), .. } => format!("{solid}_force"),
-                ProbeEntry { balance: Some(solid), .. } => format!("{solid}_balance"),
-                ProbeEntry { contact: Some([a, b]), .. } => format!("{a}_{b}_contact"),
-                _ if probe.joint.is_some() || probe.spring.is_some() || probe.rope.is_some() => {
-                    let ties = [&probe.joint, &probe.spring, &probe.rope];
-                    ties.into_iter().flatten().next().cloned().unwrap_or_default()
-                }
-                _ if alike == 0 => kind.to_string(),
-                _ => format!("{kind}_{}", alike + 1),
-            };
-            names.push(own);
-        }
-        names
-    }
-}
-
-/// The words of a probe that say what it looks at.
-fn kinds(probe: &ProbeEntry) -> Vec<&'static str> {
-    let given = [
-        ("motion", probe.motion.is_some()),
-        ("force", probe.force.is_some()),
-        ("joint", probe.joint.is_some()),
-        ("spring", probe.spring.is_some()),
-        ("rope", probe.rope.is_some()),
-        ("elevation", probe.elevation.is_some()),
-        ("velocity", probe.velocity.is_some()),
-        ("pressure", probe.pressure.is_some()),
-        ("front", probe.front.is_some()),
-        ("energy", probe.energy.is_some()),
-        ("balance", probe.balance.is_some()),
-        ("contact", probe.contact.is_some()),
-        ("budget", probe.budget.is_some()),
-    ];
-    given.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()
 }
 
 /// A list of words for a sentence.

@@ -1,5 +1,6 @@
 //! The words of waves that a paddle makes, and what holds them against one another.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{DrivenWords, Scene, resolve::Filler, verify::said};
@@ -9,7 +10,7 @@ use crate::{
 };
 
 /// A wave by name: exactly one kind.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WaveWords {
     /// One height and one period.
@@ -45,7 +46,7 @@ pub struct WaveWords {
 }
 
 /// A regular wave.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegularWords {
     /// From trough to crest, m.
@@ -61,7 +62,7 @@ pub struct RegularWords {
 }
 
 /// An irregular sea.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeaWords {
     /// Significant height, 4 √m₀, m.
@@ -81,7 +82,7 @@ pub struct SeaWords {
 }
 
 /// A focused group.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FocusedWords {
     /// Height of its crest over the still level, m.
@@ -101,7 +102,7 @@ pub struct FocusedWords {
 }
 
 /// A solitary wave.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolitaryWords {
     /// Of its crest over the still level, m.
@@ -112,7 +113,7 @@ pub struct SolitaryWords {
 }
 
 /// A table of components.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ComponentsWords {
     /// The table, beside the scene: `amplitude_m`; `period_s` or `frequency_hz`; `phase_rad` or `phase_deg`.
@@ -120,7 +121,7 @@ pub struct ComponentsWords {
 }
 
 /// A measured elevation.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElevationWords {
     /// The table, beside the scene.

@@ -7,6 +7,7 @@ mod whole;
 
 use std::collections::HashMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Volume, draught::Facet};
@@ -32,7 +33,7 @@ pub struct Mesh {
 }
 
 /// What of a mesh other bodies touch. The water sees the mesh itself, whatever is chosen. Scene word `mesh.contact`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Contact {
     /// The surface of a solid that is fixed. Of one that moves its hull, where that has at most a hundredth more

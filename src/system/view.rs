@@ -147,6 +147,17 @@ impl<const D: usize> System<D> {
         self.near.skin_around(x, &mut |i| self.weigh(&self.skin.r[i], x, i, visit));
     }
 
+    /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
+    /// of the water on it at the last force pass. They sum up to the solid's load.
+    pub fn forces_on(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
+        let (mass, skin) = (self.particle_mass(), &self.solids[solid].skin);
+        for (&i, sums) in self.near.wet().iter().zip(&self.skin_sums) {
+            if skin.contains(&(i as usize)) && self.images.between(&self.skin.r[i as usize]) {
+                visit(i as usize, sums.dv * mass);
+            }
+        }
+    }
+
     fn weigh(&self, r: &Vector<D>, x: &Vector<D>, i: usize, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         let r2 = (r - x).norm_squared();
         if r2 < self.model.reach().powi(2) {

@@ -94,8 +94,8 @@ fn a_crate_on_a_raft_is_borne_by_it_and_both_by_the_water() -> Result<()> {
                  at = { x = 0.6, bottom = 0.36 }\nfriction = 0.5";
     let mut sim = afloat(60.0, 16.0, words)?;
     let borne = |sim: &Simulation<2>| {
-        let pair = sim.contacts().into_iter().find(|pair| (pair.0, pair.1) == (1, 2));
-        [height(sim, 1), height(sim, 2), pair.map_or(0.0, |pair| pair.2)]
+        let pair = sim.contacts().into_iter().find(|pair| pair.between == [1, 2]);
+        [height(sim, 1), height(sim, 2), pair.map_or(0.0, |pair| pair.pressing)]
     };
     let [raft, load, force] = mean(&mut sim, 4.0, 2.0, borne)?;
     // The level in the closed tank stays where it was filled, as both start at their draft; 24 kg over 0.4 m.

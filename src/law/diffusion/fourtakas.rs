@@ -5,12 +5,13 @@
 //! integrate the equation of state from ρ₀ instead, which is the same at x = 0 but not antisymmetric and costs
 //! a power a pair. This form holds for any direction of g.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::law::{Medium, Num, Pair, Term};
 
 /// Fourtakas' diffusion [@fourtakas2019]: still water stays still.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Fourtakas {
     /// δ, –.

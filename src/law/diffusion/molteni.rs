@@ -3,6 +3,7 @@
 //! With ∇_a W = ∂W r_ab the r² cancels and −2 δ h c₀ (ρ_b − ρ_a) ∂W V_b is left, which needs no η² and
 //! diffuses, as ∂W < 0.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Fourtakas, FourtakasTerm};
@@ -10,7 +11,7 @@ use crate::{law::Medium, space::Vector};
 
 /// Molteni & Colagrossi's diffusion [@molteni2009]; eq. (15) of [@pirkhalili2023] with the sign that diffuses.
 /// It lets a deep tank at rest sink slowly: see [`super::Fourtakas`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Molteni {
     /// δ, –.

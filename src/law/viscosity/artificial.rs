@@ -1,13 +1,14 @@
 //! Artificial viscosity:  dv_a/dt = −Σ m_b Π_ab ∇_a W,  Π_ab = −α c̄ μ_ab/ρ̄_ab for approaching particles,
 //! else 0;  μ_ab = h v_ab·r_ab/(r² + η²).
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::law::{Medium, Num, Pair, Term};
 
 /// Monaghan's artificial viscosity [@monaghan1992]; eqs. (4), (5) of [@pirkhalili2023]. c̄ is c₀: both
 /// particles' speeds of sound differ from it by less than 3 % as density varies below 1 %.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Artificial {
     /// α, –.

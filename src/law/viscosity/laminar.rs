@@ -1,11 +1,12 @@
 //! Laminar viscosity:  dv_a/dt = Σ m_b 4 ν₀ r_ab·∇_a W/((ρ_a + ρ_b)(r² + η²)) v_ab.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::law::{Num, Pair, Term, Units};
 
 /// Laminar viscosity [@lo2002]; eqs. (6), (7) of [@pirkhalili2023].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Laminar {
     /// Kinematic viscosity ν₀, m²/s.

@@ -1,6 +1,7 @@
 //! Sub-particle-scale stress:  dv_a/dt += Σ m_b (τ_a/ρ_a² + τ_b/ρ_b²)·∇_a W,
 //! τ_ij = ρ[ν_t(2 S_ij − ⅔ S_kk δ_ij) − ⅔ C_I Δ² |S|² δ_ij],  ν_t = (C_s Δ)² |S|,  |S| = √(2 S_ij S_ij),  Δ = dp/√D.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Laminar, LaminarTerm};
@@ -8,7 +9,7 @@ use crate::law::{Extra, Medium, Num, Pair, Term, Units};
 
 /// Laminar viscosity with a Smagorinsky stress [@dalrymple2006]; eqs. (6)–(8) of [@pirkhalili2023]. The
 /// paper's k is the trace S_kk: only so do its units agree with 2 S_ij beside it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sps {
     /// Kinematic viscosity ν₀, m²/s.

@@ -7,13 +7,14 @@
 //!
 //! which continues a shear that is linear from the face on exactly. Free slip: no viscous force between water and solid.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Fit;
 use crate::space::Vector;
 
 /// How the water is held along solids. Scene word `model.slip`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Slip {
     /// The water sticks to the boundary particles, half a dp and more behind the face.

@@ -59,7 +59,7 @@ where
         let targets: Vec<_> = self.solids.iter().map(driven).collect();
         let idle = Load::zero();
         self.engine.step(dt, &vec![idle; targets.len()], &targets).unwrap();
-        self.rig.learn(&*self.engine, &before, &self.now(), dt);
+        self.rig.learn(&*self.engine, [&before, &self.now()], dt, None);
     }
 
     pub(in crate::solid) fn run(&mut self, dt: f64, until: f64) {

@@ -6,13 +6,14 @@
 //! c = √(g(d + H)). Boussinesq: κ² = 3H/4d³ [@goring1978]; Rayleigh: κ² = 3H/4d²(d + H), whose wave keeps its height
 //! better [@guizien2002].
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// −θ₀: the motion starts where the surface at the piston is H sech² 5, 2e-4 of the height.
 const START: f64 = 5.0;
 
 /// Whose wave it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Theory {
     /// Boussinesq's.

@@ -1,0 +1,107 @@
+//! `--log json`: what happens to a run, an object a line on standard error, for programs.
+
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use pontoon::{
+    error::Error,
+    record::manifest::Status,
+    run::{Outcome, Progress, Start, Watch},
+    simulation::Rescued,
+};
+use serde_json::{Value, json};
+
+use super::{complain, progress::Follower};
+
+/// From one line of progress to the next.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// What Ctrl-C is answered with.
+pub const STOPPING: &str = "{\"event\":\"stopping\"}\n";
+
+/// Writes what happens to a run.
+pub struct Journal {
+    stop: Arc<AtomicBool>,
+    folder: Option<PathBuf>,
+    /// When it began, and at which simulated time (s).
+    begun: Option<(Instant, f64)>,
+    next: Option<Instant>,
+}
+
+impl Journal {
+    /// Asks the run to stop once `stop` is raised.
+    pub fn new(stop: Arc<AtomicBool>) -> Self {
+        Self { stop, folder: None, begun: None, next: None }
+    }
+}
+
+impl Follower for Journal {
+    fn close(self: Box<Self>) -> Option<PathBuf> {
+        self.folder
+    }
+}
+
+impl Watch for Journal {
+    fn start(&mut self, start: &Start) {
+        let manifest = start.manifest;
+        self.folder = Some(start.folder.to_owned());
+        tell(&json!({
+            "event": "start", "folder": start.folder, "title": manifest.title, "water": manifest.particles.fluid,
+            "boundary": manifest.particles.boundary, "threads": manifest.threads, "until_s": manifest.until_s,
+        }));
+        manifest.warnings.iter().for_each(|text| warn(text));
+    }
+
+    fn rescued(&mut self, how: &Rescued) {
+        warn(&how.to_string());
+    }
+
+    fn step(&mut self, now: &Progress) -> bool {
+        let clock = Instant::now();
+        let (begun, first) = *self.begun.get_or_insert((clock, now.time));
+        if self.next.is_none_or(|next| clock >= next) || now.time >= now.until {
+            self.next = Some(clock + PAUSE);
+            let (wall, done) = (begun.elapsed().as_secs_f64(), now.time - first);
+            let left = (done > 0.0).then(|| wall * (now.until - now.time) / done);
+            tell(&json!({
+                "event": "progress", "t_s": now.time, "until_s": now.until, "dt_s": now.dt, "steps": now.steps,
+                "wall_s": now.wall, "left_s": left, "particle_steps_per_second": now.rate,
+            }));
+        }
+        !self.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// A warning.
+pub fn warn(text: &str) {
+    tell(&json!({ "event": "warning", "text": text }));
+}
+
+/// How a run ended.
+pub fn ended(outcome: &Outcome) {
+    let manifest = &outcome.manifest;
+    let status = match manifest.status {
+        Status::Finished => "finished",
+        Status::Interrupted => "interrupted",
+        Status::Running | Status::Failed => "failed",
+    };
+    tell(&json!({
+        "event": "end", "status": status, "folder": outcome.folder, "t_s": manifest.simulated_s, "steps": manifest.steps,
+        "wall_s": manifest.wall_s, "missed_checks": outcome.failed_checks(),
+    }));
+}
+
+/// Why there is no end.
+pub fn failed(error: &Error) {
+    tell(&json!({ "event": "error", "text": error.to_string() }));
+}
+
+fn tell(event: &Value) {
+    complain(&format!("{event}\n"));
+}

@@ -1,0 +1,136 @@
+//! `pontoon run` and `pontoon resume`: who follows the run, and what is said at its end.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use pontoon::{
+    error::{Error, Result},
+    record::manifest::Status,
+    run::{self, Options, Outcome},
+};
+
+use super::{
+    SceneArgs, code, complain,
+    journal::{self, Journal},
+    page,
+    progress::{Follow, Follower},
+    report, say, shelf, stopper, stopper_saying,
+};
+
+/// Which scene is run, and how.
+#[derive(Args)]
+pub struct RunArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Folder for the results, new or empty [default: runs/<scene>, numbered if taken]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Threads [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    #[command(flatten)]
+    said: SaidArgs,
+}
+
+/// Which run is gone on with, and how.
+#[derive(Args)]
+pub struct ResumeArgs {
+    /// Folder of the run
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Threads [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    #[command(flatten)]
+    said: SaidArgs,
+}
+
+/// What is said of a run.
+#[derive(Args, Clone, Copy)]
+struct SaidArgs {
+    /// Leave out the page at the end, report.html
+    #[arg(long)]
+    no_report: bool,
+    /// Say nothing but errors
+    #[arg(long, short)]
+    quiet: bool,
+    /// How progress, warnings and errors are said on standard error
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    log: Log,
+}
+
+/// How progress is said.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Log {
+    /// For people
+    Text,
+    /// An object a line, for programs
+    Json,
+}
+
+/// `pontoon run`.
+///
+/// # Errors
+/// As [`run::run`].
+pub fn run(args: &RunArgs) -> Result<u8> {
+    let started = |args: &RunArgs| {
+        let found = shelf::find(&args.scene.scene)?;
+        let options = Options { out: args.out.clone(), sets: args.scene.sets(), threads: args.threads };
+        let mut follow = follower(&args.said)?;
+        let outcome = run::run(found.path(), &options, &mut *follow);
+        end(outcome, follow, &args.said)
+    };
+    told(started(args), &args.said)
+}
+
+/// `pontoon resume`.
+///
+/// # Errors
+/// As [`run::resume`].
+pub fn resume(args: &ResumeArgs) -> Result<u8> {
+    let mut follow = follower(&args.said)?;
+    let outcome = run::resume(&args.folder, args.threads, &mut *follow);
+    told(end(outcome, follow, &args.said), &args.said)
+}
+
+/// What comes of a run, its error said as the user wants it.
+fn told(outcome: Result<u8>, said: &SaidArgs) -> Result<u8> {
+    match outcome {
+        Err(error) if said.log == Log::Json => {
+            journal::failed(&error);
+            Ok(code(&error))
+        }
+        outcome => outcome,
+    }
+}
+
+/// Who follows a run, as the user wants it.
+fn follower(said: &SaidArgs) -> Result<Box<dyn Follower>> {
+    Ok(match said.log {
+        Log::Text => Box::new(Follow::new(said.quiet, stopper()?)),
+        Log::Json => Box::new(Journal::new(stopper_saying(journal::STOPPING)?)),
+    })
+}
+
+/// Closes the progress, prints the table, writes the page of the run if it is wanted, chooses the exit code.
+fn end(outcome: Result<Outcome>, follow: Box<dyn Follower>, said: &SaidArgs) -> Result<u8> {
+    let (folder, json) = (follow.close(), said.log == Log::Json);
+    match &outcome {
+        Ok(outcome) if json => journal::ended(outcome),
+        Ok(outcome) if !said.quiet => say(&report::ended(outcome)),
+        _ => {}
+    }
+    if let Some(folder) = folder.filter(|_| !said.no_report) {
+        let told = |why: &Error| {
+            let text = format!("the page of the run was not written: {why}");
+            if json { journal::warn(&text) } else { complain(&format!("warning: {text}\n")) }
+        };
+        page::at_end(&folder, said.quiet || json, told);
+    }
+    let outcome = outcome?;
+    Ok(match outcome.manifest.status {
+        Status::Interrupted => 130,
+        _ if outcome.failed_checks() => 3,
+        _ => 0,
+    })
+}

@@ -1,0 +1,79 @@
+//! `pontoon stats`: what is said of a run's series, in tables or as JSON.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pontoon::{
+    error::{Error, Kind, Result},
+    preflight::three,
+    run::{Asked, Statistic, statistics},
+};
+
+use super::{complain, report::table};
+
+/// Which run, and which part of it.
+#[derive(Args)]
+pub struct StatsArgs {
+    /// Folder of the run
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Only this probe, or this series, as in gauge.eta_m
+    #[arg(long, value_name = "NAME[.COLUMN]")]
+    series: Option<String>,
+    /// First time that counts, s
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Last time that counts, s
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Print everything as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// The figures of every series, a column for each.
+const FIGURES: [&str; 12] =
+    ["mean", "std", "min", "max", "waves", "H_mean", "H_third", "H_max", "T_z", "H_m0", "T_p", "T_m02"];
+
+/// The tables, or the JSON.
+pub fn stats(args: &StatsArgs) -> Result<String> {
+    let asked = Asked { series: args.series.clone(), from: args.from, until: args.until };
+    let told = statistics(&args.folder, &asked)?;
+    told.remarks.iter().for_each(|remark| complain(&format!("warning: {remark}\n")));
+    if args.json {
+        let text = serde_json::to_string_pretty(&told.rows).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
+        return Ok(text + "\n");
+    }
+    let (plain, declared): (Vec<_>, Vec<_>) = told.rows.iter().partition(|row| row.name.is_empty());
+    let mut text = table(&every(&plain));
+    if !declared.is_empty() {
+        text += &format!("\n{}", table(&named(&declared)));
+    }
+    Ok(text)
+}
+
+/// A row for each series; what none of them has is left out.
+fn every(rows: &[&Statistic]) -> Vec<Vec<String>> {
+    let figures: Vec<&str> = FIGURES.into_iter().filter(|f| rows.iter().any(|row| row.quantity == *f)).collect();
+    let head = ["series", "unit"].into_iter().chain(figures.iter().copied());
+    let mut lines = vec![head.map(String::from).collect::<Vec<_>>()];
+    for of in rows.chunk_by(|a, b| a.series == b.series) {
+        let value = |f: &&str| of.iter().find(|row| row.quantity == *f).map_or(String::new(), |row| three(row.value));
+        let mut line = vec![of[0].series.clone(), of[0].unit.clone()];
+        line.extend(figures.iter().map(value));
+        lines.push(line);
+    }
+    lines
+}
+
+/// A row for each figure that the scene asks for.
+fn named(rows: &[&Statistic]) -> Vec<Vec<String>> {
+    let mut lines =
+        vec![["statistic", "series", "figure", "value", "unit", "from (s)", "until (s)"].map(String::from).to_vec()];
+    lines.extend(rows.iter().map(|row| {
+        let span = [row.from_s, row.until_s].map(|t| format!("{t:.3}"));
+        let [from, until] = span;
+        vec![row.name.clone(), row.series.clone(), row.quantity.into(), three(row.value), row.unit.clone(), from, until]
+    }));
+    lines
+}

@@ -1,0 +1,229 @@
+//! `pontoon watch`: how far a run is, the last readings of its series and their curves, in the terminal.
+
+use std::{
+    io::{IsTerminal, Write, stdout},
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+use clap::Args;
+use crossterm::{
+    cursor::{Hide, MoveTo, Show},
+    event::{Event, KeyCode, KeyEvent, KeyModifiers, poll, read},
+    execute,
+    terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode, size},
+};
+use pontoon::{
+    error::{Error, Kind, Result, nearest},
+    preflight::three,
+    record::{Manifest, Readings, manifest::Status},
+};
+use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
+
+use super::{
+    report::{duration, table},
+    say,
+};
+
+/// Which run, and which of its series.
+#[derive(Args)]
+pub struct WatchArgs {
+    /// Folder of the run
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Series to plot, as in buoy.heave_m; may be given several times [default: the first one or two]
+    #[arg(long, value_name = "NAME.COLUMN")]
+    series: Vec<String>,
+    /// Print once and end
+    #[arg(long)]
+    once: bool,
+    /// From one look to the next, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
+    every: f64,
+}
+
+/// Columns that are plotted where nobody says which, the most telling first.
+const TELLING: [&str; 8] = ["heave_m", "eta", "fx_N", "p_", "front_m", "total_J", "angle_deg", "tension_N"];
+
+/// Lines that a plot, or the table, has at least.
+const LEAST_LINES: usize = 6;
+
+/// Watches until the run ends or somebody leaves with q or Ctrl-C; prints once where nobody sits.
+pub fn watch(args: &WatchArgs) -> Result<u8> {
+    if !(args.every > 0.0 && args.every.is_finite()) {
+        return Err(Error::new(Kind::Usage, format!("--every {} is no time", args.every)).help("give seconds"));
+    }
+    let seen = Seen::read(&args.folder)?;
+    seen.check(&args.series)?;
+    if args.once || !stdout().is_terminal() {
+        say(&seen.page(&args.series, (80, 24)));
+        return Ok(0);
+    }
+    let screen = Screen::open()?;
+    let left = follow(args);
+    drop(screen);
+    left?;
+    // What was seen last stays to be read.
+    say(&Seen::read(&args.folder)?.page(&args.series, size().unwrap_or((80, 24))));
+    Ok(0)
+}
+
+fn follow(args: &WatchArgs) -> Result<()> {
+    loop {
+        let seen = Seen::read(&args.folder)?;
+        let text = seen.page(&args.series, size().unwrap_or((80, 24))) + "q leaves\n";
+        let _ = execute!(stdout(), MoveTo(0, 0), Clear(ClearType::All));
+        // A raw terminal does not go back to the first column by itself.
+        let _ = stdout().write_all(text.replace('\n', "\r\n").as_bytes());
+        let _ = stdout().flush();
+        if seen.manifest.status != Status::Running || left(Duration::from_secs_f64(args.every)) {
+            return Ok(());
+        }
+    }
+}
+
+/// Waits so long; whether somebody leaves meanwhile.
+fn left(wait: Duration) -> bool {
+    if !poll(wait).unwrap_or(true) {
+        return false;
+    }
+    let ctrl_c = |key: &KeyEvent| key.code == KeyCode::Char('c') && key.modifiers.contains(KeyModifiers::CONTROL);
+    match read() {
+        Ok(Event::Key(key)) => ctrl_c(&key) || matches!(key.code, KeyCode::Char('q') | KeyCode::Esc),
+        Ok(_) => false,
+        Err(_) => true,
+    }
+}
+
+/// The terminal in its other screen; as it was when this is dropped.
+struct Screen;
+
+impl Screen {
+    fn open() -> Result<Self> {
+        enable_raw_mode().map_err(|why| Error::new(Kind::Usage, format!("the terminal cannot be watched: {why}")))?;
+        let _ = execute!(stdout(), EnterAlternateScreen, Hide);
+        Ok(Self)
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        let _ = execute!(stdout(), Show, LeaveAlternateScreen);
+        let _ = disable_raw_mode();
+    }
+}
+
+/// A run as it stands.
+struct Seen {
+    manifest: Manifest,
+    tables: Vec<(String, Readings)>,
+}
+
+impl Seen {
+    fn read(folder: &Path) -> Result<Self> {
+        let manifest = Manifest::read(folder)?;
+        let files = manifest.files.iter().filter_map(|file| file.strip_prefix("series/")?.strip_suffix(".csv"));
+        let read = |name: &str| {
+            let path = folder.join("series").join(format!("{name}.csv"));
+            Some((name.to_string(), Readings::read(&path).ok()?))
+        };
+        Ok(Self { tables: files.filter_map(read).collect(), manifest })
+    }
+
+    /// All series.
+    fn names(&self) -> impl Iterator<Item = String> {
+        self.tables.iter().flat_map(|(name, of)| of.columns.iter().map(move |column| format!("{name}.{column}")))
+    }
+
+    /// Refuses series that are none.
+    fn check(&self, series: &[String]) -> Result<()> {
+        let names: Vec<String> = self.names().collect();
+        match series.iter().find(|series| !names.contains(series)) {
+            Some(series) => {
+                let help = match nearest(series, names.iter().map(String::as_str)) {
+                    Some(near) => format!("did you mean {near:?}?"),
+                    None => format!("the series are: {}", names.join(", ")),
+                };
+                Err(Error::new(Kind::Usage, format!("the run has no series {series:?}")).help(help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The times and numbers of a series.
+    fn curve(&self, series: &str) -> Option<(&[f64], &[f64])> {
+        let (name, column) = series.split_once('.')?;
+        let (_, of) = self.tables.iter().find(|(known, _)| known == name)?;
+        Some((&of.t, &of.x[of.columns.iter().position(|known| known == column)?]))
+    }
+
+    /// What a terminal of so many columns and lines shows.
+    fn page(&self, series: &[String], (wide, high): (u16, u16)) -> String {
+        let mut text = format!("{}\n{}\n", self.manifest.title, self.status());
+        let telling = TELLING.iter().filter_map(|word| self.names().find(|name| name.contains(word)));
+        let mut plots: Vec<String> = match series.is_empty() {
+            true => telling.chain(self.names().next()).take(2).collect(),
+            false => series.to_vec(),
+        };
+        plots.dedup();
+        let room = usize::from(high.max(24)) - 4;
+        let lines = (room / 2).checked_div(plots.len()).unwrap_or(0).max(LEAST_LINES);
+        let rows = room.saturating_sub(plots.len() * lines).max(LEAST_LINES);
+        text += &self.latest(rows);
+        for name in &plots {
+            text += &self.plot(name, wide, lines);
+        }
+        text
+    }
+
+    fn status(&self) -> String {
+        let m = &self.manifest;
+        let how = match m.status {
+            Status::Running => "running, or killed",
+            Status::Finished => "finished",
+            Status::Interrupted => "interrupted",
+            Status::Failed => "failed",
+        };
+        let t = self.tables.iter().filter_map(|(_, of)| of.t.last()).copied().fold(m.simulated_s, f64::max);
+        let warnings = match m.warnings.len() {
+            0 => String::new(),
+            1 => ", 1 warning".into(),
+            n => format!(", {n} warnings"),
+        };
+        format!("{how}: t = {t:.3} of {} s, {} of wall time at the last frame{warnings}", m.until_s, duration(m.wall_s))
+    }
+
+    /// The last reading of each series, its least and its largest.
+    fn latest(&self, most: usize) -> String {
+        let mut rows = vec![["series", "t (s)", "now", "least", "largest"].map(String::from).to_vec()];
+        for name in self.names() {
+            let Some((t, x)) = self.curve(&name) else { continue };
+            let known = || x.iter().copied().filter(|x| x.is_finite());
+            let Some((t, x)) = t.iter().zip(x).rev().find(|(_, x)| x.is_finite()) else { continue };
+            let ends = [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)];
+            rows.push(vec![name, format!("{t:.3}"), three(*x), three(ends[0]), three(ends[1])]);
+        }
+        let left_out = rows.len().saturating_sub(most);
+        rows.truncate(most);
+        let more = if left_out > 0 { format!("  and {left_out} more series\n") } else { String::new() };
+        table(&rows) + &more
+    }
+
+    fn plot(&self, name: &str, wide: u16, lines: usize) -> String {
+        let Some((t, x)) = self.curve(name) else { return String::new() };
+        let points: Vec<(f32, f32)> =
+            t.iter().zip(x).filter(|(_, x)| x.is_finite()).map(|(t, x)| (*t as f32, *x as f32)).collect();
+        let (Some(first), Some(last)) = (points.first(), points.last().filter(|_| points.len() > 1)) else {
+            return format!("{name}: nothing was measured yet\n");
+        };
+        // A sign is two dots wide and four high.
+        let (wide, high) = (2 * u32::from(wide.clamp(60, 200) - 12), 4 * (lines - 3) as u32);
+        let mut chart = Chart::new(wide, high, first.0, last.0);
+        let shape = Shape::Lines(&points);
+        let digits = || LabelFormat::Custom(Box::new(|x| three(f64::from(x))));
+        let chart = chart.x_label_format(digits()).y_label_format(digits()).lineplot(&shape);
+        chart.axis();
+        chart.figures();
+        format!("{name}\n{chart}")
+    }
+}

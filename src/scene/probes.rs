@@ -1,0 +1,326 @@
+//! The words of `[[probe]]`: what is watched, where, and how often.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
+};
+
+use super::{BoxWords, Numbers, ProbeKind, ProbeWords};
+use crate::plan::Surface;
+
+/// One `[[probe]]`: exactly one of the words that say what it looks at.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ProbeEntry {
+    /// Stem of the file it writes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Simulated time between readings, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub every: Option<f64>,
+    /// Whether a reading is the mean since the one before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub average: Option<bool>,
+    /// Motion of the solid of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+    /// Force and torque on the solid of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<String>,
+    /// What the joint of this name carries, and how it moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint: Option<String>,
+    /// Length and tension of the spring of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spring: Option<String>,
+    /// Length and tension of the rope of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rope: Option<String>,
+    /// Surface elevation at a place, or at a row of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elevation: Option<GaugeWords>,
+    /// Velocity at a point or a row of points, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<PointWords>,
+    /// Pressure at a point or a row of points, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<PointWords>,
+    /// Flow through a section.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<SectionWords>,
+    /// How far water runs up the solid of this name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub runup: Option<String>,
+    /// Force and pressure on a part of a solid's face.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub patch: Option<PatchWords>,
+    /// The leading edge of the water along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub front: Option<bool>,
+    /// Energies of water and bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<bool>,
+    /// All loads on the free solid of this name, by kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub balance: Option<String>,
+    /// How the two solids of these names press on each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<[String; 2]>,
+    /// Where energy came from and went.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub budget: Option<bool>,
+}
+
+/// Where elevation gauges stand: x in 2-D, x and y in 3-D, or a row of them; and which surface they tell.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GaugeWords {
+    /// m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// m; 3-D only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Where a row begins, m: a number in 2-D, two in 3-D.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<Numbers>,
+    /// Where it ends, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to: Option<Numbers>,
+    /// How many gauges it has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// How far apart they are, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+    /// Which surface, where there are several above one another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<Surface>,
+}
+
+/// A point, or a row of them.
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
+#[schemars(untagged)]
+pub enum PointWords {
+    /// One, m.
+    At(Vec<f64>),
+    /// Several.
+    Row(RowWords),
+}
+
+/// Points in a row, evenly spaced: `count` of them, or as many as there are `spacing` apart.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RowWords {
+    /// The first, m.
+    pub from: Vec<f64>,
+    /// The last, m; with `spacing` none lies beyond.
+    pub to: Vec<f64>,
+    /// How many.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// How far apart, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+}
+
+/// A section that water flows through: a segment in 2-D, a rectangle upright to an axis in 3-D.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SectionWords {
+    /// One end or corner, m.
+    pub from: Vec<f64>,
+    /// The opposite one, m.
+    pub to: Vec<f64>,
+}
+
+/// A part of a solid's face.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PatchWords {
+    /// The solid.
+    pub solid: String,
+    /// The box in which that part lies at the start.
+    #[serde(rename = "box")]
+    pub corners: BoxWords,
+}
+
+impl Serialize for PointWords {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::At(at) => at.serialize(serializer),
+            Self::Row(row) => row.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for PointWords {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct Words;
+        impl<'de> Visitor<'de> for Words {
+            type Value = PointWords;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "a point, or a row of points as in {{ from = [..], to = [..], count = 5 }}")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PointWords, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(PointWords::At)
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PointWords, A::Error> {
+                RowWords::deserialize(MapAccessDeserializer::new(map)).map(PointWords::Row)
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}
+
+impl GaugeWords {
+    /// The row that these words mean; none if they name a single place.
+    pub(super) fn row(&self) -> Option<RowWords> {
+        let list = |numbers: &Option<Numbers>| match numbers {
+            Some(Numbers::One(x)) => vec![*x],
+            Some(Numbers::List(list)) => list.clone(),
+            _ => Vec::new(),
+        };
+        let said = self.from.is_some() || self.to.is_some() || self.count.is_some() || self.spacing.is_some();
+        said.then(|| RowWords { from: list(&self.from), to: list(&self.to), count: self.count, spacing: self.spacing })
+    }
+
+    fn places(&self) -> Vec<Vec<f64>> {
+        match self.row() {
+            Some(row) => row.places(),
+            None => vec![[self.x, self.y].into_iter().flatten().collect()],
+        }
+    }
+}
+
+impl PointWords {
+    fn places(&self) -> Vec<Vec<f64>> {
+        match self {
+            Self::At(at) => vec![at.clone()],
+            Self::Row(row) => row.places(),
+        }
+    }
+}
+
+impl RowWords {
+    /// How far the last is from the first, m.
+    pub(super) fn length(&self) -> f64 {
+        self.from.iter().zip(&self.to).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// How many there are.
+    pub(super) fn number(&self) -> usize {
+        match (self.count, self.spacing) {
+            (Some(count), _) => count,
+            // A length that should be a multiple may lie a few last bits below it.
+            (None, Some(spacing)) => (self.length() / spacing * (1.0 + 1e-12)) as usize + 1,
+            (None, None) => 1,
+        }
+    }
+
+    /// The points, m.
+    fn places(&self) -> Vec<Vec<f64>> {
+        let step = match (self.count, self.spacing) {
+            (Some(count), _) => 1.0 / count.saturating_sub(1).max(1) as f64,
+            (None, spacing) => spacing.unwrap_or_default() / self.length(),
+        };
+        let at = |i: usize| self.from.iter().zip(&self.to).map(|(a, b)| a + (b - a) * (i as f64 * step)).collect();
+        (0..self.number()).map(at).collect()
+    }
+}
+
+impl ProbeEntry {
+    /// The motion of the solid of this name.
+    pub fn motion(solid: impl Into<String>) -> Self {
+        Self { motion: Some(solid.into()), ..Self::default() }
+    }
+
+    /// Force and torque on the solid of this name.
+    pub fn force(solid: impl Into<String>) -> Self {
+        Self { force: Some(solid.into()), ..Self::default() }
+    }
+
+    /// What the joint of this name carries, and how it moves.
+    pub fn joint(joint: impl Into<String>) -> Self {
+        Self { joint: Some(joint.into()), ..Self::default() }
+    }
+
+    /// Length and tension of the spring of this name.
+    pub fn spring(spring: impl Into<String>) -> Self {
+        Self { spring: Some(spring.into()), ..Self::default() }
+    }
+
+    /// The probe of a scene with its defaults filled in, for the plan of a run that ends at `until` (s).
+    pub(super) fn planned(&self, until: f64) -> ProbeWords {
+        ProbeWords {
+            name: self.name.clone().unwrap_or_default(),
+            what: self.kind(),
+            every: self.every.unwrap_or(until),
+            average: self.average.unwrap_or_default(),
+        }
+    }
+
+    fn kind(&self) -> ProbeKind {
+        match self.clone() {
+            Self { motion: Some(solid), .. } => ProbeKind::Motion { solid },
+            Self { force: Some(solid), .. } => ProbeKind::Force { solid },
+            Self { joint: Some(joint), .. } => ProbeKind::Joint { joint },
+            Self { spring: Some(spring), .. } => ProbeKind::Spring { spring },
+            Self { rope: Some(rope), .. } => ProbeKind::Rope { rope },
+            Self { elevation: Some(gauge), .. } => {
+                ProbeKind::Elevation { places: gauge.places(), surface: gauge.surface.unwrap_or_default() }
+            }
+            Self { velocity: Some(at), .. } => ProbeKind::Velocity { places: at.places() },
+            Self { pressure: Some(at), .. } => ProbeKind::Pressure { places: at.places() },
+            Self { flow: Some(SectionWords { from, to }), .. } => ProbeKind::Flow { from, to },
+            Self { runup: Some(solid), .. } => ProbeKind::Runup { solid },
+            Self { patch: Some(PatchWords { solid, corners }), .. } => {
+                ProbeKind::Patch { solid, min: corners.min, max: corners.max }
+            }
+            Self { front: Some(_), .. } => ProbeKind::Front,
+            Self { balance: Some(solid), .. } => ProbeKind::Balance { solid },
+            Self { contact: Some(between), .. } => ProbeKind::Contact { between },
+            Self { budget: Some(_), .. } => ProbeKind::Budget,
+            _ => ProbeKind::Energy,
+        }
+    }
+
+    /// The words that say what it looks at.
+    pub(super) fn kinds(&self) -> Vec<&'static str> {
+        let given = [
+            ("motion", self.motion.is_some()),
+            ("force", self.force.is_some()),
+            ("joint", self.joint.is_some()),
+            ("spring", self.spring.is_some()),
+            ("rope", self.rope.is_some()),
+            ("elevation", self.elevation.is_some()),
+            ("velocity", self.velocity.is_some()),
+            ("pressure", self.pressure.is_some()),
+            ("flow", self.flow.is_some()),
+            ("runup", self.runup.is_some()),
+            ("patch", self.patch.is_some()),
+            ("front", self.front.is_some()),
+            ("energy", self.energy.is_some()),
+            ("balance", self.balance.is_some()),
+            ("contact", self.contact.is_some()),
+            ("budget", self.budget.is_some()),
+        ];
+        given.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_goes_from_its_first_place_to_its_last_and_never_beyond() {
+        let row = |count, spacing| RowWords { from: vec![0.0], to: vec![1.0], count, spacing };
+        assert_eq!(row(Some(3), None).places(), [[0.0], [0.5], [1.0]]);
+        assert_eq!(row(None, Some(0.1)).places().len(), 11, "a multiple that round-off would miss");
+        assert_eq!(row(None, Some(0.4)).places(), [[0.0], [0.4], [0.8]]);
+    }
+}

@@ -1,0 +1,73 @@
+//! The words of a scene as a JSON schema, for editors: made from the types that read them, so that it cannot drift.
+//!
+//! It is coarser than the program where words depend on one another (exactly one of `fixed`, `driven`, `free`; as many
+//! numbers as dimensions) and where a word has a second name (`revolute` for `hinge`).
+
+use schemars::generate::SchemaSettings;
+use serde_json::{Map, Value, json};
+
+use super::Scene;
+
+/// Types whose choices may be written as bare words, as `viscosity = "artificial"`.
+const CHOICES: [&str; 8] = ["Kernel", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "Sweeping", "Scheme"];
+
+/// The JSON schema (draft 2020-12) of a scene.
+pub fn schema() -> Value {
+    let settings = SchemaSettings::draft2020_12().for_deserialize();
+    let mut schema = settings.into_generator().into_root_schema_for::<Scene>().to_value();
+    schema["title"] = json!("A scene of pontoon");
+    required_only(&mut schema);
+    if let Some(types) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
+        types
+            .iter_mut()
+            .filter(|(name, _)| CHOICES.contains(&name.as_str()))
+            .for_each(|(_, choice)| bare_words(choice));
+    }
+    schema
+}
+
+/// Takes out that a key may be null: TOML has none.
+fn required_only(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            if let Some(Value::Array(types)) = map.get_mut("type") {
+                types.retain(|name| name != "null");
+                if let [one] = &types[..] {
+                    map["type"] = one.clone();
+                }
+            }
+            if let Some(Value::Array(kinds)) = map.get_mut("anyOf") {
+                kinds.retain(|kind| *kind != json!({ "type": "null" }));
+            }
+            if map.get("default") == Some(&Value::Null) {
+                map.remove("default");
+            }
+            map.values_mut().for_each(required_only);
+        }
+        Value::Array(items) => items.iter_mut().for_each(required_only),
+        _ => {}
+    }
+}
+
+/// Adds to a choice of several that each of them may be written as a bare word, or as a table of nothing.
+fn bare_words(choice: &mut Value) {
+    let mut tables = Map::new();
+    let kinds = choice.get("oneOf").and_then(Value::as_array).into_iter().flatten().chain([&*choice]);
+    for kind in kinds {
+        let bare =
+            kind.get("const").into_iter().chain(kind.get("enum").and_then(Value::as_array).into_iter().flatten());
+        tables.extend(bare.filter_map(Value::as_str).map(|word| (word.to_string(), json!({ "type": "object" }))));
+        let own = kind.get("properties").and_then(Value::as_object).into_iter().flatten();
+        tables.extend(own.map(|(word, words)| (word.clone(), words.clone())));
+    }
+    let words: Vec<&String> = tables.keys().collect();
+    *choice = json!({
+        "description": choice["description"],
+        "anyOf": [
+            { "enum": words },
+            {
+                "type": "object", "properties": tables, "additionalProperties": false, "minProperties": 1, "maxProperties": 1,
+            },
+        ],
+    });
+}

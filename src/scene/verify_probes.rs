@@ -1,0 +1,182 @@
+//! Holds the words of `[[probe]]` against one another and against the rest of the scene, and names them.
+
+use std::collections::{HashMap, HashSet};
+
+use super::{GaugeWords, PatchWords, PointWords, ProbeEntry, RowWords, Scene, SectionWords, verify::said};
+use crate::error::Result;
+
+/// Most places of a row.
+const MOST_PLACES: usize = 1000;
+
+/// The least way (m) between two of them: their columns are called after places to a micrometre.
+const LEAST_SPACING: f64 = 1e-6;
+
+impl Scene {
+    pub(super) fn verify_probes(&self) -> Result<()> {
+        for (i, probe) in self.probe.iter().enumerate() {
+            let key = format!("probe.{i}");
+            self.positive(&format!("{key}.every"), probe.every)?;
+            if probe.kinds().len() != 1 {
+                let what = format!("a probe looks at one thing; this one at {}", said(&probe.kinds()));
+                let help = "one of motion, force, balance, contact, joint, spring, rope, elevation, velocity, pressure, flow, \
+                     runup, patch, front, energy, budget; a [[probe]] section for each";
+                return Err(self.wrong_with(&key, what, help));
+            }
+            self.known_solids(&key, probe)?;
+            self.known_ties(&key, probe)?;
+            self.verify_places(&key, probe)?;
+            for (word, given) in [("front", probe.front), ("energy", probe.energy), ("budget", probe.budget)] {
+                if given == Some(false) {
+                    let what = format!("{word} = false watches nothing");
+                    return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
+                }
+            }
+            if let Some(name) = &probe.name {
+                self.good_name(&format!("{key}.name"), name)?;
+            }
+        }
+        let names: Vec<String> = self.probe_names();
+        let mut seen = HashSet::new();
+        match names.iter().position(|name| !seen.insert(name)) {
+            Some(i) => Err(self.wrong_with(
+                &format!("probe.{i}"),
+                format!("two probes are called \"{}\"", names[i]),
+                "give each its own:  name = \"...\"",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn known_solids(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+        let patched = probe.patch.as_ref().map(|patch| &patch.solid);
+        let named = [
+            ("motion", probe.motion.as_ref()),
+            ("force", probe.force.as_ref()),
+            ("balance", probe.balance.as_ref()),
+            ("runup", probe.runup.as_ref()),
+            ("patch.solid", patched),
+        ];
+        let touching = probe.contact.iter().flatten().map(|name| ("contact", Some(name)));
+        for (word, name) in named.into_iter().chain(touching) {
+            if let Some(name) = name {
+                self.known_solid(&format!("{key}.{word}"), name)?;
+            }
+        }
+        let free = |name: &String| self.solid.iter().any(|solid| solid.name == *name && solid.free.is_some());
+        match probe.balance.as_ref().filter(|name| !free(name)) {
+            Some(name) => {
+                let what = format!("\"{name}\" is not free: what it weighs and carries is not known");
+                let help = format!("the water's load on any solid is  force = \"{name}\"");
+                Err(self.wrong_with(&format!("{key}.balance"), what, help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn verify_places(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+        for (word, at) in [("velocity", &probe.velocity), ("pressure", &probe.pressure)] {
+            match at {
+                Some(PointWords::At(at)) => self.vector(&format!("{key}.{word}"), at)?,
+                Some(PointWords::Row(row)) => self.verify_row(&format!("{key}.{word}"), row, self.dimension)?,
+                None => {}
+            }
+        }
+        if let Some(gauge) = &probe.elevation {
+            self.verify_gauge(&format!("{key}.elevation"), gauge)?;
+        }
+        if let Some(section) = &probe.flow {
+            self.verify_section(&format!("{key}.flow"), section)?;
+        }
+        match &probe.patch {
+            Some(PatchWords { corners, .. }) => self.corners(&format!("{key}.patch.box"), corners),
+            None => Ok(()),
+        }
+    }
+
+    fn verify_gauge(&self, key: &str, gauge: &GaugeWords) -> Result<()> {
+        let single = gauge.x.is_some() || gauge.y.is_some();
+        match gauge.row() {
+            Some(_) if single => {
+                let help = "write  elevation = { x = 1.16 }  or  elevation = { from = 1.0, to = 3.0, count = 5 }";
+                Err(self.wrong_with(key, "a gauge stands at one place or is a row of them, not both", help))
+            }
+            Some(row) => self.verify_row(key, &row, self.dimension - 1),
+            None if gauge.x.is_none() || gauge.y.is_some() != (self.dimension == 3) => {
+                let help = "write  elevation = { x = 1.16 } in 2-D, elevation = { x = 1.16, y = 0.3 } in 3-D";
+                Err(self.wrong_with(key, "a gauge stands at x in 2-D, at x and y in 3-D", help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// A row of places that have so many coordinates.
+    fn verify_row(&self, key: &str, row: &RowWords, coordinates: usize) -> Result<()> {
+        for (word, at) in [("from", &row.from), ("to", &row.to)] {
+            if at.len() != coordinates || at.iter().any(|x| !x.is_finite()) {
+                let what = format!("{word} has {} numbers: a place here has {coordinates}", at.len());
+                let example = vec!["0.0"; coordinates].join(", ");
+                return Err(self.wrong_with(&format!("{key}.{word}"), what, format!("write  {word} = [{example}]")));
+            }
+        }
+        let help = "write  count = 5  or  spacing = 0.1";
+        if row.count.is_some() == row.spacing.is_some() {
+            return Err(self.wrong_with(key, "a row has either a count or a spacing", help));
+        }
+        self.positive(&format!("{key}.spacing"), row.spacing)?;
+        let (count, length) = (row.number(), row.length());
+        if count < 2 || count > MOST_PLACES {
+            let what = format!("a row has 2 to {MOST_PLACES} places, this one has {count}");
+            return Err(self.wrong_with(key, what, help));
+        }
+        if length < LEAST_SPACING * (count - 1) as f64 {
+            return Err(self.wrong_with(key, format!("{count} places do not fit on {length} m"), help));
+        }
+        Ok(())
+    }
+
+    fn verify_section(&self, key: &str, SectionWords { from, to }: &SectionWords) -> Result<()> {
+        self.vector(&format!("{key}.from"), from)?;
+        self.vector(&format!("{key}.to"), to)?;
+        let flat = from.iter().zip(to).filter(|(a, b)| a == b).count();
+        match self.dimension {
+            2 if flat == 2 => Err(self.wrong(key, "a section from a point to itself has no length")),
+            3 if flat != 1 => {
+                let what = "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one";
+                let help = "write  flow = { from = [1.0, 0.0, 0.3], to = [1.0, 0.5, 0.6] }";
+                Err(self.wrong_with(key, what, help))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Stem of each probe's file: its name, or else the solid's name for a motion, `solid_force` for a force (as for run-up
+    /// and patch), and the kind with a number from the second on.
+    pub(super) fn probe_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        // How many of each kind before have no name of their own.
+        let mut nameless: HashMap<&str, usize> = HashMap::new();
+        for probe in &self.probe {
+            let kind = probe.kinds().first().copied().unwrap_or("probe");
+            let before = nameless.entry(kind).or_default();
+            let alike = *before;
+            *before += usize::from(probe.name.is_none());
+            let ties = [&probe.joint, &probe.spring, &probe.rope];
+            let patched = probe.patch.as_ref().map(|patch| &patch.solid);
+            let pair = probe.contact.as_ref().map(|[a, b]| format!("{a}_{b}"));
+            let of_solid =
+                probe.force.as_ref().or(probe.balance.as_ref()).or(probe.runup.as_ref()).or(patched).or(pair.as_ref());
+            let own = match (&probe.name, &probe.motion, of_solid) {
+                (Some(name), ..) => name.clone(),
+                (None, Some(solid), _) => solid.clone(),
+                (None, None, Some(solid)) => format!("{solid}_{kind}"),
+                _ => match ties.into_iter().flatten().next() {
+                    Some(tie) => tie.clone(),
+                    None if alike == 0 => kind.to_string(),
+                    None => format!("{kind}_{}", alike + 1),
+                },
+            };
+            names.push(own);
+        }
+        names
+    }
+}

@@ -1,0 +1,17 @@
+//! What is said of series after a run: extremes and means, waves between crossings, spectra, what is reflected, how a
+//! motion answers a wave. Pure functions of [`Series`](crate::series::Series): no files.
+
+mod dispersion;
+mod harmonic;
+mod moments;
+mod reflection;
+mod response;
+mod spectrum;
+mod waves;
+
+pub use harmonic::{Harmonic, harmonic};
+pub use moments::{Moments, moments};
+pub use reflection::{Reflection, reflection};
+pub use response::{Response, response};
+pub use spectrum::{Spectrum, spectra, spectrum};
+pub use waves::{Waves, waves};
