@@ -190,7 +190,7 @@ fn a_flap_leans_towards_the_water_where_the_waves_go() {
 /// The largest less the smallest reading of the surface at `x` (m) over times `from` to `until` (s).
 fn height_at(sim: &mut Simulation<2>, x: f64, from: f64, until: f64) -> f64 {
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut next = 0.0;
+    let mut next: f64 = 0.0;
     while sim.time() < until {
         sim.step().expect("a sound step");
         if sim.time() >= next.max(from) {
