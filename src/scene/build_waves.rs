@@ -54,7 +54,7 @@ impl Scene {
         pool: &Pool<D>,
     ) -> Result<Option<Motion<D>>> {
         let Some(wave) = &words.wave else { return Ok(None) };
-        let own = world_bounds(shape, pose);
+        let (own, waving) = (world_bounds(shape, pose), format!("{key}.wave"));
         let depth = wave.depth.unwrap_or(pool.still.depth);
         let g = self.gravity.as_ref().and_then(|g| g.last()).map_or(0.0, |g| -g);
         if let Some(along) = &words.along {
@@ -67,13 +67,21 @@ impl Scene {
                     "write  along = [1.0, 0.0]",
                 ));
             }
-            if furthest(&pool.bounds, &along) <= furthest(&own, &along) + self.dp {
+            let ahead = furthest(&pool.bounds, &along) - furthest(&own, &along);
+            if ahead <= self.dp {
                 let help =
                     "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
                 return Err(self.wrong_with(&key, "there is no water before the paddle in this direction", help));
             }
             let maker = Maker { depth, g, paddle: Paddle::Piston };
-            return Ok(Some(Motion::slide(along, self.waving(&key, wave, &maker)?)));
+            let law = self.waving(&waving, wave, &maker)?;
+            if law.stroke() > 0.5 * ahead {
+                let what =
+                    format!("the piston would go {:.3} m to and fro, and the water is {ahead:.3} m long", law.stroke());
+                let help = "waves so long need a longer tank: take a shorter period or a lower height";
+                return Err(self.wrong_with(&waving, what, help));
+            }
+            return Ok(Some(Motion::slide(along, Law::Wave(Box::new(law)))));
         }
         let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
         let arm = pool.still.level - hinge[D - 1];
@@ -96,12 +104,11 @@ impl Scene {
         let sense = if way.dot(&middle) < 0.0 { -1.0 } else { 1.0 };
         let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
         let maker = Maker { depth, g, paddle: Paddle::Flap { arm } };
-        Ok(Some(Motion::hinge(hinge, &axis, self.waving(&format!("{key}.hinge"), wave, &maker)?)))
+        Ok(Some(Motion::hinge(hinge, &axis, Law::Wave(Box::new(self.waving(&waving, wave, &maker)?)))))
     }
 
-    /// The law of a paddle; `beside` is a key beside the wave's.
-    fn waving(&self, beside: &str, words: &WaveWords, maker: &Maker) -> Result<Law> {
-        let key = format!("{}.wave", beside.rsplit_once('.').map_or("", |(above, _)| above));
+    /// The wave that a paddle is to make.
+    fn waving(&self, key: &str, words: &WaveWords, maker: &Maker) -> Result<Wave> {
         let place = |word: &str| {
             let key = format!("{key}.{word}");
             move |e: Error| self.origin.place(e, &key)
@@ -143,13 +150,12 @@ impl Scene {
                 let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
                 maker.recorded(&series, distance, delay).map_err(place("elevation"))?
             }
-            _ => return Err(self.wrong(&key, "which wave?")),
+            _ => return Err(self.wrong(key, "which wave?")),
         };
-        let wave = match words.ramp {
+        Ok(match words.ramp {
             Some(ramp) => wave.ramp(ramp),
             None => wave,
-        };
-        Ok(Law::Wave(Box::new(wave)))
+        })
     }
 
     /// The components of a table.
