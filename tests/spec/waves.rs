@@ -71,7 +71,7 @@ fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
     let flap =
         |height: f64| format!("hinge = [0.0, {height:?}], wave = {{ regular = {{ height = 0.1, period = 1.2 }} }}");
     let cases: [(String, &str, &str); 18] = [
-        (piston("regular = { height = 0.3, period = 1.2 }"), "wave.regular.height", "highest that does not is 0.199 m"),
+        (piston("regular = { height = 0.3, period = 1.2 }"), "wave.regular.height", "highest that does not is 0.198 m"),
         (piston("regular = { height = 0.1, period = 0.0 }"), "wave.regular.period", "positive"),
         (piston("regular = { height = -0.1, period = 1.0 }"), "wave.regular.height", "positive"),
         (piston("regular = { height = 0.1 }"), "wave.regular.period", "missing"),
@@ -98,7 +98,7 @@ fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
         let message = built(&with(&driven)).map(|_| ()).expect_err(&driven).to_string();
         assert!(message.contains(key) && message.contains(advice), "{driven}:\n{message}");
         // The line of the words themselves.
-        assert!(message.contains("scene.toml:19:"), "{message}");
+        assert!(message.contains("scene.toml:20:"), "{message}");
     }
     let flap = with("hinge = [0.0, 0.0], wave = { solitary = { height = 0.1 } }");
     assert!(built(&flap).map(|_| ()).unwrap_err().to_string().contains("needs a piston"));
