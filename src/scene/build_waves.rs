@@ -57,24 +57,53 @@ impl Scene {
         let own = world_bounds(shape, pose);
         let depth = wave.depth.unwrap_or(pool.still.depth);
         let g = self.gravity.as_ref().and_then(|g| g.last()).map_or(0.0, |g| -g);
-        if let Some(along) = &words.along {
-            let along: Vector<D> = vector::<D>(along).normalize();
-            let key = format!("{key}.along");
-            if along[D - 1].abs() > 1e-6 {
-                return Err(self.wrong_with(
-                    &key,
-                    "a piston that makes waves slides level",
-                    "write  along = [1.0, 0.0]",
-                ));
-            }
-            if furthest(&pool.bounds, &along) <= furthest(&own, &along) + self.dp {
-                let help =
-                    "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
-                return Err(self.wrong_with(&key, "there is no water before the paddle in this direction", help));
-            }
-            let maker = Maker { depth, g, paddle: Paddle::Piston };
-            return Ok(Some(Motion::slide(along, self.waving(&key, wave, &maker)?)));
+        let maker = Maker { depth, g, paddle: Paddle::Piston };
+        match &words.along {
+            Some(along) => self.piston(key, wave, vector::<D>(along).normalize(), &maker, (&own, &pool.bounds)),
+            None => self.flap(key, words, wave, &maker, (&own, pool)),
         }
+        .map(Some)
+    }
+
+    /// The motion of a piston that goes `along`; `own` and `water` are the boxes around it and the water.
+    fn piston<const D: usize>(
+        &self,
+        key: &str,
+        wave: &WaveWords,
+        along: Vector<D>,
+        maker: &Maker,
+        (own, water): (&Bounds<D>, &Bounds<D>),
+    ) -> Result<Motion<D>> {
+        let refuse = |what: &str, help: &str| Err(self.wrong_with(&format!("{key}.along"), what, help));
+        if along[D - 1].abs() > 1e-6 {
+            return refuse("a piston that makes waves slides level", "write  along = [1.0, 0.0]");
+        }
+        let ahead = furthest(water, &along) - furthest(own, &along);
+        if ahead <= self.dp {
+            let help =
+                "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
+            return refuse("there is no water before the paddle in this direction", help);
+        }
+        let key = format!("{key}.wave");
+        let law = self.waving(&key, wave, maker)?;
+        if law.stroke() > 0.5 * ahead {
+            let what =
+                format!("the piston would go {:.3} m to and fro, and the water is {ahead:.3} m long", law.stroke());
+            let help = "waves so long need a longer tank: take a shorter period or a lower height";
+            return Err(self.wrong_with(&key, what, help));
+        }
+        Ok(Motion::slide(along, Law::Wave(Box::new(law))))
+    }
+
+    /// The motion of a flap; `own` is the box around it.
+    fn flap<const D: usize>(
+        &self,
+        key: &str,
+        words: &DrivenWords,
+        wave: &WaveWords,
+        maker: &Maker,
+        (own, pool): (&Bounds<D>, &Pool<D>),
+    ) -> Result<Motion<D>> {
         let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
         let arm = pool.still.level - hinge[D - 1];
         if arm <= 0.0 {
@@ -82,26 +111,24 @@ impl Scene {
             let help = format!("a flap is hinged below {:.3} m: at the bed, above or under it", pool.still.level);
             return Err(self.wrong_with(&format!("{key}.hinge"), what, help));
         }
-        let axis =
-            words.axis.as_ref().map_or_else(|| vec![1.0], |x| vector::<D>(x).normalize().iter().copied().collect());
-        let turn = Wedge::<D>::from_axial(&axis);
-        let mut up = Vector::zeros();
-        up[D - 1] = 1.0;
-        let way = turn.at(&up);
+        let unit = |x: &Vec<f64>| vector::<D>(x).normalize().iter().copied().collect();
+        let axis: Vec<f64> = words.axis.as_ref().map_or_else(|| vec![1.0], unit);
         if axis.get(2).is_some_and(|x| x.abs() > 1e-6) {
             let help = "write  axis = [0.0, 1.0, 0.0]";
             return Err(self.wrong_with(&format!("{key}.axis"), "the axis of a flap that makes waves is level", help));
         }
+        let mut up = Vector::zeros();
+        up[D - 1] = 1.0;
+        let way = Wedge::<D>::from_axial(&axis).at(&up);
         let middle = 0.5 * (pool.bounds.min + pool.bounds.max) - 0.5 * (own.min + own.max);
         let sense = if way.dot(&middle) < 0.0 { -1.0 } else { 1.0 };
         let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
-        let maker = Maker { depth, g, paddle: Paddle::Flap { arm } };
-        Ok(Some(Motion::hinge(hinge, &axis, self.waving(&format!("{key}.hinge"), wave, &maker)?)))
+        let law = self.waving(&format!("{key}.wave"), wave, &Maker { paddle: Paddle::Flap { arm }, ..*maker })?;
+        Ok(Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
     }
 
-    /// The law of a paddle; `beside` is a key beside the wave's.
-    fn waving(&self, beside: &str, words: &WaveWords, maker: &Maker) -> Result<Law> {
-        let key = format!("{}.wave", beside.rsplit_once('.').map_or("", |(above, _)| above));
+    /// The wave that a paddle is to make.
+    fn waving(&self, key: &str, words: &WaveWords, maker: &Maker) -> Result<Wave> {
         let place = |word: &str| {
             let key = format!("{key}.{word}");
             move |e: Error| self.origin.place(e, &key)
@@ -143,13 +170,12 @@ impl Scene {
                 let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
                 maker.recorded(&series, distance, delay).map_err(place("elevation"))?
             }
-            _ => return Err(self.wrong(&key, "which wave?")),
+            _ => return Err(self.wrong(key, "which wave?")),
         };
-        let wave = match words.ramp {
+        Ok(match words.ramp {
             Some(ramp) => wave.ramp(ramp),
             None => wave,
-        };
-        Ok(Law::Wave(Box::new(wave)))
+        })
     }
 
     /// The components of a table.

@@ -34,6 +34,9 @@ pub const MOST_COMPONENTS: usize = 2000;
 /// Components of a sea or a group where nobody says how many.
 pub const COMPONENTS: usize = 100;
 
+/// The largest displacement of a flap over its arm: 60°.
+const STEEPEST: f64 = 1.7321;
+
 /// A component of the surface: η(x, t) = a cos(ω t − k x + φ), x (m) from the paddle's face at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Component {
@@ -112,6 +115,14 @@ impl Wave {
         self.facts.train.map(|train| train.depth).or(self.facts.solitary.map(|wave| wave.depth)).unwrap_or_default()
     }
 
+    /// About how far (m) the face goes from end to end.
+    pub fn stroke(&self) -> f64 {
+        match &self.course {
+            Course::Tones(tones) => 2.0 * size(tones),
+            Course::Solitary(wave) => wave.stroke(),
+        }
+    }
+
     /// What it is.
     pub fn facts(&self) -> &Facts {
         &self.facts
@@ -176,7 +187,7 @@ impl Maker {
         let train = self.train(period)?;
         self.unbroken("a regular wave", height, &train)?;
         let component = Component { amplitude: 0.5 * height, omega: train.omega, phase };
-        let mut tones = self.tones(&[component]);
+        let mut tones = self.tones(&[component])?;
         match order {
             1 => {}
             2 => {
@@ -204,7 +215,7 @@ impl Maker {
         let phases = spectrum::phases(seed);
         let components: Vec<Component> =
             omegas.into_iter().zip(phases).map(|(omega, phase)| Component { amplitude, omega, phase }).collect();
-        Ok(self.wave("sea", height, 1, train, self.tones(&components)))
+        Ok(self.wave("sea", height, 1, train, self.tones(&components)?))
     }
 
     /// The group whose crest of `crest` (m) stands at `distance` (m) before the paddle at `time` (s), by linear
@@ -221,7 +232,7 @@ impl Maker {
             Component { amplitude: crest / count as f64, omega, phase }
         };
         let components: Vec<Component> = omegas.into_iter().map(component).collect();
-        Ok(self.wave("focused", 2.0 * crest, 1, train, self.tones(&components)))
+        Ok(self.wave("focused", 2.0 * crest, 1, train, self.tones(&components)?))
     }
 
     /// The waves that add up from these components, to first order.
@@ -238,7 +249,7 @@ impl Maker {
         let largest = components.iter().max_by(|a, b| energy(a).total_cmp(&energy(b)));
         let train = Train::of(largest.map_or(1.0, |c| c.omega), self.depth, self.g);
         let height = 4.0 * (0.5 * components.iter().map(energy).sum::<f64>()).sqrt();
-        Ok(self.wave("components", height, 1, train, self.tones(components)))
+        Ok(self.wave("components", height, 1, train, self.tones(components)?))
     }
 
     /// The waves that show this `elevation` (m over s) at `distance` (m) before the paddle, `delay` (s) later than it
@@ -298,19 +309,35 @@ impl Maker {
         Err(Error::scene(what).help(format!("the highest that does not is {most:.3} m (Miche, McCowan)")))
     }
 
-    /// The paddle's tones for these components of the surface.
-    fn tones(&self, components: &[Component]) -> Vec<Component> {
+    /// The paddle's tones for these components of the surface; refuses a flap that would lie down.
+    fn tones(&self, components: &[Component]) -> Result<Vec<Component>> {
         let tone = |c: &Component| {
             let train = Train::of(c.omega, self.depth, self.g);
             Component { amplitude: c.amplitude / self.paddle.transfer(&train), ..*c }
         };
-        components.iter().map(tone).collect()
+        let tones: Vec<Component> = components.iter().map(tone).collect();
+        match self.paddle {
+            Paddle::Flap { arm } if size(&tones).is_nan() || size(&tones) > STEEPEST * arm => {
+                let degrees = (size(&tones) / arm).atan().to_degrees();
+                let what = format!(
+                    "the flap would swing by {degrees:.0} degrees to each side: its hinge is too near the surface"
+                );
+                Err(Error::scene(what)
+                    .help("60 is the most, and theory is for less than 30: a lower hinge, or lower waves"))
+            }
+            _ => Ok(tones),
+        }
     }
 
     fn wave(&self, kind: &'static str, height: f64, order: usize, train: Train, tones: Vec<Component>) -> Wave {
         let facts = Facts { kind, height, order, train: Some(train), solitary: None };
         Wave { facts, course: Course::Tones(tones), ramp: train.period(), end: f64::INFINITY, paddle: self.paddle }
     }
+}
+
+/// √Σ A², m: the amplitude of one tone.
+fn size(tones: &[Component]) -> f64 {
+    tones.iter().map(|tone| tone.amplitude.powi(2)).sum::<f64>().sqrt()
 }
 
 fn counted(count: usize) -> Result<()> {
