@@ -14,6 +14,9 @@ const WAVES_A_PART: usize = 16;
 /// Into how many quarters a long record is cut; with those that lie half over two there are seven.
 const QUARTERS: usize = 4;
 
+/// Complex amplitudes, from frequency 0 up.
+pub type Lines = Vec<Complex<f64>>;
+
 /// A one-sided spectrum, its integral the variance of the record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
@@ -79,16 +82,16 @@ pub fn spectrum(series: &Series) -> Option<Spectrum> {
     Some(Spectrum { step, density })
 }
 
-/// Complex amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
+/// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
 /// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
-pub fn spectra(series: &[&Series]) -> Option<(f64, Vec<Vec<Complex<f64>>>)> {
+pub fn spectra(series: &[&Series]) -> Option<(f64, Vec<Lines>)> {
     let (step, parts) = transforms(series, false)?;
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }
 
-/// Transforms of the windowed parts of each series, over the time that all cover.
-#[allow(clippy::type_complexity)]
-fn transforms(series: &[&Series], cut: bool) -> Option<(f64, Vec<Vec<Vec<Complex<f64>>>>)> {
+/// From one frequency to the next (Hz), and for each series the transforms of its windowed parts, over the time that all
+/// cover.
+fn transforms(series: &[&Series], cut: bool) -> Option<(f64, Vec<Vec<Lines>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));
     let count = series.iter().map(|s| s.times().len()).min()?;
