@@ -14,7 +14,7 @@ use pontoon::{
 
 use super::{
     complain, pair,
-    progress::Follow,
+    progress::{Follow, Follower},
     report::{duration, short, table},
     say, shelf, stopper,
 };

@@ -20,7 +20,8 @@ const DP: f64 = 0.02;
 
 /// Water in a tank 0.4 m wide: these boxes of it, still as if 0.2 m deep.
 fn tank(boxes: &[([f64; 2], [f64; 2])]) -> Simulation<2> {
-    let water = boxes.iter().flat_map(|(min, max)| rig::lattice(*min, *max, DP)).collect();
+    let size = |min: &[f64; 2], max: &[f64; 2]| [max[0] - min[0], max[1] - min[1]];
+    let water = boxes.iter().flat_map(|(min, max)| rig::lattice(*min, size(min, max), DP)).collect();
     rig::simulation(Model::water(2, DP, 0.2), water, 0.2, vec![rig::tank([0.4, 0.6], DP)])
 }
 
