@@ -7,8 +7,7 @@ use std::{
 };
 
 /// Chapters that a reader follows with the program at hand.
-const CHAPTERS: [&str; 5] =
-    ["README.md", "docs/first-run.md", "docs/own-scene.md", "docs/waves.md", "docs/bodies.md"];
+const CHAPTERS: [&str; 5] = ["README.md", "docs/first-run.md", "docs/own-scene.md", "docs/waves.md", "docs/bodies.md"];
 
 /// An empty folder of that name.
 fn desk(name: &str) -> PathBuf {

@@ -42,8 +42,8 @@ impl Journal {
 }
 
 impl Follower for Journal {
-    fn close(self: Box<Self>) -> Option<PathBuf> {
-        self.folder
+    fn close(&mut self) -> Option<PathBuf> {
+        self.folder.take()
     }
 }
 

@@ -32,13 +32,13 @@ pub struct Follow {
 /// Someone who follows a run for the user.
 pub trait Follower: Watch {
     /// Ends what is shown; the folder of the run, if one has begun.
-    fn close(self: Box<Self>) -> Option<PathBuf>;
+    fn close(&mut self) -> Option<PathBuf>;
 }
 
 impl Follower for Follow {
-    fn close(self: Box<Self>) -> Option<PathBuf> {
+    fn close(&mut self) -> Option<PathBuf> {
         self.bar.finish_and_clear();
-        self.folder
+        self.folder.take()
     }
 }
 

@@ -113,7 +113,7 @@ fn follower(said: &SaidArgs) -> Result<Box<dyn Follower>> {
 }
 
 /// Closes the progress, prints the table, writes the page of the run if it is wanted, chooses the exit code.
-fn end(outcome: Result<Outcome>, follow: Box<dyn Follower>, said: &SaidArgs) -> Result<u8> {
+fn end(outcome: Result<Outcome>, mut follow: Box<dyn Follower>, said: &SaidArgs) -> Result<u8> {
     let (folder, json) = (follow.close(), said.log == Log::Json);
     match &outcome {
         Ok(outcome) if json => journal::ended(outcome),

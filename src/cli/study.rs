@@ -14,7 +14,7 @@ use pontoon::{
 
 use super::{
     complain, pair,
-    progress::{Follow, Follower as _},
+    progress::{Follow, Follower},
     report::{duration, short, table},
     say, shelf, stopper,
 };

@@ -10,9 +10,7 @@ use crate::{
     error::Result,
     model::{C0_FACTOR, Model, Scheme},
     plan::Surface,
-    record::frame::particle_bytes,
     shape::Contact,
-    words::bytes,
 };
 
 /// A value in force and who said it.
@@ -45,10 +43,6 @@ impl fmt::Display for Source {
 
 /// Reasons of the defaults that were filled in, by key.
 pub(super) type Reasons = BTreeMap<String, String>;
-
-/// Disk that frames take at most where nobody says how many there are, B; and how few and how many they are then.
-const DISK: f64 = 200e6;
-const FRAMES: [f64; 2] = [20.0, 100.0];
 
 /// Wall time from one checkpoint to the next where nobody says it, s.
 pub(super) const CHECKPOINT_WALL: f64 = 600.0;
@@ -207,23 +201,6 @@ impl Scene {
                     fill_law(filler, &format!("{key}.{word}"), &mut value.0);
                 }
             }
-        }
-    }
-
-    /// How many frames a run has where nobody says it, and why.
-    fn default_frames(&self) -> (f64, String) {
-        let fields = match &self.frames {
-            Some(Frames::On(FramesWords { fields: Some(fields), .. })) => fields.clone(),
-            _ => FIELDS.map(String::from).to_vec(),
-        };
-        let frame = particle_bytes(&fields).0 * self.water_particles();
-        let count = (DISK / frame).floor().clamp(FRAMES[0], FRAMES[1]);
-        match count {
-            _ if count == FRAMES[1] => (count, format!("{count} frames a run")),
-            _ => (
-                count,
-                format!("{count} frames a run of about {} each: more would take over {}", bytes(frame), bytes(DISK)),
-            ),
         }
     }
 

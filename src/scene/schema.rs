@@ -38,6 +38,12 @@ fn required_only(schema: &mut Value) {
             }
             if let Some(Value::Array(kinds)) = map.get_mut("anyOf") {
                 kinds.retain(|kind| *kind != json!({ "type": "null" }));
+                // What is left of a choice between something and nothing is no choice.
+                if let [Value::Object(one)] = &kinds[..] {
+                    let one = one.clone();
+                    map.remove("anyOf");
+                    map.extend(one);
+                }
             }
             if map.get("default") == Some(&Value::Null) {
                 map.remove("default");

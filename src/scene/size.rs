@@ -1,7 +1,7 @@
 //! What a run of a scene will take, told from its words: no particle is made.
 
-use super::{Scene, build::Body, build_waves::Pool, geometry::world_bounds};
-use crate::{error::Result, model::Scheme};
+use super::{Frames, FramesWords, Scene, build::Body, build_waves::Pool, geometry::world_bounds, verify::FIELDS};
+use crate::{error::Result, model::Scheme, record::frame::particle_bytes, words::bytes};
 
 /// About how large a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +29,10 @@ impl Size {
 
 /// How far from the origin water may be, in supports of the kernel: beyond, differences of places are not exact.
 const FARTHEST: f64 = 1e8;
+
+/// Disk that frames take at most where nobody says how many there are, B; and how few and how many they are then.
+const DISK: f64 = 200e6;
+const FRAMES: [f64; 2] = [20.0, 100.0];
 
 impl Scene {
     /// Refuses water so far from the origin that numbers cannot tell its particles' places apart.
@@ -64,12 +68,29 @@ impl Scene {
     }
 
     /// About how many particles of water there are, solids not taken off; none of water that is no shape.
-    pub(super) fn water_particles(&self) -> f64 {
+    fn water_particles(&self) -> f64 {
         fn count<const D: usize>(scene: &Scene) -> Result<f64> {
             Ok(scene.counts::<D>(&scene.bodies_of_water()?, &[]).0)
         }
         let counted = if self.dimension == 2 { count::<2>(self) } else { count::<3>(self) };
         counted.unwrap_or(0.0)
+    }
+
+    /// How many frames a run has where nobody says it, and why.
+    pub(super) fn default_frames(&self) -> (f64, String) {
+        let fields = match &self.frames {
+            Some(Frames::On(FramesWords { fields: Some(fields), .. })) => fields.clone(),
+            _ => FIELDS.map(String::from).to_vec(),
+        };
+        let frame = particle_bytes(&fields).0 * self.water_particles();
+        let count = (DISK / frame).floor().clamp(FRAMES[0], FRAMES[1]);
+        match count {
+            _ if count == FRAMES[1] => (count, format!("{count} frames a run")),
+            _ => (
+                count,
+                format!("{count} frames a run of about {} each: more would take over {}", bytes(frame), bytes(DISK)),
+            ),
+        }
     }
 
     fn sized<const D: usize>(&self) -> Result<Size> {

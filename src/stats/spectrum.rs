@@ -14,6 +14,9 @@ const WAVES_A_PART: usize = 16;
 /// Into how many quarters a long record is cut; with those that lie half over two there are seven.
 const QUARTERS: usize = 4;
 
+/// Complex amplitudes, from frequency 0 up.
+pub type Lines = Vec<Complex<f64>>;
+
 /// A one-sided spectrum, its integral the variance of the record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
@@ -40,11 +43,13 @@ impl Spectrum {
         4.0 * self.moment(0, 0.0, f64::INFINITY).sqrt()
     }
 
-    /// Peak frequency, Hz: the centroid of what is above eight tenths of the largest density.
+    /// Peak frequency, Hz: the centroid of the highest line and two on either side, over which a Hann window spreads what
+    /// swings with one period.
     pub fn peak(&self) -> f64 {
-        let most = self.density.iter().copied().fold(0.0, f64::max);
-        let top = || self.frequencies().zip(&self.density).filter(|(_, s)| **s >= 0.8 * most);
-        top().map(|(f, s)| f * s).sum::<f64>() / top().map(|(_, s)| s).sum::<f64>()
+        let lines = 0..self.density.len();
+        let top = lines.max_by(|a, b| self.density[*a].total_cmp(&self.density[*b])).unwrap_or(0);
+        let near = || self.frequencies().zip(&self.density).take(top + 3).skip(top.saturating_sub(2));
+        near().map(|(f, s)| f * s).sum::<f64>() / near().map(|(_, s)| s).sum::<f64>()
     }
 
     /// Peak period T_p, s.
@@ -63,7 +68,11 @@ impl Spectrum {
 /// Samples are taken evenly from the smooth curve through the series, less their mean. A record of 64 waves or more is cut
 /// into quarters that overlap by half; a shorter one is taken whole.
 pub fn spectrum(series: &Series) -> Option<Spectrum> {
-    let variance = moments(series).deviation.powi(2);
+    let of = moments(series);
+    if of.least.0 == of.largest.0 {
+        return None;
+    }
+    let variance = of.deviation.powi(2);
     let cut = waves(series).is_some_and(|w| w.count >= QUARTERS * WAVES_A_PART);
     let (step, parts) = transforms(&[series], cut)?;
     let count = parts[0].first()?.len();
@@ -79,16 +88,16 @@ pub fn spectrum(series: &Series) -> Option<Spectrum> {
     Some(Spectrum { step, density })
 }
 
-/// Complex amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
+/// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
 /// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
-pub fn spectra(series: &[&Series]) -> Option<(f64, Vec<Vec<Complex<f64>>>)> {
+pub fn spectra(series: &[&Series]) -> Option<(f64, Vec<Lines>)> {
     let (step, parts) = transforms(series, false)?;
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }
 
-/// Transforms of the windowed parts of each series, over the time that all cover.
-#[allow(clippy::type_complexity)]
-fn transforms(series: &[&Series], cut: bool) -> Option<(f64, Vec<Vec<Vec<Complex<f64>>>>)> {
+/// From one frequency to the next (Hz), and for each series the transforms of its windowed parts, over the time that all
+/// cover.
+fn transforms(series: &[&Series], cut: bool) -> Option<(f64, Vec<Vec<Lines>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));
     let count = series.iter().map(|s| s.times().len()).min()?;
@@ -148,7 +157,7 @@ mod tests {
         let Some(found) = spectrum(&Series::new(t, x)?) else { panic!("it has a spectrum") };
         // 14.6 periods, not a whole number: the variance of what is over is within 2 %, half of that of the root.
         assert!((found.height() / (0.4 / 2.0_f64.sqrt()) - 1.0).abs() < 0.02, "{}", found.height());
-        // The centroid of a peak three lines wide, the lines 1/20 Hz apart.
+        // Lines are 1/20 Hz apart; the centroid of a Hann window's is its middle, but for what other lines have of it.
         assert!((found.peak_period() / 1.37 - 1.0).abs() < 0.01, "{}", found.peak_period());
         Ok(())
     }

@@ -58,7 +58,8 @@ pub fn waves(series: &Series) -> Option<Waves> {
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mean =
         |waves: &[(f64, f64)], of: fn(&(f64, f64)) -> f64| waves.iter().map(of).sum::<f64>() / waves.len() as f64;
-    let highest = &all[..all.len().div_ceil(3)];
+    // A third to the nearest whole number, of two waves one.
+    let highest = &all[..(all.len() + 1) / 3];
     Some(Waves {
         count: all.len(),
         mean: mean(&all, |w| w.0),
