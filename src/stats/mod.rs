@@ -1,7 +1,6 @@
 //! What is said of series after a run: extremes and means, waves between crossings, spectra, what is reflected, how a
 //! motion answers a wave. Pure functions of [`Series`](crate::series::Series): no files.
 
-mod dispersion;
 mod harmonic;
 mod moments;
 mod reflection;

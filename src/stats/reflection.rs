@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 
 use realfft::num_complex::Complex;
 
-use super::{dispersion::wave_number, harmonic, spectra, spectrum};
-use crate::series::Series;
+use super::{harmonic, spectra, spectrum};
+use crate::{series::Series, solid::wave::wave_number};
 
 /// Least determinant of the least squares over the square of the number of gauges, –: below, the gauges stand so that
 /// both waves look alike.
