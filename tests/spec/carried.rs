@@ -284,7 +284,8 @@ fn a_body_that_tumbles_in_a_vacuum_for_ten_seconds_keeps_energy_and_angular_mome
     let spin = Vector::<3>::from([1.0, 8.0, 2.0]);
     let body = FreeBody { inertia, spin: Wedge::from_axial(spin.as_slice()), ..FreeBody::from_mass(&shape, 2.0) };
     let brick = rig::solid("brick", shape, Pose::identity(), Role::Free(body));
-    let mut engine = Dim::<3>::engine(&[brick.clone()], &[brick.start()], &Links::default(), &Vector::zeros(), 0.01)?;
+    let mut engine =
+        Dim::<3>::engine(std::slice::from_ref(&brick), &[brick.start()], &Links::default(), &Vector::zeros(), 0.01)?;
     let (momentum, energy) = (inertia * spin, spin.dot(&(inertia * spin)));
     let mut worst: f64 = 0.0;
     for _ in 0..50_000 {
