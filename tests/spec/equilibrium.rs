@@ -16,12 +16,15 @@ const G: f64 = 9.81;
 
 /// A tank of so many dp by so many, water so many dp deep, and what else `words` say.
 fn afloat(long: f64, deep: f64, words: &str) -> Result<Simulation<2>> {
-    let (long, deep) = (long * DP, deep * DP);
+    let fill = format!("box = {{ min = [0, 0], max = [{}, {}] }}", long * DP, deep * DP);
+    pool(&fill, [long * DP, 1.6 * deep * DP], words)
+}
+
+/// A tank of this size (m) filled as `fill` says, and what else `words` say.
+fn pool(fill: &str, [long, high]: [f64; 2], words: &str) -> Result<Simulation<2>> {
     let text = format!(
-        "dimension = 2\ndp = {DP}\nuntil = 100.0\nmodel.viscosity.artificial.alpha = 0.1\n\
-         [[water]]\nfill = {{ box = {{ min = [0, 0], max = [{long}, {deep}] }} }}\n\
-         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [{long}, {}] }} }}\n{words}",
-        1.6 * deep
+        "dimension = 2\ndp = {DP}\nuntil = 100.0\nmodel.viscosity.artificial.alpha = 0.1\n[[water]]\nfill = {{ {fill} }}\n\
+         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [{long}, {high}] }} }}\n{words}"
     );
     Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)
 }
@@ -109,21 +112,20 @@ fn a_crate_on_a_raft_is_borne_by_it_and_both_by_the_water() -> Result<()> {
 
 #[test]
 fn a_box_floats_in_a_tub_that_floats() -> Result<()> {
-    let words = "[[water]]\nfill = { box = { min = [0.44, 0.32], max = [0.92, 0.44] } }\n\
+    // Walls of 0.0864 m², 0.0512 m² of water and half of 0.0128 m² in it displace 0.64 m × 0.14 m.
+    let words = "[[water]]\nfill = { box = { min = [0.44, 0.42], max = [0.92, 0.54] } }\n\
                  [[solid]]\nname = \"tub\"\nshape = { tank = { size = [0.48, 0.22], thickness = 0.08 } }\n\
-                 free = { density = 400, locked = [\"turn\"] }\nat = { x = 0.44, y = 0.32 }\n\
+                 free = { mass = 32.0, locked = [\"turn\"] }\nat = { x = 0.44, y = 0.42 }\n\
                  [[solid]]\nname = \"box\"\nshape = { box = { size = [0.16, 0.08] } }\nfree = { density = 500 }\n\
-                 at = { x = 0.68, y = 0.44 }";
-    let mut sim = afloat(68.0, 24.0, words)?;
-    let (inner, body) = (0.48 * 0.12 - 0.16 * 0.04, 0.16 * 0.08 * 0.5);
-    let walls = 0.64 * 0.30 - 0.48 * 0.22;
-    let draft = (0.4 * walls + inner + body) / 0.64;
+                 at = { x = 0.68, y = 0.54 }";
+    let around = "shape = { polygon = [[0, 0], [1.36, 0], [1.36, 0.48], [1.0, 0.48], [1.0, 0.34], [0.36, 0.34], [0.36, 0.48], [0, 0.48]] }";
+    let mut sim = pool(around, [1.36, 0.8], words)?;
     let [tub, float] = mean(&mut sim, 5.0, 2.0, |sim| [height(sim, 1), height(sim, 2)])?;
-    // The level outside by the volume of water there: it was filled to 0.48 m around the tub as that was put.
-    let outside = 68.0 * DP * 0.48 - 0.64 * (0.48 - 0.24);
-    let level = (outside + 0.64 * draft) / (68.0 * DP);
-    let found = level - (tub - 0.08);
-    assert!((found - draft).abs() < 0.25 * DP, "tub: {found} m, Archimedes {draft} m; as for a box off the lattice");
+    // Around a tub that floats as it was put the level is where it was filled to.
+    let draft = 0.48 - (tub - 0.08);
+    // What it lies too deep lifts the level by 0.64/1.36 of that as seen from here.
+    let off = (draft - 0.14) / (1.0 - 0.64 / 1.36);
+    assert!(off.abs() < 0.25 * DP, "tub: {off} m too deep; as for a box off the lattice");
     let above = float - tub;
     assert!((above - 0.12).abs() < 0.25 * DP, "box: {above} m above the tub's floor, Archimedes 0.12 m");
     Ok(())
@@ -170,25 +172,28 @@ fn the_fixing_of_a_gate_carries_the_water_behind_it() -> Result<()> {
     // A gate between water and air: F = ½ ρ g d², at a third of the depth above the bottom.
     let words = "[[solid]]\nname = \"gate\"\nshape = { box = { size = [0.08, 0.5] } }\nfree = { density = 500 }\nat = { x = 0.54, bottom = 0 }\n\
                  [[joint]]\nname = \"foot\"\nkind = \"fixed\"\nbetween = [\"tank\", \"gate\"]\nat = [0.5, 0.0]";
-    let text = format!(
-        "dimension = 2\ndp = {DP}\nuntil = 9.0\nmodel.viscosity.artificial.alpha = 0.1\n\
-         [[water]]\nfill = {{ box = {{ min = [0, 0], max = [0.5, 0.4] }} }}\n\
-         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.0, 0.6] }} }}\n{words}"
-    );
-    let mut sim = Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)?;
-    let carried = |sim: &Simulation<2>| [sim.joint(0).force[0], sim.joint(0).torque.axial()[0], sim.joint(0).force[1]];
-    let [across, torque, up] = mean(&mut sim, 3.0, 1.5, carried)?;
+    let mut sim = pool("box = { min = [0, 0], max = [0.5, 0.4] }", [1.0, 0.6], words)?;
+    let carried = |sim: &Simulation<2>| {
+        let (joint, load) = (sim.joint(0), &sim.system().solids()[1].load);
+        [joint.force[0], joint.torque.axial()[0], joint.force[1], load.force[0]]
+    };
+    let [across, torque, up, load] = mean(&mut sim, 3.0, 1.5, carried)?;
+    assert!((across / -load - 1.0).abs() < 1e-3, "{across} N/m against the water's {load}: the gate stands still");
     let push = 0.5 * 1000.0 * G * 0.16;
-    assert!((across / -push - 1.0).abs() < 0.03, "{across} N/m, hydrostatics {}: 20 rows of water", -push);
+    // A quarter of dp of level, in 20 rows, is 2.5 % of the push; 2 % more act where the pressure's own gradient is concerned.
+    assert!((across / -push - 1.0).abs() < 0.045, "{across} N/m, hydrostatics {}", -push);
     // About the foot: the push to the right at a height of d/3 turns clockwise, and so does the weight 0.04 m to the right.
     let weight = 500.0 * 0.04 * G;
     let turning = push * 0.4 / 3.0 + weight * 0.04;
-    assert!((torque / turning - 1.0).abs() < 0.03, "{torque} N m/m, hydrostatics {turning}");
+    assert!(
+        (torque / turning - 1.0).abs() < 0.06,
+        "{torque} N m/m, hydrostatics {turning}: of the third power of the depth"
+    );
     assert!((up / weight - 1.0).abs() < 0.03, "{up} N/m, its weight {weight}: no water under it");
     Ok(())
 }
 
-/// Largest tilt (degrees) within three seconds of a barge that starts at 3° with a metacentre `above` its centre of mass, over BM.
+/// Tilt (degrees) in the sixth second, at its largest, of a barge that starts at 3° with a metacentre `above` its centre of mass, over BM.
 fn tilts(above: f64) -> Result<f64> {
     // A box 20 × 10 dp of half the water's density: KB = 2.5, BM = 20²/(12 · 5), KG = 5 dp + offset.
     let bm = 20.0 * 20.0 / 60.0;
@@ -199,9 +204,11 @@ fn tilts(above: f64) -> Result<f64> {
     );
     let mut sim = afloat(60.0, 16.0, &words)?;
     let mut most: f64 = 0.0;
-    while sim.time() < 3.0 {
-        sim.step_to(3.0)?;
-        most = most.max(tilt(&sim, 1).to_degrees().abs());
+    while sim.time() < 6.0 {
+        sim.step_to(6.0)?;
+        if sim.time() > 5.0 {
+            most = most.max(tilt(&sim, 1).to_degrees().abs());
+        }
     }
     Ok(most)
 }
@@ -211,8 +218,9 @@ fn a_barge_capsizes_when_its_metacentre_sinks_below_its_centre() -> Result<()> {
     // Wall-sided, the righting arm is (GM + ½ BM tan² φ) sin φ: with GM = −0.05 BM it lies at 18°, with +0.05 BM upright.
     // 5 % either way is what a test of seconds can tell; the project's 2 % takes a finer dp.
     let (stands, falls) = (tilts(0.05)?, tilts(-0.05)?);
-    assert!(stands < 6.0, "GM = 0.05 BM: {stands}°");
-    assert!(falls > 9.0, "GM = −0.05 BM: {falls}°");
+    // Both start at 3°: one has come back from there, the other is at more than twice that and on its way.
+    assert!(stands < 3.0, "GM = 0.05 BM: {stands}°");
+    assert!(falls > 6.0, "GM = −0.05 BM: {falls}°");
     Ok(())
 }
 
@@ -228,8 +236,8 @@ fn a_body_as_heavy_as_water_stays_where_it_is() -> Result<()> {
             sim.step_to(2.0)?;
         }
         let moved = (sim.system().solids()[1].kinematics.centre - start) / DP;
-        // A hundredth too much of buoyancy would be 0.1 m, five dp, in this time; a quarter of a dp is what drafts are known to.
-        assert!(moved.norm() < 0.25, "{shape}: moved by {moved} dp");
+        // Two thousandths of its weight too much or too little, with as much water going along, would be ½ · 0.002 g/2 · (2 s)² = 1 dp.
+        assert!(moved.norm() < 1.0, "{shape}: moved by {moved} dp");
     }
     Ok(())
 }
