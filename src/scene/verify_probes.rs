@@ -124,7 +124,7 @@ impl Scene {
         }
         self.positive(&format!("{key}.spacing"), row.spacing)?;
         let (count, length) = (row.number(), row.length());
-        if count < 2 || count > MOST_PLACES {
+        if !(2..=MOST_PLACES).contains(&count) {
             let what = format!("a row has 2 to {MOST_PLACES} places, this one has {count}");
             return Err(self.wrong_with(key, what, help));
         }
