@@ -53,7 +53,7 @@ impl World {
         self.locks.push(self.world.bodies[body].locked_axes());
         self.restitution.push(solid.restitution);
         self.gone.push(false);
-        self.iterations = iterations(&self.world);
+        self.when_near = iterations(&self.world);
         Ok(())
     }
 
@@ -67,7 +67,7 @@ impl World {
         body.set_enabled(false);
         self.gone[solid] = true;
         self.pushes.retain(|push| push.0 != solid);
-        self.iterations = iterations(&self.world);
+        self.when_near = iterations(&self.world);
     }
 }
 

@@ -59,9 +59,9 @@ pub(in crate::solid) struct World {
     bodies: Vec<RigidBodyHandle>,
     restitution: Vec<f64>,
     /// Iterations of a step in which bodies may touch.
-    iterations: usize,
+    when_near: usize,
     /// Those of the last step.
-    took: usize,
+    iterations: usize,
     /// Who bounced in the last step, with the impulse, N s.
     met: Vec<Met>,
     /// A tenth of the thinnest free body, m: contacts are foreseen from there.
@@ -108,14 +108,14 @@ impl World {
         let ties = Ties::new(&mut world, &bodies, links, start);
         let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let restitution = solids.iter().map(|solid| solid.restitution).collect();
-        let (iterations, met, pushes) = (roster::iterations(&world), Vec::new(), Vec::new());
+        let (when_near, met, pushes) = (roster::iterations(&world), Vec::new(), Vec::new());
         let gone = vec![false; bodies.len()];
         Ok(Self {
             world,
             bodies,
             restitution,
-            iterations,
-            took: 1,
+            when_near,
+            iterations: 1,
             met,
             reach,
             tuned_for: 0.0,
@@ -150,7 +150,7 @@ impl World {
     fn foresee(&mut self) {
         let near =
             self.world.narrow_phase.contact_pairs().any(|pair| pair.manifolds().iter().any(|m| !m.points.is_empty()));
-        self.world.integration_parameters.num_solver_iterations = if near { self.iterations } else { 1 };
+        self.world.integration_parameters.num_solver_iterations = if near { self.when_near } else { 1 };
     }
 
     /// Replaces the forces on the free bodies by `loads` and the pushes.
@@ -248,7 +248,7 @@ impl Engine<D> for World {
             false => self.world.step_with_events(&self.ties.pairs, &()),
         }
         unwind(&mut self.world, tumbling);
-        self.took = self.world.integration_parameters.num_solver_iterations;
+        self.iterations = self.world.integration_parameters.num_solver_iterations;
         self.foresee();
         self.examine(&before)
     }
@@ -306,15 +306,15 @@ impl Engine<D> for World {
     }
 
     fn iterations(&self) -> usize {
-        self.took
+        self.iterations
     }
 
     fn impulses(&self, joint: usize) -> Vec<f64> {
-        self.ties.impulses(&self.world, joint, self.took)
+        self.ties.impulses(&self.world, joint, self.iterations)
     }
 
     fn rope_impulse(&self, rope: usize) -> f64 {
-        self.ties.rope(&self.world, rope, self.took)
+        self.ties.rope(&self.world, rope, self.iterations)
     }
 
     fn save(&self) -> Result<Vec<u8>> {
