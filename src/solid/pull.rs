@@ -1,7 +1,7 @@
 //! The pull of a lock, an end stop or a rope along its row, where the engine does not tell all of it.
 //!
-//! In a step of several iterations rapier keeps the impulse of the last one. What all of them gave is known from the momentum of the
-//! solids: with R what changed it and no other load explains, the pulls f are to give Σ f Jᵀ = R. From the last impulse times their
+//! In a step of several iterations rapier keeps the impulse of the last one, and of one iteration it tells some 1e-6 too little where it
+//! mends places. What a joint gave is known from the momentum of the solids: with R what changed it and no other load explains, the pulls f are to give Σ f Jᵀ = R. From the last impulse times their
 //! number they are mended row after row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until nothing is left (Kaczmarz 1937).
 
 use super::rows::{Mobility, Row};

@@ -187,7 +187,7 @@ impl<const D: usize> Rig<D> {
         }
     }
 
-    /// Reads what they felt in the step, `dt` (s) long, from `before` to `after`. Of steps in which the engine does not tell all of
+    /// Reads what they felt in the step, `dt` (s) long, from `before` to `after`. Where the engine does not tell all of
     /// its impulses, `told` says what changed the momentum of each solid and no other load explains (N, N m).
     pub(crate) fn learn(
         &mut self,

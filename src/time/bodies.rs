@@ -255,13 +255,11 @@ impl<const D: usize> Handover<'_, D> {
         let contacts = if tied || told { engine.contacts() } else { Vec::new() };
         if tied {
             let part = |i: usize| unexplained(self.system, i, &contacts, &[&began[i], &self.solids[i]], dt);
-            let unexplained: Vec<_> = if engine.iterations() > 1 {
-                (0..began.len()).map(|i| part(i) - self.loads[i] - burdens[i]).collect()
-            } else {
-                Vec::new()
-            };
-            let told = (!unexplained.is_empty()).then_some(&unexplained[..]);
-            rig.learn(&**engine, [&began, &self.solids], dt, told);
+            // In space what turns a body while its spin changes is not in its angular momentum to the last digits.
+            let wanted = D == 2 || engine.iterations() > 1;
+            let unexplained: Vec<_> =
+                (0..if wanted { began.len() } else { 0 }).map(|i| part(i) - self.loads[i] - burdens[i]).collect();
+            rig.learn(&**engine, [&began, &self.solids], dt, wanted.then_some(&unexplained[..]));
         }
         if let Some(books) = books {
             for (i, (before, after)) in began.iter().zip(&self.solids).enumerate() {
