@@ -76,9 +76,20 @@ fn crowd(model: &str) -> Simulation<2> {
     Simulation::new(scene.build::<2>().expect("a sound scene").setup).expect("a sound setup")
 }
 
+/// The part of the largest kind of load by which those on solid number `i` miss what it did in the last step, forces and torques.
+fn missed(sim: &Simulation<2>, i: usize) -> f64 {
+    let shares = sim.shares(i).unwrap();
+    let force = shares.kinds().iter().fold(0.0f64, |most, (_, load)| most.max(load.force.norm()));
+    // Bodies 0.1 m large: torques far below a hundredth of a metre times the force are round-off of it.
+    let turning = shares.kinds().iter().fold(0.01 * force, |most, (_, load)| most.max(torque(load)));
+    let off = shares.change - shares.sum();
+    (off.force.norm() / force).max(torque(&off) / turning)
+}
+
 #[test]
 fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
-    // Round-off of sums of some hundred particles, and the engine's own: 1e-9 of the largest kind.
+    // Round-off of sums of some hundred particles. Joints and ropes are as exact but where bodies of unlike mass touch: there a step
+    // has iterations between which the bodies turn, up to 1e-3 as a rope comes taut.
     for model in
         ["", "slip = \"partial\"", "walls = \"dbc\"\nviscosity = { laminar = { nu0 = 1e-4 } }\nslip = \"none\""]
     {
@@ -87,14 +98,10 @@ fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
         let mut seen = [false; 12];
         for step in 0..400 {
             sim.step().unwrap();
-            for i in 1..6 {
-                let shares = sim.shares(i).unwrap();
-                let largest = shares.kinds().iter().fold(0.0f64, |most, (_, load)| most.max(load.force.norm()));
-                let off = shares.change - shares.sum();
-                assert!(off.force.norm() < 1e-9 * largest, "{model}, step {step}, solid {i}: {off:?} of {largest}");
-                let turning = shares.kinds().iter().fold(largest * 0.01, |most, (_, load)| most.max(torque(load)));
-                assert!(torque(&off) < 1e-9 * turning, "{model}, step {step}, solid {i}: {off:?} of {turning}");
-                for (seen, (_, load)) in seen.iter_mut().zip(shares.kinds()) {
+            for (i, bound) in [(1, 1e-3), (2, 1e-9), (3, 1e-9), (4, 1e-9), (5, 1e-3)] {
+                let off = missed(&sim, i);
+                assert!(off < bound, "{model}, step {step}, solid {i}: {off:e}");
+                for (seen, (_, load)) in seen.iter_mut().zip(sim.shares(i).unwrap().kinds()) {
                     *seen |= load.force.norm() + torque(&load) > 0.0;
                 }
             }
@@ -104,6 +111,27 @@ fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
         let expected = if model.is_empty() { vec!["viscous", "pushes"] } else { vec!["pushes"] };
         assert!(absent.iter().all(|kind| expected.contains(kind) || *kind == "delayed"), "{model}: {absent:?}");
     }
+}
+
+#[test]
+fn joints_and_ropes_add_up_to_the_last_digits_where_nothing_touches() {
+    let mut text = CROWD.to_string();
+    for name in ["crate", "stone"] {
+        let start = text.find(&format!("[[solid]]\nname = \"{name}\"")).unwrap();
+        let end = start + 1 + text[start + 1..].find("[[solid]]").unwrap();
+        text.replace_range(start..end, "");
+    }
+    let scene = Scene::parse(&text, Path::new(""), &[]).expect("a sound scene");
+    let mut sim = Simulation::new(scene.build::<2>().expect("a sound scene").setup).expect("a sound setup");
+    sim.keep_loads();
+    for step in 0..1500 {
+        sim.step().unwrap();
+        for i in 1..4 {
+            let off = missed(&sim, i);
+            assert!(off < 1e-9, "step {step}, solid {i}: {off:e}");
+        }
+    }
+    assert!(sim.rope(0).tension + sim.joint(0).force.norm() > 0.0, "they carry something");
 }
 
 fn torque(load: &Load<2>) -> f64 {
