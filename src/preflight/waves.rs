@@ -218,7 +218,7 @@ impl<const D: usize> Look<'_, D> {
             return None;
         }
         let mut swing = self.swing(solid, motion, &bounds)?;
-        let water = self.water();
+        let water = Bounds::around(self.system.fluid().r);
         let ahead = |way: &Vector<D>| furthest(&water, way) - furthest(&bounds, way);
         if ahead(&-swing.way) > ahead(&swing.way) {
             swing.way = -swing.way;
@@ -276,16 +276,6 @@ impl<const D: usize> Look<'_, D> {
             Some(height) if height < self.still.level => Paddle::Flap { arm: self.still.level - height },
             _ => Paddle::Piston,
         }
-    }
-
-    /// What holds all water.
-    fn water(&self) -> Bounds<D> {
-        let mut bounds: Bounds<D> =
-            Bounds { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) };
-        for x in self.system.fluid().r {
-            bounds = Bounds { min: bounds.min.inf(x), max: bounds.max.sup(x) };
-        }
-        bounds
     }
 
     /// How the material point in the still level goes sideways.

@@ -33,7 +33,7 @@ impl<const D: usize> System<D> {
             self.normals.par_extend(local.par_iter().map(|r| spec.shape.outward(r, 0.05 * model.dp)));
         }
         self.boxes.push(Bounds::around(local));
-        let load = Load { force: Vector::zeros(), torque: Wedge::zero() };
+        let load = Load::zero();
         let (acceleration, whirl, skin) = (Vector::zeros(), Wedge::zero(), first..self.skin.len());
         self.solids.push(Solid { spec, kinematics, acceleration, whirl, skin, load });
         Ok(())
@@ -94,7 +94,7 @@ impl<const D: usize> System<D> {
         solid.spec.role = Role::Fixed;
         (solid.kinematics.velocity, solid.kinematics.spin) = (Vector::zeros(), Wedge::zero());
         (solid.acceleration, solid.whirl) = (Vector::zeros(), Wedge::zero());
-        solid.load = Load { force: Vector::zeros(), torque: Wedge::zero() };
+        solid.load = Load::zero();
         solid.skin = gone.start..gone.start;
         for later in &mut self.solids[i + 1..] {
             later.skin = later.skin.start - gone.len()..later.skin.end - gone.len();

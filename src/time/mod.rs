@@ -70,7 +70,7 @@ impl<const D: usize> Stepper<D> {
             Self::Symplectic => Symplectic.step(system, over, books.as_deref_mut()),
         };
         let before = if let Self::Verlet(verlet) = self { Some(verlet.before_mut()) } else { None };
-        let taken = system.damp(over.dt, before, books.is_some());
+        let taken = system.damp(over.dt, before, books.as_ref().is_some_and(|books| books.energy));
         books.into_iter().for_each(|books| books.damped(taken));
         weight
     }

@@ -264,7 +264,7 @@ fn a_body_on_a_driven_floor_is_carried_as_far_as_friction_goes() -> Result<()> {
         solids.iter_mut().for_each(|solid| solid.friction = 0.4);
         let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
         let mut engine = Dim::<2>::engine(&solids, &start, &Links::default(), &Vector::from([0.0, -9.81]), 0.01)?;
-        let (dt, idle) = (2e-4, Load { force: Vector::zeros(), torque: Wedge::zero() });
+        let (dt, idle) = (2e-4, Load::zero());
         for step in 1..=2000 {
             let then = motion.kinematics(&solids[0].pose, dt * f64::from(step));
             engine.step(dt, &[idle; 2], &[Some(then), None]).expect("a sound step");
@@ -289,7 +289,7 @@ fn a_body_that_tumbles_in_a_vacuum_for_ten_seconds_keeps_energy_and_angular_mome
     let (momentum, energy) = (inertia * spin, spin.dot(&(inertia * spin)));
     let mut worst: f64 = 0.0;
     for _ in 0..50_000 {
-        let idle = Load { force: Vector::zeros(), torque: Wedge::zero() };
+        let idle = Load::zero();
         engine.step(2e-4, &[idle], &[None]).expect("a sound step");
         let now = engine.kinematics(0);
         let spin = Vector::<3>::from_column_slice(&now.spin.axial());
