@@ -111,7 +111,7 @@ impl Scene {
         let AbsorbWords { period, stroke, speed } = *words;
         let tuning = Tuning { period, gauge: GAUGE * self.h(), level: site.level, stroke, speed };
         let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| self.origin.place(e, key))?;
-        let gauge: Vector<D> = site.face + site.way * tuning.gauge;
+        let gauge: Vector<D> = site.face + site.way * absorber.gauge();
         Ok(motion.absorbing(absorber, gauge, site.way))
     }
 

@@ -34,6 +34,10 @@ const MODES: usize = 30;
 /// kδ beyond which the gauge stands too far off for a wave.
 const FARTHEST: f64 = 1.0;
 
+/// Periods of the own motion that are looked at for its extent, and samples of each.
+const PERIODS: u32 = 100;
+const SAMPLES: u32 = 40;
+
 /// i.
 const I: Complex<f64> = Complex::new(0.0, 1.0);
 
@@ -42,13 +46,14 @@ const I: Complex<f64> = Complex::new(0.0, 1.0);
 pub struct Tuning {
     /// The period (s) whose waves it takes whole; none: that of its own wave.
     pub period: Option<f64>,
-    /// From the face at rest to the gauge, m.
+    /// From the face at rest to the gauge at least, m. A flap's stands as much further off as makes T as long as a wave takes to
+    /// the piston's: what stays at a flap runs ahead of what leaves it.
     pub gauge: f64,
     /// Height of the still water, m.
     pub level: f64,
     /// How far (m) its face may go from end to end at the still level; none: four times what its own wave takes.
     pub stroke: Option<f64>,
-    /// How fast (m/s) that may go; none: as fast as a sine of that stroke and period is.
+    /// How fast (m/s) that may go; none: four times as fast as its own wave, without one as a sine of that stroke and period.
     pub speed: Option<f64>,
 }
 
@@ -115,24 +120,7 @@ impl Absorber {
             Some(period) => maker.train(period)?,
             None => wave.peak(maker.g),
         };
-        if train.k * gauge > FARTHEST {
-            let what = format!(
-                "a wave of {:.3} s is {:.3} m long here, too short to be absorbed: the gauge is {gauge:.3} m before the paddle",
-                train.period(),
-                train.length()
-            );
-            let share = FARTHEST / (train.k * gauge);
-            return Err(Error::scene(what).help(format!("a dp of {share:.2} of the present one is enough")));
-        }
-        let own = wave.stroke();
-        let most = if let Paddle::Flap { arm } = maker.paddle { 2.0 * STEEPEST * arm } else { f64::INFINITY };
-        let usual = if own > 0.0 { ROOM * own } else { train.highest() / maker.paddle.transfer(&train) };
-        let stroke = tuning.stroke.unwrap_or(usual).min(most);
-        if stroke < own {
-            let what = format!("the paddle may go {stroke:.3} m to and fro, and its own wave takes {own:.3} m");
-            return Err(Error::scene(what).help("leave it out, or give twice that at least"));
-        }
-        let speed = tuning.speed.unwrap_or(0.5 * train.omega * stroke);
+        let (stroke, speed) = limits(maker, wave, &train, tuning)?;
         let mut absorber = Self {
             maker: *maker,
             train,
@@ -146,7 +134,21 @@ impl Absorber {
             own: Vec::new(),
             bound: 0.0,
         };
+        let least = gauge / (maker.g * maker.depth).sqrt();
         absorber.tune();
+        while absorber.lag < least && train.k * absorber.gauge < FARTHEST {
+            absorber.gauge += 0.25 * gauge;
+            absorber.tune();
+        }
+        if absorber.lag < least || train.k * absorber.gauge > FARTHEST {
+            let what = format!(
+                "waves of {:.3} s, {:.3} m long, cannot be absorbed by a gauge {:.3} m before this paddle",
+                train.period(),
+                train.length(),
+                absorber.gauge
+            );
+            return Err(Error::scene(what).help("a smaller dp brings the gauge nearer; a flap needs a lower hinge"));
+        }
         absorber.learn(wave);
         Ok(absorber)
     }
@@ -253,3 +255,31 @@ impl Absorber {
         Yielding { since: t, x, rate, change: (allowed - rate) / self.lag }
     }
 }
+
+/// How far (m) the face of a paddle may go from end to end, and how fast, m/s: as was asked, or as is usual.
+fn limits(maker: &Maker, wave: &Wave, train: &Train, tuning: &Tuning) -> Result<(f64, f64)> {
+    let (own, own_speed) = extent(wave, train);
+    let most = if let Paddle::Flap { arm } = maker.paddle { 2.0 * STEEPEST * arm } else { f64::INFINITY };
+    let usual = if own > 0.0 { ROOM * own } else { train.highest() / maker.paddle.transfer(train) };
+    let stroke = tuning.stroke.unwrap_or(usual).min(most);
+    let usual = if own > 0.0 { ROOM * own_speed } else { 0.5 * train.omega * stroke };
+    let speed = tuning.speed.unwrap_or(usual);
+    match stroke >= 2.0 * own && speed >= own_speed {
+        true => Ok((stroke, speed)),
+        false => {
+            let what = format!("the paddle's own wave takes {own:.3} m to and fro, and {own_speed:.3} m/s");
+            let least = format!("a stroke of {:.3} m and a speed of {own_speed:.3} m/s are the least", 2.0 * own);
+            Err(Error::scene(what).help(format!("{least}: twice as far, so that it can yield; or leave both out")))
+        }
+    }
+}
+
+/// How far (m) the own motion of a paddle goes from end to end if as far to both sides, and how fast, m/s.
+fn extent(wave: &Wave, train: &Train) -> (f64, f64) {
+    let step = train.period() / f64::from(SAMPLES);
+    let motion = (0..PERIODS * SAMPLES).map(|i| wave.displacement(f64::from(i) * step));
+    motion.fold((0.0, 0.0), |most, (x, v)| (most.0.max(2.0 * x.abs()), most.1.max(v.abs())))
+}
+
+#[cfg(test)]
+mod tests;
