@@ -161,7 +161,8 @@ impl<const D: usize> Look<'_, D> {
         let pins = |kind| matches!(kind, JointKind::Hinge | JointKind::Fixed | JointKind::Ball);
         self.system.links().joints.iter().any(|joint| {
             let [one, other] = joint.between;
-            pins(joint.kind) && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
+            pins(joint.kind)
+                && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
         })
     }
 
