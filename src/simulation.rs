@@ -200,6 +200,7 @@ impl<const D: usize> Simulation<D> {
             return Err(self.fault("time step of no length", NO_STEP, 0));
         }
         let over = Interval { t: self.clock.time, dt };
+        self.system.steer(over.t);
         let weight = self.stepper.step(&mut self.system, over, self.bodies.books.as_mut());
         self.bodies.advance(&mut self.system, over, weight, between)?;
         self.clock.dt = dt;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    preflight::{Body, Disk, Finding, Severity, Wave, three},
+    preflight::{Absorber, Body, Disk, Finding, Severity, Wave, three},
     run::{self, Inspection, Report},
 };
 
@@ -116,6 +116,9 @@ fn facts(report: &Report) -> Vec<Vec<String>> {
     for wave in &report.preflight.waves {
         waves(wave).into_iter().for_each(|(name, text)| row(name, text));
     }
+    for absorber in &report.preflight.absorbers {
+        absorbs(absorber).into_iter().for_each(|(name, text)| row(name, text));
+    }
     rows
 }
 
@@ -137,6 +140,22 @@ fn waves(wave: &Wave) -> Vec<(&'static str, String)> {
         ("", format!("{water}; {speeds}")),
         ("", format!("\"{}\", {kind}: stroke {stroke} m, up to {speed} m/s{ramp}", wave.solid)),
         ("", format!("{} m to the far end: there after {far} s, back after {back} s", three(wave.reach_m))),
+    ]
+}
+
+/// A paddle that absorbs.
+fn absorbs(own: &Absorber) -> [(&'static str, String); 2] {
+    let [(shorter, less), (longer, more)] = own.sends_back.map(|(period, share)| (three(period), three(100.0 * share)));
+    let (period, gauge) = (three(own.period_s), three(own.gauge_m));
+    let (stroke, speed) = (three(own.stroke_m), three(own.speed_mps));
+    [
+        ("absorbs", format!("\"{}\", waves of {period} s, by a gauge {gauge} m before its face", own.solid)),
+        (
+            "",
+            format!(
+                "stroke to {stroke} m, speed to {speed} m/s; sends back {less} % at {shorter} s, {more} % at {longer} s"
+            ),
+        ),
     ]
 }
 

@@ -22,7 +22,7 @@ use super::{
 use crate::{
     scene::world_bounds,
     solid::{
-        FreeBody, Role, Solid,
+        FreeBody, JointKind, Role, Solid,
         hydrostatics::{equilibrium_height, metacentric_height},
     },
     space::{Pose, Vector, Wedge},
@@ -145,13 +145,25 @@ impl<const D: usize> Look<'_, D> {
 
     /// Where the body floats at rest, as it is turned.
     fn at_rest(&self, solid: &Solid<D>, body: &FreeBody<D>) -> Option<Pose<D>> {
-        if self.g == 0.0 || body.locked_translations[D - 1] {
+        if self.g == 0.0 || body.locked_translations[D - 1] || self.pinned(solid) {
             return None;
         }
         let mut pose = solid.kinematics.pose;
         let rho0 = self.system.model().rho0;
         pose.position[D - 1] += equilibrium_height(&solid.spec.shape, &pose, body.mass, rho0, self.still.level).ok()?;
         Some(pose)
+    }
+
+    /// Whether a joint to what is not free holds a point of the solid.
+    fn pinned(&self, solid: &Solid<D>) -> bool {
+        let number = self.system.solid(&solid.spec.name);
+        let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
+        let pins = |kind| matches!(kind, JointKind::Hinge | JointKind::Fixed | JointKind::Ball);
+        self.system.links().joints.iter().any(|joint| {
+            let [one, other] = joint.between;
+            pins(joint.kind)
+                && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
+        })
     }
 
     /// The body at rest at `pose`.

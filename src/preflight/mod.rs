@@ -4,6 +4,7 @@
 //! Facts are numbers; a [`Finding`] is a sentence with the number that would mend it. What a run prints at its start
 //! are the findings that are warnings.
 
+mod absorb;
 mod bodies;
 mod faces;
 mod gaps;
@@ -16,6 +17,7 @@ mod words;
 
 use serde::Serialize;
 
+pub use absorb::Absorber;
 pub use bodies::{Afloat, Body, Tilt};
 pub use size::{Disk, Size};
 pub use sound::{Expected, Sound, Step};
@@ -87,6 +89,8 @@ pub struct Preflight {
     pub step: Step,
     /// Waves that driven solids make.
     pub waves: Vec<Wave>,
+    /// Paddles that take the waves which come to them.
+    pub absorbers: Vec<Absorber>,
     /// Free bodies.
     pub bodies: Vec<Body>,
     /// What may not be as it was meant; warnings first.
@@ -133,9 +137,9 @@ pub fn look<const D: usize>(
     let bodies = look.bodies(&gaps.touching, &mut findings);
     look.walls(&mut findings);
     look.probes(&sound, &mut findings);
-    let waves = look.waves(&mut findings);
+    let (waves, absorbers) = (look.waves(&mut findings), look.absorbers());
     findings.sort_by_key(|f| f.severity);
-    Preflight { size, sound, step, waves, bodies, findings }
+    Preflight { size, sound, step, waves, absorbers, bodies, findings }
 }
 
 impl<const D: usize> Look<'_, D> {

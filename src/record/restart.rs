@@ -27,7 +27,7 @@ pub const PREVIOUS: &str = "checkpoint.previous.bin";
 pub const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// What a file of so many bytes may unfold to at most, per byte. Particles' numbers alone, which do not pack, keep a
 /// true checkpoint below 200.

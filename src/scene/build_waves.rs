@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::{
-    ComponentsWords, DrivenWords, ElevationWords, Scene, WaveWords,
+    Absorb, ComponentsWords, DrivenWords, ElevationWords, Scene, WaveWords,
     build::{Body, Still},
     geometry::{vector, world_bounds},
     table,
@@ -39,6 +39,24 @@ impl<const D: usize> Pool<D> {
     }
 }
 
+/// Where a paddle is that absorbs.
+pub(super) struct Site<const D: usize> {
+    /// A point (m) of its face at rest, in the middle of its width.
+    pub(super) face: Vector<D>,
+    /// Where its waves go; a unit vector.
+    pub(super) way: Vector<D>,
+    /// Height of the still water, m.
+    pub(super) level: f64,
+}
+
+impl<const D: usize> Site<D> {
+    /// Of a paddle in the box `own`, whose waves go along `way`.
+    fn of(own: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
+        let middle = 0.5 * (own.min + own.max);
+        Self { face: middle + way * (furthest(own, &way) - middle.dot(&way)), way, level }
+    }
+}
+
 /// The largest x·`way` in a box.
 fn furthest<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
     (0..D).map(|i| (way[i] * bounds.min[i]).max(way[i] * bounds.max[i])).sum()
@@ -59,26 +77,26 @@ impl Scene {
         let g = self.gravity.as_ref().and_then(|g| g.last()).map_or(0.0, |g| -g);
         let maker = Maker { depth, g, paddle: Paddle::Piston };
         match &words.along {
-            Some(along) => self.piston(key, wave, vector::<D>(along).normalize(), &maker, (&own, &pool.bounds)),
+            Some(along) => self.piston(key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
             None => self.flap(key, words, wave, &maker, (&own, pool)),
         }
         .map(Some)
     }
 
-    /// The motion of a piston that goes `along`; `own` and `water` are the boxes around it and the water.
+    /// The motion of a piston that goes `along`; `own` is the box around it.
     fn piston<const D: usize>(
         &self,
         key: &str,
         wave: &WaveWords,
         along: Vector<D>,
         maker: &Maker,
-        (own, water): (&Bounds<D>, &Bounds<D>),
+        (own, pool): (&Bounds<D>, &Pool<D>),
     ) -> Result<Motion<D>> {
         let refuse = |what: &str, help: &str| Err(self.wrong_with(&format!("{key}.along"), what, help));
         if along[D - 1].abs() > 1e-6 {
             return refuse("a piston that makes waves slides level", "write  along = [1.0, 0.0]");
         }
-        let ahead = furthest(water, &along) - furthest(own, &along);
+        let ahead = furthest(&pool.bounds, &along) - furthest(own, &along);
         if ahead <= self.dp {
             let help =
                 "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
@@ -92,7 +110,8 @@ impl Scene {
             let help = "waves so long need a longer tank: take a shorter period or a lower height";
             return Err(self.wrong_with(&key, what, help));
         }
-        Ok(Motion::slide(along, Law::Wave(Box::new(law))))
+        let site = Site::of(own, along, pool.still.level);
+        self.yielding(&key, wave, maker, &site, Motion::slide(along, Law::Wave(Box::new(law))))
     }
 
     /// The motion of a flap; `own` is the box around it.
@@ -123,8 +142,25 @@ impl Scene {
         let middle = 0.5 * (pool.bounds.min + pool.bounds.max) - 0.5 * (own.min + own.max);
         let sense = if way.dot(&middle) < 0.0 { -1.0 } else { 1.0 };
         let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
-        let law = self.waving(&format!("{key}.wave"), wave, &Maker { paddle: Paddle::Flap { arm }, ..*maker })?;
-        Ok(Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
+        let (key, maker) = (format!("{key}.wave"), Maker { paddle: Paddle::Flap { arm }, ..*maker });
+        let law = self.waving(&key, wave, &maker)?;
+        let site = Site::of(own, way.normalize() * sense, pool.still.level);
+        self.yielding(&key, wave, &maker, &site, Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
+    }
+
+    /// The `motion` of a paddle, which absorbs if its words say so.
+    fn yielding<const D: usize>(
+        &self,
+        key: &str,
+        words: &WaveWords,
+        maker: &Maker,
+        site: &Site<D>,
+        motion: Motion<D>,
+    ) -> Result<Motion<D>> {
+        match words.absorb.and_then(Absorb::words) {
+            Some(words) => self.absorbing(&format!("{key}.absorb"), &words, maker, site, motion),
+            None => Ok(motion),
+        }
     }
 
     /// The wave that a paddle is to make.
@@ -170,7 +206,7 @@ impl Scene {
                 let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
                 maker.recorded(&series, distance, delay).map_err(place("elevation"))?
             }
-            _ => return Err(self.wrong(key, "which wave?")),
+            _ => self.silence(key, words.absorb.and_then(Absorb::words), maker)?,
         };
         Ok(match words.ramp {
             Some(ramp) => wave.ramp(ramp),

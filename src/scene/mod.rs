@@ -3,7 +3,8 @@
 //! [`format`], [`bodies`] and [`links`] are the words, [`document`] reads them from TOML, `verify`, `solids` and `checks`
 //! hold them against one another, [`resolve`] fills in the defaults, [`build`] opens the files that they name.
 
-pub mod bodies;
+pub mod absorb;
+mod bodies;
 pub mod build;
 mod build_links;
 mod build_solids;
@@ -39,6 +40,7 @@ pub use crate::plan::{
     Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score, StatisticKind, StatisticWords,
     Surface,
 };
+pub use absorb::{Absorb, AbsorbWords};
 pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWords, PartWords, ShapeWords, SolidWords};
 pub(crate) use build::Stage;
 pub use build::{Built, Still};

@@ -28,6 +28,8 @@ pub fn shipped() -> &'static [Shipped] {
         scene!("hinged-raft"),
         scene!("regular-waves"),
         scene!("buoy-in-waves"),
+        scene!("flap-converter"),
+        scene!("harbour"),
         scene!("focused-box"),
         scene!("solitary-runup"),
         scene!("still-tank"),

@@ -3,13 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{DrivenWords, Scene, resolve::Filler, verify::said};
+use super::{Absorb, AbsorbWords, DrivenWords, Scene, resolve::Filler, verify::said};
 use crate::{
     error::Result,
     solid::wave::{COMPONENTS, Theory},
 };
 
-/// A wave by name: exactly one kind.
+/// A wave by name: exactly one kind; none of a paddle that only absorbs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WaveWords {
@@ -43,6 +43,9 @@ pub struct WaveWords {
     /// Depth of the still water at the paddle, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<f64>,
+    /// Whether the paddle takes the waves that come back to it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub absorb: Option<Absorb>,
 }
 
 /// A regular wave.
@@ -165,6 +168,17 @@ impl WaveWords {
         Self { solitary: Some(SolitaryWords { height, theory: None }), ..Self::default() }
     }
 
+    /// No wave: a paddle that takes those of `period` (s) that come to it.
+    pub fn absorber(period: f64) -> Self {
+        let words = AbsorbWords { period: Some(period), ..AbsorbWords::default() };
+        Self { absorb: Some(Absorb::As(words)), ..Self::default() }
+    }
+
+    /// The same wave of a paddle that takes what comes back to it.
+    pub fn absorbing(self) -> Self {
+        Self { absorb: Some(Absorb::Plainly(true)), ..self }
+    }
+
     /// The kinds that it names.
     fn kinds(&self) -> Vec<&'static str> {
         let all = [
@@ -238,7 +252,11 @@ impl DrivenWords {
 impl Scene {
     pub(super) fn verify_wave(&self, key: &str, words: &WaveWords) -> Result<()> {
         let kinds = words.kinds();
-        if kinds.len() != 1 {
+        let absorb = words.absorb.and_then(Absorb::words);
+        if let Some(words) = &absorb {
+            self.verify_absorb(&format!("{key}.absorb"), words, !kinds.is_empty())?;
+        }
+        if kinds.len() > 1 || (kinds.is_empty() && absorb.is_none()) {
             let what = match kinds.len() {
                 0 => "which wave?".to_string(),
                 _ => format!("a paddle makes one kind of wave; this one {}", said(&kinds)),
@@ -256,7 +274,10 @@ impl Scene {
                 "write  gravity = [0.0, -9.81]",
             ));
         }
-        let key = &format!("{key}.{}", kinds[0]);
+        self.positive(&format!("{key}.ramp"), words.ramp)?;
+        self.positive(&format!("{key}.depth"), words.depth)?;
+        let Some(kind) = kinds.first() else { return Ok(()) };
+        let key = &format!("{key}.{kind}");
         let mut numbers = Vec::new();
         if let Some(words) = &words.regular {
             numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
@@ -274,10 +295,7 @@ impl Scene {
             numbers.extend([("time", Some(words.time)), ("gamma", words.gamma)]);
         }
         numbers.extend(words.solitary.iter().map(|words| ("height", Some(words.height))));
-        numbers.into_iter().try_for_each(|(word, x)| self.positive(&format!("{key}.{word}"), x))?;
-        let above = key.rsplit_once('.').map_or("", |(above, _)| above);
-        self.positive(&format!("{above}.ramp"), words.ramp)?;
-        self.positive(&format!("{above}.depth"), words.depth)
+        numbers.into_iter().try_for_each(|(word, x)| self.positive(&format!("{key}.{word}"), x))
     }
 
     /// What belongs to which spectrum.

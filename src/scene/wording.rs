@@ -54,6 +54,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("wave.elevation", "wave = { elevation = { file = \"gauge.csv\", column = \"eta_m\", distance = 2.0 } }"),
     ("jonswap.peak_period", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
     ("bretschneider.peak_period", "wave = { bretschneider = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("wave.absorb", "absorb = true, or  absorb = { period = 1.2, stroke = 0.4, speed = 1.0 }        # s, m, m/s"),
     ("wave.ramp", "ramp = 2.4        # s"),
     ("wave.depth", "depth = 0.4       # of the still water at the paddle, m"),
     ("along", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),

@@ -7,7 +7,10 @@
 use crate::{
     error::{Error, Result},
     series::Series,
-    solid::{Formula, Kinematics, wave::Wave},
+    solid::{
+        Formula, Kinematics,
+        wave::{Absorber, Wave, Yielding},
+    },
     space::{Pose, Vector, Wedge},
 };
 
@@ -43,6 +46,17 @@ impl Law {
 pub struct Motion<const D: usize> {
     path: Path<D>,
     law: Law,
+    absorbing: Option<Box<Absorbing<D>>>,
+}
+
+/// What makes a paddle absorb, and where its gauge is.
+#[derive(Clone, Debug)]
+struct Absorbing<const D: usize> {
+    absorber: Absorber,
+    /// The gauge when the paddle is at rest, m.
+    gauge: Vector<D>,
+    /// Where the waves go; a unit vector.
+    way: Vector<D>,
 }
 
 #[derive(Clone, Debug)]
@@ -56,7 +70,7 @@ enum Path<const D: usize> {
 impl<const D: usize> Motion<D> {
     /// Sliding along `direction` (any length but zero) by the law's value (m).
     pub fn slide(direction: Vector<D>, law: Law) -> Self {
-        Self { path: Path::Slide(direction.normalize()), law }
+        Self { path: Path::Slide(direction.normalize()), law, absorbing: None }
     }
 
     /// Turning about the world point `centre` (m) by the law's angle (rad).
@@ -66,7 +80,32 @@ impl<const D: usize> Motion<D> {
     pub fn hinge(centre: Vector<D>, axis: &[f64], law: Law) -> Self {
         let axis = Wedge::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
-        Self { path: Path::Hinge { centre, axis: axis * (1.0 / length) }, law }
+        Self { path: Path::Hinge { centre, axis: axis * (1.0 / length) }, law, absorbing: None }
+    }
+
+    /// The same motion, of a paddle that absorbs: its gauge is above `gauge` (m) when it is at rest, and goes with it along
+    /// `way`, a unit vector. Without effect on a law that is no wave's.
+    pub fn absorbing(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
+        Self { absorbing: Some(Box::new(Absorbing { absorber, gauge, way })), ..self }
+    }
+
+    /// What makes it absorb, if it does.
+    pub fn absorber(&self) -> Option<&Absorber> {
+        self.absorbing.as_ref().map(|own| &own.absorber)
+    }
+
+    /// Where the gauge of a paddle that absorbs is at time `t` (s); nowhere if it does not.
+    pub(crate) fn gauge(&self, yielding: &Yielding, t: f64) -> Option<Vector<D>> {
+        let (Some(own), Law::Wave(wave)) = (&self.absorbing, &self.law) else { return None };
+        Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.at(t).0))
+    }
+
+    /// How it goes on yielding from time `t` (s), when the water at its gauge stands at `level` (m), if there is any.
+    pub(crate) fn steer(&self, before: &Yielding, t: f64, level: Option<f64>) -> Yielding {
+        match (&self.absorbing, &self.law) {
+            (Some(own), Law::Wave(wave)) => own.absorber.steer(wave, before, t, level),
+            _ => *before,
+        }
     }
 
     /// Height (m) of the world point about which it turns; none of a slide.
@@ -86,7 +125,18 @@ impl<const D: usize> Motion<D> {
     ///
     /// The `centre` of the result is the hinge, or the frame's origin of a sliding solid.
     pub fn kinematics(&self, start: &Pose<D>, t: f64) -> Kinematics<D> {
-        let (value, rate) = self.law.at(t);
+        self.moved(start, self.law.at(t))
+    }
+
+    /// As [`Motion::kinematics`], of a paddle that has yielded.
+    pub(crate) fn beside(&self, start: &Pose<D>, t: f64, yielding: &Yielding) -> Kinematics<D> {
+        match (&self.absorbing, &self.law) {
+            (Some(_), Law::Wave(wave)) => self.moved(start, wave.beside(t, yielding.at(t))),
+            _ => self.kinematics(start, t),
+        }
+    }
+
+    fn moved(&self, start: &Pose<D>, (value, rate): (f64, f64)) -> Kinematics<D> {
         match &self.path {
             Path::Slide(direction) => {
                 let position = start.position + direction * value;

@@ -41,6 +41,7 @@ use crate::{
     shape::Shape,
     space::{Matrix, Pose, Vector, Wedge},
 };
+use wave::Yielding;
 
 /// A solid as it is to be made.
 #[derive(Clone, Debug)]
@@ -119,6 +120,8 @@ pub struct Solid<const D: usize> {
     pub whirl: Wedge<D>,
     /// The water's load on it at the last force pass (pressure and viscosity, no weight).
     pub load: Load<D>,
+    /// How far it has yielded to waves, if it is a paddle that absorbs them.
+    pub(crate) yielding: Yielding,
 }
 
 /// How far the accelerations of a solid follow its last step: a mean over five or so, so that a body lighter than the
@@ -133,6 +136,11 @@ impl<const D: usize> Solid<D> {
         let whirl = (next.spin + now.spin * -1.0) * (1.0 / dt);
         self.whirl = self.whirl * (1.0 - FOLLOW) + whirl * FOLLOW;
         self.kinematics = next;
+    }
+
+    /// Where its `motion` has it at time `t` (s).
+    pub(crate) fn driven(&self, motion: &Motion<D>, t: f64) -> Kinematics<D> {
+        motion.beside(&self.spec.pose, t, &self.yielding)
     }
 
     /// Acceleration (m/s²) of its point at the world position `x` (m).

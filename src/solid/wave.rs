@@ -2,13 +2,14 @@
 //!
 //! A [`Maker`] knows the paddle and the water before it, and makes a [`Wave`]: the displacement of the paddle's face
 //! at the still level, positive where the waves go, with its exact rate. There is no state: a wave is rebuilt from the
-//! same words, and has the same bits at any time of any run.
+//! same words, and has the same bits at any time of any run. What a paddle yields to other waves is in `absorb`.
 //!
 //!   X(t) = r(t) Σ Aₙ sin(ωₙ t + φₙ),   η(x, t) = Σ aₙ cos(ωₙ t − kₙ x + φₙ),   Aₙ = aₙ/c(kₙ)
 //!
 //! c is the paddle's transfer function (`paddle`), r goes smoothly from 0 to 1. The waves of order 2 are in `second`,
 //! the solitary one is in `solitary`.
 
+mod absorb;
 mod paddle;
 mod record;
 mod second;
@@ -16,6 +17,7 @@ mod solitary;
 mod spectrum;
 mod train;
 
+pub use absorb::{Absorber, Tuning, Yielding};
 pub use paddle::Paddle;
 pub use solitary::{Solitary, Theory};
 pub use spectrum::Spectrum;
@@ -128,6 +130,14 @@ impl Wave {
         &self.facts
     }
 
+    /// The regular wave of its period or peak period; of a solitary one that is as long and as fast.
+    fn peak(&self, g: f64) -> Train {
+        match (self.facts.train, self.facts.solitary) {
+            (None, Some(own)) => Train::of(std::f64::consts::TAU * own.celerity / own.length(), own.depth, g),
+            (train, _) => train.unwrap_or(Train::of(1.0, self.depth(), g)),
+        }
+    }
+
     /// Displacement (m) of the face at the still level and its rate (m/s) at time `t` (s).
     pub fn displacement(&self, t: f64) -> (f64, f64) {
         if t <= 0.0 || t >= self.end {
@@ -148,7 +158,16 @@ impl Wave {
     /// What drives the paddle: displacement (m) and rate (m/s) of a piston, angle (rad) and rate (rad/s) of a flap,
     /// positive where the waves go.
     pub fn at(&self, t: f64) -> (f64, f64) {
+        self.turned(self.displacement(t))
+    }
+
+    /// As [`Wave::at`], the face having yielded by `aside` (m and m/s).
+    pub(super) fn beside(&self, t: f64, aside: (f64, f64)) -> (f64, f64) {
         let (x, v) = self.displacement(t);
+        self.turned((x + aside.0, v + aside.1))
+    }
+
+    fn turned(&self, (x, v): (f64, f64)) -> (f64, f64) {
         match self.paddle {
             Paddle::Piston => (x, v),
             Paddle::Flap { arm } => ((x / arm).atan(), v / arm / (1.0 + (x / arm).powi(2))),
@@ -288,6 +307,14 @@ impl Maker {
         let facts = Facts { kind: "solitary", height, order: 1, train: None, solitary: Some(wave) };
         let (course, paddle) = (Course::Solitary(wave), self.paddle);
         Ok(Wave { facts, course, ramp: wave.lead(), end: f64::INFINITY, paddle })
+    }
+
+    /// No wave at all: the paddle stands still, before waves of `period` (s) that come from elsewhere.
+    ///
+    /// # Errors
+    /// `Scene` if the period is none.
+    pub fn silent(&self, period: f64) -> Result<Wave> {
+        Ok(self.wave("none", 0.0, 1, self.train(period)?, Vec::new()))
     }
 
     fn train(&self, period: f64) -> Result<Train> {

@@ -35,7 +35,8 @@ impl<const D: usize> System<D> {
         self.boxes.push(Bounds::around(local));
         let load = Load::zero();
         let (acceleration, whirl, skin) = (Vector::zeros(), Wedge::zero(), first..self.skin.len());
-        self.solids.push(Solid { spec, kinematics, acceleration, whirl, skin, load });
+        let yielding = Default::default();
+        self.solids.push(Solid { spec, kinematics, acceleration, whirl, skin, load, yielding });
         Ok(())
     }
 

@@ -6,7 +6,7 @@ use super::{Escape, System};
 use crate::{
     error::{Error, Kind, Result},
     particles::Particles,
-    solid::{Kinematics, Load},
+    solid::{Kinematics, Load, wave::Yielding},
     space::{Matrix, Pose, Vector, Wedge},
     sweep::Sums,
 };
@@ -24,6 +24,7 @@ pub(crate) struct SystemState<const D: usize> {
     kinematics: Vec<Kinematics<D>>,
     loads: Vec<Load<D>>,
     accelerations: Vec<(Vector<D>, Wedge<D>)>,
+    yielding: Vec<Yielding>,
     stress: Vec<Matrix<D>>,
     /// Where the water and the solids were when the lists were made.
     built: (Vec<Vector<D>>, Vec<Pose<D>>),
@@ -40,6 +41,7 @@ impl<const D: usize> System<D> {
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
             loads: self.solids.iter().map(|s| s.load).collect(),
             accelerations: self.solids.iter().map(|s| (s.acceleration, s.whirl)).collect(),
+            yielding: self.solids.iter().map(|s| s.yielding).collect(),
             stress: self.stress.clone(),
             built: (self.near.built().to_vec(), self.built.clone().unwrap_or_default()),
             passes: self.passes,
@@ -59,6 +61,8 @@ impl<const D: usize> System<D> {
             && kept.kinematics.len() == self.solids.len()
             && kept.loads.len() == self.solids.len()
             && kept.accelerations.len() == self.solids.len()
+            && kept.yielding.len() == self.solids.len()
+            && kept.yielding.iter().all(Yielding::is_finite)
             && kept.stress.len() == stress
             && kept.built.0.len() == kept.fluid.len()
             && kept.built.1.len() == kept.kinematics.len()
@@ -86,8 +90,9 @@ impl<const D: usize> System<D> {
         for ((solid, k), load) in self.solids.iter_mut().zip(kept.kinematics).zip(kept.loads) {
             (solid.kinematics, solid.load) = (k, load);
         }
-        for (solid, kept) in self.solids.iter_mut().zip(kept.accelerations) {
+        for ((solid, kept), yielding) in self.solids.iter_mut().zip(kept.accelerations).zip(kept.yielding) {
             (solid.acceleration, solid.whirl) = kept;
+            solid.yielding = yielding;
         }
         self.near.build(&water, &skin);
         self.skin_sums.resize(self.near.wet().len(), Sums::zero());

@@ -5,6 +5,7 @@ mod change;
 mod damping;
 mod guard;
 mod kept;
+mod level;
 mod meter;
 pub mod periodic;
 mod setup;

@@ -63,7 +63,7 @@ impl<const D: usize> Bodies<D> {
         let Some(engine) = self.engine.as_deref().filter(|_| wanted) else { return Vec::new() };
         let one = |(i, solid): (usize, &Solid<D>)| match &solid.spec.role {
             Role::Fixed => solid.kinematics,
-            Role::Driven(motion) => motion.kinematics(&solid.spec.pose, t),
+            Role::Driven(motion) => solid.driven(motion, t),
             Role::Free(_) => engine.kinematics(i),
         };
         system.solids.iter().enumerate().map(one).collect()
@@ -141,7 +141,7 @@ impl<const D: usize> Bodies<D> {
         let hosted = self.hosted;
         let at_end = |solid: &Solid<D>| match &solid.spec.role {
             Role::Fixed => solid.kinematics,
-            Role::Driven(motion) => motion.kinematics(&solid.spec.pose, end),
+            Role::Driven(motion) => solid.driven(motion, end),
             Role::Free(_) if hosted => nowhere(),
             Role::Free(_) => solid.kinematics,
         };
@@ -332,7 +332,7 @@ pub(super) fn drift<const D: usize>(system: &mut System<D>, over: Interval) {
     let half = 0.5 * over.dt;
     place(system, None, |_, solid| match &solid.spec.role {
         Role::Fixed => None,
-        Role::Driven(motion) => Some(motion.kinematics(&solid.spec.pose, over.t + half)),
+        Role::Driven(motion) => Some(solid.driven(motion, over.t + half)),
         Role::Free(_) => Some(drifted(&solid.kinematics, half)),
     });
 }

@@ -1,5 +1,6 @@
 //! Executable specifications: each test is a sentence about the physics or a contract.
 
+mod absorb;
 mod books;
 mod buoyancy;
 mod carried;

@@ -4,14 +4,14 @@ use std::f64::consts::{PI, TAU};
 
 use super::*;
 
-const G: f64 = 9.81;
+pub(super) const G: f64 = 9.81;
 
-fn maker(depth: f64, paddle: Paddle) -> Maker {
+pub(super) fn maker(depth: f64, paddle: Paddle) -> Maker {
     Maker { depth, g: G, paddle }
 }
 
 /// All kinds of waves in 0.4 m of water.
-fn all() -> Vec<(&'static str, Wave)> {
+pub(super) fn all() -> Vec<(&'static str, Wave)> {
     let piston = maker(0.4, Paddle::Piston);
     let flap = maker(0.4, Paddle::Flap { arm: 0.3 });
     let sea = Spectrum::jonswap(1.4, 3.3);

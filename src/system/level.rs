@@ -1,0 +1,87 @@
+//! Where the surface of the water is: a height at which Σ V_b W, the share of the kernel's weight that water fills, falls
+//! through ½. On flat water that is the surface itself.
+
+use rayon::prelude::*;
+
+use super::System;
+use crate::{particles::PER_TASK, solid::Role, space::Vector};
+
+impl<const D: usize> System<D> {
+    /// Heights (m) of the surfaces above the horizontal place `at` (m; the last axis does not count), from the highest down, to
+    /// a thousandth of the spacing. Spray lighter than half a kernel does not count.
+    pub fn surfaces(&self, at: &Vector<D>) -> impl Iterator<Item = f64> {
+        let (dp, h, up) = (self.model.dp, self.model.h, D - 1);
+        let beside = |r: &Vector<D>| (0..up).map(|i| (r[i] - at[i]).powi(2)).sum::<f64>() < (2.0 * h).powi(2);
+        let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
+        let heights = self.fluid().r.par_iter().with_min_len(PER_TASK).filter(|r| beside(r)).map(|r| (r[up], r[up]));
+        let (low, high) = heights.reduce(nothing, |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let at = *at;
+        let filled = move |z: f64| {
+            let mut x = at;
+            x[up] = z;
+            let mut sum = 0.0;
+            self.water_near(&x, &mut |b, _, w| sum += self.particle_mass() / self.fluid.rho[b] * w);
+            sum
+        };
+        falls(filled, low, high + 2.0 * h, 0.5 * dp, 1e-3 * dp)
+    }
+
+    /// Lets the paddles that absorb see the water before them at time `t` (s), the start of a step; the lists must hold.
+    pub(crate) fn steer(&mut self, t: f64) {
+        for i in 0..self.solids.len() {
+            let solid = &self.solids[i];
+            let Role::Driven(motion) = &solid.spec.role else { continue };
+            let Some(gauge) = motion.gauge(&solid.yielding, t) else { continue };
+            let level = self.surfaces(&gauge).next();
+            self.solids[i].yielding = motion.steer(&solid.yielding, t, level);
+        }
+    }
+}
+
+/// The heights between `low` and `high` at which `filled` falls through ½ on the way up, from the highest down: found by
+/// steps of `step` downwards and bisection to `tolerance`.
+fn falls(filled: impl Fn(f64) -> f64, low: f64, high: f64, step: f64, tolerance: f64) -> impl Iterator<Item = f64> {
+    // Where the water of the surface before was met.
+    let mut met: Option<f64> = None;
+    std::iter::from_fn(move || {
+        let mut dry = match met {
+            None => high,
+            Some(mut z) => {
+                while filled(z) >= 0.5 {
+                    z -= step;
+                }
+                z
+            }
+        };
+        let mut wet = dry;
+        while filled(wet) < 0.5 {
+            (dry, wet) = (wet, wet - step);
+            if wet.is_nan() || wet < low {
+                return None;
+            }
+        }
+        met = Some(wet);
+        while dry - wet > tolerance {
+            let middle = 0.5 * (wet + dry);
+            if filled(middle) < 0.5 { dry = middle } else { wet = middle }
+        }
+        Some(0.5 * (wet + dry))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::falls;
+
+    #[test]
+    fn surfaces_are_the_falls_through_a_half_from_the_highest_down() {
+        let two_layers = |z: f64| if (0.1..0.2).contains(&z) || (0.0..0.05).contains(&z) { 1.0 } else { 0.1 };
+        let found: Vec<f64> = falls(two_layers, 0.0, 0.4, 0.01, 1e-5).collect();
+        assert_eq!(found.len(), 2);
+        for (found, expected) in found.iter().zip([0.2, 0.05]) {
+            assert!((found - expected).abs() <= 1e-5, "within the tolerance asked for; got {found}");
+        }
+        assert_eq!(falls(|_| 0.4, 0.0, 1.0, 0.01, 1e-5).next(), None);
+        assert_eq!(falls(|_| 0.0, f64::INFINITY, f64::NEG_INFINITY, 0.01, 1e-5).next(), None);
+    }
+}
