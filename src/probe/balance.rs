@@ -68,7 +68,6 @@ impl<const D: usize> Probe<D> for Balance {
             return vec![f64::NAN; Probe::<D>::columns(self).len()];
         };
         let kinds = shares.kinds().into_iter().filter(|(kind, _)| self.kinds.contains(kind)).map(|(_, load)| load);
-        let sum = shares.sum();
-        kinds.chain([sum, shares.change, shares.change - sum]).flat_map(|load| numbers(&load)).collect()
+        kinds.chain([shares.sum(), shares.change, shares.residual()]).flat_map(|load| numbers(&load)).collect()
     }
 }

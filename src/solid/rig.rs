@@ -292,9 +292,9 @@ impl<const D: usize> Rig<D> {
         self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
     }
 
-    /// How many solids there are, tied or not.
-    pub(crate) fn solids(&self) -> usize {
-        self.tied.len()
+    /// Whether there is a joint or a rope.
+    pub(crate) fn pulls_on_any(&self) -> bool {
+        !(self.joints.is_empty() && self.ropes.is_empty())
     }
 
     /// What the ties did to solid number `i` in the last step.

@@ -4,11 +4,14 @@ use std::time::{Duration, Instant};
 
 use super::{
     Books, Held, Interval, Light,
-    books::{Moved, momentum, touching},
+    books::{Moved, Shares, touching},
 };
 use crate::{
     error::{Error, Fault, Kind, Result},
-    solid::{Contact, Engine, EngineFault, Kinematics, Load, Role, Solid, rig::Rig},
+    solid::{
+        Contact, Engine, EngineFault, Kinematics, Load, Role, Solid,
+        rig::{Rig, Tied},
+    },
     space::{Pose, Vector, Wedge},
     system::System,
 };
@@ -118,12 +121,6 @@ impl<const D: usize> Bodies<D> {
         self.engine.as_mut()
     }
 
-    /// What a program has pushed each solid with so far, if that is `wanted`.
-    fn pushes(&self, wanted: bool) -> Vec<Load<D>> {
-        let Some(engine) = self.engine.as_deref().filter(|_| wanted) else { return Vec::new() };
-        (0..self.rig.solids()).map(|i| engine.pushed(i)).collect()
-    }
-
     /// Moves the solids over the whole step, under the loads of the last force pass and weights times `weight`, but for what no water
     /// touches, which has nothing to keep in step with; `between` may do what it likes at the moment when the water hands over to them.
     pub(crate) fn advance(
@@ -228,14 +225,17 @@ impl<const D: usize> Handover<'_, D> {
             return Ok(());
         }
         let Interval { t, dt } = self.over;
-        let (tied, told) = (!self.bodies.rig.is_empty(), self.bodies.books.is_some());
+        let tied = !self.bodies.rig.is_empty();
+        let told = self.bodies.books.is_some() || self.bodies.rig.pulls_on_any();
         let began = self.bodies.whereabouts(self.system, t, tied || told);
-        let pushes = self.bodies.pushes(told);
-        if let (Some(engine), true) = (&mut self.bodies.engine, tied) {
-            self.bodies.rig.act(&mut **engine, &began, t, dt);
+        let mut pushes = Vec::new();
+        if let Some(engine) = &mut self.bodies.engine {
+            pushes.extend((0..if told { began.len() } else { 0 }).map(|i| engine.pushed(i)));
+            if tied {
+                self.bodies.rig.act(&mut **engine, &began, t, dt);
+            }
         }
         self.lighten();
-        let burdens = self.bodies.pushes(tied || told);
         let driven = |(solid, target): (&Solid<D>, &Kinematics<D>)| {
             matches!(solid.spec.role, Role::Driven(_)).then_some(*target)
         };
@@ -255,19 +255,27 @@ impl<const D: usize> Handover<'_, D> {
         for (light, before) in light.iter_mut().zip(&before) {
             light.learn(self.system, dt, before, &self.solids[light.solid]);
         }
-        let contacts = if tied || told { engine.contacts() } else { Vec::new() };
+        let touching = if told { touching(&engine.contacts(), began.len()) } else { Vec::new() };
+        let moved = |i: usize, tied: Tied<D>| Moved {
+            given: self.loads[i],
+            pushes: pushes[i],
+            touching: touching[i],
+            tied,
+            before: &began[i],
+            after: &self.solids[i],
+            dt,
+        };
+        let of = |i: usize| Shares::of(self.system, i, &moved(i, rig.tied(i)));
+        let shares: Vec<_> = (0..touching.len()).map(of).collect();
         if tied {
-            let part = |i: usize| unexplained(self.system, i, &contacts, &[&began[i], &self.solids[i]], dt);
             // In space what turns a body while its spin changes is not in its angular momentum to the last digits.
+            let unexplained: Vec<_> = shares.iter().map(Shares::residual).collect();
             let wanted = D == 2 || engine.iterations() > 1;
-            let unexplained: Vec<_> =
-                (0..if wanted { began.len() } else { 0 }).map(|i| part(i) - self.loads[i] - burdens[i]).collect();
             rig.learn(&**engine, [&began, &self.solids], dt, wanted.then_some(&unexplained[..]));
         }
         if let Some(books) = books {
-            for (i, (before, after)) in began.iter().zip(&self.solids).enumerate() {
-                let (given, pushes, tied) = (self.loads[i], pushes[i], rig.tied(i));
-                books.body(self.system, i, &contacts, &Moved { given, pushes, tied, before, after, dt });
+            for (i, shares) in shares.into_iter().enumerate() {
+                books.body(self.system, i, shares, &moved(i, rig.tied(i)));
             }
         }
         Ok(())
@@ -314,19 +322,6 @@ impl<const D: usize> Handover<'_, D> {
         }
         Ok(self.solids)
     }
-}
-
-/// What changed the momentum of solid number `i` in a step `dt` (s) long between two motions, less weight and contacts, N and N m.
-fn unexplained<const D: usize>(
-    system: &System<D>,
-    i: usize,
-    contacts: &[Contact<D>],
-    [before, after]: &[&Kinematics<D>; 2],
-    dt: f64,
-) -> Load<D> {
-    let Role::Free(body) = &system.solids[i].spec.role else { return Load::zero() };
-    let weight = Load { force: system.gravity() * body.mass, torque: Wedge::zero() };
-    (momentum(body, after) - momentum(body, before)) * (1.0 / dt) - weight - touching(contacts, i)
 }
 
 /// What is not known yet.

@@ -87,6 +87,31 @@ impl<const D: usize> Shares<D> {
     pub fn sum(&self) -> Load<D> {
         self.kinds().into_iter().map(|(_, load)| load).sum()
     }
+
+    /// What the body did beyond the sum.
+    pub fn residual(&self) -> Load<D> {
+        self.change - self.sum()
+    }
+
+    /// Those on solid number `i` in a step, all of the water's as pressure, without what joints, ropes and locks did; none but on
+    /// a free one.
+    pub(super) fn of(system: &System<D>, i: usize, moved: &Moved<'_, D>) -> Self {
+        let solid = &system.solids()[i];
+        let Role::Free(body) = &solid.spec.role else { return Self::zero() };
+        let Moved { given, pushes, touching, tied, before, after, dt } = *moved;
+        Self {
+            pressure: solid.load,
+            delayed: given - solid.load,
+            weight: Load { force: system.gravity() * body.mass, torque: Wedge::zero() },
+            contacts: touching,
+            springs: tied.springs,
+            motors: tied.motors,
+            forces: tied.forces,
+            pushes,
+            change: (momentum(body, after) - momentum(body, before)) * (1.0 / dt),
+            ..Self::zero()
+        }
+    }
 }
 
 /// Energies since the start, J (J/m in 2-D): positive is what water and bodies have gained.
@@ -162,6 +187,7 @@ pub(crate) struct Books<const D: usize> {
 pub(super) struct Moved<'a, const D: usize> {
     pub(super) given: Load<D>,
     pub(super) pushes: Load<D>,
+    pub(super) touching: Load<D>,
     pub(super) tied: Tied<D>,
     pub(super) before: &'a Kinematics<D>,
     pub(super) after: &'a Kinematics<D>,
@@ -244,27 +270,13 @@ impl<const D: usize> Books<D> {
         self.ledger.coupling += energy;
     }
 
-    /// Books a step of the free body number `i` of `system`.
-    pub(super) fn body(&mut self, system: &System<D>, i: usize, contacts: &[Contact<D>], moved: &Moved<'_, D>) {
-        let solid = &system.solids()[i];
-        let Role::Free(body) = &solid.spec.role else { return };
-        let Moved { given, pushes, tied, before, after, dt } = *moved;
-        let mut shares = Shares {
-            pressure: solid.load - self.viscous[i],
-            viscous: self.viscous[i],
-            delayed: given - solid.load,
-            weight: Load { force: system.gravity() * body.mass, torque: Wedge::zero() },
-            contacts: touching(contacts, i),
-            joints: tied.joints,
-            ropes: tied.ropes,
-            springs: tied.springs,
-            motors: tied.motors,
-            forces: tied.forces,
-            pushes,
-            locks: Load::zero(),
-            change: (momentum(body, after) - momentum(body, before)) * (1.0 / dt),
-        };
-        shares.locks = locked(body, tied.held, &(shares.change - shares.sum()));
+    /// Books a step of solid number `i` of `system`, if it is free, under `shares` but for joints, ropes and locks.
+    pub(super) fn body(&mut self, system: &System<D>, i: usize, mut shares: Shares<D>, moved: &Moved<'_, D>) {
+        let Role::Free(body) = &system.solids()[i].spec.role else { return };
+        let Moved { given, tied, before, after, dt, .. } = *moved;
+        (shares.viscous, shares.pressure) = (self.viscous[i], shares.pressure - self.viscous[i]);
+        (shares.joints, shares.ropes) = (tied.joints, tied.ropes);
+        shares.locks = locked(body, tied.held, &shares.residual());
         let mean = Kinematics {
             velocity: 0.5 * (before.velocity + after.velocity),
             spin: (before.spin + after.spin) * 0.5,
@@ -283,14 +295,17 @@ impl<const D: usize> Books<D> {
     }
 }
 
-/// The load of all `contacts` on solid number `i`.
-pub(super) fn touching<const D: usize>(contacts: &[Contact<D>], i: usize) -> Load<D> {
-    let ends = contacts.iter().flat_map(|contact| contact.between.into_iter().zip(contact.loads));
-    ends.filter(|(solid, _)| *solid == i).map(|(_, load)| load).sum()
+/// What all `contacts` do to each of so many solids.
+pub(super) fn touching<const D: usize>(contacts: &[Contact<D>], solids: usize) -> Vec<Load<D>> {
+    let mut sums = vec![Load::zero(); solids];
+    for (solid, load) in contacts.iter().flat_map(|contact| contact.between.into_iter().zip(contact.loads)) {
+        sums[solid] += load;
+    }
+    sums
 }
 
 /// Momentum, kg m/s, and angular momentum about the centre of mass, kg m²/s.
-pub(super) fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
+fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
     Load { force: motion.velocity * body.mass, torque: turned(&body.inertia, &motion.pose.rotation, &motion.spin) }
 }
 

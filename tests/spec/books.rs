@@ -82,7 +82,7 @@ fn missed(sim: &Simulation<2>, i: usize) -> f64 {
     let force = shares.kinds().iter().fold(0.0f64, |most, (_, load)| most.max(load.force.norm()));
     // Bodies 0.1 m large: torques far below a hundredth of a metre times the force are round-off of it.
     let turning = shares.kinds().iter().fold(0.01 * force, |most, (_, load)| most.max(torque(load)));
-    let off = shares.change - shares.sum();
+    let off = shares.residual();
     (off.force.norm() / force).max(torque(&off) / turning)
 }
 
