@@ -8,7 +8,7 @@ mod contact;
 use super::{Dim, Engine, Formula, FreeBody, HasEngine, Kinematics, Law, Links, Load, Motion, Role, SolidSpec};
 use crate::{
     error::{Kind, Result},
-    shape::{Contact, Mesh, Shape},
+    shape::{Mesh, Shape, Touchable},
     space::{Matrix, Pose, Vector, Wedge},
 };
 
@@ -309,7 +309,7 @@ fn every_shape_is_felt_at_its_true_face() {
 }
 
 /// A block around the origin as a mesh; with `notch` its top has a groove along y, down to the middle.
-fn meshed(size: [f64; 3], notch: bool, contact: Contact) -> Shape<3> {
+fn meshed(size: [f64; 3], notch: bool, contact: Touchable) -> Shape<3> {
     let [x, y, z] = size.map(|s| 0.5 * s);
     let mut outline = vec![[-x, -z], [x, -z], [x, z], [-x, z]];
     if notch {
@@ -333,13 +333,13 @@ fn meshed(size: [f64; 3], notch: bool, contact: Contact) -> Shape<3> {
 #[test]
 fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
     let size = [0.4, 0.4, 0.2];
-    for contact in [Contact::Fitting, Contact::Surface, Contact::Hull] {
+    for contact in [Touchable::Fitting, Touchable::Surface, Touchable::Hull] {
         let height = settled(meshed(size, false, contact), [0.03, 0.02, 0.0], 0.1);
         assert!((height - 0.1).abs() < 20e-6, "{contact:?}: {height}");
     }
-    let height = settled(meshed(size, true, Contact::Fitting), [0.0, 0.02, 0.0], 0.0);
+    let height = settled(meshed(size, true, Touchable::Fitting), [0.0, 0.02, 0.0], 0.0);
     assert!(height.abs() < 20e-6, "a ball lies in the groove: {height}");
-    let height = settled(meshed(size, true, Contact::Hull), [0.0, 0.02, 0.0], 0.1);
+    let height = settled(meshed(size, true, Touchable::Hull), [0.0, 0.02, 0.0], 0.1);
     assert!((height - 0.1).abs() < 20e-6, "the hull has no groove: {height}");
 }
 
@@ -347,10 +347,10 @@ fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
 fn a_moving_mesh_stands_on_its_hull_or_its_parts_and_is_saved_with_them() {
     let size = [0.1, 0.1, 0.1];
     for (shape, off) in [
-        (meshed(size, false, Contact::Fitting), 20e-6),
-        (meshed(size, true, Contact::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
+        (meshed(size, false, Touchable::Fitting), 20e-6),
+        (meshed(size, true, Touchable::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
     ] {
-        let seabed = solid("seabed", meshed([1.0, 1.0, 1.0], false, Contact::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
+        let seabed = solid("seabed", meshed([1.0, 1.0, 1.0], false, Touchable::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
         let solids = [seabed, solid("body", shape, [0.0, 0.0, 0.055], Role::Free(light()))];
         let (mut first, mut second) = (engine(&solids, down()).unwrap(), engine(&solids, down()).unwrap());
         let run = |engine: &mut Box<dyn Engine<3>>, n: usize| {
