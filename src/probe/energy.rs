@@ -5,12 +5,7 @@
 //! Bodies: ½ M V² + ½ Ω·I Ω; −M g·R₀ since the start.
 
 use super::Probe;
-use crate::{
-    simulation::Simulation,
-    solid::{Role, Solid},
-    space::{Matrix, Vector},
-    system::System,
-};
+use crate::{simulation::Simulation, solid::Solid, system::System};
 
 /// Watches the energies (J; J/m in 2-D) of water and free bodies and their sum.
 ///
@@ -31,7 +26,7 @@ impl Energy {
     fn parts<const D: usize>(&self, system: &System<D>) -> [f64; 5] {
         let (mass, fluid) = (system.particle_mass(), system.fluid());
         let compressed = mass * fluid.rho.iter().map(|&rho| system.compression(rho)).sum::<f64>();
-        let moving = system.solids().iter().map(body_kinetic).sum::<f64>();
+        let moving = system.solids().iter().map(Solid::kinetic).sum::<f64>();
         let (water, bodies) = (water_potential(system) - self.water, bodies_potential(system) - self.bodies);
         [system.kinetic(), water, compressed, moving, bodies]
     }
@@ -66,39 +61,5 @@ fn water_potential<const D: usize>(system: &System<D>) -> f64 {
 
 /// −Σ M g·R₀ of the free bodies (J).
 fn bodies_potential<const D: usize>(system: &System<D>) -> f64 {
-    let g = system.gravity();
-    system
-        .solids()
-        .iter()
-        .map(|s| if let Role::Free(b) = &s.spec.role { -b.mass * g.dot(&s.kinematics.centre) } else { 0.0 })
-        .sum()
-}
-
-/// ½ M V² + ½ Ω·I Ω of a free body (J), zero for any other solid.
-fn body_kinetic<const D: usize>(solid: &Solid<D>) -> f64 {
-    let Role::Free(body) = &solid.spec.role else { return 0.0 };
-    let now = &solid.kinematics;
-    0.5 * body.mass * now.velocity.norm_squared() + 0.5 * turning(&body.inertia, &now.pose.rotation, &now.spin.axial())
-}
-
-/// Ω·I Ω with the inertia given in the body's frame, which is turned by `rotation`.
-fn turning<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &[f64]) -> f64 {
-    if D == 2 {
-        return inertia[(0, 0)] * spin[0] * spin[0];
-    }
-    let local = rotation.transpose() * Vector::<D>::from_iterator(spin.iter().copied());
-    local.dot(&(inertia * local))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn turning_energy_follows_the_body_frame() {
-        let inertia = Matrix::<3>::from_diagonal(&Vector::<3>::new(1.0, 2.0, 3.0));
-        let quarter = crate::space::Wedge::<3>::from_axial(&[0.0, 0.0, std::f64::consts::FRAC_PI_2]).exp();
-        let energy = turning(&inertia, &quarter, &[1.0, 0.0, 0.0]);
-        assert!((energy - 2.0).abs() < 1e-14, "the world's x is the body's −y; got {energy}");
-    }
+    system.solids().iter().map(|solid| solid.potential(&system.gravity())).sum()
 }

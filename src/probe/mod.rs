@@ -5,7 +5,6 @@
 
 mod balance;
 mod budget;
-mod contact;
 mod elevation;
 mod energy;
 mod flow;
@@ -15,6 +14,7 @@ mod joint;
 mod line;
 mod motion;
 mod patch;
+mod press;
 mod pressure;
 mod row;
 mod runup;
@@ -22,7 +22,6 @@ mod velocity;
 
 pub use balance::Balance;
 pub use budget::Budget;
-pub use contact::Contact;
 pub use elevation::Elevation;
 pub use energy::Energy;
 pub use flow::Flow;
@@ -32,6 +31,7 @@ pub use joint::Joint;
 pub use line::Line;
 pub use motion::Motion;
 pub use patch::Patch;
+pub use press::Press;
 pub use pressure::Pressure;
 pub use row::{Row, named};
 pub use runup::Runup;

@@ -4,10 +4,11 @@ use serde::Serialize;
 
 use super::{
     blob::Blob,
+    figures::series,
     kept::{Kept, Table},
     words::{bare, unit},
 };
-use crate::{check::Verdict, series::Series};
+use crate::{check::Verdict, series::Series, stats};
 
 /// Rows of a table above which it is thinned.
 const MOST_ROWS: usize = 6000;
@@ -27,6 +28,8 @@ pub struct Plotted {
     pub columns: Vec<Column>,
     /// Which columns stand in one chart.
     pub charts: Vec<Chart>,
+    /// Spectra of what swings of the columns that are shown.
+    pub spectra: Vec<Spectral>,
 }
 
 /// A column.
@@ -49,6 +52,19 @@ pub struct Chart {
     pub columns: Vec<usize>,
     /// Whether it may wait behind a fold.
     pub folded: bool,
+}
+
+/// The spectrum of a column.
+#[derive(Clone, Debug, Serialize)]
+pub struct Spectral {
+    /// Number of the column.
+    pub column: usize,
+    /// Number of frequencies.
+    pub rows: usize,
+    /// Where the frequencies (Hz) begin.
+    pub f: usize,
+    /// Where the densities begin.
+    pub s: usize,
 }
 
 /// A check and its curves.
@@ -83,6 +99,12 @@ pub struct Line {
     pub x: usize,
 }
 
+/// Waves that a series has at least to be shown with its spectrum: fewer lines than that a wave's width are no spectrum.
+const LEAST_WAVES: usize = 8;
+
+/// How much of a spectrum's variance is drawn, –; what is faster is noise.
+const DRAWN: f64 = 0.999;
+
 /// Columns that belong together, by their names without units. The first sets are shown, the others wait behind a fold.
 const FAMILIES: [(&[&str], bool); 16] = [
     (&["surge", "sway", "heave"], false),
@@ -114,14 +136,37 @@ pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
         x: blob.floats(rows.iter().map(|&i| x[i] as f32)),
     });
     let columns = columns.collect();
+    let charts = seen(charts(&table.columns), &table.x);
     Plotted {
         name: table.name.clone(),
         what: table.what,
         rows: [rows.len(), table.t.len()],
         t,
         columns,
-        charts: seen(charts(&table.columns), &table.x),
+        spectra: spectra(table, &charts, blob),
+        charts,
     }
+}
+
+/// The spectra of the columns of `table` that are shown and have waves enough, added to `blob`.
+fn spectra(table: &Table, charts: &[Chart], blob: &mut Blob) -> Vec<Spectral> {
+    let shown = charts.iter().filter(|chart| !chart.folded).flat_map(|chart| chart.columns.iter().copied());
+    let of = |column: usize| {
+        let series = series(&table.t, &table.x[column])?;
+        stats::waves(&series).filter(|waves| waves.count >= LEAST_WAVES)?;
+        let all = stats::spectrum(&series)?;
+        let whole: f64 = all.density.iter().sum();
+        let mut sum = 0.0;
+        let below = all.density.iter().take_while(|s| {
+            sum += **s;
+            sum - **s < DRAWN * whole
+        });
+        let rows = below.count();
+        let f = blob.floats(all.frequencies().take(rows).map(|f| f as f32));
+        let s = blob.floats(all.density[..rows].iter().map(|s| *s as f32));
+        Some(Spectral { column, rows, f, s })
+    };
+    shown.filter_map(of).collect()
 }
 
 /// The rows of a table that its plots need: of each of many equal stretches the least and the largest of every column.
@@ -224,6 +269,20 @@ mod tests {
         assert!(rows.len() <= MOST_ROWS + 2 && rows.contains(&500_001), "{} rows", rows.len());
         assert!(rows.contains(&0) && rows.contains(&999_999), "the ends stay");
         assert_eq!(thinned(&table(MOST_ROWS)).len(), MOST_ROWS);
+    }
+
+    #[test]
+    fn what_swings_has_a_spectrum_with_its_frequency() {
+        let t: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.01).collect();
+        let wave = t.iter().map(|t| 0.05 * (std::f64::consts::TAU * 1.25 * t).sin()).collect();
+        let (rising, name) = (t.clone(), |name: &str| name.to_string());
+        let columns = vec![name("eta_m"), name("front_m")];
+        let table = Table { name: "gauge".into(), what: "elevation", columns, t, x: vec![wave, rising] };
+        let mut blob = Blob::default();
+        let found = plotted(&table, &mut blob).spectra;
+        assert_eq!((found.len(), found[0].column), (1, 0), "what only rises has none");
+        // Lines of 20 s are 0.05 Hz apart, and a Hann window spreads 1.25 Hz over two on either side.
+        assert!((25..30).contains(&found[0].rows), "drawn as far as there is something: {} lines", found[0].rows);
     }
 
     #[test]

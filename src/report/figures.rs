@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// The numbers of the column `x` over `t` (s) as a series; none if there are less than two.
-fn series(t: &[f64], x: &[f64]) -> Option<Series> {
+pub(super) fn series(t: &[f64], x: &[f64]) -> Option<Series> {
     let (t, x): (Vec<f64>, Vec<f64>) = t.iter().zip(x).filter(|(_, x)| x.is_finite()).unzip();
     Series::new(t, x).ok()
 }

@@ -20,6 +20,7 @@ mod page;
 mod picture;
 mod pose;
 mod sections;
+mod wire;
 pub(crate) mod words;
 
 pub use picture::{Field, Shot, picture};

@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
+use super::wire::wires;
 use crate::{
     shape::Shape,
     space::{Pose, Vector},
@@ -33,6 +34,7 @@ pub fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
         Shape::Polyline { points, thickness } => vec![closed(wall(points, *thickness).iter().map(spread))],
         Shape::Tank { size, thickness } if D == 2 => vec![tank(size[0], size[1], *thickness)],
         Shape::Tank { size, .. } => box_lines(&Vector::zeros(), size),
+        Shape::Mesh { mesh, .. } => wires(mesh),
         Shape::Compound(parts) => parts.iter().flat_map(|(pose, part)| placed(pose, outlines(part))).collect(),
         _ => Vec::new(),
     }

@@ -250,7 +250,7 @@ fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dy
         ProbeKind::Front => Box::new(probe::Front),
         ProbeKind::Energy => Box::new(probe::Energy::new(system)),
         ProbeKind::Balance { solid } => Box::new(probe::Balance::new(system, solid)?),
-        ProbeKind::Contact { between: [a, b] } => Box::new(probe::Contact::new(system, [a, b])?),
+        ProbeKind::Contact { between: [a, b] } => Box::new(probe::Press::new(system, [a, b])?),
         ProbeKind::Budget => Box::new(probe::Budget::new(system)),
     })
 }

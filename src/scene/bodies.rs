@@ -7,7 +7,7 @@ use super::{
     flexible::{Draft, LineWords, Numbers, Unit},
     waves::WaveWords,
 };
-use crate::shape::Contact;
+use crate::shape::Touchable;
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -106,7 +106,7 @@ pub struct MeshWords {
     pub flip: Option<bool>,
     /// What other bodies touch; fitting if not said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<Contact>,
+    pub contact: Option<Touchable>,
 }
 
 /// A coordinate direction.

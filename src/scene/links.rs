@@ -46,14 +46,17 @@ pub struct JointWords {
 pub enum JointKindWords {
     /// Turning about an axis.
     #[serde(alias = "revolute")]
+    #[schemars(extend("also" = "revolute"))]
     Hinge,
     /// Moving along a line.
     #[serde(alias = "prismatic")]
+    #[schemars(extend("also" = "prismatic"))]
     Slider,
     /// Nothing.
     Fixed,
     /// Turning any way; 3-D only.
     #[serde(alias = "spherical")]
+    #[schemars(extend("also" = "spherical"))]
     Ball,
     /// All but moving along a line.
     Tow,

@@ -10,7 +10,7 @@ use crate::{
     error::Result,
     model::{C0_FACTOR, Model, Scheme},
     plan::Surface,
-    shape::Contact,
+    shape::Touchable,
 };
 
 /// A value in force and who said it.
@@ -375,7 +375,7 @@ impl Sheet {
                 filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the file's own size");
                 filler.fill(format!("{key}.unit"), &mut words.unit, Unit::M, "neither STL nor OBJ tells its unit");
                 let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
-                filler.fill(format!("{key}.contact"), &mut words.contact, Contact::Fitting, why);
+                filler.fill(format!("{key}.contact"), &mut words.contact, Touchable::Fitting, why);
             }
             ShapeWords::Polygon(words) if words.is_drawing() => {
                 let key = format!("{key}.polygon");

@@ -1,7 +1,7 @@
 //! The words of a scene as a JSON schema, for editors: made from the types that read them, so that it cannot drift.
 //!
 //! It is coarser than the program where words depend on one another (exactly one of `fixed`, `driven`, `free`; as many
-//! numbers as dimensions) and where a word has a second name (`revolute` for `hinge`).
+//! numbers as dimensions).
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
@@ -17,6 +17,7 @@ pub fn schema() -> Value {
     let mut schema = settings.into_generator().into_root_schema_for::<Scene>().to_value();
     schema["title"] = json!("A scene of pontoon");
     required_only(&mut schema);
+    second_names(&mut schema);
     if let Some(types) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
         types
             .iter_mut()
@@ -51,6 +52,22 @@ fn required_only(schema: &mut Value) {
             map.values_mut().for_each(required_only);
         }
         Value::Array(items) => items.iter_mut().for_each(required_only),
+        _ => {}
+    }
+}
+
+/// Takes a word's second name, which its type has noted as `also` beside its alias, for as good as its first.
+fn second_names(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            if let Some(also) = map.remove("also")
+                && let Some(word) = map.remove("const")
+            {
+                map.insert("enum".into(), json!([word, also]));
+            }
+            map.values_mut().for_each(second_names);
+        }
+        Value::Array(items) => items.iter_mut().for_each(second_names),
         _ => {}
     }
 }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use crate::space::{Matrix, Pose, Vector};
 
 pub use fill::{Filled, Region, fill};
-pub use mesh::{Contact, Mesh};
+pub use mesh::{Mesh, Touchable};
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub enum Shape<const D: usize> {
     /// origin to `size`.
     Tank { size: Vector<D>, thickness: f64 },
     /// A solid by the facets of its surface, and what of it other bodies touch; 3-D only.
-    Mesh { mesh: Arc<Mesh>, contact: Contact },
+    Mesh { mesh: Arc<Mesh>, contact: Touchable },
     /// Several shapes as one solid, each at its pose; they must not overlap.
     Compound(Vec<(Pose<D>, Shape<D>)>),
 }

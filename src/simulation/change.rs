@@ -49,9 +49,14 @@ where
         };
         self.refuse_overlap(&spec, &start)?;
         self.join(spec, start)?;
-        let (renewal, displaced) = self.system.displace();
+        let (renewal, displaced, energy) = self.system.displace();
+        let solid = self.system.solids().len() - 1;
+        if let Some(books) = &mut self.bodies.books {
+            books.displaced(energy);
+            books.came(&self.system.solids()[solid], &self.system.gravity());
+        }
         self.renewed(renewal);
-        Ok(Added { solid: self.system.solids().len() - 1, displaced })
+        Ok(Added { solid, displaced })
     }
 
     /// Takes solid number `solid` out between two steps; the water closes over its place. It keeps its number and its name, stands
@@ -74,7 +79,11 @@ where
             return Ok(());
         }
         let withheld = self.bodies.withheld(solid);
-        self.system.give_back(solid, &withheld);
+        let energy = self.system.give_back(solid, &withheld);
+        if let Some(books) = &mut self.bodies.books {
+            books.gave_back(energy);
+            books.goes(&self.system.solids()[solid], &self.system.gravity());
+        }
         self.leave(solid);
         let renewal = self.system.renew();
         self.renewed(renewal);
@@ -146,6 +155,9 @@ where
     /// Takes up new lists and makes the rates for them.
     fn renewed(&mut self, renewal: Option<crate::system::Renewal<D>>) {
         self.stepper.forget();
+        if let (Some(books), Some(renewal)) = (&mut self.bodies.books, &renewal) {
+            books.removed(&self.system, &renewal.lost);
+        }
         self.lost.extend(renewal.into_iter().flat_map(|renewal| renewal.lost).map(|lost| (self.clock.time, lost)));
         let log = std::mem::take(&mut self.rescue.log);
         self.rescue.begin_again(log);

@@ -20,7 +20,7 @@ pub trait Engine<const D: usize>: Send + Sync {
     ///
     /// `loads[i]`: the water's force and torque about the centre of solid i, without weight; used for free
     /// solids only. `driven[i]`: where driven solid i is at the end of the step; `None` for all others.
-    /// Velocities are exact for constant loads, positions first-order: symplectic Euler.
+    /// Velocities are exact for constant loads, positions first-order: symplectic Euler; exact for what has only its weight.
     ///
     /// # Errors
     /// An [`EngineFault`] if a load or a driven pose is not finite (nothing has moved then), or if a solid's

@@ -143,9 +143,45 @@ impl<const D: usize> Solid<D> {
         motion.beside(&self.spec.pose, t, &self.yielding)
     }
 
+    /// Energy of its motion, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 of a solid that is not free.
+    pub fn kinetic(&self) -> f64 {
+        let Role::Free(body) = &self.spec.role else { return 0.0 };
+        let now = &self.kinematics;
+        let turning = turning(&body.inertia, &now.pose.rotation, &now.spin.axial());
+        0.5 * body.mass * now.velocity.norm_squared() + 0.5 * turning
+    }
+
+    /// Energy of its height under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 of a solid that is not free.
+    pub fn potential(&self, gravity: &Vector<D>) -> f64 {
+        let Role::Free(body) = &self.spec.role else { return 0.0 };
+        -body.mass * gravity.dot(&self.kinematics.centre)
+    }
+
     /// Acceleration (m/s²) of its point at the world position `x` (m).
     pub fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> {
         let (arm, spin) = (x - self.kinematics.centre, &self.kinematics.spin);
         self.acceleration + self.whirl.at(&arm) + spin.at(&spin.at(&arm))
+    }
+}
+
+/// Ω·I Ω with the inertia given in the body's frame, which is turned by `rotation`.
+fn turning<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &[f64]) -> f64 {
+    if D == 2 {
+        return inertia[(0, 0)] * spin[0] * spin[0];
+    }
+    let local = rotation.transpose() * Vector::<D>::from_iterator(spin.iter().copied());
+    local.dot(&(inertia * local))
+}
+
+#[cfg(test)]
+mod energy {
+    use super::*;
+
+    #[test]
+    fn turning_energy_follows_the_body_frame() {
+        let inertia = Matrix::<3>::from_diagonal(&Vector::<3>::new(1.0, 2.0, 3.0));
+        let quarter = Wedge::<3>::from_axial(&[0.0, 0.0, std::f64::consts::FRAC_PI_2]).exp();
+        let energy = turning(&inertia, &quarter, &[1.0, 0.0, 0.0]);
+        assert!((energy - 2.0).abs() < 1e-14, "the world's x is the body's −y; got {energy}");
     }
 }

@@ -47,7 +47,7 @@ use rapier::{
 
 use crate::{
     error::{Error, Result},
-    shape::{Contact, Mesh, Shape},
+    shape::{Mesh, Shape, Touchable},
     solid::FreeBody,
     space::{Matrix, Vector, Wedge},
 };
@@ -177,7 +177,7 @@ fn inertia(own: &MassProperties) -> Matrix<D> {
 fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
     let mesh = |points: &[Point], facets: &[[u32; 3]]| {
         let points: Vec<Vector<D>> = points.iter().copied().map(world::from_point).collect();
-        Ok(Shape::Mesh { mesh: Arc::new(Mesh::new(&points, facets)?), contact: Contact::None })
+        Ok(Shape::Mesh { mesh: Arc::new(Mesh::new(&points, facets)?), contact: Touchable::None })
     };
     match geometry {
         TypedShape::Cylinder(c) => Ok(Shape::Cylinder { length: 2.0 * c.half_height, radius: c.radius, axis: 1 }),
@@ -204,7 +204,7 @@ fn parts(shape: &Shape<D>, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
 }
 
 /// What other bodies touch of a mesh.
-fn mesh_parts(mesh: &Mesh, contact: Contact, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
+fn mesh_parts(mesh: &Mesh, contact: Touchable, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     let points: Vec<Point> = mesh.points().iter().map(world::to_point).collect();
     let solid = mesh.volume().volume;
     let hull = || SharedShape::convex_hull(&points).map(|part| vec![(Frame::IDENTITY, part)]);
@@ -212,12 +212,12 @@ fn mesh_parts(mesh: &Mesh, contact: Contact, fixed: bool) -> Result<Vec<(Frame, 
         hull.iter().map(|(_, part)| part.mass_properties(1.0).mass()).sum::<f64>() <= NEARLY_CONVEX * solid
     };
     let make = || match contact {
-        Contact::None => Some(Vec::new()),
-        Contact::Surface => surface(&points, mesh),
-        Contact::Fitting if fixed => surface(&points, mesh),
-        Contact::Hull => hull(),
-        Contact::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
-        Contact::Decomposition => cut(&points, mesh),
+        Touchable::None => Some(Vec::new()),
+        Touchable::Surface => surface(&points, mesh),
+        Touchable::Fitting if fixed => surface(&points, mesh),
+        Touchable::Hull => hull(),
+        Touchable::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
+        Touchable::Decomposition => cut(&points, mesh),
     };
     // parry asserts what it hopes of points that lie nearly in a plane.
     catch_unwind(AssertUnwindSafe(make)).ok().flatten().ok_or_else(|| {

@@ -62,20 +62,23 @@ impl<const D: usize> System<D> {
     }
 
     /// Takes out the water inside the last solid, whose boundary particles begin with the pressure of the water that is left;
-    /// returns what whoever keeps arrays of particles must follow, and how many particles went.
-    pub(crate) fn displace(&mut self) -> (Option<Renewal<D>>, usize) {
-        let before = self.real();
+    /// returns what whoever keeps arrays of particles must follow, how many particles went, and their energy (J).
+    pub(crate) fn displace(&mut self) -> (Option<Renewal<D>>, usize, f64) {
+        let (before, mut energy) = (self.real(), 0.0);
         if let Some(solid) = self.solids.last() {
             let pose = solid.kinematics.pose;
             let inside = |x: &Vector<D>| solid.spec.shape.signed_distance(&pose.local(x)) < 0.0;
             self.ousted = self.fluid.r[..before].par_iter().map(inside).collect();
+            let fluid = &self.fluid;
+            let gone = (0..before).filter(|&i| self.ousted[i]);
+            energy = gone.map(|i| self.particle_energy(&fluid.r[i], &fluid.v[i], fluid.rho[i])).sum();
         }
         let renewal = self.renew();
         self.ousted.clear();
         let newcomer = self.solids.last().map_or(0..0, |solid| solid.skin.clone());
         self.still_skin(newcomer);
         self.look();
-        (renewal, before - self.real())
+        (renewal, before - self.real(), energy)
     }
 
     /// Takes solid number `i` out: it keeps its number, stands still where it was, and has no boundary particles any more.

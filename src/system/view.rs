@@ -78,6 +78,13 @@ impl<const D: usize> System<D> {
         self.state.energy(rho / self.medium.rho0 - 1.0)
     }
 
+    /// Energy (J; J/m in 2-D) of a water particle of density `rho` (kg/m³) that moves at `v` (m/s) at `r` (m): motion, height,
+    /// compression.
+    pub(crate) fn particle_energy(&self, r: &Vector<D>, v: &Vector<D>, rho: f64) -> f64 {
+        let height = self.height_gravity().dot(r);
+        self.particle_mass() * (0.5 * v.norm_squared() - height + self.compression(rho))
+    }
+
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
     pub fn fluid_dv(&self, i: usize) -> Vector<D> {
         self.sums[i].dv

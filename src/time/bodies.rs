@@ -121,8 +121,8 @@ impl<const D: usize> Bodies<D> {
         self.engine.as_mut()
     }
 
-    /// Moves the solids over the whole step, under the loads of the last force pass and weights times `weight`; `between` may
-    /// do what it likes at the moment when the water hands over to them.
+    /// Moves the solids over the whole step, under the loads of the last force pass and weights times `weight`, but for what no water
+    /// touches, which has nothing to keep in step with; `between` may do what it likes at the moment when the water hands over to them.
     pub(crate) fn advance(
         &mut self,
         system: &mut System<D>,
@@ -135,7 +135,10 @@ impl<const D: usize> Bodies<D> {
         let gravity = system.gravity() * (weight - 1.0);
         let weighed = |solid: &Solid<D>| {
             let mass = if let Role::Free(body) = &solid.spec.role { body.mass } else { 0.0 };
-            Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight }
+            match solid.load == Load::zero() {
+                true => solid.load,
+                false => Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight },
+            }
         };
         let loads: Vec<_> = system.solids.iter().map(weighed).collect();
         let hosted = self.hosted;

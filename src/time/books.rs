@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    solid::{Contact, FreeBody, Kinematics, Load, Role, rig::Tied},
+    solid::{Contact, FreeBody, Kinematics, Load, Role, Solid, rig::Tied},
     space::{Matrix, Vector, Wedge},
     system::{Lost, Powers, System},
 };
@@ -143,11 +143,13 @@ pub struct Ledger {
     pub coupling: f64,
     /// What particles had that were taken out, with the sign changed.
     pub removed: f64,
+    /// What free solids had that came, less what those had that went.
+    pub solids: f64,
 }
 
 impl Ledger {
     /// All entries with their names.
-    pub fn entries(&self) -> [(&'static str, f64); 13] {
+    pub fn entries(&self) -> [(&'static str, f64); 14] {
         [
             ("driven", self.driven),
             ("motors", self.motors),
@@ -162,6 +164,7 @@ impl Ledger {
             ("walls", self.walls),
             ("coupling", self.coupling),
             ("removed", self.removed),
+            ("solids", self.solids),
         ]
     }
 }
@@ -255,9 +258,22 @@ impl<const D: usize> Books<D> {
 
     /// Books particles that were taken out.
     pub(crate) fn removed(&mut self, system: &System<D>, lost: &[Lost<D>]) {
-        let energy =
-            |p: &Lost<D>| 0.5 * p.v.norm_squared() - system.height_gravity().dot(&p.r) + system.compression(p.rho);
-        self.ledger.removed -= system.particle_mass() * lost.iter().map(energy).sum::<f64>();
+        self.displaced(lost.iter().map(|p| system.particle_energy(&p.r, &p.v, p.rho)).sum());
+    }
+
+    /// Books the energy (J) of water that was taken out.
+    pub(crate) fn displaced(&mut self, energy: f64) {
+        self.ledger.removed -= energy;
+    }
+
+    /// Books that a solid that moves so, under `gravity` (m/s²), has come.
+    pub(crate) fn came(&mut self, solid: &Solid<D>, gravity: &Vector<D>) {
+        self.ledger.solids += solid.kinetic() + solid.potential(gravity);
+    }
+
+    /// Books that it goes.
+    pub(crate) fn goes(&mut self, solid: &Solid<D>, gravity: &Vector<D>) {
+        self.ledger.solids -= solid.kinetic() + solid.potential(gravity);
     }
 
     /// Books energy (J) that damping zones took.
@@ -266,7 +282,7 @@ impl<const D: usize> Books<D> {
     }
 
     /// Books energy (J) that the water got back for a body.
-    pub(super) fn gave_back(&mut self, energy: f64) {
+    pub(crate) fn gave_back(&mut self, energy: f64) {
         self.ledger.coupling += energy;
     }
 

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     Error,
+    model::Dimension,
     scene::{Frames, Scene},
+    simulation::Simulation,
+    solid::Dim,
 };
 use proptest::prelude::*;
 
@@ -61,9 +64,16 @@ fn try_out(text: &str, sets: &[(&str, &str)]) -> Result<(), Error> {
     let scene = Scene::parse(text, folder(), &sets)?;
     scene.resolve()?;
     match scene.dimension {
-        2 => scene.build::<2>().map(|_| ()),
-        _ => scene.build::<3>().map(|_| ()),
+        2 => begin::<2>(&scene),
+        _ => begin::<3>(&scene),
     }
+}
+
+fn begin<const D: usize>(scene: &Scene) -> Result<(), Error>
+where
+    Dim<D>: Dimension<D>,
+{
+    Simulation::new(scene.build::<D>()?.setup).map(|_| ()).map_err(|error| scene.place(error))
 }
 
 /// What the user reads of the good scene with `from` replaced by `to`.
@@ -149,6 +159,20 @@ fn shapes_laws_and_files_that_are_wrong_are_refused() {
     wrong("missing_column", formula, "file = \"table.csv\", column = \"x\"");
     wrong("bad_cell", formula, "file = \"table.csv\", column = \"bad_m\"");
     wrong("body_outside_the_domain", "[model]", "[domain]\nmin = [0.0, 0.0]\nmax = [1.0, 0.52]\n\n[model]");
+}
+
+#[test]
+fn bodies_that_cannot_be_are_refused() {
+    // The paddle's face is at 0.05 m, the box reaches to 0.02 m.
+    wrong("overlapping_start", "at    = { x = 0.5,", "at    = { x = 0.12,");
+    wrong("negative_inertia", "density = 500.0", "density = 500.0, inertia = -0.1");
+    // 3-D: no body's third principal moment exceeds the sum of the other two.
+    let deep = "dimension = 3\ndp = 0.05\nuntil = 1.0\nwater = [{ fill = { box = { min = [0, 0, 0], max = [0.4, 0.4, 0.2] } } }]\n\
+        [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [0.4, 0.4, 0.4] } }\n\
+        [[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.2, 0.1] } }\nat = { x = 0.2, y = 0.2, draft = \"equilibrium\" }\n\
+        free = { density = 500.0, inertia = [0.005, 0.005, 0.02] }\n";
+    golden("inertia_of_no_body", &try_out(deep, &[]).expect_err("no body has it").to_string());
+    try_out(&deep.replace("0.02]", "0.009]"), &[]).expect("a body has this one");
 }
 
 #[test]

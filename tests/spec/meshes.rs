@@ -8,7 +8,7 @@ use std::{
 use pontoon::{
     Error,
     scene::Scene,
-    shape::{Contact, Mesh, Shape},
+    shape::{Mesh, Shape, Touchable},
     simulation::Simulation,
     solid::Role,
     space::Vector,
@@ -277,7 +277,8 @@ fn a_mesh_ball_floats_at_its_draft() {
 fn what_others_touch_of_a_mesh_is_a_choice() {
     let folder = folder("touch");
     fs::write(folder.join("text.stl"), text_stl(&FACETS)).unwrap();
-    for (word, contact) in [("hull", Contact::Hull), ("none", Contact::None), ("decomposition", Contact::Decomposition)]
+    for (word, contact) in
+        [("hull", Touchable::Hull), ("none", Touchable::None), ("decomposition", Touchable::Decomposition)]
     {
         let words = format!("{{ mesh = {{ file = \"text.stl\", contact = \"{word}\" }} }}");
         assert!(matches!(shape(&words, &folder), Ok(Shape::Mesh { contact: c, .. }) if c == contact), "{word}");

@@ -110,6 +110,9 @@ fn words_in_each_of_their_forms_keep_the_schema() {
         "[frames]\nevery = 0.1\nbox = { min = [0.0, 0.0], max = [1.0, 1.0] }",
         "[[probe]]\nelevation = { from = 0.1, to = [0.4], count = 4, surface = \"all\" }\naverage = true",
         "[[probe]]\nvelocity = [0.1, 0.2]\n[[probe]]\npressure = { from = [0.1, 0.1], to = [0.2, 0.1], spacing = 0.01 }",
+        "[[joint]]\nname = \"a\"\nkind = \"hinge\"\nbetween = [\"box\"]\nat = [0, 0]",
+        "[[joint]]\nname = \"a\"\nkind = \"revolute\"\nbetween = [\"box\"]\nat = [0, 0]",
+        "[[joint]]\nname = \"a\"\nkind = \"prismatic\"\nbetween = [\"box\"]\nat = [0, 0]\nalong = [1, 0]",
         "[[statistic]]\nrao = { motion = \"box\", wave = \"gauge\" }",
         "[[force]]\nname = \"wind\"\non = \"box\"\nforce = [\"20*sin(t)\", 0.0]\ntorque = 2",
         "[[solid]]\nname = \"a\"\nshape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }\nat = { draft = \"equilibrium\" }\nfree = { density = 500 }",
@@ -129,6 +132,7 @@ fn a_misspelt_key_and_a_wrong_word_break_the_schema() {
         ("[model]\ngamma = \"7\"", "gamma"),
         ("[[probe]]\nelevation = { z = 1.0 }", "elevation.z"),
         ("[frames]\nevry = 0.1", "frames"),
+        ("[[joint]]\nkind = \"revolving\"", "kind"),
     ] {
         let wrong = of(&format!("{SCENE}{words}\n"));
         assert!(wrong.iter().any(|wrong| wrong.contains(expected)), "{words}: {wrong:?}");

@@ -26,7 +26,7 @@ class Charts {
   }
 }
 
-/** One chart: `title`, `unit`, `said`, and `lines`, each with a label, times, values, a tint, and whether it is dots. */
+/** One chart: `title`, `unit`, `said`, and `lines`, each with a label, times (frequencies, if `spectral`), values, a tint, and whether it is dots. */
 class Chart {
   constructor(what, deck) {
     Object.assign(this, { what, deck });
@@ -37,7 +37,7 @@ class Chart {
 
   draw(wide) {
     if (this.u) return;
-    const { lines, unit } = this.what;
+    const { lines, unit, spectral } = this.what, across = spectral ? "Hz" : "s";
     if (!lines.some(line => line.x.some(Number.isFinite))) {
       this.plot.style.minHeight = 0;
       return this.plot.replaceChildren(make("p", { className: "quiet" }, "Nothing was measured."));
@@ -52,9 +52,10 @@ class Chart {
       return { label: line.label, stroke, width: 1.5, spanGaps: false, value, dash: line.dash, points: { show: false }, ...(line.dots ? dots : {}) };
     });
     this.u = new uPlot({
-      width: wide ?? this.plot.clientWidth, height: 190, scales: { x: { time: false }, y: { range: (_, low, high) => low === high ? [low - 0.1 * (Math.abs(low) || 1), high + 0.1 * (Math.abs(low) || 1)] : uPlot.rangeNum(low, high, 0.08, false) } }, legend: { live: true }, cursor: { sync: { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
-      axes: [{ ...axis, size: 34, values: (_, all) => all.map(v => `${+v.toPrecision(6)} s`) }, { ...axis, size: 58, values: words }], series: [{ label: "t", value: (_, v) => v == null ? "–" : `${v.toFixed(3)} s` }, ...series],
+      width: wide ?? this.plot.clientWidth, height: 190, scales: { x: { time: false }, y: { range: (_, low, high) => low === high ? [low - 0.1 * (Math.abs(low) || 1), high + 0.1 * (Math.abs(low) || 1)] : uPlot.rangeNum(low, high, 0.08, false) } }, legend: { live: true }, cursor: { sync: { key: spectral ? "frequency" : "time" }, drag: { x: true, y: false }, points: { size: 6 } },
+      axes: [{ ...axis, size: 34, values: (_, all) => all.map(v => `${+v.toPrecision(6)} ${across}`) }, { ...axis, size: 58, values: words }], series: [{ label: spectral ? "f" : "t", value: (_, v) => v == null ? "–" : `${v.toFixed(3)} ${across}` }, ...series],
     }, data, this.plot);
+    if (spectral) return;
     this.now = make("div", { className: "now" });
     this.u.over.append(this.now);
     let pressed = 0;
@@ -64,14 +65,14 @@ class Chart {
   }
 
   follow(t) {
-    if (!this.u) return;
+    if (!this.u || !this.now) return;
     const x = this.u.valToPos(t, "x");
     this.now.hidden = !(x >= 0 && x <= this.u.over.clientWidth);
     this.now.style.left = x + "px";
   }
 
   size() { if (this.u && this.plot.clientWidth) { this.u.setSize({ width: this.plot.clientWidth, height: 190 }); this.follow(this.deck?.t); } }
-  again(wide) { if (!this.u && !wide) return; this.u?.destroy(); this.u = null; if (wide || this.plot.clientWidth) this.draw(wide); }
+  again(wide) { if (!this.u && !wide) return; this.u?.destroy(); this.u = this.now = null; if (wide || this.plot.clientWidth) this.draw(wide); }
 }
 
 /** The columns of `indices` of a table as lines. */
@@ -106,8 +107,26 @@ function series(home, charts, runs, bytes) {
     }
     home.append(open);
     if (table.rows[0] < table.rows[1]) home.append(make("p", { className: "quiet" }, `${table.rows[0]} of ${table.rows[1]} rows are drawn, with every peak.`));
+    spectra(home, charts, runs, table, bytes);
     if (folded.childElementCount) home.append(make("details", {}, make("summary", {}, `More of ${table.name}: ` + table.charts.filter(c => c.folded).map(c => c.columns.map(k => table.columns[k].label).join(", ")).join("; ")), folded));
   }
+}
+
+/** The spectra of a table, behind a fold: of one run those in the same unit in one chart, of several those of a column. */
+function spectra(home, charts, runs, table, bytes) {
+  const several = runs.length > 1, all = new Map();
+  runs.forEach((run, r) => {
+    const own = run.tables.find(t => t.name === table.name);
+    for (const { column, rows, f, s } of own?.spectra ?? []) {
+      const { label, unit, name } = own.columns[column], key = several ? name : unit;
+      if (!all.has(key)) all.set(key, { title: several ? `spectrum of ${label}` : "spectrum", unit: `${unit}²/Hz`, spectral: true, lines: [] });
+      all.get(key).lines.push({ label: several ? run.name : label, t: floats(bytes, f, rows), x: floats(bytes, s, rows), tint: several ? r : undefined });
+    }
+  });
+  if (!all.size) return;
+  const grid = make("div", { className: "charts" });
+  for (const chart of all.values()) charts.add(grid, chart);
+  home.append(make("details", {}, make("summary", {}, `Spectra of ${table.name}`), grid));
 }
 
 /** References of the columns of a chart that are held as they are. */

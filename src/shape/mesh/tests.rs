@@ -43,7 +43,7 @@ fn ball(radius: f64, n: u32) -> Mesh {
 }
 
 fn shape(mesh: Mesh) -> Shape<3> {
-    Shape::Mesh { mesh: Arc::new(mesh), contact: Contact::default() }
+    Shape::Mesh { mesh: Arc::new(mesh), contact: Touchable::default() }
 }
 
 fn boxes(size: [f64; 3]) -> (Shape<3>, Shape<3>) {

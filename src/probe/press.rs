@@ -5,11 +5,11 @@ use crate::{error::Result, simulation::Simulation, system::System};
 
 /// Watches the contact of two solids in the last step: the sum of the normal forces (N), the force on the second, friction
 /// included (N), and where it acts (m); NaN there while they do not touch.
-pub struct Contact {
+pub struct Press {
     solids: [usize; 2],
 }
 
-impl Contact {
+impl Press {
     /// The probe of the solids of these names.
     ///
     /// # Errors
@@ -19,7 +19,7 @@ impl Contact {
     }
 }
 
-impl<const D: usize> Probe<D> for Contact {
+impl<const D: usize> Probe<D> for Press {
     fn columns(&self) -> Vec<String> {
         let wide = if D == 2 { "_per_m" } else { "" };
         let forces = axes::<D>().iter().map(|a| format!("f{a}_N{wide}"));
