@@ -112,9 +112,8 @@ impl<const D: usize> Simulation<D> {
         };
         let rig = Rig::new(&setup.links, start);
         let stepper = Stepper::new(&setup.model);
-        let longest = limit::sound(&setup.model);
         let mut system = System::new(setup)?;
-        let bodies = Bodies::new(engine, Light::find(&mut system, longest), rig, hosted);
+        let bodies = Bodies::new(engine, Light::find(&mut system), rig, hosted);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (Rescue::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rescue, lost, stepping };

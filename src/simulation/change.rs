@@ -5,7 +5,7 @@ use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
     solid::{Dim, HasEngine as _, Kinematics, Links, Role, SolidSpec},
-    time::{Light, limit},
+    time::Light,
 };
 
 /// Deepest overlap of a solid that comes, in dp.
@@ -117,7 +117,7 @@ where
 
     /// Lets a solid come into water and world, unchecked and without making room for it.
     fn join(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
-        let (free, longest) = (matches!(spec.role, Role::Free(_)), limit::sound(self.system.model()));
+        let free = matches!(spec.role, Role::Free(_));
         let founding = free && !self.bodies.hosted();
         match self.bodies.engine_mut() {
             Some(engine) => engine.admit(&spec, &start)?,
@@ -132,7 +132,7 @@ where
         }
         self.system.admit(spec, start)?;
         let last = self.system.solids().len() - 1;
-        self.bodies.admit(Light::of(&mut self.system, last, longest), start);
+        self.bodies.admit(Light::of(&mut self.system, last), start);
         Ok(())
     }
 

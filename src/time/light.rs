@@ -1,16 +1,18 @@
-//! Bodies lighter than the water that sound sets moving in a step.
+//! Bodies lighter than the water that sound sets moving while it crosses a kernel.
 //!
 //! A wet boundary particle of the outer layer is a spring of stiffness k = ρ₀ c₀² dpᴰ⁻² along its normal n (a column of
-//! water dp long on a face dpᴰ⁻¹). A body of mass matrix M on all of them, K = Σ k J Jᵀ with J = (n, arm ∧ n), takes up its
-//! load step by step as it should while λ = Δt² max eig(M⁻¹K) is small: a step adds λ/4 of the energy of that mode, more
-//! than the body radiates into the water if λ is not. Beyond that the body answers with the inertia of the water that goes
-//! with it, Z = θ Δt² K, θ = 1/Λ − 1/λ, so that it never has more than λ = Λ:
+//! water dp long on a face dpᴰ⁻¹). A body of mass matrix M on all of them, K = Σ k J Jᵀ with J = (n, arm ∧ n), swings with ω_b,
+//! ω_b² = max eig(M⁻¹K), and gives that up to the water as sound. But particles carry no sound faster than about c₀/h (a wave
+//! as short as the kernel has no frequency above): a body that swings faster rings, trapped, and as a step gives it λ/4 of the
+//! energy of that mode, λ = Δt² ω_b², it rings for ever or blows up. So that it never swings faster than c₀/h, it answers with
+//! the inertia of the water that sound sets moving with it in T = h/c₀, Z = θ T² K, θ = 1 − 1/(T ω_b)²:
 //!
 //!   (M + Z) Δv = Δt (W + C) + s S,      S ← S + Δt (W + C) − M Δv,      s = 1 − exp(−Δt/τ),  τ = 10 h/c₀
 //!
 //! W is the load of water, weight and pushes, C that of contacts and joints (a mean over τ), S the impulse withheld so far. It is
-//! handed on within τ, so that in motions slower than sound Z has no part, M Δv = Δt (W + C), and momentum is kept: what the
-//! water lost the body has, or will have. Λ/λ > 1 leaves all as it is.
+//! handed on within τ, so that in motions slower than sound Z has no part, M Δv = Δt (W + C): at a frequency ω it is off by
+//! ω τ Z/M, which falls with the square of h; and momentum is kept: what the water lost the body has, or will have. A body with
+//! T ω_b < 1 is left as it is.
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -22,8 +24,8 @@ use crate::{
     system::System,
 };
 
-/// Λ, the largest λ that a body is left with, –.
-const STIFFEST: f64 = 0.5;
+/// The largest (ω_b h/c₀)² that a body is left with, –.
+const STIFFEST: f64 = 1.0;
 
 /// τ over h/c₀, –.
 const TIME: f64 = 10.0;
@@ -58,23 +60,23 @@ pub struct Held {
 }
 
 impl<const D: usize> Light<D> {
-    /// The free solids that steps up to `dt` (s) can be too long for, were they wet all around.
-    pub(crate) fn find(system: &mut System<D>, dt: f64) -> Vec<Self> {
-        (0..system.solids().len()).filter_map(|i| Self::of(system, i, dt)).collect()
+    /// The free solids that would swing faster than sound crosses a kernel, were they wet all around.
+    pub(crate) fn find(system: &mut System<D>) -> Vec<Self> {
+        (0..system.solids().len()).filter_map(|i| Self::of(system, i)).collect()
     }
 
-    /// The free solid number `i`, if steps up to `dt` (s) can be too long for it, were it wet all around.
-    pub(crate) fn of(system: &mut System<D>, i: usize, dt: f64) -> Option<Self> {
-        let found = Self::one(system, i, dt);
+    /// The free solid number `i`, if it would swing so fast, were it wet all around.
+    pub(crate) fn of(system: &mut System<D>, i: usize) -> Option<Self> {
+        let found = Self::one(system, i);
         system.feels |= found.is_some();
         found
     }
 
-    fn one(system: &System<D>, i: usize, dt: f64) -> Option<Self> {
+    fn one(system: &System<D>, i: usize) -> Option<Self> {
         let (medium, solid) = (system.medium(), &system.solids()[i]);
         let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
         let Role::Free(body) = &solid.spec.role else { return None };
-        if (limit::stiffest(shape, body, medium) * dt).powi(2) <= STIFFEST {
+        if (limit::stiffest(shape, body, medium) * medium.h / medium.c0).powi(2) <= STIFFEST {
             return None;
         }
         let of = |i: usize| (i as u32, pose.local(&system.skin().r[i]));
@@ -126,7 +128,8 @@ impl<const D: usize> Light<D> {
         lock(body, |i| whole[i] = 0.0);
         let springs = self.springs(system, body);
         let left = self.leave((0..D).map(|i| springs[(i, i)]).sum());
-        let (mass, water) = (mass(solid, body), springs * (dt * dt));
+        let medium = system.medium();
+        let (mass, water) = (mass(solid, body), springs * (medium.h / medium.c0).powi(2));
         let share = settled(system, dt);
         let (total, withheld) = (whole + self.held.contacts, self.held.withheld);
         let both = (mass + water * theta(&mass, &water)).cholesky();
@@ -179,7 +182,7 @@ impl<const D: usize> Light<D> {
     }
 }
 
-/// θ: how much of the water's inertia Δt² K goes with a body of mass matrix M, –.
+/// θ: how much of the water's inertia T² K goes with a body of mass matrix M, –.
 fn theta(mass: &Square, water: &Square) -> f64 {
     let Some(root) = mass.cholesky().and_then(|c| c.l().try_inverse()) else { return 0.0 };
     let stiffest = (root * water * root.transpose()).symmetric_eigenvalues().max();
