@@ -17,8 +17,8 @@ thread_local! {
 /// A few particles and a body afloat.
 fn simulation() -> Simulation<2> {
     let scene = Scene::new(2, 0.25, 1.0)
-        .water_box([0.0, 0.0], [1.0, 0.5])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 1.0])))
+        .water_box([0.0, 0.0], [1.0, 0.75])
+        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 1.25])))
         .solid(SolidWords::free("box", ShapeWords::cuboid([0.3, 0.3]), 500.0).at(AtWords::afloat(&[0.5])))
         .probe(ProbeEntry::motion("box"));
     Simulation::new(scene.build::<2>().expect("a sound scene").setup).expect("a sound setup")

@@ -10,7 +10,8 @@ use super::{
 };
 use crate::{
     error::{Error, Kind, Result},
-    model::Model,
+    law::kernel::{self, REACH, lattice},
+    model::{Kernel, Model},
     shape::{
         Shape,
         fill::{Region, fill},
@@ -23,6 +24,14 @@ use crate::{
 
 /// Most particles that a scene may ask for: about 100 GB of memory.
 const MOST_PARTICLES: f64 = 2e8;
+
+/// Least stiffness μ of the lattice, –: below it still water round a float has come to move at 0.07 to 0.13 √(g depth) within a
+/// second, above it at up to 0.08 (docs/stability.md).
+const SOFTEST: f64 = -0.07;
+
+/// Least depth of still water over the reach of the kernel, –: of 0.67 it rises by some per cent of dp, of 0.75 by none
+/// (docs/stability.md).
+const SHALLOW: f64 = 0.75;
 
 /// What a scene was built into.
 pub struct Built<const D: usize> {
@@ -100,6 +109,8 @@ impl Scene {
         let water = scene.bodies_of_water::<D>()?;
         let still = Still::of(&water);
         let model = scene.laws(&water)?;
+        scene.steady(&model)?;
+        scene.deep_enough(&still, &model)?;
         let solids = scene.solids::<D>(&Pool::of(&water))?;
         let links = scene.links(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
@@ -250,6 +261,46 @@ impl Scene {
             }
             None => Ok(()),
         }
+    }
+
+    /// Refuses a kernel under which the lattice on which water starts gives way by its own pressure.
+    fn steady(&self, model: &Model) -> Result<()> {
+        let (h, d) = (model.h / model.dp, self.dimension);
+        if model.gravity.iter().all(|g| *g == 0.0) {
+            return Ok(());
+        }
+        let stiffness = match model.kernel {
+            Kernel::Wendland => lattice::stiffness(kernel::Wendland::new(h, d), h, d),
+            Kernel::Cubic { .. } => lattice::stiffness(kernel::Cubic::new(h, d), h, d),
+        };
+        if stiffness > SOFTEST {
+            return Ok(());
+        }
+        let key = if self.model.c_h.is_some() { "model.c_h" } else { "model.h_over_dp" };
+        let what = format!(
+            "with this kernel at h = {h:.2} dp still water does not stay still: the lattice on which it starts gives way in shear \
+             (its stiffness over its pressure is {stiffness:.3}, and {SOFTEST} the least)"
+        );
+        Err(self.wrong_with(key, what, "write  h_over_dp = 1.7  and  kernel = \"wendland\""))
+    }
+
+    /// Refuses still water whose surface is so near its bed that no kernel is whole between them.
+    fn deep_enough(&self, still: &Still, model: &Model) -> Result<()> {
+        let reach = REACH * model.h;
+        if model.gravity.last().is_none_or(|g| *g == 0.0) || still.depth > 0.999 * SHALLOW * reach {
+            return Ok(());
+        }
+        let what = format!(
+            "the water is {:.2} dp deep and the kernel reaches {:.2} dp: between bed and surface no sum is whole, and it would rise",
+            still.depth / self.dp,
+            reach / self.dp
+        );
+        let dp = still.depth * self.dp / (SHALLOW * reach);
+        Err(self.wrong_with(
+            "water",
+            what,
+            format!("{SHALLOW} of the reach is the least: write  dp = {dp:.2e}  or less"),
+        ))
     }
 
     /// About how many particles of water and of skins there will be.

@@ -99,6 +99,13 @@ impl Seen {
     /// Nothing yet.
     pub(crate) const NOTHING: Self = Self { moved2: 0.0, valid: true };
 
+    /// A particle in the middle of a step, that was at `then` when the lists were made: the end of the step will say whether it is
+    /// valid.
+    #[inline(always)]
+    pub(crate) fn on_its_way<const D: usize>(then: &Vector<D>, r: &Vector<D>) -> Self {
+        Self { moved2: (r - then).norm_squared(), valid: true }
+    }
+
     /// Both.
     #[inline(always)]
     pub(crate) fn and(self, other: Self) -> Self {

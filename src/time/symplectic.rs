@@ -30,7 +30,6 @@ impl Symplectic {
         let rho0 = system.medium().rho0;
         let start = (system.fluid.clone(), system.skin.rho.clone());
 
-        let guard = system.guard();
         let (sums, fluid) = (&system.sums, &mut system.fluid);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
         system.seen = now
@@ -40,7 +39,7 @@ impl Symplectic {
                 *r += *v * half;
                 *v += s.dv * half;
                 *rho += rho0 * s.dx * half;
-                guard.see(then, r, v, *rho)
+                Seen::on_its_way(then, r)
             })
             .reduce(|| Seen::NOTHING, Seen::and);
         let rates = std::mem::take(&mut system.skin_sums);
@@ -57,6 +56,7 @@ impl Symplectic {
             let epsilon = -dt * rho0 * dx / rho_half;
             rho_start * (2.0 - epsilon) / (2.0 + epsilon)
         };
+        let guard = system.guard();
         let (sums, was) = (&system.sums, &start.0);
         let fluid = &mut system.fluid;
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);

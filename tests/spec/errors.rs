@@ -140,6 +140,8 @@ fn values_that_cannot_be_meant_are_refused() {
     );
     wrong("balance_of_a_tank", "motion = \"box\"", "balance = \"tank\"");
     wrong("contact_of_nobody", "motion = \"box\"", "contact = [\"box\", \"tnk\"]");
+    wrong("kernel_that_lets_the_lattice_go", "[model]", "[model]\nkernel = \"cubic\"\nh_over_dp = 1.5");
+    wrong("water_within_one_kernel", "max = [1.0, 0.5]", "max = [1.0, 0.1]");
     wrong("no_sound", "until     = 1.0", "until     = 1.0\ngravity = [0.0, 0.0]");
 }
 

@@ -1,6 +1,7 @@
 //! Kernels W(r, h), normalised to ∫ W dV = 1, zero from r = 2h on.
 
 mod cubic;
+pub mod lattice;
 mod wendland;
 
 pub use cubic::Cubic;
