@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::{
     super::{friction, rapier::geometry::ContactData},
-    D, Met, PhysicsWorld, Point, RigidBodyHandle, from_point,
+    D, Met, PhysicsWorld, Point, RigidBody, RigidBodyHandle, from_point,
 };
 use crate::{
     solid::{Contact, Load},
@@ -24,14 +24,15 @@ pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[
     }
     for pair in world.narrow_phase.contact_pairs() {
         let between = [pair.collider1, pair.collider2].map(|c| world.colliders[c].user_data as usize);
+        let [first, second] = between.map(|solid| &world.bodies[bodies[solid]]);
         for manifold in pair.manifolds() {
             let normal = manifold.data.normal;
             for contact in manifold.data.solver_contacts.iter() {
                 let data = &manifold.points[contact.contact_indices()[0] as usize].data;
                 if data.impulse > 0.0 {
                     let force = from_point(impulse(normal, data)) * rate;
-                    let at = world.bodies[bodies[between[0]]].center_of_mass() + data.solver_dp1;
-                    let arms = [data.solver_dp1, data.solver_dp2].map(from_point);
+                    let (at, other) = (place(first, data.solver_dp1), place(second, data.solver_dp2));
+                    let arms = [(first, at), (second, other)].map(|(body, at)| from_point(at - body.center_of_mass()));
                     pairs.add(between, data.impulse * rate, &from_point(at), arms, force);
                 }
             }
@@ -42,6 +43,11 @@ pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[
         Contact { between, ..contact }
     };
     pairs.0.into_iter().map(mean).collect()
+}
+
+/// Where a contact is whose `arm` of `body` the engine keeps (m): of what no load moves it keeps the place itself.
+fn place(body: &RigidBody, arm: Point) -> Point {
+    if body.is_dynamic() { body.center_of_mass() + arm } else { arm }
 }
 
 /// The impulse of a contact on its second solid, N s.

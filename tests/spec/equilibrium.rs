@@ -217,7 +217,6 @@ fn tilts(above: f64) -> Result<f64> {
 fn a_barge_capsizes_when_its_metacentre_sinks_below_its_centre() -> Result<()> {
     // Wall-sided, the righting arm is (GM + ½ BM tan² φ) sin φ: with GM = −0.02 BM it lies at 11°, with +0.02 BM upright.
     let (stands, falls) = (tilts(0.02)?, tilts(-0.02)?);
-    println!("BORDER 0.02: {stands} {falls}; 0.05: {} {}", tilts(0.05)?, tilts(-0.05)?);
     // Both start at 3°: one has come back from there, the other is at more than twice that and on its way.
     assert!(stands < 3.0, "GM = 0.02 BM: {stands}°");
     assert!(falls > 6.0, "GM = −0.02 BM: {falls}°");
@@ -239,7 +238,6 @@ fn the_metacentre_is_where_hydrostatics_says() -> Result<()> {
     let weight = 500.0 * 0.08 * G;
     // Counter-clockwise to the left as it is tilted: what rights it is negative.
     let found = -torque / (weight * tilt.sin()) / bm - 0.5 * tilt.tan().powi(2);
-    println!("METACENTRE {found}");
     assert!(found.abs() < 0.02, "the metacentre is off by {found} of BM");
     Ok(())
 }
