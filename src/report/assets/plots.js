@@ -119,7 +119,7 @@ function spectra(home, charts, runs, table, bytes) {
     const own = run.tables.find(t => t.name === table.name);
     for (const { column, rows, f, s } of own?.spectra ?? []) {
       const { label, unit, name } = own.columns[column], key = several ? name : unit;
-      if (!all.has(key)) all.set(key, { title: several ? `spectrum of ${label}` : "spectrum", unit: `${unit}²/Hz`, spectral: true, lines: [] });
+      if (!all.has(key)) all.set(key, { title: several ? `spectrum of ${label}` : "spectrum", unit: `${/[ \/]/.test(unit) ? `(${unit})` : unit}²/Hz`, spectral: true, lines: [] });
       all.get(key).lines.push({ label: several ? run.name : label, t: floats(bytes, f, rows), x: floats(bytes, s, rows), tint: several ? r : undefined });
     }
   });
