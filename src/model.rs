@@ -232,6 +232,14 @@ impl Model {
         }
     }
 
+    /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::stiffness`].
+    pub fn stiffness<const D: usize>(&self) -> f64 {
+        match self.kernel {
+            Kernel::Cubic { .. } => kernel::lattice::stiffness(kernel::Cubic::new(self.h, D), &self.medium::<D>()),
+            Kernel::Wendland => kernel::lattice::stiffness(kernel::Wendland::new(self.h, D), &self.medium::<D>()),
+        }
+    }
+
     /// The shifting parameters, if any.
     pub fn shift(&self) -> Option<Shift> {
         match self.shifting {

@@ -112,9 +112,8 @@ impl<const D: usize> Simulation<D> {
         };
         let rig = Rig::new(&setup.links, start);
         let stepper = Stepper::new(&setup.model);
-        let longest = limit::sound(&setup.model);
         let mut system = System::new(setup)?;
-        let bodies = Bodies::new(engine, Light::find(&mut system, longest), rig, hosted);
+        let bodies = Bodies::new(engine, Light::find(&mut system), rig, hosted);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (Rescue::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rescue, lost, stepping };
@@ -285,7 +284,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Impulse (N s; N s/m in 2-D) that the water has given to free solid number `solid` and that it has yet to get: none but
-    /// of a body lighter than the water that sound sets moving in a step.
+    /// of a body lighter than the water that sound sets moving while it crosses a kernel.
     pub fn withheld(&self, solid: usize) -> Vector<D> {
         self.bodies.withheld(solid)
     }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use schemars::JsonSchema;
 use serde::{
-    Deserialize, Deserializer, Serialize, Serializer,
+    Deserialize, Deserializer, Serialize,
     de::{self, MapAccess, Visitor, value::MapAccessDeserializer},
 };
 
@@ -22,8 +22,8 @@ use crate::{
 const GAUGE: f64 = 2.0;
 
 /// Whether a paddle absorbs: `true`, or how.
-#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
-#[schemars(untagged)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum Absorb {
     /// As usual, or not at all.
     Plainly(bool),
@@ -52,15 +52,6 @@ impl Absorb {
         match self {
             Self::Plainly(absorbs) => absorbs.then(AbsorbWords::default),
             Self::As(words) => Some(words),
-        }
-    }
-}
-
-impl Serialize for Absorb {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        match self {
-            Self::Plainly(absorbs) => serializer.serialize_bool(*absorbs),
-            Self::As(words) => words.serialize(serializer),
         }
     }
 }

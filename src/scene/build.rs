@@ -10,8 +10,7 @@ use super::{
 };
 use crate::{
     error::{Error, Kind, Result},
-    law::kernel::{self, REACH, lattice},
-    model::{Kernel, Model},
+    model::Model,
     shape::{
         Shape,
         fill::{Region, fill},
@@ -109,7 +108,7 @@ impl Scene {
         let water = scene.bodies_of_water::<D>()?;
         let still = Still::of(&water);
         let model = scene.laws(&water)?;
-        scene.steady(&model)?;
+        scene.steady::<D>(&model)?;
         scene.deep_enough(&still, &model)?;
         let solids = scene.solids::<D>(&Pool::of(&water))?;
         let links = scene.links(&solids)?;
@@ -264,15 +263,11 @@ impl Scene {
     }
 
     /// Refuses a kernel under which the lattice on which water starts gives way by its own pressure.
-    fn steady(&self, model: &Model) -> Result<()> {
-        let (h, d) = (model.h / model.dp, self.dimension);
+    fn steady<const D: usize>(&self, model: &Model) -> Result<()> {
         if model.gravity.iter().all(|g| *g == 0.0) {
             return Ok(());
         }
-        let stiffness = match model.kernel {
-            Kernel::Wendland => lattice::stiffness(kernel::Wendland::new(h, d), h, d),
-            Kernel::Cubic { .. } => lattice::stiffness(kernel::Cubic::new(h, d), h, d),
-        };
+        let (h, stiffness) = (model.h / model.dp, model.stiffness::<D>());
         if stiffness > SOFTEST {
             return Ok(());
         }
@@ -286,7 +281,7 @@ impl Scene {
 
     /// Refuses still water whose surface is so near its bed that no kernel is whole between them.
     fn deep_enough(&self, still: &Still, model: &Model) -> Result<()> {
-        let reach = REACH * model.h;
+        let reach = model.reach();
         if model.gravity.last().is_none_or(|g| *g == 0.0) || still.depth > 0.999 * SHALLOW * reach {
             return Ok(());
         }

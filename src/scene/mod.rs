@@ -3,8 +3,8 @@
 //! [`format`], [`bodies`] and [`links`] are the words, [`document`] reads them from TOML, `verify`, `solids` and `checks`
 //! hold them against one another, [`resolve`] fills in the defaults, [`build`] opens the files that they name.
 
-pub mod absorb;
-mod bodies;
+mod absorb;
+pub mod bodies;
 pub mod build;
 mod build_links;
 mod build_solids;

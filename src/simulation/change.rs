@@ -5,7 +5,7 @@ use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
     solid::{Dim, HasEngine as _, Kinematics, Links, Role, SolidSpec},
-    time::{Light, limit},
+    time::Light,
 };
 
 /// Deepest overlap of a solid that comes, in dp.
@@ -53,7 +53,7 @@ where
         let solid = self.system.solids().len() - 1;
         if let Some(books) = &mut self.bodies.books {
             books.displaced(energy);
-            books.came(&self.system.solids()[solid], &self.system.gravity());
+            books.came(self.system.solids()[solid].energy(&self.system.gravity()));
         }
         self.renewed(renewal);
         Ok(Added { solid, displaced })
@@ -82,7 +82,7 @@ where
         let energy = self.system.give_back(solid, &withheld);
         if let Some(books) = &mut self.bodies.books {
             books.gave_back(energy);
-            books.goes(&self.system.solids()[solid], &self.system.gravity());
+            books.came(-self.system.solids()[solid].energy(&self.system.gravity()));
         }
         self.leave(solid);
         let renewal = self.system.renew();
@@ -126,7 +126,7 @@ where
 
     /// Lets a solid come into water and world, unchecked and without making room for it.
     fn join(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
-        let (free, longest) = (matches!(spec.role, Role::Free(_)), limit::sound(self.system.model()));
+        let free = matches!(spec.role, Role::Free(_));
         let founding = free && !self.bodies.hosted();
         match self.bodies.engine_mut() {
             Some(engine) => engine.admit(&spec, &start)?,
@@ -141,7 +141,7 @@ where
         }
         self.system.admit(spec, start)?;
         let last = self.system.solids().len() - 1;
-        self.bodies.admit(Light::of(&mut self.system, last, longest), start);
+        self.bodies.admit(Light::of(&mut self.system, last), start);
         Ok(())
     }
 

@@ -116,6 +116,14 @@ impl<const D: usize> Motion<D> {
         }
     }
 
+    /// Which way its point that is at `x` (m) goes as the law's value grows, a unit vector; zero on the axis of a hinge.
+    pub fn heading(&self, x: &Vector<D>) -> Vector<D> {
+        match &self.path {
+            Path::Slide(direction) => *direction,
+            Path::Hinge { centre, axis } => axis.at(&(x - centre)).try_normalize(0.0).unwrap_or_else(Vector::zeros),
+        }
+    }
+
     /// How it goes along its way.
     pub fn law(&self) -> &Law {
         &self.law

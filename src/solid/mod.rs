@@ -157,6 +157,11 @@ impl<const D: usize> Solid<D> {
         -body.mass * gravity.dot(&self.kinematics.centre)
     }
 
+    /// Both energies, J (J/m in 2-D).
+    pub fn energy(&self, gravity: &Vector<D>) -> f64 {
+        self.kinetic() + self.potential(gravity)
+    }
+
     /// Acceleration (m/s²) of its point at the world position `x` (m).
     pub fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> {
         let (arm, spin) = (x - self.kinematics.centre, &self.kinematics.spin);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{Renewal, System, walls};
+use super::{Renewal, System, hem::Stitch, walls};
 use crate::{
     error::{Error, Result},
     law::wall::Slip,
@@ -14,25 +14,26 @@ use crate::{
 };
 
 impl<const D: usize> System<D> {
-    /// Gives a solid that moves as `kinematics` its boundary particles, behind all others.
-    pub(super) fn join(&mut self, spec: SolidSpec<D>, kinematics: Kinematics<D>) -> Result<()> {
+    /// Gives a solid that moves as `kinematics` its boundary particles, behind all others, the `hem` last.
+    pub(super) fn join(&mut self, spec: SolidSpec<D>, kinematics: Kinematics<D>, hem: &[Stitch<D>]) -> Result<()> {
         let (model, first) = (&self.model, self.skin.len());
-        for point in spec.shape.skin(model.dp, model.layers()) {
-            self.skin.push(kinematics.pose.point(&point.r), self.medium.rho0);
-            self.local.push(point.r);
+        let mut faces = spec.shape.skin(model.dp, model.layers()).into_iter().map(|point| point.r).collect::<Vec<_>>();
+        for r in faces.iter().chain(hem.iter().map(|stitch| &stitch.r)) {
+            self.skin.push(kinematics.pose.point(r), self.medium.rho0);
+            self.local.push(*r);
         }
+        faces.extend(hem.iter().map(|stitch| stitch.of));
         if self.skin.len() == first {
             return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
                 .help("make it larger or dp smaller"));
         }
-        let local = &self.local[first..];
         if model.slip == Slip::None || model.walls == Walls::Settling {
-            self.depths.par_extend(local.par_iter().map(|r| -spec.shape.signed_distance(r)));
+            self.depths.par_extend(faces.par_iter().map(|r| -spec.shape.signed_distance(r)));
         }
         if model.slip == Slip::None {
-            self.normals.par_extend(local.par_iter().map(|r| spec.shape.outward(r, 0.05 * model.dp)));
+            self.normals.par_extend(faces.par_iter().map(|r| spec.shape.outward(r, 0.05 * model.dp)));
         }
-        self.boxes.push(Bounds::around(local));
+        self.boxes.push(Bounds::around(&self.local[first..]));
         let load = Load::zero();
         let (acceleration, whirl, skin) = (Vector::zeros(), Wedge::zero(), first..self.skin.len());
         let yielding = Default::default();
@@ -53,7 +54,7 @@ impl<const D: usize> System<D> {
 
     /// Lets a solid come that moves as `kinematics`; a refusal leaves all as it was. Lists are due then.
     pub(crate) fn admit(&mut self, spec: SolidSpec<D>, kinematics: Kinematics<D>) -> Result<()> {
-        self.join(spec, kinematics)?;
+        self.join(spec, kinematics, &[])?;
         let last = self.solids.len() - 1;
         self.mark();
         self.place(last);

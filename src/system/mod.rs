@@ -4,6 +4,7 @@
 mod change;
 mod damping;
 mod guard;
+mod hem;
 mod kept;
 mod level;
 mod meter;
@@ -15,6 +16,7 @@ mod walls;
 pub use damping::Damping;
 pub(crate) use guard::Seen;
 pub use guard::{Escape, Limits, Lost};
+use hem::hem;
 pub(crate) use kept::SystemState;
 use meter::Meter;
 pub(crate) use meter::Powers;
@@ -174,9 +176,10 @@ impl<const D: usize> System<D> {
             changed: false,
             ousted: Vec::new(),
         };
-        for spec in specs {
+        let hems: Vec<_> = (0..specs.len()).map(|i| hem(i, &specs, &system.model)).collect();
+        for (spec, hem) in specs.into_iter().zip(&hems) {
             let kinematics = spec.start();
-            system.join(spec, kinematics)?;
+            system.join(spec, kinematics, hem)?;
         }
         system.mark();
         if domain.is_none() {

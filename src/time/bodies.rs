@@ -256,6 +256,7 @@ impl<const D: usize> Handover<'_, D> {
             light.learn(self.system, dt, before, &self.solids[light.solid]);
         }
         let touching = if told { touching(&engine.contacts(), began.len()) } else { Vec::new() };
+        let iterated = engine.iterations() > 1;
         let moved = |i: usize, tied: Tied<D>| Moved {
             given: self.loads[i],
             pushes: pushes[i],
@@ -264,13 +265,14 @@ impl<const D: usize> Handover<'_, D> {
             before: &began[i],
             after: &self.solids[i],
             dt,
+            iterated,
         };
         let of = |i: usize| Shares::of(self.system, i, &moved(i, rig.tied(i)));
         let shares: Vec<_> = (0..touching.len()).map(of).collect();
         if tied {
             // In space what turns a body while its spin changes is not in its angular momentum to the last digits.
             let unexplained: Vec<_> = shares.iter().map(Shares::residual).collect();
-            let wanted = D == 2 || engine.iterations() > 1;
+            let wanted = D == 2 || iterated;
             rig.learn(&**engine, [&began, &self.solids], dt, wanted.then_some(&unexplained[..]));
         }
         if let Some(books) = books {

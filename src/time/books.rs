@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    solid::{Contact, FreeBody, Kinematics, Load, Role, Solid, rig::Tied},
+    solid::{Contact, FreeBody, Kinematics, Load, Role, rig::Tied},
     space::{Matrix, Vector, Wedge},
     system::{Lost, Powers, System},
 };
@@ -93,12 +93,25 @@ impl<const D: usize> Shares<D> {
         self.change - self.sum()
     }
 
+    /// Gives what is left over to the ties that pull hardest: from one iteration of a step to the next they turn, and the rows along which
+    /// their pulls are told do not. In space what turns a body while its spin changes is left over too, and not theirs.
+    fn give_ties_the_rest(&mut self) {
+        let mut rest = self.residual();
+        if D == 3 {
+            rest.torque = Wedge::zero();
+        }
+        let ties = if self.joints.force.norm() >= self.ropes.force.norm() { &mut self.joints } else { &mut self.ropes };
+        if *ties != Load::zero() {
+            *ties += rest;
+        }
+    }
+
     /// Those on solid number `i` in a step, all of the water's as pressure, without what joints, ropes and locks did; none but on
     /// a free one.
     pub(super) fn of(system: &System<D>, i: usize, moved: &Moved<'_, D>) -> Self {
         let solid = &system.solids()[i];
         let Role::Free(body) = &solid.spec.role else { return Self::zero() };
-        let Moved { given, pushes, touching, tied, before, after, dt } = *moved;
+        let Moved { given, pushes, touching, tied, before, after, dt, .. } = *moved;
         Self {
             pressure: solid.load,
             delayed: given - solid.load,
@@ -195,6 +208,8 @@ pub(super) struct Moved<'a, const D: usize> {
     pub(super) before: &'a Kinematics<D>,
     pub(super) after: &'a Kinematics<D>,
     pub(super) dt: f64,
+    /// Whether the engine took the step in several iterations.
+    pub(super) iterated: bool,
 }
 
 impl<const D: usize> Books<D> {
@@ -266,14 +281,9 @@ impl<const D: usize> Books<D> {
         self.ledger.removed -= energy;
     }
 
-    /// Books that a solid that moves so, under `gravity` (m/s²), has come.
-    pub(crate) fn came(&mut self, solid: &Solid<D>, gravity: &Vector<D>) {
-        self.ledger.solids += solid.kinetic() + solid.potential(gravity);
-    }
-
-    /// Books that it goes.
-    pub(crate) fn goes(&mut self, solid: &Solid<D>, gravity: &Vector<D>) {
-        self.ledger.solids -= solid.kinetic() + solid.potential(gravity);
+    /// Books the energy (J) that a solid has which came; of one that goes, less than nothing.
+    pub(crate) fn came(&mut self, energy: f64) {
+        self.ledger.solids += energy;
     }
 
     /// Books energy (J) that damping zones took.
@@ -289,10 +299,13 @@ impl<const D: usize> Books<D> {
     /// Books a step of solid number `i` of `system`, if it is free, under `shares` but for joints, ropes and locks.
     pub(super) fn body(&mut self, system: &System<D>, i: usize, mut shares: Shares<D>, moved: &Moved<'_, D>) {
         let Role::Free(body) = &system.solids()[i].spec.role else { return };
-        let Moved { given, tied, before, after, dt, .. } = *moved;
+        let Moved { given, tied, before, after, dt, iterated, .. } = *moved;
         (shares.viscous, shares.pressure) = (self.viscous[i], shares.pressure - self.viscous[i]);
         (shares.joints, shares.ropes) = (tied.joints, tied.ropes);
         shares.locks = locked(body, tied.held, &shares.residual());
+        if iterated {
+            shares.give_ties_the_rest();
+        }
         let mean = Kinematics {
             velocity: 0.5 * (before.velocity + after.velocity),
             spin: (before.spin + after.spin) * 0.5,

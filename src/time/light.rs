@@ -1,16 +1,22 @@
-//! Bodies lighter than the water that sound sets moving in a step.
+//! Bodies lighter than the water that sound sets moving while it crosses a kernel.
 //!
 //! A wet boundary particle of the outer layer is a spring of stiffness k = ρ₀ c₀² dpᴰ⁻² along its normal n (a column of
-//! water dp long on a face dpᴰ⁻¹). A body of mass matrix M on all of them, K = Σ k J Jᵀ with J = (n, arm ∧ n), takes up its
-//! load step by step as it should while λ = Δt² max eig(M⁻¹K) is small: a step adds λ/4 of the energy of that mode, more
-//! than the body radiates into the water if λ is not. Beyond that the body answers with the inertia of the water that goes
-//! with it, Z = θ Δt² K, θ = 1/Λ − 1/λ, so that it never has more than λ = Λ:
+//! water dp long on a face dpᴰ⁻¹). A body of mass matrix M on all of them, K = Σ k J Jᵀ with J = (n, arm ∧ n), swings with ω_b,
+//! ω_b² = max eig(M⁻¹K), and gives that up to the water as sound. But particles carry no sound faster than 1.14 c₀/h (Wendland's
+//! kernel; shorter waves are slower): a body that swings faster rings, trapped, and as a step gives it λ/4 of the energy of that
+//! mode, λ = Δt² ω_b², it rings for ever or blows up. So that it never swings faster, it answers with the inertia of the water
+//! that sound sets moving with it in T = h/c₀, Z = θ T² K, θ = 1/Λ − 1/(T ω_b)², Λ = 1.3:
 //!
 //!   (M + Z) Δv = Δt (W + C) + s S,      S ← S + Δt (W + C) − M Δv,      s = 1 − exp(−Δt/τ),  τ = 10 h/c₀
 //!
 //! W is the load of water, weight and pushes, C that of contacts and joints (a mean over τ), S the impulse withheld so far. It is
-//! handed on within τ, so that in motions slower than sound Z has no part, M Δv = Δt (W + C), and momentum is kept: what the
-//! water lost the body has, or will have. Λ/λ > 1 leaves all as it is.
+//! handed on within τ, so that in motions slower than sound Z has no part, M Δv = Δt (W + C): at a frequency ω it is off by
+//! ω τ Z/M, which falls with the square of h; and momentum is kept: what the water lost the body has, or will have. A body with
+//! (T ω_b)² < Λ is left as it is.
+//!
+//! Water that gets hold of more of the body, by ΔZ, moves with v_w until then, and with the body from then on: an inelastic join
+//! gives the body M Δv = −M (M + Z)⁻¹ ΔZ (v − v_w) at once, and the water next to it as much less. Without it a light body that
+//! strikes water meets it as heavy as with all of Z, and leaves with energy that it never had.
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -22,8 +28,8 @@ use crate::{
     system::System,
 };
 
-/// Λ, the largest λ that a body is left with, –.
-const STIFFEST: f64 = 0.5;
+/// Λ, the largest (ω_b h/c₀)² that a body is left with, –: that of the fastest sound that particles carry.
+const STIFFEST: f64 = 1.3;
 
 /// τ over h/c₀, –.
 const TIME: f64 = 10.0;
@@ -58,23 +64,23 @@ pub struct Held {
 }
 
 impl<const D: usize> Light<D> {
-    /// The free solids that steps up to `dt` (s) can be too long for, were they wet all around.
-    pub(crate) fn find(system: &mut System<D>, dt: f64) -> Vec<Self> {
-        (0..system.solids().len()).filter_map(|i| Self::of(system, i, dt)).collect()
+    /// The free solids that would swing faster than sound crosses a kernel, were they wet all around.
+    pub(crate) fn find(system: &mut System<D>) -> Vec<Self> {
+        (0..system.solids().len()).filter_map(|i| Self::of(system, i)).collect()
     }
 
-    /// The free solid number `i`, if steps up to `dt` (s) can be too long for it, were it wet all around.
-    pub(crate) fn of(system: &mut System<D>, i: usize, dt: f64) -> Option<Self> {
-        let found = Self::one(system, i, dt);
+    /// The free solid number `i`, if it would swing so fast, were it wet all around.
+    pub(crate) fn of(system: &mut System<D>, i: usize) -> Option<Self> {
+        let found = Self::one(system, i);
         system.feels |= found.is_some();
         found
     }
 
-    fn one(system: &System<D>, i: usize, dt: f64) -> Option<Self> {
+    fn one(system: &System<D>, i: usize) -> Option<Self> {
         let (medium, solid) = (system.medium(), &system.solids()[i]);
         let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
         let Role::Free(body) = &solid.spec.role else { return None };
-        if (limit::stiffest(shape, body, medium) * dt).powi(2) <= STIFFEST {
+        if (limit::stiffest(shape, body, medium) * medium.h / medium.c0).powi(2) <= STIFFEST {
             return None;
         }
         let of = |i: usize| (i as u32, pose.local(&system.skin().r[i]));
@@ -125,21 +131,33 @@ impl<const D: usize> Light<D> {
         let mut whole = six(load) + six(&added);
         lock(body, |i| whole[i] = 0.0);
         let springs = self.springs(system, body);
-        let left = self.leave((0..D).map(|i| springs[(i, i)]).sum());
-        let (mass, water) = (mass(solid, body), springs * (dt * dt));
+        let grip = (0..D).map(|i| springs[(i, i)]).sum();
+        let fresh = if grip > self.held.grip { 1.0 - self.held.grip / grip } else { 0.0 };
+        let left = self.leave(grip);
+        let time2 = (system.medium().h / system.medium().c0).powi(2);
+        let (mass, water) = (mass(solid, body), springs * time2);
+        let theta = theta(&mass, &water);
+        let both = (mass + water * theta).cholesky();
+        let answer = |impulse: Six| both.as_ref().map(|both| mass * both.solve(&impulse));
         let share = settled(system, dt);
         let (total, withheld) = (whole + self.held.contacts, self.held.withheld);
-        let both = (mass + water * theta(&mass, &water)).cholesky();
-        let impulse = both.map_or(total * dt, |both| mass * both.solve(&(total * dt + withheld * share)));
+        let impulse = answer(total * dt + withheld * share).unwrap_or(total * dt);
+        let mut join = Six::zeros();
+        if theta * fresh > 0.0 {
+            let motion = six(&Load { force: solid.kinematics.velocity, torque: solid.kinematics.spin });
+            let closing = water * motion - self.flow(system, body) * time2;
+            join = answer(closing * (-theta * fresh)).unwrap_or(join);
+            lock(body, |i| join[i] = 0.0);
+        }
         self.held.withheld += total * dt - impulse;
         // Momentum withheld is carried along: its moment about the origin must not change.
         let carried = Wedge::torque(&solid.kinematics.velocity, &linear(&withheld)) * -dt;
         self.held.withheld += six(&Load { force: Vector::zeros(), torque: carried });
         lock(body, |i| self.held.withheld[i] = 0.0);
-        self.given = impulse / dt - self.held.contacts;
+        self.given = (impulse + join) / dt - self.held.contacts;
         let given = self.given - six(&added);
         *load = Load { force: linear(&given), torque: angular::<D>(&given) };
-        left
+        left - linear::<D>(&join)
     }
 
     /// Learns from the motion over the step that began as `before` what contacts and joints did.
@@ -157,29 +175,54 @@ impl<const D: usize> Light<D> {
 
     /// K of the springs that are wet now, N/m, N and N m.
     fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> Square {
-        let solid = &system.solids()[self.solid];
-        let (medium, turn) = (system.medium(), &solid.kinematics.pose.rotation);
-        let wet = system.near.wet();
-        let mut k = wet.partition_point(|&i| (i as usize) < solid.skin.start);
         let mut sum = Square::zeros();
-        for (i, normal) in &self.outer {
-            k += wet[k..].iter().take_while(|w| *w < i).count();
-            if wet.get(k) == Some(i) {
-                let immersed = (system.immersed[k] / FULL).min(1.0);
-                let (arm, normal) = (system.skin.r[*i as usize] - solid.kinematics.centre, turn * normal);
-                let along = six(&Load { force: normal, torque: Wedge::torque(&arm, &normal) });
-                sum += along * along.transpose() * immersed;
-            }
-        }
+        self.each_wet(system, |part, _, _, along| sum += along * along.transpose() * part);
         lock(body, |i| {
             sum.row_mut(i).fill(0.0);
             sum.column_mut(i).fill(0.0);
         });
-        sum * (medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2))
+        sum * stiffness(system)
+    }
+
+    /// K v_w: what the springs feel of the water's own motion, N/s and N m/s.
+    fn flow(&self, system: &System<D>, body: &FreeBody<D>) -> Six {
+        let mut sum = Six::zeros();
+        self.each_wet(system, |part, x, normal, along| {
+            let (mut weight, mut flow) = (0.0, Vector::<D>::zeros());
+            system.water_near(x, &mut |i, _, w| (weight, flow) = (weight + w, flow + system.fluid().v[i] * w));
+            if weight > 0.0 {
+                sum += along * (part * normal.dot(&flow) / weight);
+            }
+        });
+        lock(body, |i| sum[i] = 0.0);
+        sum * stiffness(system)
+    }
+
+    /// Calls `visit` with every outer boundary particle that is wet: the part of it (0 to 1) that the water holds, its place (m), its
+    /// normal n, and J.
+    fn each_wet(&self, system: &System<D>, mut visit: impl FnMut(f64, &Vector<D>, &Vector<D>, Six)) {
+        let solid = &system.solids()[self.solid];
+        let turn = &solid.kinematics.pose.rotation;
+        let wet = system.near.wet();
+        let mut k = wet.partition_point(|&i| (i as usize) < solid.skin.start);
+        for (i, normal) in &self.outer {
+            k += wet[k..].iter().take_while(|w| *w < i).count();
+            if wet.get(k) == Some(i) {
+                let (x, normal) = (&system.skin.r[*i as usize], turn * normal);
+                let torque = Wedge::torque(&(x - solid.kinematics.centre), &normal);
+                visit((system.immersed[k] / FULL).min(1.0), x, &normal, six(&Load { force: normal, torque }));
+            }
+        }
     }
 }
 
-/// θ: how much of the water's inertia Δt² K goes with a body of mass matrix M, –.
+/// k of one spring, N/m.
+fn stiffness<const D: usize>(system: &System<D>) -> f64 {
+    let medium = system.medium();
+    medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2)
+}
+
+/// θ: how much of the water's inertia T² K goes with a body of mass matrix M, –.
 fn theta(mass: &Square, water: &Square) -> f64 {
     let Some(root) = mass.cholesky().and_then(|c| c.l().try_inverse()) else { return 0.0 };
     let stiffest = (root * water * root.transpose()).symmetric_eigenvalues().max();

@@ -13,11 +13,6 @@ use crate::{
     system::Peaks,
 };
 
-/// The longest step (s) that sound alone allows, CFL h/c₀.
-pub fn sound(model: &Model) -> f64 {
-    (model.cfl * model.h / model.c0).min(model.dt_max)
-}
-
 /// The longest step (s) that the water allows; eq. (14) of [@pirkhalili2023], [@monaghan1992].
 pub fn water<const D: usize>(peaks: &Peaks, medium: &Medium<D>, cfl: f64) -> f64 {
     let by_force = (medium.h / peaks.acceleration).sqrt();

@@ -55,7 +55,7 @@ impl<'a, const D: usize> Measure<'a, D> {
             energy,
             courses,
             before: Vec::new(),
-            momentum: (momentum(system), moving(system)),
+            momentum: (momentum(sim), moving(system)),
             depth: level - lowest + 0.5 * system.model().dp,
             level,
             next: 0.0,
@@ -96,7 +96,7 @@ impl<'a, const D: usize> Measure<'a, D> {
         }
         if judge.momentum.is_some() {
             let pushed = system.gravity() * (masses(system) * sim.time());
-            let off = (momentum(system) - self.momentum.0 - pushed).norm();
+            let off = (momentum(sim) - self.momentum.0 - pushed).norm();
             self.note("momentum", off / self.momentum.1.max(pushed.norm()).max(f64::MIN_POSITIVE));
         }
         let courses = self.courses.iter().zip(&judge.motion).map(|((probe, column, formula), course)| {
@@ -150,10 +150,12 @@ fn masses<const D: usize>(system: &System<D>) -> f64 {
     system.particle_mass() * system.fluid().len() as f64 + bodies
 }
 
-/// Momentum of water and free bodies, kg m/s.
-fn momentum<const D: usize>(system: &System<D>) -> Vector<D> {
-    let water: Vector<D> = system.fluid().v.iter().sum();
-    free(system).fold(water * system.particle_mass(), |sum, (solid, mass)| sum + solid.kinematics.velocity * mass)
+/// Momentum of water and free bodies, kg m/s, with what light ones have yet to get.
+fn momentum<const D: usize>(sim: &Simulation<D>) -> Vector<D> {
+    let system = sim.system();
+    let water = system.fluid().v.iter().sum::<Vector<D>>() * system.particle_mass();
+    let on_the_way = (0..system.solids().len()).fold(water, |sum, i| sum + sim.withheld(i));
+    free(system).fold(on_the_way, |sum, (solid, mass)| sum + solid.kinematics.velocity * mass)
 }
 
 /// Σ m |v| of water and free bodies, kg m/s.

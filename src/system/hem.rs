@@ -1,0 +1,111 @@
+//! Hems: a driven solid that slides along the face of a fixed one is carried on into it, as a paddle into its bed.
+//!
+//! Between the last row of boundary particles of the one and the first of the other is a seam, a dp wide, that slides. What a stroke
+//! presses into the corner finds the way through it in the long run; rows of the paddle's own below the face leave none.
+
+use crate::{
+    model::Model,
+    solid::{Role, SolidSpec},
+    space::Vector,
+};
+
+/// Faces touch if they are no further apart, dp.
+const TOUCH: f64 = 0.1;
+
+/// A solid slides along a face if it sets out at more than 60° from the face's normal: what rises from its bed, as a gate, opens.
+const ALONG: f64 = 0.5;
+
+/// A boundary particle of a hem, in the frame of its solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stitch<const D: usize> {
+    /// Where it is, m.
+    pub(super) r: Vector<D>,
+    /// A place as deep behind the face that it carries on, m.
+    pub(super) of: Vector<D>,
+}
+
+/// The hem of solid number `i` of `specs`; most have none.
+pub(super) fn hem<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Model) -> Vec<Stitch<D>> {
+    let (spec, pose) = (&specs[i], specs[i].start().pose);
+    let Role::Driven(motion) = &spec.role else { return Vec::new() };
+    let fixed: Vec<&SolidSpec<D>> = specs.iter().filter(|other| matches!(other.role, Role::Fixed)).collect();
+    let (dp, inside) = (model.dp, |r: &Vector<D>| spec.shape.signed_distance(r));
+    let mut stitches = Vec::new();
+    for point in spec.shape.skin(dp, model.layers()) {
+        let x = pose.point(&point.r);
+        for other in &fixed {
+            let at = other.start().pose;
+            let apart = other.shape.signed_distance(&at.local(&x));
+            // Half a dp for a solid that stands on the other.
+            if (apart - 0.5 * dp).abs() > 0.25 * dp || (apart + inside(&point.r)).abs() > TOUCH * dp {
+                continue;
+            }
+            let out = at.rotation * other.shape.outward(&at.local(&x), 0.05 * dp);
+            if motion.heading(&x).dot(&out).abs() > ALONG {
+                continue;
+            }
+            let high = pose.local(&(x + out * (model.layers() as f64 * dp)));
+            let of = if inside(&high) < 0.0 { high } else { point.r };
+            let rows = (0..model.layers()).map(|k| x - out * (2.0 * apart + k as f64 * dp));
+            let rows = rows.filter(|r| other.shape.signed_distance(&at.local(r)) < 0.0).map(|r| pose.local(&r));
+            stitches.extend(rows.filter(|r| inside(r) > 0.0).map(|r| Stitch { r, of }));
+        }
+    }
+    stitches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        shape::Shape,
+        solid::{Law, Motion},
+        space::Pose,
+    };
+
+    /// A bed, its face at y = 0, and on it at dp = 0.1 a paddle 0.4 m thick, its foot at `foot` (m), that moves so.
+    fn paddle(foot: f64, motion: Motion<2>) -> Vec<Stitch<2>> {
+        let solid = |name: &str, size: [f64; 2], y: f64, role| SolidSpec {
+            name: name.into(),
+            shape: Shape::Box { size: Vector::from(size) },
+            pose: Pose { position: Vector::from([0.0, y]), ..Pose::identity() },
+            role,
+            friction: 0.0,
+            restitution: 0.0,
+        };
+        let specs = [
+            solid("bed", [10.0, 1.0], -0.5, Role::Fixed),
+            solid("paddle", [0.4, 2.0], foot + 1.0, Role::Driven(motion)),
+        ];
+        let model = Model::water(2, 0.1, 1.0);
+        assert!(hem(0, &specs, &model).is_empty(), "a bed has none");
+        hem(1, &specs, &model)
+    }
+
+    fn along(direction: [f64; 2]) -> Motion<2> {
+        Motion::slide(Vector::from(direction), Law::constant(0.0))
+    }
+
+    #[test]
+    fn a_piston_on_its_bed_is_carried_on_into_it_as_far_as_the_kernel_reaches() {
+        let hem = paddle(0.0, along([1.0, 0.0]));
+        let layers = Model::water(2, 0.1, 1.0).layers();
+        // Four columns of a paddle four dp thick, in the lattice that its own rows have.
+        assert_eq!(hem.len(), 4 * layers);
+        for stitch in &hem {
+            let row = (stitch.r[1] + 1.0) / -0.1 - 0.5;
+            assert!((row - row.round()).abs() < 1e-9 && row > -0.1 && row < layers as f64, "{stitch:?}");
+            assert!((stitch.of[0] - stitch.r[0]).abs() < 1e-12, "as deep behind the face: {stitch:?}");
+        }
+    }
+
+    #[test]
+    fn what_opens_or_stands_apart_or_reaches_into_the_bed_has_none() {
+        assert!(paddle(0.0, along([0.0, 1.0])).is_empty(), "a gate that is lifted");
+        let about = |y: f64| Motion::hinge(Vector::from([0.0, y]), &[1.0], Law::constant(0.0));
+        assert!(paddle(0.0, about(0.0)).is_empty(), "a flap hinged at the bed turns there");
+        assert!(!paddle(0.0, about(-1.0)).is_empty(), "one hinged far below slides");
+        assert!(paddle(0.3, along([1.0, 0.0])).is_empty(), "a gap of 3 dp");
+        assert!(paddle(-0.4, along([1.0, 0.0])).is_empty(), "rows of its own");
+    }
+}
