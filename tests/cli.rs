@@ -533,6 +533,22 @@ fn a_run_is_told_in_figures_watched_and_exported() {
 }
 
 #[test]
+fn the_surface_of_a_run_in_space_is_exported_as_meshes_and_that_of_a_section_is_refused() {
+    let desk = Desk::new("surface");
+    for (scene, folder) in [("still-tank", "flat"), ("still-tank-3d", "deep")] {
+        let words = ["run", scene, "--until", "0.02", "--set", "frames.every=0.01", "--out", folder, "--no-report"];
+        let said = desk.pontoon(&words);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+    }
+    let said = desk.pontoon(&["export", "deep", "--surface", "--npz"]);
+    assert!(said.code == Some(0) && said.out.contains("surface.pvd: 3 meshes"), "{}{}", said.out, said.err);
+    assert!(desk.read("deep/surface.pvd").contains("file=\"surface/surface_00002.vtu\""));
+    let mesh = desk.read("deep/surface/surface_00002.vtu");
+    assert!(mesh.contains("Name=\"velocity\"") && desk.path("deep/series.npz").exists());
+    desk.pontoon(&["export", "flat", "--surface"]).refused(2, &["2-D", "pontoon report"]);
+}
+
+#[test]
 fn a_log_for_programs_is_an_object_a_line_from_start_to_end_or_error() {
     let desk = Desk::new("log");
     let run = |more: &[&str]| desk.pontoon(&[&["run", "still-tank", "--log", "json"], more].concat());

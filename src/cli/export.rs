@@ -1,33 +1,49 @@
-//! `pontoon export`: the series of a run in a form that other programs read.
+//! `pontoon export`: a run in forms that other programs read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use pontoon::{
     error::{Error, Kind, Result},
     record::{Manifest, Readings, arrays},
 };
 
-/// Which run, and where to.
+/// Which run, what of it, and where to.
 #[derive(Args)]
+#[command(group(ArgGroup::new("what").required(true).multiple(true)))]
 pub struct ExportArgs {
     /// Folder of the run
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// All series as NumPy arrays in one file [default: DIR/series.npz]
-    #[arg(long, value_name = "FILE", num_args = 0..=1, required = true)]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, group = "what")]
     npz: Option<Option<PathBuf>>,
+    /// The free surface in each frame of a 3-D run as a mesh for ParaView: DIR/surface.pvd
+    #[cfg(feature = "surface")]
+    #[arg(long, group = "what")]
+    surface: bool,
 }
 
-/// Writes the file; says where.
+/// Writes the files; says where.
 pub fn export(args: &ExportArgs) -> Result<String> {
-    let manifest = Manifest::read(&args.folder)?;
-    let out = args.npz.clone().flatten().unwrap_or_else(|| args.folder.join("series.npz"));
+    let mut said = String::new();
+    if let Some(out) = &args.npz {
+        said += &series(&args.folder, out.clone().unwrap_or_else(|| args.folder.join("series.npz")))?;
+    }
+    #[cfg(feature = "surface")]
+    if args.surface {
+        said += &surface(&args.folder)?;
+    }
+    Ok(said)
+}
+
+fn series(folder: &Path, out: PathBuf) -> Result<String> {
+    let manifest = Manifest::read(folder)?;
     let names = manifest.files.iter().filter_map(|file| file.strip_prefix("series/")?.strip_suffix(".csv"));
-    let read = |name| Ok((name, Readings::read(&args.folder.join(format!("series/{name}.csv")))?));
+    let read = |name| Ok((name, Readings::read(&folder.join(format!("series/{name}.csv")))?));
     let tables: Vec<(&str, Readings)> = names.map(read).collect::<Result<_>>()?;
     if tables.is_empty() {
-        let what = format!("the run in {} has no series", args.folder.display());
+        let what = format!("the run in {} has no series", folder.display());
         return Err(Error::new(Kind::Usage, what).help("a [[probe]] in its scene would write some"));
     }
     let all = tables.iter().flat_map(|(name, of)| {
@@ -36,4 +52,24 @@ pub fn export(args: &ExportArgs) -> Result<String> {
     });
     arrays::write(&out, all)?;
     Ok(format!("{}: {} tables\n", out.display(), tables.len()))
+}
+
+#[cfg(feature = "surface")]
+fn surface(folder: &Path) -> Result<String> {
+    use pontoon::record::{Film, surface};
+
+    let (manifest, run) = (Manifest::read(folder)?, || folder.display());
+    let Some((dimension, dp)) = manifest.told("dimension").zip(manifest.told("dp")) else {
+        return Err(Error::new(Kind::Usage, format!("the manifest in {} does not tell dimension and dp", run())));
+    };
+    if dimension < 3.0 {
+        let what = format!("the run in {} is 2-D: its water has a line for a surface, not a mesh", run());
+        return Err(Error::new(Kind::Usage, what).help("`pontoon report` draws it, an elevation probe reads it"));
+    }
+    let Some(film) = Film::open(folder)? else {
+        let what = format!("the run in {} has no frames to make a surface of", run());
+        return Err(Error::new(Kind::Usage, what).help("run it without `frames = \"off\"`"));
+    };
+    let count = surface::write(folder, &film, dp)?;
+    Ok(format!("{}: {count} meshes\n", folder.join("surface.pvd").display()))
 }

@@ -46,7 +46,7 @@ pub fn inspect(args: &InspectArgs) -> Result<String> {
 /// What `inspect` prints.
 fn page(report: &Report) -> String {
     let mut text = format!("{}\n", report.title);
-    text += &findings(&report.preflight.findings);
+    text += &findings(&report.preflight.brief());
     text += &table(&facts(report));
     if !report.preflight.bodies.is_empty() {
         let _ = write!(text, "\n{}", bodies(&report.preflight.bodies, report.preflight.size.dimension));

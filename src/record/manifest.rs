@@ -137,6 +137,11 @@ impl Machine {
 }
 
 impl Manifest {
+    /// A number in force, by its key in the scene.
+    pub fn told(&self, key: &str) -> Option<f64> {
+        self.values.iter().find(|value| value.key == key)?.value.parse().ok()
+    }
+
     /// Notes that the run failed with `error`.
     pub fn fail(&mut self, error: &Error) {
         self.status = Status::Failed;

@@ -7,6 +7,8 @@ pub mod manifest;
 pub mod mean;
 pub mod removed;
 pub mod restart;
+#[cfg(feature = "surface")]
+pub mod surface;
 pub mod table;
 
 pub use film::{Cloud, Film};

@@ -90,8 +90,8 @@ struct Shown {
 /// `File` if a frame cannot be read.
 pub fn reel(run: &Kept, film: &Film, samples: usize, blob: &mut Blob) -> Result<Reel> {
     let set = run.set.as_ref();
-    let dimension = run.told("dimension").map_or(3, |x| x as usize).clamp(2, 3);
-    let dp = run.told("dp").unwrap_or(0.0) as f32;
+    let dimension = run.manifest.told("dimension").map_or(3, |x| x as usize).clamp(2, 3);
+    let dp = run.manifest.told("dp").unwrap_or(0.0) as f32;
     let first = film.water(0)?;
     let all = first.r.len().max(1);
     let frames = film.times().len();

@@ -140,11 +140,6 @@ impl Kept {
         })
     }
 
-    /// A number in force, by its key in the scene.
-    pub fn told(&self, key: &str) -> Option<f64> {
-        self.manifest.values.iter().find(|value| value.key == key)?.value.parse().ok()
-    }
-
     /// The runs in `folders`, with names that differ.
     ///
     /// # Errors
