@@ -34,6 +34,9 @@ use crate::{
 };
 use faces::Face;
 
+/// So many findings of a kind are read one by one: a crowd of bodies has one for each.
+const MOST: usize = 3;
+
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -98,9 +101,30 @@ pub struct Preflight {
 }
 
 impl Preflight {
+    /// The findings to read: of a kind the first three, and how many more there are.
+    pub fn brief(&self) -> Vec<Finding> {
+        let like = |a: &Finding, b: &Finding| (a.severity, a.topic) == (b.severity, b.topic);
+        let mut brief = Vec::new();
+        for (i, finding) in self.findings.iter().enumerate() {
+            let [before, after] = [&self.findings[..i], &self.findings[i + 1..]]
+                .map(|others| others.iter().filter(|other| like(finding, other)).count());
+            if before < MOST || (before, after) == (MOST, 0) {
+                brief.push(finding.clone());
+            } else if before == MOST {
+                let what = format!("{} more of this kind ({})", after + 1, finding.topic);
+                brief.push(Finding {
+                    what,
+                    mend: "`pontoon inspect SCENE --json` has them all".into(),
+                    ..finding.clone()
+                });
+            }
+        }
+        brief
+    }
+
     /// The findings that a run tells at its start.
     pub fn warnings(&self) -> Vec<String> {
-        self.findings.iter().filter(|f| f.severity == Severity::Warning).map(Finding::line).collect()
+        self.brief().iter().filter(|f| f.severity == Severity::Warning).map(Finding::line).collect()
     }
 }
 

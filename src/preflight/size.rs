@@ -102,7 +102,7 @@ impl<const D: usize> Look<'_, D> {
         // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
         let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + extra;
         let skin = particle + (2.0 * d + 2.0) * number;
-        // A frame is put together as numbers, as text and as the file's text.
+        // A frame is put together as numbers, packed, as text and as the file's text.
         let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * particle_bytes(&frames.fields).1);
         // States to go back to: two, and what it takes to make one.
         let states = 3.0 * (fluid * (particle + d * number) + boundary * particle);

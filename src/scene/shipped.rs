@@ -28,6 +28,7 @@ pub fn shipped() -> &'static [Shipped] {
         scene!("hinged-raft"),
         scene!("regular-waves"),
         scene!("buoy-in-waves"),
+        scene!("flume-box-by-name"),
         scene!("flap-converter"),
         scene!("harbour"),
         scene!("focused-box"),

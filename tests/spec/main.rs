@@ -21,6 +21,7 @@ mod light;
 mod meshes;
 mod near;
 mod periodic;
+mod periods;
 mod preflight;
 mod probes;
 mod quiet;

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::{
     solid::{
-        Dim, Formula, HasEngine, JointKind, JointSpec, Law, Links, Motion, Motor, Role, SolidSpec,
+        Dim, ForceSpec, Formula, HasEngine, JointKind, JointSpec, Law, Links, Motion, Motor, Role, SolidSpec,
         rig::tests::{Air, G, bar, body, hinge, inertia, joined, point, slider},
     },
     space::{Vector, Wedge},
@@ -287,4 +287,33 @@ fn a_towed_body_goes_with_its_carriage_and_is_free_in_all_else() {
     assert!((now.spin.axial()[0] - 0.7).abs() < 1e-9 && (now.velocity[0] - 0.4).abs() < 1e-3);
     let reading = air.rig.joint(0);
     assert!((reading.force - Vector::from([0.4 * m, 0.0])).norm() < 1e-2 * m, "it is towed with m a: {reading:?}");
+}
+
+fn carries<const D: usize>()
+where
+    Dim<D>: HasEngine<D>,
+{
+    let mut carriage = bar::<D>("carriage", 0.2, point(0.0, 1.0), true);
+    let Role::Free(body_of_it) = &mut carriage.role else { panic!() };
+    body_of_it.locked_translations = std::array::from_fn(|i| i != 0);
+    body_of_it.locked_rotations = [true; 3];
+    let mut solids = vec![carriage, bar("buoy", 0.4, Vector::zeros(), true)];
+    let Role::Free(buoy) = &mut solids[1].role else { panic!() };
+    buoy.spin = Wedge::from_axial(&[0.7, 0.0, 0.0][..if D == 2 { 1 } else { 3 }]);
+    let force = (0..D).map(|i| Law::constant(if i == 0 || i == D - 1 { 12.0 } else { 0.0 })).collect();
+    let push = ForceSpec { name: "push".into(), solid: 1, at: None, force, torque: vec![], turns: false };
+    let tow = JointSpec::new("rail", JointKind::Tow, [Some(0), Some(1)], Vector::zeros(), point(1.0, 0.0));
+    let links = Links { joints: vec![tow], forces: vec![push], ..Links::default() };
+    let mut air = Air::new(solids, links, 0.0);
+    air.run(1e-4, 1.0);
+    let (now, [more, m]) = (air.now()[1], [0, 1].map(|i| body(&air.solids[i]).mass));
+    assert!((now.velocity[0] - 12.0 / (m + more)).abs() < 1e-9, "along the rail it is as heavy as both: {now:?}");
+    assert!((now.velocity[D - 1] - 12.0 / m).abs() < 1e-9, "across it as heavy as itself: {now:?}");
+    assert!((now.spin.axial()[0] - 0.7).abs() < 1e-9, "and it turns as it would: {now:?}");
+}
+
+#[test]
+fn a_free_carriage_is_extra_mass_along_its_rail_alone() {
+    carries::<2>();
+    carries::<3>();
 }
