@@ -201,7 +201,9 @@ impl<const D: usize> Simulation<D> {
         let over = Interval { t: self.clock.time, dt };
         self.system.steer(over.t);
         let weight = self.stepper.step(&mut self.system, over, self.bodies.books.as_mut());
+        self.system.gifts.clear();
         self.bodies.advance(&mut self.system, over, weight, between)?;
+        self.stepper.given(&self.system.gifts);
         self.clock.dt = dt;
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };

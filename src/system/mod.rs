@@ -94,6 +94,8 @@ pub struct System<const D: usize> {
     passes: u64,
     /// Whether solids have come, and with them water may have gone.
     changed: bool,
+    /// Which water was given which velocity (m/s) since the water was moved.
+    pub(crate) gifts: Vec<(Vec<usize>, Vector<D>)>,
     /// Which water is to go when the lists are made; empty unless a solid takes its place.
     ousted: Vec<bool>,
     /// Time spent on lists and sorting so far.
@@ -174,6 +176,7 @@ impl<const D: usize> System<D> {
             count,
             images: Images::new(periodic, reach),
             changed: false,
+            gifts: Vec::new(),
             ousted: Vec::new(),
         };
         let hems: Vec<_> = (0..specs.len()).map(|i| hem(i, &specs, &system.model)).collect();
@@ -319,7 +322,8 @@ impl<const D: usize> System<D> {
             if !these.is_empty() {
                 let share = impulse / (these.len() as f64 * self.particle_mass());
                 let gained: f64 = these.iter().map(|&i| share.dot(&(self.fluid.v[i] + share * 0.5))).sum();
-                these.into_iter().for_each(|i| self.fluid.v[i] += share);
+                these.iter().for_each(|&i| self.fluid.v[i] += share);
+                self.gifts.push((these, share));
                 return gained * self.particle_mass();
             }
             reach *= 2.0;

@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     model::{Model, Scheme},
+    space::Vector,
     system::{Renewal, System},
 };
 
@@ -52,6 +53,14 @@ impl<const D: usize> Stepper<D> {
     pub(crate) fn follow(&mut self, renewal: &Renewal<D>, rho0: f64) {
         if let Self::Verlet(verlet) = self {
             verlet.follow(renewal, rho0);
+        }
+    }
+
+    /// Lets the velocities before, from which a next step goes on, have what the water was given: which, and how much (m/s).
+    pub(crate) fn given(&mut self, gifts: &[(Vec<usize>, Vector<D>)]) {
+        if let Self::Verlet(verlet) = self {
+            let before = verlet.before_mut();
+            gifts.iter().for_each(|(these, share)| these.iter().for_each(|&i| before[i] += *share));
         }
     }
 
