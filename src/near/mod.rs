@@ -149,6 +149,15 @@ impl<const D: usize> Near<D> {
         self.around(&self.grids().0, x, visit);
     }
 
+    /// The indices of every water particle that may be within `bounds` (m), in order.
+    pub fn water_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
+        let mut these = Vec::new();
+        let bounds = bounds.grown(self.margin());
+        self.grids().0.rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
+        these.sort_unstable();
+        these
+    }
+
     /// Calls `visit` with the index of every boundary particle that may be within the support of `x`.
     pub fn skin_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
         self.around(&self.grids().1, x, visit);

@@ -22,7 +22,7 @@ use super::{
 use crate::{
     scene::world_bounds,
     solid::{
-        FreeBody, JointKind, Role, Solid,
+        FreeBody, Role, Solid,
         hydrostatics::{equilibrium_height, metacentric_height},
     },
     space::{Pose, Vector, Wedge},
@@ -158,10 +158,9 @@ impl<const D: usize> Look<'_, D> {
     fn pinned(&self, solid: &Solid<D>) -> bool {
         let number = self.system.solid(&solid.spec.name);
         let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
-        let pins = |kind| matches!(kind, JointKind::Hinge | JointKind::Fixed | JointKind::Ball);
         self.system.links().joints.iter().any(|joint| {
             let [one, other] = joint.between;
-            pins(joint.kind)
+            (0..D).all(|mode| joint.locks(mode))
                 && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
         })
     }

@@ -10,10 +10,13 @@ use crate::{
 };
 
 /// Watches a joint: force (N) and torque (N m) of its locks and end stops on its second solid; of a hinge or a slider its angle
-/// (deg) or position (m), the rate, the motor's force, power absorbed (W), energy absorbed (J).
+/// (deg) or position (m), the rate, the motor's force, power absorbed (W), energy absorbed (J); of a generic joint the positions
+/// (m) and turns (deg) that it leaves free.
 pub struct Joint {
     joint: usize,
     kind: JointKind,
+    /// The modes that a generic joint leaves free.
+    free: Vec<usize>,
 }
 
 impl Joint {
@@ -24,13 +27,23 @@ impl Joint {
     pub fn new<const D: usize>(system: &System<D>, joint: &str) -> Result<Self> {
         let joints = &system.links().joints;
         let joint = find("joint", joint, joints.iter().map(|joint| joint.name.as_str()))?;
-        Ok(Self { joint, kind: joints[joint].kind })
+        let free = joints[joint].free.iter().map(|free| free.mode).collect();
+        Ok(Self { joint, kind: joints[joint].kind, free })
     }
 }
 
 /// Number of the columns of force and torque.
 const fn carried<const D: usize>() -> usize {
     D + D * (D - 1) / 2
+}
+
+/// The column of a mode's coordinate.
+fn coordinate<const D: usize>(mode: usize) -> String {
+    match mode.checked_sub(D) {
+        None => format!("{}_m", axes::<D>()[mode]),
+        Some(_) if D == 2 => "turn_deg".into(),
+        Some(axis) => format!("turn_{}_deg", axes::<D>()[axis]),
+    }
 }
 
 impl<const D: usize> Probe<D> for Joint {
@@ -44,6 +57,10 @@ impl<const D: usize> Probe<D> for Joint {
         let own = match self.kind {
             JointKind::Hinge => ["angle_deg", "rate_radps", "motor_Nm"],
             JointKind::Slider => ["position_m", "rate_mps", "motor_N"],
+            JointKind::Generic => {
+                columns.extend(self.free.iter().map(|&mode| coordinate::<D>(mode)));
+                return columns;
+            }
             JointKind::Fixed | JointKind::Ball | JointKind::Tow => return columns,
         };
         let [position, rate, motor] = own.map(String::from);
@@ -58,6 +75,11 @@ impl<const D: usize> Probe<D> for Joint {
         let position = match self.kind {
             JointKind::Hinge => now.position.to_degrees(),
             JointKind::Slider => now.position,
+            JointKind::Generic => {
+                let turned = |(x, &mode): (f64, &usize)| if mode < D { x } else { x.to_degrees() };
+                row.extend(sim.coordinates(self.joint).into_iter().zip(&self.free).map(turned));
+                return row;
+            }
             JointKind::Fixed | JointKind::Ball | JointKind::Tow => return row,
         };
         row.extend([position, now.rate, now.motor, now.power(), now.absorbed]);
@@ -65,8 +87,9 @@ impl<const D: usize> Probe<D> for Joint {
     }
 
     fn follow(&self, before: &[f64], now: &mut [f64], _: f64) {
-        if self.kind == JointKind::Hinge {
-            let angle = carried::<D>();
+        let hinge = (self.kind == JointKind::Hinge).then_some(0);
+        let turns = (0..self.free.len()).filter(|&i| self.free[i] >= D);
+        for angle in hinge.into_iter().chain(turns).map(|i| carried::<D>() + i) {
             now[angle] = super::motion::unwrapped(before[angle], now[angle]);
         }
     }

@@ -29,8 +29,8 @@ pub const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
 /// What zlib leaves of a frame of water in motion, –; of water at rest it leaves a third.
 const PACKED: f64 = 0.6;
 
-/// Bytes of a particle of water and of a boundary particle in a frame with these `fields`, about and at most: place, vertex and
-/// fields, packed and in base 64.
+/// Bytes of a particle of water and of a boundary particle in a frame with these `fields`, rarely more: place, vertex and fields,
+/// packed and in base 64.
 pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
     let fields: f64 = fields.iter().map(|field| if field == "velocity" { 12.0 } else { 4.0 }).sum();
     let place = 12.0 + 8.0 + 8.0 + 1.0;

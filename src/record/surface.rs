@@ -22,9 +22,9 @@ const CUBE: f64 = 0.75;
 /// uppermost particles.
 const SHARE: f32 = 0.64;
 
-/// A closed surface.
+/// A closed surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mesh {
+pub struct Surface {
     /// Corners, m.
     pub corners: Vec<[f32; 3]>,
     /// Triangles: numbers of their corners, counter-clockwise as seen from outside.
@@ -33,7 +33,7 @@ pub struct Mesh {
     pub velocity: Vec<[f32; 3]>,
 }
 
-impl Mesh {
+impl Surface {
     /// The surface of `water` in space, of particles `dp` (m) apart. Bodies are not water, so they are outside it.
     ///
     /// # Errors
@@ -88,8 +88,8 @@ pub fn write(folder: &Path, shown: &Film, dp: f64) -> Result<usize> {
     std::fs::create_dir_all(&pictures).map_err(|why| cannot_write(&pictures, &why))?;
     for number in 0..shown.times().len() {
         let path = pictures.join(format!("surface_{number:05}.vtu"));
-        let mesh = Mesh::of(&shown.water(number)?, dp)?;
-        let text = mesh.picture().map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
+        let surface = Surface::of(&shown.water(number)?, dp)?;
+        let text = surface.picture().map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
         write_whole(&path, &text)?;
     }
     write_whole(&folder.join("surface.pvd"), film(shown.times(), "surface", &["surface"]).as_bytes())?;
@@ -114,15 +114,15 @@ mod tests {
     #[test]
     fn the_surface_of_a_block_encloses_its_volume_and_is_level() -> Result<()> {
         let dp = 0.02_f32;
-        let mesh = Mesh::of(&block(dp), f64::from(dp))?;
-        let corner = |i: usize| Vector3::from(mesh.corners[i]).cast::<f64>();
+        let surface = Surface::of(&block(dp), f64::from(dp))?;
+        let corner = |i: usize| Vector3::from(surface.corners[i]).cast::<f64>();
         let cone = |t: &[usize; 3]| corner(t[0]).dot(&corner(t[1]).cross(&corner(t[2]))) / 6.0;
-        let volume: f64 = mesh.triangles.iter().map(cone).sum();
+        let volume: f64 = surface.triangles.iter().map(cone).sum();
         let exact = 4000.0 * f64::from(dp).powi(3);
         // Edges are rounded over a dp, which takes 1 % of a block of this size; a mesh inside out would have less than none.
         assert!((volume / exact - 1.0).abs() < 0.02, "{volume} m³ for {exact}");
-        let top = mesh.corners.iter().filter(|x| x[2] > 0.1 && (x[0] - 0.2).abs() < 0.1 && (x[1] - 0.2).abs() < 0.1);
-        // A twentieth of dp: what a wave of ten dp is measured with is not to come from the mesh.
+        let top = surface.corners.iter().filter(|x| x[2] > 0.1 && (x[0] - 0.2).abs() < 0.1 && (x[1] - 0.2).abs() < 0.1);
+        // A twentieth of dp: what a wave of ten dp is measured with is not to come from the surface.
         assert!(top.clone().count() > 50);
         for x in top {
             assert!((x[2] - 0.2).abs() < 0.05 * dp, "the surface lies at {} m", x[2]);
@@ -133,26 +133,26 @@ mod tests {
     #[test]
     fn every_edge_has_two_triangles_and_every_corner_a_velocity() -> Result<()> {
         let dp = 0.02_f32;
-        let mesh = Mesh::of(&block(dp), f64::from(dp))?;
+        let surface = Surface::of(&block(dp), f64::from(dp))?;
         let mut edges = std::collections::HashMap::new();
-        for t in &mesh.triangles {
+        for t in &surface.triangles {
             for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
                 *edges.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
             }
         }
         assert!(edges.values().all(|sum| *sum == 0), "each edge is walked once either way");
-        for (x, v) in mesh.corners.iter().zip(&mesh.velocity) {
+        for (x, v) in surface.corners.iter().zip(&surface.velocity) {
             // The mean of water within 3 dp, all of it on one side.
             let off = (v[0] + x[1]).hypot(v[1] - x[0]);
             assert!(off < 1.5 * dp && v[2].abs() < 1e-6, "{v:?} m/s at {x:?}");
         }
-        assert_eq!(mesh.velocity.len(), mesh.corners.len());
+        assert_eq!(surface.velocity.len(), surface.corners.len());
         Ok(())
     }
 
     #[test]
     fn no_water_has_no_surface() -> Result<()> {
-        assert_eq!(Mesh::of(&Cloud::default(), 0.1)?, Mesh::default());
+        assert_eq!(Surface::of(&Cloud::default(), 0.1)?, Surface::default());
         Ok(())
     }
 }

@@ -235,13 +235,13 @@ pub struct FreeWords {
     pub release: Option<f64>,
     /// Motions that are locked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub locked: Vec<Lock>,
+    pub locked: Vec<Mode>,
 }
 
-/// A motion that can be locked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+/// A mode of motion, which can be locked or left free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Lock {
+pub enum Mode {
     /// Translation along x.
     X,
     /// Translation along y.
@@ -256,6 +256,21 @@ pub enum Lock {
     TurnY,
     /// Turning about z; 3-D.
     TurnZ,
+}
+
+impl Mode {
+    /// Its number among those of this dimension: translations, then turns; none if there is no such motion.
+    pub(super) fn number(self, dimension: usize) -> Option<usize> {
+        match (self, dimension == 3) {
+            (Self::X, _) => Some(0),
+            (Self::Y, _) => Some(1),
+            (Self::Z, true) | (Self::Turn, false) => Some(2),
+            (Self::TurnX, true) => Some(3),
+            (Self::TurnY, true) => Some(4),
+            (Self::TurnZ, true) => Some(5),
+            _ => None,
+        }
+    }
 }
 
 impl SolidWords {

@@ -1,13 +1,14 @@
 //! From words to ties: joints, springs, ropes, forces and contacts of the solids that were built.
 
 use super::{
-    ForceWords, FrameOf, JointKindWords, JointWords, MotorWords, Scene, SolidWords, ValueWords, build_solids::Unit,
-    geometry::vector,
+    ForceWords, FrameOf, JointKindWords, JointWords, LimitsWords, Mode, MotorWords, Scene, SolidWords, ValueWords,
+    build_solids::Unit, geometry::vector,
 };
 use crate::{
     error::{Error, Result},
     solid::{
-        ContactSpec, End, ForceSpec, Hold, JointKind, JointSpec, Law, Links, Motor, RopeSpec, SolidSpec, SpringSpec,
+        ContactSpec, End, ForceSpec, FreeMode, Hold, JointKind, JointSpec, Law, Links, Motor, RopeSpec, SolidSpec,
+        SpringSpec,
         links::{check_force, check_rope, check_spring},
     },
 };
@@ -84,15 +85,24 @@ impl Scene {
             JointKindWords::Fixed => JointKind::Fixed,
             JointKindWords::Ball => JointKind::Ball,
             JointKindWords::Tow => JointKind::Tow,
+            JointKindWords::Generic => JointKind::Generic,
         };
         let axis = vector(words.axis.as_ref().or(words.along.as_ref()).map_or(&[], |x| x));
         let mut joint = JointSpec::new(&words.name, kind, between, vector(&words.at), axis);
         joint.contacts = words.contacts.unwrap_or_default();
-        let pair = |limits: &Vec<f64>, unit: f64| [limits[0] * unit, limits[1] * unit];
-        joint.limits = match (&words.limits, &words.limits_deg) {
-            (Some(limits), _) => Some(pair(limits, 1.0)),
-            (None, limits) => limits.as_ref().map(|limits| pair(limits, 1f64.to_radians())),
+        let stops = [(&words.limits, 1.0), (&words.limits_deg, 1f64.to_radians())];
+        let stop = |mode: Option<&Mode>| {
+            stops.iter().find_map(|(limits, unit)| match (limits, mode) {
+                (Some(LimitsWords::One(pair)), None) => Some([pair[0] * unit, pair[1] * unit]),
+                (Some(LimitsWords::Each(all)), Some(mode)) => {
+                    all.get(mode).map(|pair| [pair[0] * unit, pair[1] * unit])
+                }
+                _ => None,
+            })
         };
+        joint.limits = stop(None);
+        let number = |mode: &Mode| Some(FreeMode { mode: mode.number(D)?, limits: stop(Some(mode)) });
+        joint.free = words.free.iter().flatten().filter_map(number).collect();
         joint.motor = words.motor.as_ref().map(|motor| self.motor(&format!("{key}.motor"), motor)).transpose()?;
         Ok(joint)
     }

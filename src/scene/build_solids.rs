@@ -1,7 +1,7 @@
 //! From words to solids: shape, pose, role; floats are put at their draft.
 
 use super::{
-    Draft, DrivenWords, FreeWords, LawWords, Lock, Numbers, Scene, SolidWords,
+    Draft, DrivenWords, FreeWords, LawWords, Numbers, Scene, SolidWords,
     build_waves::Pool,
     geometry::{pose, shape, vector},
     table,
@@ -192,14 +192,10 @@ fn free<const D: usize>(words: &FreeWords, shape: &Shape<D>) -> FreeBody<D> {
         Some(Numbers::List(list)) => Wedge::from_axial(list),
         _ => Wedge::zero(),
     };
-    for lock in &words.locked {
-        match lock {
-            Lock::X => body.locked_translations[0] = true,
-            Lock::Y => body.locked_translations[1] = true,
-            Lock::Z => body.locked_translations[D - 1] = true,
-            Lock::Turn | Lock::TurnX => body.locked_rotations[0] = true,
-            Lock::TurnY => body.locked_rotations[1] = true,
-            Lock::TurnZ => body.locked_rotations[2] = true,
+    for mode in words.locked.iter().filter_map(|mode| mode.number(D)) {
+        match mode.checked_sub(D) {
+            None => body.locked_translations[mode] = true,
+            Some(axis) => body.locked_rotations[axis] = true,
         }
     }
     body

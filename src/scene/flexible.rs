@@ -1,6 +1,6 @@
 //! Words that may be written in more than one form: a word or a table, a number or a list.
 
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
 
 use schemars::JsonSchema;
 use serde::{
@@ -8,7 +8,7 @@ use serde::{
     de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
 };
 
-use super::BoxWords;
+use super::{BoxWords, Mode};
 
 /// Frames for ParaView: `"off"`, or when and which fields.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
@@ -306,6 +306,35 @@ impl<'de> Deserialize<'de> for LineWords {
                 let LineTable { points, file, id, scale, unit, thickness } =
                     LineTable::deserialize(MapAccessDeserializer::new(map))?;
                 Ok(LineWords { points, file, id, scale, unit, thickness })
+            }
+        }
+        deserializer.deserialize_any(Words)
+    }
+}
+
+/// End stops: least and greatest value, or such a pair for each of several motions.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum LimitsWords {
+    /// Of a joint with one way to go.
+    One(Vec<f64>),
+    /// Of a generic joint.
+    Each(BTreeMap<Mode, Vec<f64>>),
+}
+
+impl<'de> Deserialize<'de> for LimitsWords {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct Words;
+        impl<'de> Visitor<'de> for Words {
+            type Value = LimitsWords;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "[least, greatest], or of a generic joint a table such as {{ x = [-0.1, 0.2] }}")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<LimitsWords, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(LimitsWords::One)
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LimitsWords, A::Error> {
+                BTreeMap::deserialize(MapAccessDeserializer::new(map)).map(LimitsWords::Each)
             }
         }
         deserializer.deserialize_any(Words)

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Scene,
+    LimitsWords, Mode, Scene,
     values::{ValueWords, ValuesWords},
 };
 
@@ -23,15 +23,18 @@ pub struct JointWords {
     /// Direction of the axis of a hinge; 3-D only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<Vec<f64>>,
-    /// Direction of a slider or a tow.
+    /// Direction of a slider or a tow; of a generic joint the first axis of its frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<Vec<f64>>,
+    /// Motions that a generic joint leaves free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free: Option<Vec<Mode>>,
     /// Least and greatest value from the start, m or rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limits: Option<Vec<f64>>,
-    /// The same of a hinge, degrees.
+    pub limits: Option<LimitsWords>,
+    /// The same of turns, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limits_deg: Option<Vec<f64>>,
+    pub limits_deg: Option<LimitsWords>,
     /// What moves or brakes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motor: Option<MotorWords>,
@@ -60,6 +63,8 @@ pub enum JointKindWords {
     Ball,
     /// All but moving along a line.
     Tow,
+    /// The motions in its list `free`.
+    Generic,
 }
 
 /// A motor, brake or power take-off: F = F₀ + k (x* − x) + c (v* − ẋ).
@@ -228,6 +233,7 @@ impl JointWords {
             at: at.into(),
             axis: None,
             along: None,
+            free: None,
             limits: None,
             limits_deg: None,
             motor: None,

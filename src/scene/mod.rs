@@ -41,12 +41,12 @@ pub use crate::plan::{
     Surface,
 };
 pub use absorb::{Absorb, AbsorbWords};
-pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, Lock, MeshWords, PartWords, ShapeWords, SolidWords};
+pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, MeshWords, Mode, PartWords, ShapeWords, SolidWords};
 pub(crate) use build::Stage;
 pub use build::{Built, Still};
 pub use damping::DampingWords;
 pub use document::Source;
-pub use flexible::{Draft, FieldWords, Frames, FramesWords, LineWords, Numbers, Unit};
+pub use flexible::{Draft, FieldWords, Frames, FramesWords, LimitsWords, LineWords, Numbers, Unit};
 pub use flow::PeriodicWords;
 pub use format::{BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, Scene, TimeWords, WaterWords};
 pub(crate) use geometry::world_bounds;

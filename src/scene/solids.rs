@@ -1,7 +1,7 @@
 //! Holds the words of solids against one another.
 
 use super::{
-    AtWords, DrivenWords, FreeWords, LawWords, Lock, Numbers, Scene, ShapeWords, SolidWords,
+    AtWords, DrivenWords, FreeWords, LawWords, Mode, Numbers, Scene, ShapeWords, SolidWords,
     flexible::LineWords,
     verify::{last, said},
 };
@@ -122,14 +122,14 @@ impl Scene {
             ));
         }
         self.inertia(&format!("{key}.inertia"), words)?;
-        let foreign = |lock: &&Lock| match lock {
-            Lock::X | Lock::Y => false,
-            Lock::Z | Lock::TurnX | Lock::TurnY | Lock::TurnZ => !three,
-            Lock::Turn => three,
-        };
-        match words.locked.iter().find(foreign) {
+        self.modes(&format!("{key}.locked"), &words.locked)
+    }
+
+    /// Refuses motions that there are not in the scene's dimension.
+    pub(super) fn modes(&self, key: &str, modes: &[Mode]) -> Result<()> {
+        match modes.iter().find(|mode| mode.number(self.dimension).is_none()) {
             Some(_) => Err(self.wrong_with(
-                &format!("{key}.locked"),
+                key,
                 format!("there is no such motion in {}-D", self.dimension),
                 "in 2-D: x, y, turn; in 3-D: x, y, z, turn_x, turn_y, turn_z",
             )),

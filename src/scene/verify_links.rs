@@ -1,8 +1,8 @@
 //! Holds the words of joints, springs, ropes, forces and contacts against those of the solids.
 
 use super::{
-    ForceWords, JointKindWords, JointWords, LawWords, MotorWords, ProbeEntry, Scene, SolidWords, SpringWords,
-    ValueWords,
+    ForceWords, JointKindWords, JointWords, LawWords, LimitsWords, Mode, MotorWords, ProbeEntry, Scene, SolidWords,
+    SpringWords, ValueWords,
     verify::{guess, last},
 };
 use crate::{error::Result, solid::Formula};
@@ -105,15 +105,14 @@ impl Scene {
             let help = "in 2-D  kind = \"hinge\"  turns freely about its point";
             return Err(self.wrong_with(&format!("{key}.kind"), "a plane has no ball joint", help));
         }
-        let along = slider || joint.kind == JointKindWords::Tow;
-        let needs = [("axis", &joint.axis, hinge && three), ("along", &joint.along, along)];
-        for (word, vector, needed) in needs {
+        let (along, generic) = (slider || joint.kind == JointKindWords::Tow, joint.kind == JointKindWords::Generic);
+        let needs = [("axis", &joint.axis, hinge && three, false), ("along", &joint.along, along, generic)];
+        for (word, vector, needed, allowed) in needs {
             let key = format!("{key}.{word}");
             match vector {
                 None if needed => return Err(self.wrong(&key, format!("{word} is missing: which way?"))),
-                Some(_) if !needed => {
-                    let help =
-                        "a slider and a tow have  along, a hinge in 3-D has  axis; no other joint has a direction";
+                Some(_) if !(needed || allowed) => {
+                    let help = "a slider, a tow and a generic joint have  along, a hinge in 3-D has  axis; no other joint has a direction";
                     return Err(self.wrong_with(&key, format!("{word} has no meaning here"), help));
                 }
                 Some(vector) => {
@@ -125,23 +124,7 @@ impl Scene {
                 None => {}
             }
         }
-        if joint.limits.is_some() && joint.limits_deg.is_some() {
-            return Err(self.wrong(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"));
-        }
-        if joint.limits_deg.is_some() && !hinge {
-            return Err(self.wrong(&format!("{key}.limits_deg"), "only a hinge has limits in degrees"));
-        }
-        for (word, limits) in [("limits", &joint.limits), ("limits_deg", &joint.limits_deg)] {
-            let Some(limits) = limits else { continue };
-            let key = format!("{key}.{word}");
-            if !(hinge || slider) {
-                return Err(self.wrong_with(&key, "this joint has no way to go", "a hinge or a slider has limits"));
-            }
-            if !matches!(limits[..], [min, max] if min <= 0.0 && 0.0 <= max && min < max) {
-                let what = format!("{limits:?} does not reach from 0 or less to 0 or more; 0 is where it starts");
-                return Err(self.wrong(&key, what));
-            }
-        }
+        self.verify_limits(key, joint)?;
         match &joint.motor {
             Some(_) if !(hinge || slider) => {
                 let help = "a hinge or a slider has a motor";
@@ -149,6 +132,72 @@ impl Scene {
             }
             Some(motor) => self.verify_motor(&format!("{key}.motor"), motor, hinge),
             None => Ok(()),
+        }
+    }
+
+    /// Refuses modes that a joint cannot leave free, and end stops that are not of what it leaves free.
+    fn verify_limits(&self, key: &str, joint: &JointWords) -> Result<()> {
+        let generic = joint.kind == JointKindWords::Generic;
+        let free = joint.free.as_deref().unwrap_or_default();
+        self.modes(&format!("{key}.free"), free)?;
+        if generic && free.is_empty() {
+            return Err(self.wrong_with(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]"));
+        }
+        if !generic && joint.free.is_some() {
+            let help = "the other kinds say what they leave free; a list has  kind = \"generic\"";
+            return Err(self.wrong_with(&format!("{key}.free"), "free has no meaning here", help));
+        }
+        let hinge = joint.kind == JointKindWords::Hinge;
+        let way = hinge || joint.kind == JointKindWords::Slider;
+        let mut seen: Vec<Mode> = Vec::new();
+        for (word, limits) in [("limits", &joint.limits), ("limits_deg", &joint.limits_deg)] {
+            let Some(limits) = limits else { continue };
+            let key = format!("{key}.{word}");
+            match limits {
+                LimitsWords::One(_) if generic => {
+                    let help = "name the motion: limits = { x = [-0.1, 0.2] }, limits_deg = { turn = [-10.0, 10.0] }";
+                    return Err(self.wrong_with(&key, "which motion is limited?", help));
+                }
+                LimitsWords::One(pair) if way => self.stop(&key, pair)?,
+                LimitsWords::Each(all) if generic => {
+                    for (mode, pair) in all {
+                        let far = mode.number(self.dimension).is_some_and(|number| number < self.dimension);
+                        if !free.contains(mode) || (word == "limits_deg" && far) || seen.contains(mode) {
+                            let help = "each motion in  free  may have one pair, a turn's in rad or in degrees";
+                            return Err(self.wrong_with(&key, "limits of what is not free, or twice the same", help));
+                        }
+                        seen.push(*mode);
+                        self.stop(&key, pair)?;
+                    }
+                }
+                LimitsWords::Each(_) if way => {
+                    return Err(self.wrong_with(&key, "this joint has one way to go", "limits = [-0.1, 0.2]"));
+                }
+                _ => {
+                    let help = "a hinge, a slider or a generic joint has limits";
+                    return Err(self.wrong_with(&key, "this joint has no way to go", help));
+                }
+            }
+        }
+        match (&joint.limits, &joint.limits_deg) {
+            (Some(_), Some(_)) if !generic => {
+                Err(self.wrong(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"))
+            }
+            (_, Some(_)) if !(hinge || generic) => {
+                Err(self.wrong(&format!("{key}.limits_deg"), "only turns have limits in degrees"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses end stops that do not have the start between them.
+    fn stop(&self, key: &str, pair: &[f64]) -> Result<()> {
+        match pair {
+            [min, max] if *min <= 0.0 && 0.0 <= *max && min < max => Ok(()),
+            _ => {
+                let what = format!("{pair:?} does not reach from 0 or less to 0 or more; 0 is where it starts");
+                Err(self.wrong(key, what))
+            }
         }
     }
 

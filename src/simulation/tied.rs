@@ -33,6 +33,12 @@ impl<const D: usize> Simulation<D> {
         self.bodies.rig().joint(joint)
     }
 
+    /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.
+    pub fn coordinates(&self, joint: usize) -> Vec<f64> {
+        let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
+        self.bodies.rig().coordinates(joint, &solids)
+    }
+
     /// What spring number `spring` felt in the last step.
     pub fn spring(&self, spring: usize) -> LineReading {
         self.bodies.rig().spring(spring)

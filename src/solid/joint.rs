@@ -1,4 +1,4 @@
-//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, and the motor on it.
+//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, the motor on it, and end stops.
 //!
 //! The locks are the engine's. The motor is ours, a load like any other on both solids:
 //!
@@ -7,6 +7,7 @@
 //! The damping is taken at the rate at the step's end under itself alone, on a pair as easy to move as its locks leave it,
 //! g = J M⁻¹ Jᵀ: c (v* − ẋ)/(1 + Δt c g), so that no c is too stiff for a step. The stiffness bounds the step as a spring's does.
 
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
 use super::rows::{Mobility, Row, part};
@@ -28,6 +29,27 @@ pub enum JointKind {
     Ball,
     /// All but moving along a line: the second solid is towed along it.
     Tow,
+    /// What its list of modes says.
+    Generic,
+}
+
+/// A mode of motion that a generic joint leaves free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeMode {
+    /// Its number: 0 to D − 1 along the axes of the joint's frame, from D on about them; in 2-D the one turn is 2.
+    pub mode: usize,
+    /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// How many modes of motion a pair of solids has.
+pub(crate) const fn modes<const D: usize>() -> usize {
+    D + D * (D - 1) / 2
+}
+
+/// The modes in the order of the engine: turns first.
+pub(super) fn turns_first<const D: usize>() -> impl Iterator<Item = usize> {
+    (D..modes::<D>()).chain(0..D)
 }
 
 /// A joint as it is to be made.
@@ -41,8 +63,11 @@ pub struct JointSpec<const D: usize> {
     pub between: [Option<usize>; 2],
     /// The world point at which it sits at the start, m.
     pub at: Vector<D>,
-    /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero.
+    /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero. Of a generic
+    /// joint the first axis of its frame; zero for the world's axes.
     pub axis: Vector<D>,
+    /// What a generic joint leaves free; empty of any other.
+    pub free: Vec<FreeMode>,
     /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
     pub limits: Option<[f64; 2]>,
     /// What moves or brakes it.
@@ -61,7 +86,24 @@ impl<const D: usize> JointSpec<D> {
         at: Vector<D>,
         axis: Vector<D>,
     ) -> Self {
-        Self { name: name.into(), kind, between, at, axis, limits: None, motor: None, contacts: false }
+        Self {
+            name: name.into(),
+            kind,
+            between,
+            at,
+            axis,
+            free: Vec::new(),
+            limits: None,
+            motor: None,
+            contacts: false,
+        }
+    }
+
+    /// The same joint, generic, with one more mode left free: 0 to D − 1 along the axes of its frame, from D on about them.
+    pub fn leaving(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
+        self.kind = JointKind::Generic;
+        self.free.push(FreeMode { mode, limits });
+        self
     }
 
     /// The same joint with end stops, m or rad from the start.
@@ -192,61 +234,68 @@ impl<const D: usize> Joint<D> {
         self.sits(ends)[1].position
     }
 
-    /// Its coordinate, m or rad (−π to π).
+    /// Its coordinate, m or rad (−π to π); 0 if it has none.
     pub(super) fn position(&self, ends: &[Kinematics<D>; 2]) -> f64 {
+        self.spec.own().map_or(0.0, |mode| self.coordinate(mode, ends))
+    }
+
+    /// The coordinate of a mode, m or rad (−π to π): how far the second solid has gone along that axis of the frame in the first, or
+    /// turned about it, twice the angle of the quaternion's part.
+    pub(super) fn coordinate(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> f64 {
         let [first, second] = self.sits(ends);
-        match self.spec.kind {
-            JointKind::Slider => first.rotation.column(0).dot(&(second.position - first.position)),
-            JointKind::Hinge => {
-                let (turn, i, j) = (first.rotation.transpose() * second.rotation, D - 2, D - 1);
-                (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
-            }
-            JointKind::Fixed | JointKind::Ball | JointKind::Tow => 0.0,
+        if mode < D {
+            return first.rotation.column(mode).dot(&(second.position - first.position));
         }
+        let turn = first.rotation.transpose() * second.rotation;
+        let (i, j) = if D == 2 { (0, 1) } else { ((mode + 1) % D, (mode + 2) % D) };
+        (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
     }
 
     /// The row of its coordinate, if it has one.
     pub(super) fn free(&self, ends: &[Kinematics<D>; 2]) -> Option<Row<D>> {
+        self.spec.own().map(|mode| self.row(mode, ends))
+    }
+
+    /// The row of a mode's coordinate.
+    fn row(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> Row<D> {
         let [first, second] = self.sits(ends);
-        match self.spec.kind {
-            JointKind::Slider => Some(Row::along(first.rotation.column(0).into(), &second.position, ends)),
-            JointKind::Hinge => Some(Row::about(turning(&first.rotation.column(0).into()))),
-            JointKind::Fixed | JointKind::Ball | JointKind::Tow => None,
+        match mode.checked_sub(D) {
+            None => Row::along(first.rotation.column(mode).into(), &second.position, ends),
+            Some(axis) => Row::about(turning(&first.rotation.column(axis).into())),
         }
     }
 
-    /// The rows of its locks in the order of the engine: turns first. In 3-D the engine measures a turn by the quaternion between
-    /// the frames, so its row is half of the axis, turned half-way from one frame to the other.
+    /// The rows of its locks in the order of the engine. In 3-D the engine measures a locked turn by its part of the quaternion (w, v)
+    /// between the frames, whose rate is ½ (w ω + ω × v).
     fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<Row<D>> {
+        let locked = turns_first::<D>().filter(|&mode| self.spec.locks(mode));
+        if D == 2 {
+            return locked.map(|mode| self.row(mode, ends)).collect();
+        }
         let [first, second] = self.sits(ends);
-        let (straight, turns) = locked::<D>(self.spec.kind);
-        let mut rows = Vec::new();
-        if D == 2 && turns[0] {
-            rows.push(Row::about(Wedge::from_axial(&[1.0])));
-        }
-        if D == 3 {
-            let half = (turning(&first.rotation.column(0).into()) * (0.5 * self.position_or_none(ends))).exp();
-            for i in (0..D).filter(|&i| turns[i]) {
-                let axis: Vector<D> = half * first.rotation.column(i) * 0.5;
-                rows.push(Row::about(Wedge::from_axial(axis.as_slice())));
+        let turn = first.rotation.transpose() * second.rotation;
+        let turn = Matrix3::from_fn(|i, j| turn[(i, j)]);
+        let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
+        let rates = (Matrix3::identity() * q.w - q.imag().cross_matrix()) * 0.5_f64.copysign(q.w);
+        let row = |mode: usize| match mode.checked_sub(D) {
+            None => self.row(mode, ends),
+            Some(axis) => {
+                let about: Vector<D> = first.rotation * Vector::from_fn(|i, _| rates[(axis, i)]);
+                Row::about(Wedge::from_axial(about.as_slice()))
             }
-        }
-        for i in (0..D).filter(|&i| straight[i]) {
-            rows.push(Row::along(first.rotation.column(i).into(), &second.position, ends));
-        }
-        rows
+        };
+        locked.map(row).collect()
     }
 
-    /// The angle of a hinge; 0 of any other joint.
-    fn position_or_none(&self, ends: &[Kinematics<D>; 2]) -> f64 {
-        if self.spec.kind == JointKind::Hinge { self.position(ends) } else { 0.0 }
-    }
-
-    /// The rows of its locks, and after them that of its coordinate less what the locks do of it; and how many locks there are.
+    /// The rows of its locks, and after them that of its coordinate (of a generic joint those of its end stops) less what the locks do
+    /// of it; and how many locks there are.
     pub(super) fn rows(&self, ends: &[Kinematics<D>; 2], mobility: &[Mobility<D>; 2]) -> (Vec<Row<D>>, usize) {
         let mut rows = self.locks(ends);
         let locks = rows.len();
-        rows.extend(self.free(ends));
+        match self.spec.own() {
+            Some(mode) => rows.push(self.row(mode, ends)),
+            None => rows.extend(self.spec.stops().iter().map(|(mode, _)| self.row(*mode, ends))),
+        }
         part(&mut rows, locks, mobility);
         (rows, locks)
     }
@@ -272,23 +321,35 @@ impl<const D: usize> JointSpec<D> {
             Pose { position: pose.local(&world.position), rotation: pose.rotation.transpose() * world.rotation }
         })
     }
-}
 
-/// Which translations and turns of a joint's frame are locked.
-pub(super) fn locked<const D: usize>(kind: JointKind) -> ([bool; D], [bool; 3]) {
-    let mut straight = [true; D];
-    let mut turns = [true; 3];
-    match kind {
-        JointKind::Hinge => turns[0] = false,
-        JointKind::Slider => straight[0] = false,
-        JointKind::Fixed => {}
-        JointKind::Ball => turns = [false; 3],
-        JointKind::Tow => {
-            straight = std::array::from_fn(|i| i == 0);
-            turns = [false; 3];
+    /// The mode of its one coordinate, if it is of a kind that has one.
+    pub(crate) fn own(&self) -> Option<usize> {
+        match self.kind {
+            JointKind::Hinge => Some(D),
+            JointKind::Slider => Some(0),
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow | JointKind::Generic => None,
         }
     }
-    (straight, turns)
+
+    /// Whether it locks a mode.
+    pub(crate) fn locks(&self, mode: usize) -> bool {
+        match self.kind {
+            JointKind::Hinge | JointKind::Slider => self.own() != Some(mode),
+            JointKind::Fixed => true,
+            JointKind::Ball => mode < D,
+            JointKind::Tow => mode == 0,
+            JointKind::Generic => self.free.iter().all(|free| free.mode != mode),
+        }
+    }
+
+    /// The modes that have end stops, with these, in the order of the engine.
+    pub(super) fn stops(&self) -> Vec<(usize, [f64; 2])> {
+        let of = |mode: usize| match self.own() == Some(mode) {
+            true => self.limits,
+            false => self.free.iter().find(|free| free.mode == mode)?.limits,
+        };
+        turns_first::<D>().filter_map(|mode| Some((mode, of(mode)?))).collect()
+    }
 }
 
 /// How the solid at an end moves; the world does not.

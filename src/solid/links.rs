@@ -3,7 +3,7 @@
 use super::{
     Role, SolidSpec,
     force::ForceSpec,
-    joint::{JointKind, JointSpec},
+    joint::{JointKind, JointSpec, modes},
     mooring::{End, RopeSpec, SpringSpec, start_length},
 };
 use crate::error::{Error, Result};
@@ -110,7 +110,6 @@ impl<const D: usize> Links<D> {
             return refuse("has no finite place", "its place is a point of the world at the start, m");
         }
         let axis = joint.axis.norm();
-        let moves = matches!(joint.kind, JointKind::Hinge | JointKind::Slider);
         let needed =
             matches!(joint.kind, JointKind::Slider | JointKind::Tow) || (joint.kind == JointKind::Hinge && D == 3);
         if needed && !(axis > 1e-12 && axis.is_finite()) {
@@ -122,18 +121,19 @@ impl<const D: usize> Links<D> {
         if D == 2 && joint.kind == JointKind::Ball {
             return refuse("is a ball joint, and a plane has none", "in 2-D a hinge turns freely about its point");
         }
-        if !moves && (joint.limits.is_some() || joint.motor.is_some()) {
+        if joint.own().is_none() && (joint.limits.is_some() || joint.motor.is_some()) {
             return refuse("has no coordinate to limit or to drive", "only a hinge or a slider has limits and a motor");
         }
-        if let Some([min, max]) = joint.limits {
-            let wide = joint.kind == JointKind::Hinge && max - min >= std::f64::consts::TAU;
-            if !(min <= 0.0 && 0.0 <= max && min < max && max.is_finite() && min.is_finite()) || wide {
-                let what = format!("has limits {min} to {max}");
-                return refuse(
-                    &what,
-                    "from 0 or less to 0 or more: 0 is where it starts; a hinge less than a whole turn",
-                );
-            }
+        let generic = joint.kind == JointKind::Generic;
+        let known =
+            |mode: usize| mode < modes::<D>() && joint.free.iter().filter(|free| free.mode == mode).count() == 1;
+        if generic == joint.free.is_empty() || !joint.free.iter().all(|free| known(free.mode)) {
+            let help = "a generic joint leaves some modes free, each named once; no other joint has a list of them";
+            return refuse("has modes that cannot be left free", help);
+        }
+        if let Some((_, [min, max])) = joint.stops().into_iter().find(|(mode, stop)| !reaches(stop, *mode >= D)) {
+            let help = "from 0 or less to 0 or more: 0 is where it starts; a turn less than a whole one";
+            return refuse(&format!("has limits {min} to {max}"), help);
         }
         let twin = |other: &&JointSpec<D>| same(other.between, joint.between) && (other.at - joint.at).norm() < 1e-9;
         if let Some(other) = self.joints[..i].iter().find(twin) {
@@ -142,6 +142,12 @@ impl<const D: usize> Links<D> {
         }
         Ok(())
     }
+}
+
+/// Whether end stops (m, or rad of a turn) have the start between them.
+fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
+    let wide = turn && max - min >= std::f64::consts::TAU;
+    min <= 0.0 && 0.0 <= max && min < max && max.is_finite() && min.is_finite() && !wide
 }
 
 /// Refuses a spring that cannot be meant.

@@ -26,7 +26,7 @@ pub use driven::{Law, Motion};
 pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};
 pub use force::ForceSpec;
 pub use formula::{Field, Formula};
-pub use joint::{Drive, JointKind, JointSpec, Motor};
+pub use joint::{Drive, FreeMode, JointKind, JointSpec, Motor};
 pub use links::{ContactSpec, Hold, Links};
 pub use load::Load;
 pub use mooring::{Elastic, End, RopeSpec, SpringSpec};

@@ -307,6 +307,13 @@ impl<const D: usize> Rig<D> {
         self.state.joints[i].1
     }
 
+    /// The coordinates of the modes that generic joint number `i` leaves free, m or rad (−π to π), where the solids are.
+    pub(crate) fn coordinates(&self, i: usize, solids: &[Kinematics<D>]) -> Vec<f64> {
+        let joint = &self.joints[i];
+        let ends = joint.ends(solids);
+        joint.spec.free.iter().map(|free| joint.coordinate(free.mode, &ends)).collect()
+    }
+
     /// What spring number `i` felt in the last step.
     pub(crate) fn spring(&self, i: usize) -> LineReading {
         self.state.springs[i].1

@@ -17,7 +17,7 @@ use super::{D, from_angular, to_frame};
 use crate::{
     solid::{
         Kinematics,
-        joint::locked,
+        joint::turns_first,
         links::{ContactSpec, Links},
         mooring::{Line, start_length},
     },
@@ -51,16 +51,13 @@ impl Ties {
         let mut joints = Vec::new();
         for spec in &links.joints {
             let frames = spec.frames(start).each_ref().map(to_frame);
-            let (straight, turns) = locked::<D>(spec.kind);
-            let axes = straight.iter().chain(&turns[..D * (D - 1) / 2]).enumerate();
-            let bits = axes.filter(|(_, locked)| **locked).fold(0, |bits, (i, _)| bits | 1 << i);
+            let bits = turns_first::<D>().filter(|&mode| spec.locks(mode)).fold(0, |bits, mode| bits | 1 << mode);
             let mut joint = GenericJoint::new(JointAxesMask::from_bits_truncate(bits));
             (joint.local_frame1, joint.local_frame2, joint.contacts_enabled) = (frames[0], frames[1], spec.contacts);
             joint.softness = SpringCoefficients::new(LOCK, 1.0);
-            if let Some(limits) = spec.limits {
-                let free = (0..2 * D).find(|i| bits >> i & 1 == 0).unwrap_or_default();
-                joint.limit_axes = JointAxesMask::from_bits_truncate(1 << free);
-                joint.limits[free] = JointLimits::from(limits);
+            for (mode, limits) in spec.stops() {
+                joint.limit_axes |= JointAxesMask::from_bits_truncate(1 << mode);
+                joint.limits[mode] = JointLimits::from(limits);
             }
             let [first, second] = spec.between.map(body);
             joints.push(world.insert_impulse_joint(first, second, joint));
@@ -97,13 +94,12 @@ impl Ties {
         }
     }
 
-    /// Impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in order, then of its end stop.
+    /// Impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in order, then of its end stops.
     pub(super) fn impulses(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> Vec<f64> {
         let Some(joint) = world.impulse_joints.get(self.joints[i]) else { return Vec::new() };
         let (locked, limited) = (joint.data.locked_axes.bits(), joint.data.limit_axes.bits());
-        let turns_first = (D..2 * D).chain(0..D).filter(|i| *i < joint.data.limits.len());
-        let locks = turns_first.clone().filter(|i| locked >> i & 1 == 1).map(|i| joint.impulses[i]);
-        let stops = turns_first.filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
+        let locks = turns_first::<D>().filter(|i| locked >> i & 1 == 1).map(|i| joint.impulses[i]);
+        let stops = turns_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
         // The engine keeps those of the last of its iterations.
         locks.chain(stops).map(|impulse| -impulse * iterations as f64).collect()
     }

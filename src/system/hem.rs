@@ -29,15 +29,18 @@ pub(super) fn hem<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Mode
     let (spec, pose) = (&specs[i], specs[i].start().pose);
     let Role::Driven(motion) = &spec.role else { return Vec::new() };
     let fixed: Vec<&SolidSpec<D>> = specs.iter().filter(|other| matches!(other.role, Role::Fixed)).collect();
-    let (dp, inside) = (model.dp, |r: &Vector<D>| spec.shape.signed_distance(r));
+    let (dp, outside) = (model.dp, |r: &Vector<D>| spec.shape.signed_distance(r));
     let mut stitches = Vec::new();
+    if fixed.is_empty() {
+        return stitches;
+    }
     for point in spec.shape.skin(dp, model.layers()) {
         let x = pose.point(&point.r);
         for other in &fixed {
             let at = other.start().pose;
             let apart = other.shape.signed_distance(&at.local(&x));
             // Half a dp for a solid that stands on the other.
-            if (apart - 0.5 * dp).abs() > 0.25 * dp || (apart + inside(&point.r)).abs() > TOUCH * dp {
+            if (apart - 0.5 * dp).abs() > 0.25 * dp || (apart + outside(&point.r)).abs() > TOUCH * dp {
                 continue;
             }
             let out = at.rotation * other.shape.outward(&at.local(&x), 0.05 * dp);
@@ -45,10 +48,10 @@ pub(super) fn hem<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Mode
                 continue;
             }
             let high = pose.local(&(x + out * (model.layers() as f64 * dp)));
-            let of = if inside(&high) < 0.0 { high } else { point.r };
+            let of = if outside(&high) < 0.0 { high } else { point.r };
             let rows = (0..model.layers()).map(|k| x - out * (2.0 * apart + k as f64 * dp));
             let rows = rows.filter(|r| other.shape.signed_distance(&at.local(r)) < 0.0).map(|r| pose.local(&r));
-            stitches.extend(rows.filter(|r| inside(r) > 0.0).map(|r| Stitch { r, of }));
+            stitches.extend(rows.filter(|r| outside(r) > 0.0).map(|r| Stitch { r, of }));
         }
     }
     stitches

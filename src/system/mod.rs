@@ -318,7 +318,8 @@ impl<const D: usize> System<D> {
         let mut reach = self.model.reach();
         loop {
             let near = skin.grown(reach);
-            let these: Vec<usize> = (0..real).filter(|&i| near.contains(&self.fluid.r[i])).collect();
+            let mut these = self.near.water_within(&near);
+            these.retain(|&i| i < real && near.contains(&self.fluid.r[i]));
             if !these.is_empty() {
                 let share = impulse / (these.len() as f64 * self.particle_mass());
                 let gained: f64 = these.iter().map(|&i| share.dot(&(self.fluid.v[i] + share * 0.5))).sum();

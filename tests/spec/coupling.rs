@@ -163,19 +163,24 @@ fn a_piston_gives_the_water_the_work_that_it_records() {
     }
 }
 
+/// Water of this size (m) before a piston `thick` and `high` (m) on the bed of a tank, which goes as `law` (m) says.
+fn before_a_piston(model: Model, [long, deep]: [f64; 2], law: &str, [thick, high]: [f64; 2]) -> Simulation<2> {
+    let (dp, behind) = (model.dp, 0.4);
+    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse(law).unwrap()));
+    let shape = Shape::Box { size: Vector::from([thick, high]) };
+    let start = Pose::at(Vector::from([-0.5 * thick, 0.5 * high]));
+    let piston = rig::solid("piston", shape, start, Role::Driven(motion));
+    let mut tank = rig::tank([behind + long, high], dp);
+    tank.pose = Pose::at(Vector::from([-behind, 0.0]));
+    rig::simulation(model, rig::lattice([0.0, 0.0], [long, deep], dp), deep, vec![tank, piston])
+}
+
 /// The work (J/m) that a piston records, and the energy (J/m) that water and walls gain.
 fn pushed(walls: Walls) -> (f64, f64) {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.viscosity, model.diffusion, model.walls) = (Viscosity::None, Diffusion::None, walls);
-    let law = Law::Formula(Formula::parse("0.06*(1-cos(6*t))/2").unwrap());
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), law);
-    let shape = Shape::Box { size: Vector::from([0.08, 0.6]) };
-    let piston = rig::solid("piston", shape, Pose::at(Vector::from([-0.04, 0.3])), Role::Driven(motion));
-    // A tank whose left wall is behind the piston.
-    let mut tank = rig::tank([1.4, 0.6], dp);
-    tank.pose = Pose::at(Vector::from([-0.2, 0.0]));
-    let mut sim = rig::simulation(model, rig::lattice([0.0, 0.0], [1.2, 0.3], dp), 0.3, vec![tank, piston]);
+    let mut sim = before_a_piston(model, [1.2, 0.3], "0.06*(1-cos(6*t))/2", [0.08, 0.6]);
     let start = energy(&sim);
     let mut work = 0.0;
     while sim.time() < 0.5 {
@@ -192,13 +197,7 @@ fn no_water_gets_under_a_piston_that_goes_to_and_fro_on_its_bed() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.4);
     (model.h, model.viscosity) = (2.0 * dp, Viscosity::None);
-    let law = Law::Formula(Formula::parse("0.1*(1-cos(2*pi*t/1.6))").unwrap());
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), law);
-    let shape = Shape::Box { size: Vector::from([0.1, 0.9]) };
-    let piston = rig::solid("piston", shape, Pose::at(Vector::from([-0.05, 0.45])), Role::Driven(motion));
-    let mut tank = rig::tank([1.6, 0.9], dp);
-    tank.pose = Pose::at(Vector::from([-0.4, 0.0]));
-    let mut sim = rig::simulation(model, rig::lattice([0.0, 0.0], [1.2, 0.4], dp), 0.4, vec![tank, piston]);
+    let mut sim = before_a_piston(model, [1.2, 0.4], "0.1*(1-cos(2*pi*t/1.6))", [0.1, 0.9]);
     while sim.time() < 4.8 {
         sim.step_to(4.8).unwrap();
         let face = sim.system().solids()[1].kinematics.pose.position[0] + 0.05;

@@ -116,6 +116,59 @@ fn probes_of_ties_name_their_units_and_read_what_the_simulation_tells() -> Resul
     Ok(())
 }
 
+/// A barge with its ballast on one side, in a guide in which it may heave and turn by 2°.
+const GUIDED: &str = r#"
+dimension = 2
+dp        = 0.0125
+until     = 4.0
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [1.2, 0.4] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [1.2, 0.6] } }
+
+[[solid]]
+name  = "barge"
+shape = { box = { size = [0.3, 0.1] } }
+at    = { x = 0.6, draft = 0.05 }
+free  = { density = 500.0, centre_offset = [0.03, 0.0] }
+
+[[joint]]
+name       = "guide"
+kind       = "generic"
+between    = ["barge"]
+at         = [0.6, 0.4]
+free       = ["y", "turn"]
+limits     = { y = [-0.05, 0.05] }
+limits_deg = { turn = [-2.0, 2.0] }
+"#;
+
+#[test]
+fn a_guide_with_play_carries_the_moment_that_the_water_does_not() -> Result<()> {
+    let mut sim = Simulation::new(Scene::parse(GUIDED, Path::new(""), &[])?.build::<2>()?.setup)?;
+    let guide = Joint::new(sim.system(), "guide")?;
+    assert_eq!(Probe::<2>::columns(&guide)[3..], ["y_m", "turn_deg"]);
+    let mut carried = 0.0;
+    while sim.time() < 4.0 {
+        sim.step_to(4.0)?;
+        if sim.time() > 3.0 {
+            carried += sim.joint(0).torque.axial()[0] * sim.dt();
+        }
+    }
+    let [y, turn]: [f64; 2] = guide.look(&sim)[3..].try_into().unwrap();
+    // Its ballast would have it list by 13°; heave is free, and 0.2 dp is what a draft is known to.
+    assert!((turn + 2.0).abs() < 1e-3 && y.abs() < 0.2 * 0.0125, "{turn}° and {y} m");
+    assert!(sim.system().solids()[1].kinematics.pose.position[0] - 0.6 < 1e-6, "and it does not drift");
+    // Weight × (offset cos φ − GM sin φ), with BM = B²/12T and KB − KG = −25 mm; moments of 8 rows are right to a few hundredths.
+    let (gm, list) = (0.3 * 0.3 / 0.6 - 0.025, 2f64.to_radians());
+    let exact = 500.0 * 0.03 * 9.81 * (0.03 * list.cos() - gm * list.sin());
+    assert!((carried / exact - 1.0).abs() < 0.05, "{carried} N m/m, exact {exact}");
+    Ok(())
+}
+
 #[test]
 fn stiff_lines_shorten_the_step_and_nothing_else_does() -> Result<()> {
     let limit = |stiffness: &str| -> Result<f64> {
@@ -142,7 +195,7 @@ fn said(from: &str, to: &str) -> String {
 #[test]
 fn wrong_words_of_ties_are_told_with_their_place_and_what_to_write() {
     let motor = "motor   = { damping = 5.0 }";
-    let cases: [(&str, &str, &[&str]); 20] = [
+    let cases: [(&str, &str, &[&str]); 26] = [
         (
             "between = [\"tank\", \"flap\"]",
             "between = [\"tank\", \"flip\"]",
@@ -155,6 +208,20 @@ fn wrong_words_of_ties_are_told_with_their_place_and_what_to_write() {
         ("kind    = \"hinge\"", "kind    = \"slider\"", &["along is missing", "along = [0.0, 1.0]"]),
         ("kind    = \"hinge\"", "kind    = \"ball\"", &["a plane has no ball joint"]),
         ("kind    = \"hinge\"", "kind    = \"fixed\"", &["no way to go"]),
+        ("kind    = \"hinge\"", "kind = \"generic\"", &["free is missing"]),
+        ("kind    = \"hinge\"", "kind = \"generic\"\nfree = [\"turn\"]", &["no way to go", "has a motor"]),
+        ("kind    = \"hinge\"", "kind = \"generic\"\nfree = [\"z\"]", &["no such motion in 2-D"]),
+        ("kind    = \"hinge\"", "kind = \"hinge\"\nfree = [\"y\"]", &["free has no meaning here"]),
+        (
+            "kind    = \"hinge\"",
+            "kind = \"generic\"\nfree = [\"turn\"]\nlimits = { y = [-0.1, 0.1] }",
+            &["limits of what is not free"],
+        ),
+        (
+            "kind    = \"hinge\"",
+            "kind = \"generic\"\nfree = [\"turn\"]\nlimits_deg = { trun = [-5, 5] }",
+            &["did you mean \"turn\"?"],
+        ),
         ("at      = [0.7, 0.06]", "at      = [0.7]", &["1 numbers, not 2"]),
         ("at      = [0.7, 0.06]", "at = [0.7, 0.06]\naxis = [0.0, 1.0]", &["axis has no meaning here"]),
         ("at      = [0.7, 0.06]", "at = [0.7, 0.06]\nlimits_deg = [10.0, 20.0]", &["0 is where it starts"]),
@@ -199,6 +266,8 @@ fn values_of_ties_may_be_numbers_formulas_or_tables() -> Result<()> {
         let again = Scene::parse(&scene.to_toml()?, Path::new(""), &[])?;
         assert!(again == scene && again.to_toml()? == scene.to_toml()?, "{motor}: {}", scene.to_toml()?);
     }
+    let guided = Scene::parse(GUIDED, Path::new(""), &[])?;
+    assert!(Scene::parse(&guided.to_toml()?, Path::new(""), &[])? == guided, "{}", guided.to_toml()?);
     let force = "[[force]]\nname = \"wind\"\non = \"buoy\"\nforce = [\"10*t\", 0]\ntorque = 0.5\nframe = \"body\"\n\n\
                  [[contact]]\nbetween = [\"buoy\", \"flap\"]\ntouch = false\n\n[[contact]]\nbetween = [\"buoy\"]\nfriction = 0.1\n\n[[joint]]";
     let scene = Scene::parse(&MOORED.replacen("[[joint]]", force, 1), Path::new(""), &[])?;

@@ -1,5 +1,7 @@
 //! What joints and motors promise, on the engine alone: no water.
 
+mod generic;
+
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::{
