@@ -100,6 +100,8 @@ fn a_run_leaves_what_its_manifest_says_and_every_column_has_its_unit() {
     for word in ["finished", "simulated", "particle-steps/s", "files in a", "series/low.csv", "frames.pvd"] {
         assert!(said.out.contains(word), "\"{word}\" is not in:\n{}", said.out);
     }
+    let lines: Vec<&str> = said.err.lines().filter(|line| line.starts_with("t = ")).collect();
+    assert!(!lines.is_empty() && lines.iter().all(|line| line.chars().count() <= 79), "{}", said.err);
     let manifest = desk.manifest("a");
     assert_eq!(manifest["status"], "finished");
     assert_eq!(manifest["simulated_s"], 0.05);
@@ -193,7 +195,10 @@ fn help_and_lists_teach() {
         }
     };
     shows(&["--help"], &["pontoon run raft", "pontoon scenes", "resume", "inspect", "frames.pvd"]);
-    shows(&["run", "--help"], &["--dp", "--until", "--out", "--threads", "--set", "Examples:", "Ctrl-C", "Exit codes"]);
+    shows(
+        &["run", "--help"],
+        &["--dp", "--until", "--out", "--frames", "--threads", "--set", "Examples:", "Ctrl-C", "Exit codes"],
+    );
     shows(&["resume", "--help"], &["pontoon resume runs/raft"]);
     shows(&["study", "--help"], &["--dp", "--vary", "--dry-run", "Examples:", "study.html"]);
     shows(&["validate", "--help"], &["--quick", "--full", "--list", "Examples:", "validation.html"]);
@@ -515,6 +520,8 @@ fn a_run_is_told_in_figures_watched_and_exported() {
     assert!(rows.as_array().is_some_and(|rows| rows.iter().all(|row| row["from_s"].as_f64() >= Some(0.01))));
     desk.pontoon(&["stats", "a", "--series", "lo"]).refused(2, &["nothing to tell", "low"]);
     desk.pontoon(&["stats", "b"]).refused(2, &["b"]);
+    desk.pontoon(&["stats", "a", "--from", "9"]).refused(2, &["the readings in a end at 0.05 s", "--from"]);
+    desk.pontoon(&["stats", "a", "--from", "0.04", "--until", "0.01"]).refused(2, &["there is no time"]);
 
     let watched = desk.pontoon(&["watch", "a", "--series", "low.p_Pa"]);
     assert_eq!(watched.code, Some(0), "{}", watched.err);
@@ -524,12 +531,82 @@ fn a_run_is_told_in_figures_watched_and_exported() {
     assert!(watched.out.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c)), "a curve in dots:\n{}", watched.out);
     desk.pontoon(&["watch", "a", "--once", "--series", "low.p_pa"]).refused(2, &["did you mean \"low.p_Pa\"?"]);
 
+    let rows = "low.p_Pa,0.0,1.5,Pa²/Hz\nlow.p_Pa,0.5,2.5,Pa²/Hz\n";
+    fs::write(desk.path("a/spectra.csv"), format!("series,f_Hz,S,unit\n{rows}")).unwrap();
     let exported = desk.pontoon(&["export", "a", "--npz", "b.npz"]);
     assert_eq!(exported.code, Some(0), "{}", exported.err);
     let bytes = fs::read(desk.path("b.npz")).unwrap();
     let holds = |word: &[u8]| bytes.windows(word.len()).any(|w| w == word);
     assert!(bytes.starts_with(b"PK") && holds(b"low.t_s.npy") && holds(b"low.p_Pa.npy"));
+    assert!(
+        holds(b"spectra.low.p_Pa.f_Hz.npy") && holds(b"spectra.low.p_Pa.S.npy") && exported.out.contains("1 spectra")
+    );
+    for words in [&["export", "a", "--npz", "no/b.npz"][..], &["report", "a", "--png", "no/b.png"]] {
+        desk.pontoon(words).refused(2, &["there is no folder no", "make it first"]);
+    }
     desk.pontoon(&["export", "a"]).refused(2, &["--npz"]);
+}
+
+#[test]
+fn a_run_under_way_is_told_from_a_killed_one() {
+    let desk = Desk::new("alive");
+    let said = desk.pontoon(&["run", "still-tank", "--until", "0.05", "--out", "a", "--quiet", "--no-report"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let finished = desk.read("a/manifest.json");
+    let words = [
+        ("\"finished\"", "\"running\""),
+        ("\"until_s\": 0.05", "\"until_s\": 0.1"),
+        ("\"warnings\": []", "\"warnings\": [\"a\"]"),
+    ];
+    let running = words.iter().fold(finished, |text, (from, to)| text.replace(from, to));
+    fs::write(desk.path("a/manifest.json"), running).unwrap();
+    let watched = desk.pontoon(&["watch", "a"]).out;
+    for word in ["running, or killed: t = 0.050 of 0.1 s", "1 warning\n", "a simulated second takes ", " left\n"] {
+        assert!(watched.contains(word), "\"{word}\" is not in:\n{watched}");
+    }
+    if cfg!(target_os = "linux") {
+        let mut gone = desk.command(&["scenes"]).stdout(Stdio::null()).spawn().unwrap();
+        gone.wait().unwrap();
+        let lock =
+            |id: u32| fs::write(desk.path("a/run.lock"), format!("{id}\n")).map(|()| desk.pontoon(&["watch", "a"]).out);
+        assert!(lock(gone.id()).unwrap().contains(&format!("killed (process {} is gone): t = ", gone.id())));
+        assert!(lock(std::process::id()).unwrap().contains(&format!("running (process {}): t = ", std::process::id())));
+    }
+}
+
+#[test]
+fn frames_are_chosen_on_the_command_line_and_counted_at_the_end() {
+    let desk = Desk::new("frames");
+    let run = |every: &str, out: &str| {
+        let words = ["run", "still-tank", "--until", "0.02", "--frames", every, "--out", out, "--no-report"];
+        desk.pontoon(&words)
+    };
+    let said = run("0.01", "a");
+    assert!(
+        said.code == Some(0) && said.out.contains("  3 frames, ") && said.out.contains(", in frames/\n"),
+        "{}",
+        said.out
+    );
+    let there: u64 =
+        fs::read_dir(desk.path("a/frames")).unwrap().map(|file| file.unwrap().metadata().unwrap().len()).sum();
+    assert_eq!(desk.manifest("a")["frames"], serde_json::json!({ "count": 3, "bytes": there }));
+    let said = run("off", "b");
+    assert!(said.code == Some(0) && !said.out.contains("frames"), "{}{}", said.out, said.err);
+    assert_eq!(desk.manifest("b")["frames"]["count"], 0);
+    run("-1", "c").refused(2, &["every must be a positive number, not -1"]);
+    run("of", "c").refused(2, &["--frames 0.05, or off"]);
+}
+
+#[test]
+fn an_error_in_a_built_in_scene_names_the_scene() {
+    let desk = Desk::new("built-in");
+    for words in
+        [&["run", "raft", "--dp", "0.5"][..], &["inspect", "raft", "--dp", "0.5"], &["study", "raft", "--dp", "0.5"]]
+    {
+        let said = desk.pontoon(words);
+        said.refused(2, &["in raft/scene.toml:"]);
+        assert!(!said.err.contains("pontoon-"), "{}", said.err);
+    }
 }
 
 #[test]
@@ -560,12 +637,17 @@ fn a_log_for_programs_is_an_object_a_line_from_start_to_end_or_error() {
     let told = events(&said);
     assert_eq!((&told[0]["event"], &told[told.len() - 1]["event"]), (&"start".into(), &"end".into()));
     assert_eq!(told[told.len() - 1]["status"], "finished");
+    assert!(told[told.len() - 1]["frames"].as_u64().is_some_and(|count| count > 0));
     let last = told.iter().rfind(|event| event["event"] == "progress").unwrap();
+    assert_eq!(last["warnings"], 0);
     assert_eq!((last["t_s"].as_f64(), last["until_s"].as_f64()), (Some(0.02), Some(0.02)));
     let wrong = run(&["--dp", "-1"]);
     assert_eq!(wrong.code, Some(2));
     assert_eq!(events(&wrong)[0]["event"], "error");
     assert!(events(&wrong)[0]["text"].as_str().is_some_and(|text| text.contains("dp must be a positive number")));
+    let quiet = run(&["--until", "0.02", "--out", "b", "--quiet"]);
+    assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (Some(0), "", ""));
+    assert_eq!(events(&run(&["--dp", "-1", "--quiet"]))[0]["event"], "error");
 }
 
 #[test]

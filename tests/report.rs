@@ -193,10 +193,8 @@ fn the_page_plays_and_tells_the_value_under_the_pointer() {
     if chromium().is_none() {
         return;
     }
-    let said = asked(
-        &page,
-        "const view = deck.views[0], { canvas } = view;
-         deck.button.click(); await wait(1500); said.played = deck.t; deck.pause();
+    let script = "const view = deck.views[0], { canvas } = view;
+         deck.button.click(); for (let n = 0; n < 20 && !(deck.t > 0); n++) await wait(500); said.played = deck.t; deck.pause();
          const key = key => canvas.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
          key('End'); said.end = deck.t; key('Home'); said.home = deck.t; key('ArrowRight'); said.next = deck.t; key('Home');
          key('+'); said.zoom = deck.look.zoom; key('0');
@@ -207,10 +205,10 @@ fn the_page_plays_and_tells_the_value_under_the_pointer() {
          said.frames = films[0].times.length; said.charts = document.querySelectorAll('.uplot').length;
          said.moved = films[0].pose(1)[1]; deck.seek(0.1); said.later = films[0].pose(1)[1];
          document.querySelectorAll('details').forEach(fold => fold.open = true); await wait(500);
-         said.wide = document.documentElement.scrollWidth - innerWidth; said.title = document.title;",
-    );
-    // How far depends on how often the browser draws.
-    assert!(said["played"].as_f64().unwrap() > 0.0, "it plays: {said}");
+         said.wide = document.documentElement.scrollWidth - innerWidth; said.title = document.title;";
+    // How far depends on how often the browser draws, which on a busy machine may be never in its virtual time: then it is asked again.
+    let plays = |said: &Value| said["played"].as_f64().unwrap() > 0.0;
+    let said = (0..3).map(|_| asked(&page, script)).find(plays).expect("it plays");
     assert!(said["home"] == 0.0 && said["end"].as_f64().unwrap() >= 0.2 - 1e-9, "{said}");
     let next = said["next"].as_f64().unwrap();
     assert!((0.02..0.03).contains(&next), "the second frame is the first step at or past 0.02 s: {said}");

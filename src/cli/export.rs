@@ -15,7 +15,7 @@ pub struct ExportArgs {
     /// Folder of the run
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// All series as NumPy arrays in one file [default: DIR/series.npz]
+    /// All series and their spectra as NumPy arrays in one file [default: DIR/series.npz]
     #[arg(long, value_name = "FILE", num_args = 0..=1, group = "what")]
     npz: Option<Option<PathBuf>>,
     /// The free surface in each frame of a 3-D run as a mesh for ParaView: DIR/surface.pvd
@@ -46,12 +46,30 @@ fn series(folder: &Path, out: PathBuf) -> Result<String> {
         let what = format!("the run in {} has no series", folder.display());
         return Err(Error::new(Kind::Usage, what).help("a [[probe]] in its scene would write some"));
     }
+    let spectra = spectra(folder)?;
     let all = tables.iter().flat_map(|(name, of)| {
         let columns = of.columns.iter().zip(&of.x).map(move |(column, x)| (format!("{name}.{column}"), &x[..]));
         [(format!("{name}.t_s"), &of.t[..])].into_iter().chain(columns)
     });
-    arrays::write(&out, all)?;
-    Ok(format!("{}: {} tables\n", out.display(), tables.len()))
+    arrays::write(&out, all.chain(spectra.iter().map(|(name, x)| (name.clone(), &x[..]))))?;
+    Ok(format!("{}: {} tables, {} spectra\n", out.display(), tables.len(), spectra.len() / 2))
+}
+
+/// Frequencies (Hz) and densities of every spectrum of the run, if it wrote some.
+fn spectra(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
+    let path = folder.join("spectra.csv");
+    if !path.exists() {
+        return Ok(vec![]);
+    }
+    let broken = |why: csv::Error| Error::file(&path, why);
+    let rows = csv::Reader::from_path(&path).map_err(broken)?.into_deserialize::<(String, f64, f64, String)>();
+    let rows = rows.collect::<std::result::Result<Vec<_>, _>>().map_err(broken)?;
+    let of = |rows: &[(String, f64, f64, String)]| {
+        let name = &rows[0].0;
+        let (f, s) = rows.iter().map(|row| (row.1, row.2)).unzip();
+        [(format!("spectra.{name}.f_Hz"), f), (format!("spectra.{name}.S"), s)]
+    };
+    Ok(rows.chunk_by(|a, b| a.0 == b.0).flat_map(of).collect())
 }
 
 #[cfg(feature = "surface")]

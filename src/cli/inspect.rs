@@ -35,7 +35,7 @@ pub struct InspectArgs {
 pub fn inspect(args: &InspectArgs) -> Result<String> {
     let found = shelf::find(&args.scene.scene)?;
     let asked = Inspection { sets: args.scene.sets(), threads: args.threads, timing: !args.no_timing };
-    let report = run::inspect(found.path(), &asked)?;
+    let report = found.named(run::inspect(found.path(), &asked))?;
     if args.json {
         let text = serde_json::to_string_pretty(&report).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
         return Ok(text + "\n");
@@ -134,12 +134,11 @@ fn waves(wave: &Wave) -> Vec<(&'static str, String)> {
     let speeds = format!("crests {} m/s, energy {} m/s", three(wave.celerity_mps), three(wave.group_mps));
     let (stroke, speed) = (three(wave.stroke_m), three(wave.paddle_mps));
     let ramp = if wave.ramp_s > 0.0 { format!(", ramp {} s", three(wave.ramp_s)) } else { String::new() };
-    let (far, back) = (three(wave.far_s), three(wave.back_s));
     vec![
         ("waves", format!("{high}, {long}")),
         ("", format!("{water}; {speeds}")),
         ("", format!("\"{}\", {kind}: stroke {stroke} m, up to {speed} m/s{ramp}", wave.solid)),
-        ("", format!("{} m to the far end: there after {far} s, back after {back} s", three(wave.reach_m))),
+        ("", wave.first_answer()),
     ]
 }
 

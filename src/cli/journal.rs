@@ -27,17 +27,19 @@ pub const STOPPING: &str = "{\"event\":\"stopping\"}\n";
 
 /// Writes what happens to a run.
 pub struct Journal {
+    quiet: bool,
     stop: Arc<AtomicBool>,
     folder: Option<PathBuf>,
     /// When it began, and at which simulated time (s).
     begun: Option<(Instant, f64)>,
     next: Option<Instant>,
+    warnings: usize,
 }
 
 impl Journal {
-    /// Asks the run to stop once `stop` is raised.
-    pub fn new(stop: Arc<AtomicBool>) -> Self {
-        Self { stop, folder: None, begun: None, next: None }
+    /// Writes nothing if `quiet`; asks the run to stop once `stop` is raised.
+    pub fn new(quiet: bool, stop: Arc<AtomicBool>) -> Self {
+        Self { quiet, stop, folder: None, begun: None, next: None, warnings: 0 }
     }
 }
 
@@ -51,6 +53,10 @@ impl Watch for Journal {
     fn start(&mut self, start: &Start) {
         let manifest = start.manifest;
         self.folder = Some(start.folder.to_owned());
+        self.warnings = manifest.warnings.len();
+        if self.quiet {
+            return;
+        }
         tell(&json!({
             "event": "start", "folder": start.folder, "title": manifest.title, "water": manifest.particles.fluid,
             "boundary": manifest.particles.boundary, "threads": manifest.threads, "until_s": manifest.until_s,
@@ -59,19 +65,22 @@ impl Watch for Journal {
     }
 
     fn rescued(&mut self, how: &Rescued) {
-        warn(&how.to_string());
+        self.warnings += 1;
+        if !self.quiet {
+            warn(&how.to_string());
+        }
     }
 
     fn step(&mut self, now: &Progress) -> bool {
         let clock = Instant::now();
         let (begun, first) = *self.begun.get_or_insert((clock, now.time));
-        if self.next.is_none_or(|next| clock >= next) || now.time >= now.until {
+        if !self.quiet && (self.next.is_none_or(|next| clock >= next) || now.time >= now.until) {
             self.next = Some(clock + PAUSE);
             let (wall, done) = (begun.elapsed().as_secs_f64(), now.time - first);
             let left = (done > 0.0).then(|| wall * (now.until - now.time) / done);
             tell(&json!({
                 "event": "progress", "t_s": now.time, "until_s": now.until, "dt_s": now.dt, "steps": now.steps,
-                "wall_s": now.wall, "left_s": left, "particle_steps_per_second": now.rate,
+                "wall_s": now.wall, "left_s": left, "particle_steps_per_second": now.rate, "warnings": self.warnings,
             }));
         }
         !self.stop.load(Ordering::Relaxed)
@@ -94,6 +103,7 @@ pub fn ended(outcome: &Outcome) {
     tell(&json!({
         "event": "end", "status": status, "folder": outcome.folder, "t_s": manifest.simulated_s, "steps": manifest.steps,
         "wall_s": manifest.wall_s, "missed_checks": outcome.failed_checks(),
+        "frames": manifest.frames.count, "frames_bytes": manifest.frames.bytes,
     }));
 }
 

@@ -9,13 +9,24 @@ use std::{
     time::{Duration, Instant},
 };
 
+use crossterm::terminal::size;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon::{
+    preflight::three,
     run::{Progress, Start, Watch},
     simulation::Rescued,
 };
 
 use super::{complain, report};
+
+/// Columns of a line where nobody tells how wide the terminal is.
+const WIDE: usize = 79;
+
+/// Columns of the bar, and the space behind it.
+const BAR: usize = 11;
+
+/// From one line to the next where there is no terminal, s: at first, then so many times the last, and at most.
+const PAUSE: (f64, f64, f64) = (5.0, 1.25, 300.0);
 
 /// Follows a run for the user, and passes on the wish to stop.
 pub struct Follow {
@@ -27,6 +38,10 @@ pub struct Follow {
     /// Since when, in wall and simulated time (s), and at which step.
     begun: Option<(Instant, f64, u64)>,
     next: Option<Instant>,
+    /// From the last line to the next where there is no terminal, s.
+    pause: f64,
+    /// Warnings so far.
+    warnings: usize,
 }
 
 /// Someone who follows a run for the user.
@@ -47,36 +62,67 @@ impl Follow {
     pub fn new(quiet: bool, stop: Arc<AtomicBool>) -> Self {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(1000), target);
-        if let Ok(style) = ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:10} {msg}") {
             bar.set_style(style);
         }
-        Self { quiet, stop, bar, folder: None, begun: None, next: None }
+        Self { quiet, stop, bar, folder: None, begun: None, next: None, pause: PAUSE.0, warnings: 0 }
     }
 
-    fn line(&self, now: &Progress) -> String {
+    /// How far the run is, in so many columns; what matters most comes first, and what does not fit is left out.
+    fn line(&self, now: &Progress, room: usize) -> String {
         let (begun, first, steps) = self.begun.unwrap_or((Instant::now(), now.time, now.steps));
         let (wall, done) = (begun.elapsed().as_secs_f64(), now.time - first);
-        let mut line = format!("t = {:.3} of {} s, step {}", now.time, now.until, now.steps);
-        if now.steps > steps && wall > 0.0 {
-            line += &format!(", {} steps/s", report::short((now.steps - steps) as f64 / wall));
-            line += &format!(", {} particle-steps/s", report::short(now.rate));
+        let going = now.steps > steps && wall > 0.0;
+        let left = || format!("{} left", report::duration(wall * (now.until - now.time) / done));
+        let speed = || format!("{} steps/s", report::short((now.steps - steps) as f64 / wall));
+        let words = [
+            (done > 0.0).then(left),
+            (now.dt > 0.0).then(|| format!("dt {} s", three(now.dt))),
+            report::warnings(self.warnings),
+            Some(format!("step {}", now.steps)),
+            going.then(speed),
+            going.then(|| format!("{} particle-steps/s", report::short(now.rate))),
+        ];
+        fitted(format!("t = {:.3} of {} s", now.time, now.until), words.into_iter().flatten(), room)
+    }
+
+    /// How long until the next line (s) where there is no terminal. The first few lines come quickly, so that a user sees
+    /// that it runs; a run of a night has a hundred.
+    fn wait(&mut self, steps: u64) -> f64 {
+        if steps < 10 {
+            return 1.0;
         }
-        if done > 0.0 {
-            line += &format!(", {} left", report::duration(wall * (now.until - now.time) / done));
+        let pause = self.pause;
+        self.pause = (pause * PAUSE.1).min(PAUSE.2);
+        pause
+    }
+
+    /// Says how far the run is, and when it is said next.
+    fn show(&mut self, now: &Progress, clock: Instant) {
+        if self.bar.is_hidden() {
+            complain(&format!("{}\n", self.line(now, WIDE)));
+            self.next = Some(clock + Duration::from_secs_f64(self.wait(now.steps)));
+        } else {
+            let columns = size().map_or(0, |(columns, _)| usize::from(columns));
+            let room = if columns == 0 { WIDE } else { columns - 1 };
+            self.bar.set_position((1000.0 * now.time / now.until) as u64);
+            self.bar.set_message(self.line(now, room.saturating_sub(BAR)));
+            self.next = Some(clock + Duration::from_millis(100));
         }
-        line
     }
 }
 
 impl Watch for Follow {
     fn start(&mut self, start: &Start) {
         self.folder = Some(start.folder.to_owned());
+        self.warnings = start.manifest.warnings.len();
         if !self.quiet {
             complain(&report::started(start));
         }
     }
 
     fn rescued(&mut self, how: &Rescued) {
+        self.warnings += 1;
         if !self.quiet {
             self.bar.suspend(|| complain(&format!("warning: {how}\n")));
         }
@@ -86,17 +132,50 @@ impl Watch for Follow {
         let clock = Instant::now();
         self.begun.get_or_insert((clock, now.time, now.steps));
         if !self.quiet && self.next.is_none_or(|next| clock >= next) {
-            if self.bar.is_hidden() {
-                complain(&format!("{}\n", self.line(now)));
-                // The first few lines come quickly, so that a user sees that it runs.
-                let pause = if now.steps < 10 { 1 } else { 5 };
-                self.next = Some(clock + Duration::from_secs(pause));
-            } else {
-                self.bar.set_position((1000.0 * now.time / now.until) as u64);
-                self.bar.set_message(self.line(now));
-                self.next = Some(clock + Duration::from_millis(100));
-            }
+            self.show(now, clock);
         }
         !self.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// `line` and as many of the `words` as there is room for, in columns.
+fn fitted(line: String, words: impl Iterator<Item = String>, room: usize) -> String {
+    words.fold(line, |line, word| {
+        let longer = format!("{line}, {word}");
+        if longer.chars().count() > room { line } else { longer }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_tells_step_and_warnings_and_stays_a_line() {
+        let mut follow = Follow::new(true, Arc::default());
+        let now = Progress { time: 1.25, until: 12.0, dt: 1.234e-4, steps: 10_234, wall: 0.0, rate: 1.234e7 };
+        assert_eq!(follow.line(&now, WIDE), "t = 1.250 of 12 s, dt 0.000123 s, step 10234");
+        follow.warnings = 2;
+        follow.begun = Instant::now().checked_sub(Duration::from_secs(50)).map(|then| (then, 0.0, 0));
+        let line = follow.line(&now, WIDE);
+        assert!(
+            line.contains("left, dt ") && line.contains(" s, 2 warnings") && line.chars().count() <= WIDE,
+            "{line}"
+        );
+        assert!(follow.line(&now, 200).ends_with(" steps/s, 12.34 M particle-steps/s"));
+        assert!(follow.line(&now, WIDE - BAR).chars().count() <= WIDE - BAR);
+    }
+
+    #[test]
+    fn lines_in_a_pipe_grow_rare() {
+        let mut follow = Follow::new(true, Arc::default());
+        assert_eq!([0, 9, 10, 11].map(|steps| follow.wait(steps)), [1.0, 1.0, 5.0, 6.25]);
+        let (mut wall, mut lines) = (0.0, 0);
+        while wall < 8.0 * 3600.0 {
+            wall += follow.wait(1000);
+            lines += 1;
+        }
+        assert!((60..130).contains(&lines), "{lines} lines in eight hours");
+        assert_eq!(follow.wait(1000), 300.0);
     }
 }

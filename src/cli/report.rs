@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use pontoon::{
     check::{Verdict, said},
-    record::manifest::Status,
+    record::manifest::{Pictures, Status},
     run::{Body, Outcome, Start},
 };
 
@@ -41,6 +41,15 @@ pub fn short(n: f64) -> String {
 /// A number of threads as a user says it.
 pub fn threads(n: usize) -> String {
     if n == 1 { "1 thread".into() } else { format!("{n} threads") }
+}
+
+/// How many warnings there are, if there are any.
+pub fn warnings(count: usize) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some("1 warning".into()),
+        n => Some(format!("{n} warnings")),
+    }
 }
 
 /// Said when a run begins.
@@ -99,6 +108,11 @@ pub fn ended(outcome: &Outcome) -> String {
     let _ = writeln!(text, "\nfiles in {}", outcome.folder.display());
     for file in &manifest.files {
         let _ = writeln!(text, "  {file}");
+    }
+    match manifest.frames {
+        Pictures { count: 0, .. } => {}
+        Pictures { count: 1, bytes: size } => text += &format!("  1 frame, {}, in frames/\n", bytes(size as f64)),
+        Pictures { count, bytes: size } => text += &format!("  {count} frames, {}, in frames/\n", bytes(size as f64)),
     }
     if manifest.status == Status::Interrupted {
         let _ = writeln!(text, "\ngo on with: pontoon resume {}", outcome.folder.display());

@@ -25,11 +25,33 @@ pub struct RunArgs {
     /// Folder for the results, new or empty [default: runs/<scene>, numbered if taken]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Simulated time from one frame to the next, s, or off: short for --set frames.every=EVERY, frames=off
+    #[arg(long, value_name = "EVERY|off", allow_negative_numbers = true, value_parser = frames)]
+    frames: Option<Pair>,
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     #[command(flatten)]
     said: SaidArgs,
+}
+
+/// A key of the scene and its value.
+type Pair = (String, String);
+
+impl RunArgs {
+    /// The scene keys that the arguments change.
+    fn sets(&self) -> Vec<Pair> {
+        self.scene.sets().into_iter().chain(self.frames.clone()).collect()
+    }
+}
+
+/// What `--frames` changes.
+fn frames(text: &str) -> std::result::Result<Pair, String> {
+    match text.parse::<f64>() {
+        _ if text == "off" => Ok(("frames".into(), "off".into())),
+        Ok(every) => Ok(("frames.every".into(), format!("{every:?}"))),
+        Err(_) => Err("write seconds, as in --frames 0.05, or off".into()),
+    }
 }
 
 /// Which run is gone on with, and how.
@@ -75,9 +97,9 @@ enum Log {
 pub fn run(args: &RunArgs) -> Result<u8> {
     let started = |args: &RunArgs| {
         let found = shelf::find(&args.scene.scene)?;
-        let options = Options { out: args.out.clone(), sets: args.scene.sets(), threads: args.threads };
+        let options = Options { out: args.out.clone(), sets: args.sets(), threads: args.threads };
         let mut follow = follower(&args.said)?;
-        let outcome = run::run(found.path(), &options, &mut *follow);
+        let outcome = found.named(run::run(found.path(), &options, &mut *follow));
         end(outcome, follow, &args.said)
     };
     told(started(args), &args.said)
@@ -108,7 +130,7 @@ fn told(outcome: Result<u8>, said: &SaidArgs) -> Result<u8> {
 fn follower(said: &SaidArgs) -> Result<Box<dyn Follower>> {
     Ok(match said.log {
         Log::Text => Box::new(Follow::new(said.quiet, stopper()?)),
-        Log::Json => Box::new(Journal::new(stopper_saying(journal::STOPPING)?)),
+        Log::Json => Box::new(Journal::new(said.quiet, stopper_saying(journal::STOPPING)?)),
     })
 }
 
@@ -116,9 +138,10 @@ fn follower(said: &SaidArgs) -> Result<Box<dyn Follower>> {
 fn end(outcome: Result<Outcome>, mut follow: Box<dyn Follower>, said: &SaidArgs) -> Result<u8> {
     let (folder, json) = (follow.close(), said.log == Log::Json);
     match &outcome {
+        _ if said.quiet => {}
         Ok(outcome) if json => journal::ended(outcome),
-        Ok(outcome) if !said.quiet => say(&report::ended(outcome)),
-        _ => {}
+        Ok(outcome) => say(&report::ended(outcome)),
+        Err(_) => {}
     }
     if let Some(folder) = folder.filter(|_| !said.no_report) {
         let told = |why: &Error| {

@@ -2,7 +2,7 @@
 
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::{MAIN_SEPARATOR, Path, PathBuf},
 };
 
 use pontoon::{
@@ -20,6 +20,18 @@ impl Found {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// What came of the scene; an error calls one that is built in by its name, not by where it lies for the moment.
+    pub fn named<T>(&self, outcome: Result<T>) -> Result<T> {
+        let Some(folder) = &self.temporary else { return outcome };
+        let without = |text: &mut String| *text = text.replace(&format!("{}{MAIN_SEPARATOR}", folder.display()), "");
+        outcome.map_err(|mut error| {
+            without(&mut error.what);
+            error.place.iter_mut().for_each(|place| without(&mut place.file));
+            error.help.iter_mut().for_each(without);
+            error
+        })
     }
 }
 

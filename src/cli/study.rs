@@ -152,7 +152,7 @@ pub fn study(args: StudyArgs) -> Result<u8> {
     let found = shelf::find(&args.scene)?;
     let mut sets = args.set.clone();
     sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
-    let scene = Scene::read(found.path(), &sets)?;
+    let scene = found.named(Scene::read(found.path(), &sets))?;
     if args.threads == Some(0) {
         return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
     }
@@ -165,9 +165,9 @@ pub fn study(args: StudyArgs) -> Result<u8> {
         name: name.clone(),
     };
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
-    let sheet = Sheet::new(&grid, out, super::command_line())?;
+    let sheet = found.named(Sheet::new(&grid, out, super::command_line()))?;
     let list = List { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
-    list.announce(args.dry_run)?;
+    found.named(list.announce(args.dry_run))?;
     if args.dry_run {
         return Ok(0);
     }

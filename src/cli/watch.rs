@@ -21,7 +21,7 @@ use pontoon::{
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
 use super::{
-    report::{duration, table},
+    report::{duration, table, warnings},
     say,
 };
 
@@ -95,6 +95,13 @@ fn left(wait: Duration) -> bool {
     }
 }
 
+/// The process that the lock in `folder` names, and whether it lives, where the system keeps /proc.
+fn process(folder: &Path) -> Option<(u32, Option<bool>)> {
+    let id: u32 = std::fs::read_to_string(folder.join("run.lock")).ok()?.trim().parse().ok()?;
+    let all = Path::new("/proc");
+    Some((id, all.join("self").exists().then(|| all.join(id.to_string()).exists())))
+}
+
 /// The terminal in its other screen; as it was when this is dropped.
 struct Screen;
 
@@ -116,6 +123,8 @@ impl Drop for Screen {
 /// A run as it stands.
 struct Seen {
     manifest: Manifest,
+    /// The process that writes here, if one is named, and whether it lives, if the system tells.
+    process: Option<(u32, Option<bool>)>,
     tables: Vec<(String, Readings)>,
 }
 
@@ -127,7 +136,7 @@ impl Seen {
             let path = folder.join("series").join(format!("{name}.csv"));
             Some((name.to_string(), Readings::read(&path).ok()?))
         };
-        Ok(Self { tables: files.filter_map(read).collect(), manifest })
+        Ok(Self { tables: files.filter_map(read).collect(), process: process(folder), manifest })
     }
 
     /// All series.
@@ -166,7 +175,7 @@ impl Seen {
             false => series.to_vec(),
         };
         plots.dedup();
-        let room = usize::from(high.max(24)) - 4;
+        let room = usize::from(high.max(24)) - 5;
         let lines = (room / 2).checked_div(plots.len()).unwrap_or(0).max(LEAST_LINES);
         let rows = room.saturating_sub(plots.len() * lines).max(LEAST_LINES);
         text += &self.latest(rows);
@@ -178,19 +187,30 @@ impl Seen {
 
     fn status(&self) -> String {
         let m = &self.manifest;
-        let how = match m.status {
-            Status::Running => "running, or killed",
-            Status::Finished => "finished",
-            Status::Interrupted => "interrupted",
-            Status::Failed => "failed",
+        let how = match (m.status, self.process) {
+            (Status::Running, Some((id, Some(true)))) => format!("running (process {id})"),
+            (Status::Running, Some((id, Some(false)))) => format!("killed (process {id} is gone)"),
+            (Status::Running, _) => "running, or killed".into(),
+            (Status::Finished, _) => "finished".into(),
+            (Status::Interrupted, _) => "interrupted".into(),
+            (Status::Failed, _) => "failed".into(),
         };
         let t = self.tables.iter().filter_map(|(_, of)| of.t.last()).copied().fold(m.simulated_s, f64::max);
-        let warnings = match m.warnings.len() {
-            0 => String::new(),
-            1 => ", 1 warning".into(),
-            n => format!(", {n} warnings"),
-        };
-        format!("{how}: t = {t:.3} of {} s, {} of wall time at the last frame{warnings}", m.until_s, duration(m.wall_s))
+        let warned = warnings(m.warnings.len()).map_or(String::new(), |count| format!(", {count}"));
+        let text = format!(
+            "{how}: t = {t:.3} of {} s, {} of wall time at the last frame{warned}",
+            m.until_s,
+            duration(m.wall_s)
+        );
+        let cost = m.wall_s / m.simulated_s;
+        if m.status == Status::Finished || !(cost > 0.0 && cost.is_finite()) {
+            return text;
+        }
+        format!(
+            "{text}\na simulated second takes {}, {} left",
+            duration(cost),
+            duration(cost * (m.until_s - t).max(0.0))
+        )
     }
 
     /// The last reading of each series, its least and its largest.

@@ -236,7 +236,9 @@ impl<const D: usize> Look<'_, D> {
             findings.push(Finding::warning("capsizes", what, mend));
         } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
             let heel = afloat.heel_deg.unwrap_or_default();
-            let what = format!("\"{name}\" starts about {}° out of the trim in which it rests", three(heel));
+            // The metacentre speaks of small tilts.
+            let far = if heel > 45.0 { "more than 45".into() } else { format!("about {}", three(heel)) };
+            let what = format!("\"{name}\" starts {far}° out of the trim in which it rests");
             let mend = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy".into();
             findings.push(Finding::note("lists", what, mend));
         }

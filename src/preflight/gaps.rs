@@ -55,7 +55,8 @@ impl<const D: usize> Look<'_, D> {
     /// The least distance (m) of the faces of solid `a` from solid `b`, and the narrowest gap between faces that look at
     /// one another, if it is narrower than the kernel reaches.
     fn between(&self, a: usize, b: usize) -> (f64, Option<Gap<D>>) {
-        let (dp, reach) = (self.dp(), self.system.model().reach());
+        // What is as far as the kernel reaches, but for round-off, is far enough.
+        let (dp, reach) = (self.dp(), self.system.model().reach() * (1.0 - 1e-6));
         let [one, other] = [a, b].map(|i| &self.solids()[i]);
         let around = world_bounds(&other.spec.shape, &other.kinematics.pose).grown(reach);
         let near = |face: &Face<D>| {

@@ -5,12 +5,16 @@
 //! are the findings that are warnings.
 
 mod absorb;
+mod astray;
 mod bodies;
 mod faces;
 mod gaps;
+mod paddles;
 mod places;
 mod size;
 mod sound;
+mod stands;
+mod swings;
 mod thickness;
 mod waves;
 mod words;
@@ -159,6 +163,7 @@ pub fn look<const D: usize>(
     let size = look.size(&step, columns, overlapped, &mut findings);
     let gaps = look.gaps(&mut findings);
     let bodies = look.bodies(&gaps.touching, &mut findings);
+    look.astray(&gaps.touching, &mut findings);
     look.walls(&mut findings);
     look.probes(&sound, &mut findings);
     let (waves, absorbers) = (look.waves(&mut findings), look.absorbers());

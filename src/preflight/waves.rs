@@ -5,8 +5,9 @@ use serde::Serialize;
 
 use super::{
     Finding, Look,
+    stands::Stand,
     thickness::layered,
-    words::{down, three, up},
+    words::{down, three},
 };
 use crate::{
     scene::world_bounds,
@@ -14,26 +15,13 @@ use crate::{
         Law, Motion, Role, Solid,
         wave::{Paddle, Regime, Region, Train},
     },
-    space::{Bounds, Vector},
 };
 
 /// Wave height over dp below which waves lose much of it on their way.
-const LEAST: f64 = 5.0;
+pub(super) const LEAST: f64 = 5.0;
 
 /// Wave length over dp below which a wave is not resolved: two supports of the kernel to a crest.
 const SHORTEST: f64 = 15.0;
-
-/// Angle (rad) of a flap beyond which small angles are no good theory: 30°.
-const STEEP: f64 = std::f64::consts::FRAC_PI_6;
-
-/// The highest of a thousand waves over the significant height (Rayleigh).
-const HIGHEST: f64 = 1.86;
-
-/// Times at which a driven solid is looked at.
-const TIMES_SEEN: usize = 2000;
-
-/// Share of a motion's whole range that a turn back must have to be one.
-const TURN: f64 = 0.05;
 
 /// The wave of a driven solid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -72,22 +60,16 @@ pub struct Wave {
     pub paddle_mps: f64,
     /// How long the paddle takes to its full motion, s; 0 if its motion was given.
     pub ramp_s: f64,
-    /// From the paddle to the end of the water, m.
+    /// From the paddle to the first thing that answers, m.
     pub reach_m: f64,
-    /// When the front is at that end, s.
+    /// The solid that answers; absent of the end of the water.
+    pub answers: Option<String>,
+    /// Where a damping zone begins before that, m from the paddle.
+    pub damping_m: Option<f64>,
+    /// When the front is where something answers, s.
     pub far_s: f64,
     /// When what comes back from there is at the paddle, s.
     pub back_s: f64,
-}
-
-/// How a solid's face goes at the still level.
-struct Swing<const D: usize> {
-    /// Sideways, where it goes furthest; a unit vector.
-    way: Vector<D>,
-    /// The largest swing, m, and half its period, s; no period if it does not turn.
-    stroke: f64,
-    half: Option<f64>,
-    speed: f64,
 }
 
 impl<const D: usize> Look<'_, D> {
@@ -105,14 +87,21 @@ impl<const D: usize> Look<'_, D> {
         }
         for solid in self.solids() {
             let Role::Driven(motion) = &solid.spec.role else { continue };
-            let Some(wave) = self.wave(solid, motion) else { continue };
+            if let Law::Wave(law) = motion.law() {
+                self.placed(solid, motion, law, findings);
+            }
+            let Some((wave, stand)) = self.wave(solid, motion) else { continue };
             self.low(&wave, findings);
-            self.undamped(&wave, findings);
+            self.zones(&wave, &stand, findings);
             if let Law::Wave(law) = motion.law() {
                 self.named(&wave, solid, law, findings);
+                self.quick(&wave, law, findings);
+                self.focus(&wave, &stand, law, findings);
             }
             waves.push(wave);
         }
+        self.idle(findings);
+        self.stale(&waves, findings);
         waves
     }
 
@@ -137,97 +126,21 @@ impl<const D: usize> Look<'_, D> {
         }
     }
 
-    /// Damping zones that are over before a wave is.
-    fn undamped(&self, wave: &Wave, findings: &mut Vec<Finding>) {
-        let least = 0.5 * wave.length_m;
-        if let Some(zone) = self.system.damping().iter().find(|zone| zone.length() < least * (1.0 - 1e-9)) {
-            let what = format!(
-                "a damping zone is {} m long, and the waves of \"{}\" are {} m: much of them will come back",
-                three(zone.length()),
-                wave.solid,
-                three(wave.length_m)
-            );
-            let mend = format!("half a wave length, {} m, is the least, a whole one is better", up(least));
-            findings.push(Finding::warning("short_damping", what, mend));
-        }
-    }
-
-    /// What a wave that was asked for may not become.
-    fn named(&self, wave: &Wave, solid: &Solid<D>, law: &crate::solid::wave::Wave, findings: &mut Vec<Finding>) {
-        let (name, facts) = (&wave.solid, law.facts());
-        let sea = !matches!(facts.kind, "regular" | "solitary");
-        if let Some(train) = facts.train.filter(|_| sea) {
-            let (most, high) = (train.highest(), if facts.kind == "focused" { 0.8 } else { HIGHEST } * wave.height_m);
-            if high > most {
-                let what = format!(
-                    "the highest waves of \"{name}\", about {} m, will break: {} m is the most at their period",
-                    three(high),
-                    three(most)
-                );
-                let mend = format!("{} of the height stays whole", down(most / high));
-                findings.push(Finding::note("breaking_waves", what, mend));
-            }
-        }
-        if let Some(train) = facts.train.filter(|_| wave.region == Region::Cnoidal && !sea) {
-            let what = format!(
-                "the wave of \"{name}\" is cnoidal, H L²/d³ = {}: Stokes' theory, by which the paddle moves, holds to 26",
-                three(train.ursell(wave.height_m))
-            );
-            findings.push(Finding::warning(
-                "beyond_stokes",
-                what,
-                format!("height = {}", down(train.highest_of_stokes())),
-            ));
-        }
-        if let Paddle::Flap { arm } = law.paddle()
-            && (0.5 * wave.stroke_m / arm).atan() > STEEP
-        {
-            let degrees = (0.5 * wave.stroke_m / arm).atan().to_degrees();
-            let what = format!(
-                "the flap \"{name}\" swings by {} degrees to each side, beyond what theory is for",
-                three(degrees)
-            );
-            let arm = up(0.5 * wave.stroke_m / STEEP.tan());
-            findings.push(Finding::warning(
-                "steep_flap",
-                what,
-                format!("a hinge {arm} m below the still level swings by 30"),
-            ));
-        }
-        let top = world_bounds(&solid.spec.shape, &solid.kinematics.pose).max[D - 1];
-        let crest = self.still.level + if facts.solitary.is_some() { 1.0 } else { 0.75 } * wave.height_m;
-        if top < crest {
-            let what = format!(
-                "the crests at \"{name}\" reach about {} m, and it ends at {} m: water goes over it",
-                three(crest),
-                three(top)
-            );
-            findings.push(Finding::warning(
-                "overtopped_paddle",
-                what,
-                format!("{} m more of height hold it", up(crest - top)),
-            ));
-        }
-    }
-
-    fn wave(&self, solid: &Solid<D>, motion: &Motion<D>) -> Option<Wave> {
+    fn wave(&self, solid: &Solid<D>, motion: &Motion<D>) -> Option<(Wave, Stand<D>)> {
         let level = self.still.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
         // A tank that is shaken holds the water rather than pushing it.
         if layered(&solid.spec.shape) || self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
             return None;
         }
-        let mut swing = self.swing(solid, motion, &bounds)?;
-        let water = Bounds::around(self.system.fluid().r);
-        let ahead = |way: &Vector<D>| furthest(&water, way) - furthest(&bounds, way);
-        if ahead(&-swing.way) > ahead(&swing.way) {
-            swing.way = -swing.way;
-        }
-        let reach = ahead(&swing.way).max(0.0);
+        let swing = self.swing(solid, motion, &bounds)?;
         let named = match motion.law() {
             Law::Wave(wave) => Some(wave),
             _ => None,
         };
+        let [stand, behind] = [swing.way, -swing.way].map(|way| Stand::of(&bounds, way, level));
+        // A given motion makes waves to both sides: those count that go the longer way.
+        let stand = if named.is_none() && self.end(&behind) > self.end(&stand) { behind } else { stand };
         let depth = named.map_or(self.still.depth, |wave| wave.depth());
         let facts = named.map(|wave| wave.facts());
         let kind = facts.map(|facts| facts.kind);
@@ -264,10 +177,12 @@ impl<const D: usize> Look<'_, D> {
             }
         };
         (wave.kind, wave.order, wave.depth_m, wave.ramp_s) = (kind, order, depth, ramp);
-        (wave.stroke_m, wave.paddle_mps, wave.reach_m) = (swing.stroke, swing.speed, reach);
+        (wave.stroke_m, wave.paddle_mps) = (swing.stroke, swing.speed);
         (wave.height_dp, wave.length_dp) = (wave.height_m / self.dp(), wave.length_m / self.dp());
-        (wave.far_s, wave.back_s) = (reach / wave.group_mps, 2.0 * reach / wave.group_mps);
-        (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some(wave)
+        (wave.reach_m, wave.answers) = self.answer(solid, &stand);
+        wave.damping_m = self.damped(&stand).filter(|begins| *begins < wave.reach_m);
+        (wave.far_s, wave.back_s) = (wave.reach_m / wave.group_mps, 2.0 * wave.reach_m / wave.group_mps);
+        (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some((wave, stand))
     }
 
     /// The motion as a paddle's.
@@ -277,33 +192,17 @@ impl<const D: usize> Look<'_, D> {
             _ => Paddle::Piston,
         }
     }
-
-    /// How the material point in the still level goes sideways.
-    fn swing(&self, solid: &Solid<D>, motion: &Motion<D>, bounds: &Bounds<D>) -> Option<Swing<D>> {
-        let mut mark = 0.5 * (bounds.min + bounds.max);
-        mark[D - 1] = self.still.level;
-        let local = solid.kinematics.pose.local(&mark);
-        let step = self.until() / TIMES_SEEN as f64;
-        let sideways: Vec<Vector<D>> = (0..=TIMES_SEEN)
-            .map(|k| {
-                let mut way = motion.kinematics(&solid.spec.pose, k as f64 * step).pose.point(&local) - mark;
-                way[D - 1] = 0.0;
-                way
-            })
-            .collect();
-        let far = sideways.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?.try_normalize(0.0)?;
-        let way: Vec<f64> = sideways.iter().map(|x| x.dot(&far)).collect();
-        let speed = way.windows(2).map(|ab| (ab[1] - ab[0]).abs() / step).fold(0.0, f64::max);
-        let range = way.iter().fold(0.0f64, |m, x| m.max(*x)) - way.iter().fold(0.0f64, |m, x| m.min(*x));
-        let (stroke, half) = match swing(&way) {
-            Some((stroke, steps)) => (stroke, Some(steps as f64 * step)),
-            None => (range, None),
-        };
-        Some(Swing { way: far, stroke, half, speed })
-    }
 }
 
 impl Wave {
+    /// When the first answer is back at the paddle, and from where, in one line.
+    pub fn first_answer(&self) -> String {
+        let (reach, far, back) = (three(self.reach_m), three(self.far_s), three(self.back_s));
+        let what = self.answers.as_ref().map_or("the far end".into(), |name| format!("\"{name}\""));
+        let zone = self.damping_m.map(|begins| format!("; a damping zone begins at {} m", three(begins)));
+        format!("{reach} m to {what}: there after {far} s, back after {back} s{}", zone.unwrap_or_default())
+    }
+
     fn none(solid: &str) -> Self {
         Self {
             solid: solid.into(),
@@ -324,55 +223,10 @@ impl Wave {
             paddle_mps: 0.0,
             ramp_s: 0.0,
             reach_m: 0.0,
+            answers: None,
+            damping_m: None,
             far_s: 0.0,
             back_s: 0.0,
         }
-    }
-}
-
-/// The largest x·`way` in a box.
-fn furthest<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
-    (0..D).map(|i| (way[i] * bounds.min[i]).max(way[i] * bounds.max[i])).sum()
-}
-
-/// The largest swing of `way` from one turn to the next, and how many samples it takes; `None` if it never turns.
-fn swing(way: &[f64]) -> Option<(f64, usize)> {
-    let range = way.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x)) - way.iter().fold(f64::INFINITY, |m, x| m.min(*x));
-    let mut turns = vec![0];
-    // The furthest sample since the last turn, in the present sense.
-    let (mut furthest, mut sense) = (0, 0.0);
-    for (i, x) in way.iter().enumerate() {
-        let on = x - way[furthest];
-        if sense == 0.0 && on.abs() > TURN * range {
-            (furthest, sense) = (i, on.signum());
-        } else if on * sense >= 0.0 && sense != 0.0 {
-            furthest = i;
-        } else if on * sense < -TURN * range {
-            turns.push(furthest);
-            (furthest, sense) = (i, -sense);
-        }
-    }
-    if turns.len() < 2 {
-        return None;
-    }
-    turns.push(furthest);
-    let swings = turns.windows(2).map(|ab| ((way[ab[1]] - way[ab[0]]).abs(), ab[1] - ab[0]));
-    swings.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(stroke, steps)| *stroke > 0.0 && *steps > 0)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::TAU;
-
-    use super::*;
-
-    #[test]
-    fn the_largest_swing_is_found_under_a_ramp_and_past_noise() {
-        let way = |t: f64| 0.1 * (t / 4.0).min(1.0) * (TAU * t).sin() + 1e-3 * (57.0 * t).sin();
-        let samples: Vec<f64> = (0..=1000).map(|i| way(0.01 * i as f64)).collect();
-        let (stroke, steps) = swing(&samples).unwrap_or((0.0, 0));
-        // Noise moves the turns by a few samples and the stroke by its own 2 per cent.
-        assert!((stroke - 0.2).abs() < 0.005 && (45..=55).contains(&steps), "{stroke} {steps}");
-        assert_eq!(swing(&[0.0, 0.1, 0.3, 0.4]), None, "it never turns");
     }
 }

@@ -7,7 +7,7 @@ use std::{
 
 use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
 
-use super::write_whole;
+use super::{has_folder, write_whole};
 use crate::error::{Error, Kind, Result};
 
 /// Headers of arrays end at a multiple of so many bytes.
@@ -18,6 +18,7 @@ const ALIGNED: usize = 64;
 /// # Errors
 /// `File` if it cannot be written, or two arrays have the same name.
 pub fn write<'a>(path: &Path, arrays: impl IntoIterator<Item = (String, &'a [f64])>) -> Result<()> {
+    has_folder(path)?;
     let bytes = packed(arrays).map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
     write_whole(path, &bytes)
 }

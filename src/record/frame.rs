@@ -47,6 +47,8 @@ pub struct Frames {
     /// Lowest and highest corner (m) of the box whose water is kept; all if none.
     crop: Option<[Vec<f64>; 2]>,
     times: Vec<f64>,
+    /// What they take, B.
+    bytes: u64,
     /// How many of them are on the disk itself.
     settled: usize,
 }
@@ -68,12 +70,19 @@ impl Frames {
         }
         let pictures = folder.join("frames");
         std::fs::create_dir_all(&pictures).map_err(|e| cannot_write(&pictures, &e))?;
-        Ok(Self { folder: folder.to_owned(), fields, crop, settled: times.len(), times })
+        let there = (0..times.len()).flat_map(names).filter_map(|name| std::fs::metadata(pictures.join(name)).ok());
+        let bytes = there.map(|file| file.len()).sum();
+        Ok(Self { folder: folder.to_owned(), fields, crop, settled: times.len(), times, bytes })
     }
 
     /// Times of the frames so far, s.
     pub fn times(&self) -> &[f64] {
         &self.times
+    }
+
+    /// What they take on the disk, B.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// Adds a frame of `system` at time `t` (s).
@@ -88,12 +97,14 @@ impl Frames {
             water.chosen((0..water.len()).filter(inside))
         });
         let water = kept.as_ref().map_or(water, |kept| kept.first(kept.len()));
-        self.picture(&format!("water_{number:05}.vtu"), system, water, None)?;
+        let [wet, dry] = names(number);
+        let mut bytes = self.picture(&wet, system, water, None)?;
         let mut owner = vec![0.0; system.skin().len()];
         for (i, solid) in system.solids().iter().enumerate() {
             owner[solid.skin.clone()].fill(i as f32);
         }
-        self.picture(&format!("solids_{number:05}.vtu"), system, system.skin(), Some(owner))?;
+        bytes += self.picture(&dry, system, system.skin(), Some(owner))?;
+        self.bytes += bytes;
         self.times.push(t);
         write_whole(&self.folder.join("frames.pvd"), film(&self.times, "frames", &PARTS).as_bytes())
     }
@@ -105,7 +116,7 @@ impl Frames {
     pub fn sync(&mut self) -> Result<()> {
         let pictures = self.folder.join("frames");
         for number in self.settled..self.times.len() {
-            for name in PARTS.map(|part| pictures.join(format!("{part}_{number:05}.vtu"))) {
+            for name in names(number).map(|name| pictures.join(name)) {
                 File::open(&name).and_then(|file| file.sync_data()).map_err(|e| cannot_write(&name, &e))?;
             }
         }
@@ -116,13 +127,14 @@ impl Frames {
         Ok(())
     }
 
+    /// Writes a picture; its size, B.
     fn picture<const D: usize>(
         &self,
         name: &str,
         system: &System<D>,
         particles: View<'_, D>,
         owner: Option<Vec<f32>>,
-    ) -> Result<()> {
+    ) -> Result<u64> {
         let mut fields: Vec<Attribute> = self.fields.iter().map(|name| attribute(name, system, particles)).collect();
         fields.extend(
             owner.map(|numbers| array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)),
@@ -130,8 +142,14 @@ impl Frames {
         let path = self.folder.join("frames").join(name);
         let bytes =
             cloud(particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
-        write_whole(&path, &bytes)
+        write_whole(&path, &bytes)?;
+        Ok(bytes.len() as u64)
     }
+}
+
+/// The files of a frame.
+fn names(number: usize) -> [String; 2] {
+    PARTS.map(|part| format!("{part}_{number:05}.vtu"))
 }
 
 /// The chosen field of all particles.

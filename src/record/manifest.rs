@@ -52,6 +52,9 @@ pub struct Manifest {
     pub checks: Vec<Verdict>,
     /// Files in the run's folder.
     pub files: Vec<String>,
+    /// Frames that were kept.
+    #[serde(default)]
+    pub frames: Pictures,
     /// Why the run failed, in words.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error: Option<String>,
@@ -102,6 +105,15 @@ pub struct Count {
     pub fluid: usize,
     /// Of all skins.
     pub boundary: usize,
+}
+
+/// Frames on the disk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Pictures {
+    /// How many.
+    pub count: usize,
+    /// What they take, B.
+    pub bytes: u64,
 }
 
 /// The computer that ran it.

@@ -35,6 +35,18 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     put_part(path)
 }
 
+/// That there is a folder for the file at `path`, before work is spent on it.
+///
+/// # Errors
+/// `File` if there is none.
+pub fn has_folder(path: &Path) -> Result<()> {
+    match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+        Some(folder) => Err(Error::file(path, format!("there is no folder {}", folder.display()))
+            .help("make it first, or name a file in another")),
+        None => Ok(()),
+    }
+}
+
 /// Fills the file that is to become the one at `path`.
 fn write_part(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
     let part = part_of(path);

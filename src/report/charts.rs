@@ -99,12 +99,6 @@ pub struct Line {
     pub x: usize,
 }
 
-/// Waves that a series has at least to be shown with its spectrum: fewer lines than that a wave's width are no spectrum.
-const LEAST_WAVES: usize = 8;
-
-/// How much of a spectrum's variance is drawn, –; what is faster is noise.
-const DRAWN: f64 = 0.999;
-
 /// Columns that belong together, by their names without units. The first sets are shown, the others wait behind a fold.
 const FAMILIES: [(&[&str], bool); 16] = [
     (&["surge", "sway", "heave"], false),
@@ -152,19 +146,10 @@ pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
 fn spectra(table: &Table, charts: &[Chart], blob: &mut Blob) -> Vec<Spectral> {
     let shown = charts.iter().filter(|chart| !chart.folded).flat_map(|chart| chart.columns.iter().copied());
     let of = |column: usize| {
-        let series = series(&table.t, &table.x[column])?;
-        stats::waves(&series).filter(|waves| waves.count >= LEAST_WAVES)?;
-        let all = stats::spectrum(&series)?;
-        let whole: f64 = all.density.iter().sum();
-        let mut sum = 0.0;
-        let below = all.density.iter().take_while(|s| {
-            sum += **s;
-            sum - **s < DRAWN * whole
-        });
-        let rows = below.count();
-        let f = blob.floats(all.frequencies().take(rows).map(|f| f as f32));
-        let s = blob.floats(all.density[..rows].iter().map(|s| *s as f32));
-        Some(Spectral { column, rows, f, s })
+        let spectrum = stats::swing(&series(&table.t, &table.x[column])?)?;
+        let f = blob.floats(spectrum.frequencies().map(|f| f as f32));
+        let s = blob.floats(spectrum.density.iter().map(|s| *s as f32));
+        Some(Spectral { column, rows: spectrum.density.len(), f, s })
     };
     shown.filter_map(of).collect()
 }

@@ -32,7 +32,7 @@ use std::{
 
 use crate::{
     error::{Error, Kind, Result},
-    record::write_whole,
+    record::{has_folder, write_whole},
 };
 
 use kept::Kept;
@@ -73,6 +73,7 @@ pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
         return Err(Error::new(Kind::Usage, "a comparison needs two runs or more")
             .help("name their folders, as in `pontoon compare runs/raft runs/raft-2`"));
     }
+    has_folder(out)?;
     laid(folders, out)
 }
 

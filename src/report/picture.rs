@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     error::{Error, Kind, Result},
-    record::{Cloud, Film, write_whole},
+    record::{Cloud, Film, has_folder, write_whole},
 };
 
 /// What the particles of a picture are coloured by.
@@ -106,6 +106,7 @@ impl Field {
 /// `Restart` if a folder holds no run; `Usage` if it has no frames, its frames lack the field, or the picture would be
 /// too large; `File` if a frame cannot be read or `out` not be written.
 pub fn picture(folders: &[PathBuf], shot: &Shot, out: &Path) -> Result<(u32, u32)> {
+    has_folder(out)?;
     let runs = Kept::all(folders)?;
     let mut rows: Vec<Vec<Panel>> = Vec::new();
     let last = [f64::INFINITY];

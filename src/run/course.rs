@@ -17,7 +17,7 @@ use crate::{
     preflight,
     record::{
         Checkpoint, Manifest,
-        manifest::{Count, InForce, Machine, Status},
+        manifest::{Count, InForce, Machine, Pictures, Status},
         removed, restart, write_whole,
     },
     scene::{Built, Plan, Resolved, Scene},
@@ -121,6 +121,7 @@ impl<const D: usize> Course<D> {
                     let series = series_folder(&self.folder);
                     self.manifest.checks = self.checks.iter().map(|check| check.judge(&series)).collect();
                     self.manifest.warnings.extend(statistics::write(&self.folder, &self.plan)?);
+                    self.manifest.warnings.extend(self.sim.torn());
                 }
                 self.update();
                 self.manifest.write(&self.folder)?;
@@ -232,9 +233,11 @@ impl<const D: usize> Course<D> {
         self.manifest.cpu_s = self.cpu();
         self.manifest.particle_steps = self.checkpoint.particle_steps;
         self.manifest.particle_steps_per_second = now.rate;
+        self.manifest.frames = self.outputs.frames();
         let there = |name: &&str| self.folder.join(name).exists();
         let fixed = [
             statistics::STATISTICS,
+            statistics::SPECTRA,
             "frames.pvd",
             restart::LAST,
             restart::PREVIOUS,
@@ -314,6 +317,7 @@ fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: 
         particle_steps_per_second: 0.0,
         checks: vec![],
         files: vec![],
+        frames: Pictures::default(),
         error: None,
         fault: None,
         warnings: vec![],

@@ -13,7 +13,7 @@ use crate::{
     error::{Error, Kind, Result, nearest},
     model::Dimension,
     probe::{self, Probe},
-    record::{Checkpoint, Frames, Mean, Table},
+    record::{Checkpoint, Frames, Mean, Table, manifest::Pictures},
     scene::{CheckWords, Plan, ProbeKind, ProbeWords},
     simulation::Simulation,
     solid::Dim,
@@ -180,6 +180,12 @@ impl<const D: usize> Outputs<D> {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The frames so far.
+    pub fn frames(&self) -> Pictures {
+        let kept = |(frames, _): &(Frames, Due)| Pictures { count: frames.times().len(), bytes: frames.bytes() };
+        self.frames.as_ref().map_or_else(Pictures::default, kept)
     }
 
     /// Paths of the tables, from the run's folder.

@@ -1,5 +1,7 @@
 //! What is said of a run's series at its end: `statistics.csv`, a row for each figure.
 
+mod spectra;
+
 use std::{collections::BTreeMap, f64::consts::PI, path::Path};
 
 use serde::Serialize;
@@ -14,6 +16,8 @@ use crate::{
     stats::{self, moments, reflection, response, spectrum},
     words::unit,
 };
+
+pub use spectra::SPECTRA;
 
 /// The file, in the run's folder.
 pub const STATISTICS: &str = "statistics.csv";
@@ -66,6 +70,9 @@ pub fn statistics(folder: &Path, asked: &Asked) -> Result<Told> {
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
     let plan = Scene::read(&scene_file(&folder.join("scene")), &sets)?.plan()?;
     let told = told(folder, &plan, asked);
+    if told.rows.is_empty() {
+        apart(folder, &plan, asked)?;
+    }
     match &asked.series {
         Some(series) if told.rows.is_empty() => {
             let names: Vec<&str> = plan.probes.iter().map(|probe| probe.name.as_str()).collect();
@@ -76,27 +83,55 @@ pub fn statistics(folder: &Path, asked: &Asked) -> Result<Told> {
     }
 }
 
-/// Writes the figures of the run in `folder`; what is missing, in words.
+/// That the time asked for is not apart from that of the run in `folder`.
+fn apart(folder: &Path, plan: &Plan, asked: &Asked) -> Result<()> {
+    let tables = tables(folder, plan);
+    let times = || tables.values().flat_map(|table| table.t.first().into_iter().chain(table.t.last()));
+    let [first, last] = [times().copied().fold(f64::INFINITY, f64::min), times().copied().fold(0.0, f64::max)];
+    let (run, from, until) = (folder.display(), asked.from.unwrap_or(first), asked.until.unwrap_or(last));
+    let what = match () {
+        () if from >= last => format!("the readings in {run} end at {last} s: there are none after {from} s"),
+        () if until <= first => format!("the readings in {run} begin at {first} s: there are none before {until} s"),
+        () if from > until => format!("from {from} s until {until} s there is no time"),
+        () if asked.series.is_some() || asked.from.or(asked.until).is_none() => return Ok(()),
+        () => format!("no series in {run} has two readings from {from} s until {until} s"),
+    };
+    let help = format!("choose --from and --until between {first} and {last} s");
+    if tables.is_empty() { Ok(()) } else { Err(Error::new(Kind::Usage, what).help(help)) }
+}
+
+/// Writes the figures and the spectra of the run in `folder`; what is missing, in words.
 ///
 /// # Errors
 /// `File` if they cannot be written.
 pub(super) fn write(folder: &Path, plan: &Plan) -> Result<Vec<String>> {
-    let Told { rows, remarks } = told(folder, plan, &Asked::default());
+    let tables = tables(folder, plan);
+    let Told { rows, remarks } = of(&tables, plan, &Asked::default());
     let mut text = String::from("name,series,quantity,value,unit,from_s,until_s\n");
     for Statistic { name, series, quantity, value, unit, from_s, until_s } in rows {
         text += &format!("{name},{series},{quantity},{value:?},{unit},{from_s:?},{until_s:?}\n");
     }
     write_whole(&folder.join(STATISTICS), text.as_bytes())?;
+    spectra::write(folder, &tables)?;
     Ok(remarks)
 }
 
 /// The tables of a run by the names of their probes; those that cannot be read are left out.
 type Tables = BTreeMap<String, Readings>;
 
-pub(crate) fn told(folder: &Path, plan: &Plan, asked: &Asked) -> Told {
+/// Reads them.
+fn tables(folder: &Path, plan: &Plan) -> Tables {
     let series = series_folder(folder);
     let read = |name: &String| Some((name.clone(), Readings::read(&series.join(format!("{name}.csv"))).ok()?));
-    let tables: Tables = plan.probes.iter().filter_map(|probe| read(&probe.name)).collect();
+    plan.probes.iter().filter_map(|probe| read(&probe.name)).collect()
+}
+
+pub(crate) fn told(folder: &Path, plan: &Plan, asked: &Asked) -> Told {
+    of(&tables(folder, plan), plan, asked)
+}
+
+/// The figures of these tables.
+fn of(tables: &Tables, plan: &Plan, asked: &Asked) -> Told {
     let window = (asked.from.unwrap_or(f64::NEG_INFINITY), asked.until.unwrap_or(f64::INFINITY));
     let meant = |name: &str| {
         asked.series.as_deref().is_none_or(|of| of == name || name.split_once('.').is_some_and(|n| n.0 == of))
@@ -106,7 +141,7 @@ pub(crate) fn told(folder: &Path, plan: &Plan, asked: &Asked) -> Told {
         for column in tables.get(&probe.name).iter().flat_map(|table| &table.columns) {
             let name = format!("{}.{column}", probe.name);
             if meant(&name)
-                && let Some(series) = find(&tables, &name, window)
+                && let Some(series) = find(tables, &name, window)
             {
                 told.all_of("", &name, &series);
             }
@@ -115,7 +150,7 @@ pub(crate) fn told(folder: &Path, plan: &Plan, asked: &Asked) -> Told {
     for words in &plan.statistics {
         if words.what.series().into_iter().any(meant) {
             let window = (asked.from.or(words.from), asked.until.or(words.until));
-            told.declared(&tables, words, (window.0.unwrap_or(f64::NEG_INFINITY), window.1.unwrap_or(f64::INFINITY)));
+            told.declared(tables, words, (window.0.unwrap_or(f64::NEG_INFINITY), window.1.unwrap_or(f64::INFINITY)));
         }
     }
     told

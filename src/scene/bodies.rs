@@ -15,6 +15,9 @@ use crate::shape::Touchable;
 pub struct SolidWords {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
+    /// The group that it belongs to, one word, of which `[[contact]]` speaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
     /// Geometry in the solid's own frame.
     pub shape: ShapeWords,
     /// Where that frame is at the start; the origin if not said.
@@ -277,6 +280,7 @@ impl SolidWords {
     fn new(name: impl Into<String>, shape: ShapeWords) -> Self {
         Self {
             name: name.into(),
+            group: None,
             shape,
             at: None,
             fixed: None,

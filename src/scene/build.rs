@@ -16,7 +16,7 @@ use crate::{
         fill::{Region, fill},
     },
     simulation::Setup,
-    solid::SolidSpec,
+    solid::{Role, SolidSpec},
     space::{Bounds, Pose, Vector},
     system::periodic,
 };
@@ -130,7 +130,7 @@ impl Scene {
             filled.r.retain(|x| water.iter().any(|body| body.holds(x) && x[D - 1] < body.level));
         }
         if filled.r.is_empty() {
-            return Err(scene.wrong("water", "no water is left: it is thinner than dp, or solids fill it"));
+            return Err(scene.dry(&water, &solids));
         }
         let plan = scene.planned(&still)?;
         // Packing may have moved a particle a little way out of its water.
@@ -252,7 +252,7 @@ impl Scene {
         if let Some(i) = water.iter().position(|body| out(&body.region.shape, &body.region.pose)) {
             return Err(self.wrong_with(&format!("water.{i}"), "this water is not wholly inside the domain", help));
         }
-        let still = |solid: &SolidSpec<D>| matches!(solid.role, crate::solid::Role::Fixed);
+        let still = |solid: &SolidSpec<D>| matches!(solid.role, Role::Fixed);
         match solids.iter().position(|solid| !still(solid) && out(&solid.shape, &solid.pose)) {
             Some(i) => {
                 let what = format!("solid \"{}\" starts outside the domain", solids[i].name);
@@ -260,6 +260,22 @@ impl Scene {
             }
             None => Ok(()),
         }
+    }
+
+    /// The error that no water is left: names the first free body that has no room in it.
+    fn dry<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Error {
+        let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
+        let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size();
+        let free = solids.iter().enumerate().filter(|(_, solid)| matches!(solid.role, Role::Free(_)));
+        let mut sizes = free.map(|(i, solid)| (i, world_bounds(&solid.shape, &solid.pose).size()));
+        let larger = |(i, size): (usize, Vector<D>)| Some((i, size, (0..D).find(|&axis| size[axis] >= room[axis])?));
+        let Some((i, size, axis)) = sizes.find_map(larger) else {
+            return self.wrong("water", "no water is left: it is thinner than dp, or solids fill it");
+        };
+        let way = if axis == D - 1 { "high" } else { ["long along x", "long along y"][axis] };
+        let (name, size, room) = (&solids[i].name, size[axis], room[axis]);
+        let what = format!("no water is left: \"{name}\" is {size:.4} m {way} and the water {room:.4} m");
+        self.wrong_with(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
     }
 
     /// Refuses a kernel under which the lattice on which water starts gives way by its own pressure.

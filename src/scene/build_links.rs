@@ -1,8 +1,10 @@
 //! From words to ties: joints, springs, ropes, forces and contacts of the solids that were built.
 
+use std::collections::BTreeSet;
+
 use super::{
-    ForceWords, FrameOf, JointKindWords, JointWords, LimitsWords, Mode, MotorWords, Scene, SolidWords, ValueWords,
-    build_solids::Unit, geometry::vector,
+    ContactWords, ForceWords, FrameOf, JointKindWords, JointWords, LimitsWords, Mode, MotorWords, Scene, SolidWords,
+    ValueWords, build_solids::Unit, geometry::vector,
 };
 use crate::{
     error::{Error, Result},
@@ -58,19 +60,30 @@ impl Scene {
             links.forces.push(force);
         }
         for words in &self.contact {
-            let numbers: Vec<usize> = words.between.iter().filter_map(number).collect();
-            let others = (0..solids.len()).filter(|i| numbers.len() == 1 && !numbers.contains(i));
-            let pairs = numbers[1..].iter().copied().chain(others);
-            links.contacts.extend(pairs.map(|other| ContactSpec {
-                between: [numbers[0], other],
-                touch: words.touch.unwrap_or(true),
-                friction: words.friction,
-                restitution: words.restitution,
-            }));
+            let touch = words.touch.unwrap_or(true);
+            let (friction, restitution) = (words.friction, words.restitution);
+            let spec = |between| ContactSpec { between, touch, friction, restitution };
+            links.contacts.extend(self.pairs(words).into_iter().map(spec));
         }
         let release = |(solid, words): (usize, &SolidWords)| Some(Hold { solid, until: words.free.as_ref()?.release? });
         links.holds = self.solid.iter().enumerate().filter_map(release).collect();
         Ok(links)
+    }
+
+    /// The pairs of solids, one at least of them free, that a contact is about: numbers, the lower first.
+    pub(super) fn pairs(&self, contact: &ContactWords) -> BTreeSet<[usize; 2]> {
+        let numbers = |named: &dyn Fn(&SolidWords) -> bool| -> Vec<usize> {
+            (0..self.solid.len()).filter(|&i| named(&self.solid[i])).collect()
+        };
+        let meant = |name: &String| numbers(&|solid| solid.name == *name || solid.group.as_ref() == Some(name));
+        let [firsts, seconds] = match &contact.between[..] {
+            [one] => [meant(one), numbers(&|_| true)],
+            [one, other] => [meant(one), meant(other)],
+            _ => return BTreeSet::new(),
+        };
+        let free = |i: usize| self.solid[i].free.is_some();
+        let all = firsts.iter().flat_map(|&a| seconds.iter().map(move |&b| [a.min(b), a.max(b)]));
+        all.filter(|&[a, b]| a != b && (free(a) || free(b))).collect()
     }
 
     fn joint_spec<const D: usize>(

@@ -219,10 +219,14 @@ impl Scene {
         let path = table::beside(&self.origin.folder, &words.file)?;
         let names = table::header(&path)?;
         let either = |one: &'static str, other: &'static str| {
-            if names.iter().any(|name| name == one) { (one, true) } else { (other, false) }
+            let given = [(one, true), (other, false)].into_iter().find(|(column, _)| names.iter().any(|n| n == column));
+            given.ok_or_else(|| {
+                let what = format!("{} has neither a column \"{one}\" nor \"{other}\"", path.display());
+                Error::scene(what).help(format!("components need one of the two; its columns: {}", names.join(", ")))
+            })
         };
-        let ((time, is_period), (phase, in_degrees)) =
-            (either("period_s", "frequency_hz"), either("phase_deg", "phase_rad"));
+        let (time, is_period) = either("period_s", "frequency_hz")?;
+        let (phase, in_degrees) = either("phase_deg", "phase_rad")?;
         let columns = table::columns(&path, &["amplitude_m", time, phase])?;
         let component = |i: usize| {
             let (x, phase) = (columns[1][i], columns[2][i]);

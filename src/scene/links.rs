@@ -201,11 +201,11 @@ pub enum FrameOf {
     Body,
 }
 
-/// One `[[contact]]`: how two solids touch, or one and all others.
+/// One `[[contact]]`: how solids touch, pair by pair; of several of the same pair the last counts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactWords {
-    /// The two; or one, for all its pairs.
+    /// The two, each a solid or a group of them; or one, for its contacts with all others.
     pub between: Vec<String>,
     /// `false`: they pass through one another.
     #[serde(default, skip_serializing_if = "Option::is_none")]

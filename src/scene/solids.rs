@@ -16,6 +16,9 @@ impl Scene {
                 let what = format!("two solids are called \"{}\"", solid.name);
                 return Err(self.wrong_with(&format!("{key}.name"), what, "give each its own name"));
             }
+            if let Some(group) = &solid.group {
+                self.group(&format!("{key}.group"), group)?;
+            }
             shape(self, &format!("{key}.shape"), &solid.shape)?;
             if let Some(words) = &solid.at {
                 at(self, &format!("{key}.at"), words, true)?;
@@ -25,6 +28,19 @@ impl Scene {
             self.within(&format!("{key}.restitution"), solid.restitution, 1.0)?;
         }
         Ok(())
+    }
+
+    /// Refuses a group whose name is none, or a solid's.
+    fn group(&self, key: &str, group: &str) -> Result<()> {
+        let help = "a group is one word of letters, digits, _ and -, as in  group = \"floats\"";
+        self.good_name(key, group).map_err(|e| e.help(help))?;
+        match self.solid.iter().any(|solid| solid.name == group) {
+            true => {
+                let help = "give the group a name of its own: in  between  it stands beside those of solids";
+                Err(self.wrong_with(key, format!("a solid is called \"{group}\", too"), help))
+            }
+            false => Ok(()),
+        }
     }
 
     fn role(&self, key: &str, solid: &SolidWords) -> Result<()> {
@@ -89,7 +105,8 @@ impl Scene {
 
     fn free(&self, key: &str, words: &FreeWords) -> Result<()> {
         self.positive(&format!("{key}.density"), words.density)?;
-        self.positive(&format!("{key}.mass"), words.mass)?;
+        let mass = self.positive(&format!("{key}.mass"), words.mass);
+        mass.map_err(|e| e.help("write  free = { mass = 10.0 }        # kg; in 2-D kg/m"))?;
         if words.density.is_some() == words.mass.is_some() {
             return Err(self.wrong_with(
                 key,

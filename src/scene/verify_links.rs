@@ -1,8 +1,10 @@
 //! Holds the words of joints, springs, ropes, forces and contacts against those of the solids.
 
+use std::collections::BTreeSet;
+
 use super::{
-    ForceWords, JointKindWords, JointWords, LawWords, LimitsWords, Mode, MotorWords, ProbeEntry, Scene, SolidWords,
-    SpringWords, ValueWords,
+    ContactWords, ForceWords, JointKindWords, JointWords, LawWords, LimitsWords, Mode, MotorWords, ProbeEntry, Scene,
+    SolidWords, SpringWords, ValueWords,
     verify::{guess, last},
 };
 use crate::{error::Result, solid::Formula};
@@ -29,18 +31,54 @@ impl Scene {
             self.positive(&format!("{key}.length"), rope.length)?;
         }
         self.force.iter().enumerate().try_for_each(|(i, force)| self.verify_force(&format!("force.{i}"), force))?;
-        for (i, contact) in self.contact.iter().enumerate() {
-            let key = format!("contact.{i}");
-            self.ends(&key, &contact.between)?;
-            if contact.touch == Some(false) && (contact.friction.is_some() || contact.restitution.is_some()) {
-                let what = "what does not touch has neither friction nor restitution";
-                return Err(self.wrong(&format!("{key}.touch"), what));
-            }
-            if contact.touch != Some(false) && contact.friction.is_none() && contact.restitution.is_none() {
-                return Err(self.wrong(&key, "this contact is as any other"));
-            }
-            self.within(&format!("{key}.friction"), contact.friction, 10.0)?;
-            self.within(&format!("{key}.restitution"), contact.restitution, 1.0)?;
+        (0..self.contact.len()).try_for_each(|i| self.verify_contact(&format!("contact.{i}"), i))
+    }
+
+    /// Refuses contact number `i` if it says nothing, or two things.
+    fn verify_contact(&self, key: &str, i: usize) -> Result<()> {
+        let contact = &self.contact[i];
+        self.touching(&format!("{key}.between"), contact)?;
+        let plain = contact.friction.is_none() && contact.restitution.is_none();
+        if contact.touch == Some(false) && !plain {
+            let what = "what does not touch has neither friction nor restitution";
+            return Err(self.wrong(&format!("{key}.touch"), what));
+        }
+        let pairs = self.pairs(contact);
+        // `touch = true` has a meaning after a rule for some of the same pairs.
+        let rules = |earlier: &ContactWords| contact.touch.is_some() && !self.pairs(earlier).is_disjoint(&pairs);
+        if contact.touch != Some(false) && plain && !self.contact[..i].iter().any(rules) {
+            return Err(self.wrong(key, "this contact is as any other"));
+        }
+        self.within(&format!("{key}.friction"), contact.friction, 10.0)?;
+        self.within(&format!("{key}.restitution"), contact.restitution, 1.0)
+    }
+
+    /// Refuses what is not one or two solids or groups that can touch.
+    fn touching(&self, key: &str, contact: &ContactWords) -> Result<()> {
+        let between = &contact.between;
+        if !(1..=2).contains(&between.len()) {
+            let what = format!("between names two solids or groups, or one, not {}", between.len());
+            let help = "write  between = [\"box\", \"tank\"]; one alone means its contacts with all others";
+            return Err(self.wrong_with(key, what, help));
+        }
+        let groups: BTreeSet<&str> = self.solid.iter().filter_map(|solid| solid.group.as_deref()).collect();
+        let known: Vec<&str> =
+            self.solid.iter().map(|solid| solid.name.as_str()).chain(groups.iter().copied()).collect();
+        if let Some(name) = between.iter().find(|name| !known.contains(&name.as_str())) {
+            let what = format!("no solid or group is called \"{name}\"{}", guess(name, &known));
+            return Err(self.wrong_with(key, what, format!("known: {}", known.join(", "))));
+        }
+        let of_group = between.iter().any(|name| groups.contains(name.as_str()));
+        let twice = between.len() == 2 && between[0] == between[1];
+        if twice && !of_group {
+            let help = "name two; one alone means its contacts with all others";
+            return Err(self.wrong_with(key, format!("\"{}\" is named twice", between[0]), help));
+        }
+        if (of_group || between.len() == 2) && self.pairs(contact).is_empty() {
+            let names = if twice { &between[..1] } else { &between[..] };
+            let what = format!("of \"{}\" no two solids can touch", names.join("\" and \""));
+            let help = "it takes two, of which one at least must be  free = { density = 500.0 }";
+            return Err(self.wrong_with(key, what, help));
         }
         Ok(())
     }
@@ -88,7 +126,7 @@ impl Scene {
             return Err(self.wrong(&key, format!("\"{}\" is named twice", between[0])));
         }
         let free = |solid: &&SolidWords| between.contains(&solid.name) && solid.free.is_some();
-        if self.solid.iter().any(|solid| free(&solid)) || key.starts_with("contact") && between.len() == 1 {
+        if self.solid.iter().any(|solid| free(&solid)) {
             return Ok(());
         }
         let verb = if between.len() == 2 { "are" } else { "is" };
@@ -190,10 +228,16 @@ impl Scene {
         }
     }
 
-    /// Refuses end stops that do not have the start between them.
+    /// Refuses end stops that do not have the start between them, or all of a turn.
     fn stop(&self, key: &str, pair: &[f64]) -> Result<()> {
         match pair {
-            [min, max] if *min <= 0.0 && 0.0 <= *max && min < max => Ok(()),
+            [min, max] if *min <= 0.0 && 0.0 <= *max && min < max => {
+                if last(key) != "limits_deg" || max - min < 360.0 {
+                    return Ok(());
+                }
+                let help = "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees";
+                Err(self.wrong_with(key, format!("from {min} to {max} degrees it would turn all the way round"), help))
+            }
             _ => {
                 let what = format!("{pair:?} does not reach from 0 or less to 0 or more; 0 is where it starts");
                 Err(self.wrong(key, what))

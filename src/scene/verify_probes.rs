@@ -2,7 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{GaugeWords, PatchWords, PointWords, ProbeEntry, RowWords, Scene, SectionWords, verify::said};
+use super::{
+    ContactWords, GaugeWords, JointWords, PatchWords, PointWords, ProbeEntry, RowWords, Scene, SectionWords,
+    verify::said,
+};
 use crate::error::Result;
 
 /// Most places of a row.
@@ -24,6 +27,9 @@ impl Scene {
             }
             self.known_solids(&key, probe)?;
             self.known_ties(&key, probe)?;
+            if let Some(between) = &probe.contact {
+                self.may_touch(&format!("{key}.contact"), between)?;
+            }
             self.verify_places(&key, probe)?;
             for (word, given) in [("front", probe.front), ("energy", probe.energy), ("budget", probe.budget)] {
                 if given == Some(false) {
@@ -68,6 +74,34 @@ impl Scene {
                 let what = format!("\"{name}\" is not free: what it weighs and carries is not known");
                 let help = format!("the water's load on any solid is  force = \"{name}\"");
                 Err(self.wrong_with(&format!("{key}.balance"), what, help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses two solids that never touch.
+    fn may_touch(&self, key: &str, [a, b]: &[String; 2]) -> Result<()> {
+        let refuse = |why: String, help: &str| {
+            Err(self.wrong_with(key, format!("\"{a}\" and \"{b}\" never touch: {why}"), help))
+        };
+        if a == b {
+            return refuse("they are one solid".into(), "name two");
+        }
+        let both = |named: &[String]| named.contains(a) && named.contains(b);
+        let jointed = |joint: &&JointWords| both(&joint.between) && joint.contacts != Some(true);
+        if let Some(joint) = self.joint.iter().find(jointed) {
+            return refuse(format!("joint \"{}\" holds them", joint.name), "write  contacts = true  in that joint");
+        }
+        let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name).unwrap_or_default();
+        let (i, j) = (number(a), number(b));
+        if self.solid[i].free.is_none() && self.solid[j].free.is_none() {
+            return refuse("neither is free".into(), "one of them at least must be  free = { density = 500.0 }");
+        }
+        let own = |(_, contact): &(usize, &ContactWords)| self.pairs(contact).contains(&[i.min(j), i.max(j)]);
+        match self.contact.iter().enumerate().rfind(own).filter(|(_, contact)| contact.touch == Some(false)) {
+            Some((k, _)) => {
+                let help = "remove it, or say otherwise of these two in a [[contact]] after it";
+                refuse(format!("contact.{k} says  touch = false"), help)
             }
             None => Ok(()),
         }

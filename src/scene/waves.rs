@@ -292,7 +292,7 @@ impl Scene {
         }
         if let Some(words) = &words.focused {
             numbers.extend([("crest", Some(words.crest)), ("peak_period", Some(words.peak_period))]);
-            numbers.extend([("time", Some(words.time)), ("gamma", words.gamma)]);
+            numbers.extend([("distance", Some(words.distance)), ("time", Some(words.time)), ("gamma", words.gamma)]);
         }
         numbers.extend(words.solitary.iter().map(|words| ("height", Some(words.height))));
         numbers.into_iter().try_for_each(|(word, x)| self.positive(&format!("{key}.{word}"), x))

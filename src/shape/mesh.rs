@@ -1,5 +1,6 @@
 //! A solid given by the triangles of its surface: checked to be one, measured exactly.
 
+mod shells;
 #[cfg(feature = "dim3")]
 mod through;
 mod tree;
@@ -56,7 +57,8 @@ impl Mesh {
     ///
     /// # Errors
     /// `Scene` if a corner is not finite or not there, there are too many facets, the surface is open, turned inside
-    /// out or partly turned over, or passes through itself: says where (m), how often, and what to do.
+    /// out or partly turned over, passes through itself, or has a shell within a shell that faces the same way: says where (m), how
+    /// often, and what to do.
     pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
         if facets.len() > MOST_FACETS {
             return Err(Error::scene(format!("a mesh of {} facets; the most is {MOST_FACETS}", facets.len()))
@@ -91,6 +93,7 @@ impl Mesh {
         let tree = Tree::new(&points, &facets)?;
         let mesh = Self { points, facets, bounds, tree };
         mesh.tree.crossing(&mesh).map_or(Ok(()), |(a, b)| Err(whole::crossed(&mesh.corners(a), &mesh.corners(b))))?;
+        shells::nested(&mesh.points, &mesh.facets)?;
         Ok(mesh)
     }
 

@@ -12,6 +12,7 @@ mod fit;
 pub mod mesh;
 mod moments;
 mod offset;
+pub(crate) mod overlap;
 mod pack;
 mod shell;
 mod skin;
@@ -45,7 +46,7 @@ pub enum Shape<const D: usize> {
     Tank { size: Vector<D>, thickness: f64 },
     /// A solid by the facets of its surface, and what of it other bodies touch; 3-D only.
     Mesh { mesh: Arc<Mesh>, contact: Touchable },
-    /// Several shapes as one solid, each at its pose; they must not overlap.
+    /// Several shapes as one solid, each at its pose; they must not overlap, unless it is fixed or driven.
     Compound(Vec<(Pose<D>, Shape<D>)>),
 }
 

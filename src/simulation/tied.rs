@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::{
     error::{Error, Result, nearest},
-    solid::{Drive, Elastic, JointReading, LineReading},
+    solid::{Drive, Elastic, JointReading, JointSpec, LineReading},
 };
 
 impl<const D: usize> Simulation<D> {
@@ -31,6 +31,23 @@ impl<const D: usize> Simulation<D> {
     /// What joint number `joint` felt in the last step.
     pub fn joint(&self, joint: usize) -> JointReading<D> {
         self.bodies.rig().joint(joint)
+    }
+
+    /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
+    pub fn torn(&self) -> Vec<String> {
+        let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
+        let said = |(i, joint): (usize, &JointSpec<D>)| {
+            let [apart, turned] = self.bodies.rig().gap(i, &solids);
+            (apart > 0.1 * self.system.model().dp || turned.to_degrees() > 1.0).then(|| {
+                format!(
+                    "joint \"{}\" is torn by {apart:.4} m and {:.2} degrees: what else holds its solids (another joint, \
+                     `locked`, a wall) contradicts it, so that what it carries says nothing",
+                    joint.name,
+                    turned.to_degrees()
+                )
+            })
+        };
+        self.system.links().joints.iter().enumerate().filter_map(said).collect()
     }
 
     /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.

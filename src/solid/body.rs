@@ -26,12 +26,15 @@ impl<const D: usize> SolidSpec<D> {
         }
     }
 
-    /// Whether this solid can be meant: shape, pose, role, friction and restitution.
+    /// Whether this solid can be meant: shape (of a free one without parts that overlap), pose, role, friction and restitution.
     ///
     /// # Errors
     /// `Scene`: names the solid, what is wrong with it, and what would be right.
     pub fn check(&self) -> Result<()> {
         self.shape.check().map_err(|e| self.named(e))?;
+        if let Role::Free(_) = self.role {
+            self.shape.check_apart().map_err(|e| self.named(e))?;
+        }
         self.check_role()
     }
 
@@ -166,6 +169,17 @@ mod tests {
         assert!(slippery.check_role().unwrap_err().to_string().contains("friction is -0.1"));
         let bouncy = SolidSpec { restitution: 1.5, ..spec(1.0, [1.0; 3]) };
         assert!(bouncy.check_role().unwrap_err().to_string().contains("restitution is 1.5"));
+    }
+
+    #[test]
+    fn parts_of_a_free_solid_may_not_overlap() {
+        let part = |x: f64| (Pose::at(Vector::from([x, 0.0, 0.0])), Shape::Ball { radius: 0.1 });
+        let shape = |x: f64| Shape::Compound(vec![part(0.0), part(x)]);
+        let of = |shape: Shape<3>| SolidSpec { shape, ..spec(1.0, [1.0; 3]) };
+        let message = of(shape(0.15)).check().unwrap_err().to_string();
+        assert!(message.starts_with("solid \"buoy\": parts 1 and 2 of its compound overlap"), "{message}");
+        assert_eq!(of(shape(0.2)).check(), Ok(()));
+        assert_eq!(SolidSpec { role: Role::Fixed, ..of(shape(0.15)) }.check(), Ok(()));
     }
 
     #[test]

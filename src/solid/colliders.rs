@@ -8,13 +8,16 @@ use super::super::{
         parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
     },
 };
-use super::{D, to_frame, to_point};
+use super::{D, from_point, to_frame, to_point};
 use crate::{
     error::{Error, Result},
-    shape::Shape,
+    shape::{Shape, Touchable, overlap::shared},
     solid::{Kinematics, Links, Role, SolidSpec},
-    space::{Pose, Vector},
+    space::{Bounds, Pose, Vector},
 };
+
+/// A solid and where it starts.
+type Placed<'a> = (&'a SolidSpec<D>, &'a Pose<D>);
 
 /// A solid's convex parts in its own frame.
 pub(super) type Parts = Vec<(Frame, SharedShape)>;
@@ -58,30 +61,80 @@ pub(super) fn collect(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut
     Ok(())
 }
 
-/// Smallest edge of the box around the parts, m.
-pub(super) fn thickness(parts: &Parts) -> f64 {
-    let boxes = parts.iter().map(|(frame, part)| part.compute_aabb(frame));
-    boxes.reduce(|a, b| a.merged(&b)).map_or(f64::INFINITY, |whole| whole.extents().min_element())
+/// The box around the parts at `frame`, its least and its largest corner (m), and none of no parts.
+fn around(parts: &Parts, frame: &Frame) -> Option<(Vector<D>, Vector<D>)> {
+    let boxes = parts.iter().map(|(inner, part)| part.compute_aabb(&(*frame * *inner)));
+    boxes.reduce(|a, b| a.merged(&b)).map(|whole| (from_point(whole.mins), from_point(whole.maxs)))
 }
 
-/// The error that one solid starts so deep (m) inside another.
-fn inside(inner: &SolidSpec<D>, outer: &SolidSpec<D>, depth: f64, allowed: f64) -> Error {
-    let mut help =
-        format!("move one of them by that much or more, or make it smaller; {allowed:.5} m (0.05 dp) is let pass");
-    if let Shape::Tank { size, .. } = &outer.shape {
-        let own = inner.shape.bounds_at(&Pose { position: Vector::zeros(), ..inner.pose }).size();
-        if let Some(axis) = (0..D - 1).find(|&axis| own[axis] > size[axis]) {
-            help = format!(
-                "\"{}\" is {:.4} m long along {} and \"{}\" has room for {:.4} m: make it smaller, or the tank larger",
-                inner.name,
-                own[axis],
-                ["x", "y"][axis],
-                outer.name,
-                size[axis]
-            );
-        }
+/// Smallest edge of the box around the parts, m.
+pub(super) fn thickness(parts: &Parts) -> f64 {
+    around(parts, &Frame::IDENTITY).map_or(f64::INFINITY, |(min, max)| (max - min).min())
+}
+
+/// The single shapes of a posed shape that others touch.
+fn touchable<'a>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut Vec<(&'a Shape<D>, Pose<D>)>) {
+    match shape {
+        Shape::Compound(parts) => parts.iter().for_each(|(inner, part)| touchable(part, pose.then(inner), found)),
+        Shape::Mesh { contact: Touchable::None, .. } => {}
+        _ => found.push((shape, pose)),
     }
-    Error::scene(format!("\"{}\" starts {depth:.5} m inside \"{}\"", inner.name, outer.name)).help(help)
+}
+
+/// How deep (m) a place of one solid, more than `allowed` (m) inside, lies in a mesh of the other that is touched by its
+/// surface only: what is wholly inside is in touch with nothing there.
+fn swallowed((one, here): Placed, (other, there): Placed, allowed: f64) -> Option<f64> {
+    let (mut inner, mut outer) = (Vec::new(), Vec::new());
+    touchable(&one.shape, *here, &mut inner);
+    touchable(&other.shape, *there, &mut outer);
+    let fixed = matches!(other.role, Role::Fixed);
+    let surface = |shape: &Shape<D>| match shape {
+        Shape::Mesh { contact, .. } => *contact == Touchable::Surface || fixed && *contact == Touchable::Fitting,
+        _ => false,
+    };
+    let deep = |(mesh, there): &(&Shape<D>, Pose<D>)| {
+        let places = inner.iter().filter_map(|(shape, here)| shared((shape, here), (mesh, there), allowed));
+        places.map(|(x, _)| -mesh.signed_distance(&there.local(&x))).reduce(f64::max)
+    };
+    outer.iter().filter(|(shape, _)| surface(shape)).filter_map(deep).reduce(f64::max)
+}
+
+/// The inner room of a tank, or of a polyline whose two ends rise: its least and its largest corner, m.
+fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
+    let corners: Vec<Vector<D>> = match shape {
+        Shape::Tank { size, .. } => Bounds { min: Vector::zeros(), max: *size }.corners().collect(),
+        Shape::Polyline { points, .. } => points.clone(),
+        Shape::Compound(parts) => return parts.iter().find_map(|(inner, part)| room(part, &pose.then(inner))),
+        _ => return None,
+    };
+    let corners: Vec<Vector<D>> = corners.iter().map(|x| pose.point(x)).collect();
+    let Bounds { min, max } = Bounds::around(&corners);
+    let rises = |x: &Vector<D>| x[D - 1] > min[D - 1];
+    let basin =
+        matches!(shape, Shape::Tank { .. }) || corners.first().is_some_and(rises) && corners.last().is_some_and(rises);
+    basin.then_some((min, max))
+}
+
+/// What to do about a body that has no room in a tank or basin.
+fn cramped((inner, here): Placed, parts: &Parts, (outer, there): Placed, allowed: f64) -> Option<String> {
+    let ((min, max), own) = (room(&outer.shape, there)?, around(parts, &to_frame(here))?);
+    let (body, tank, size, space) = (&inner.name, &outer.name, own.1 - own.0, max - min);
+    if let Some(axis) = (0..D - 1).find(|&axis| size[axis] > space[axis]) {
+        let (size, space, axis) = (size[axis], space[axis], ["x", "y"][axis]);
+        return Some(format!(
+            "\"{body}\" is {size:.4} m long along {axis} and \"{tank}\" has room for {space:.4} m: make it smaller, or the \
+             tank larger"
+        ));
+    }
+    let (low, floor) = (own.0[D - 1], min[D - 1]);
+    (low < floor - allowed).then(|| {
+        format!(
+            "\"{body}\" is {:.4} m high and reaches {:.4} m below the floor of \"{tank}\": move it up, or, if it floats so \
+             deep, make it smaller or lighter, or the water deeper",
+            size[D - 1],
+            floor - low
+        )
+    })
 }
 
 /// Refuses a free solid that starts deeper than `allowed` (m) inside another.
@@ -106,15 +159,76 @@ pub(super) fn refuse_overlap(
                     depth = touch.ok().flatten().map_or(depth, |touch| depth.max(-touch.dist));
                 }
             }
+            let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
+            let (body, other) = ((&solids[inner], &start[inner].pose), (&solids[outer], &start[outer].pose));
+            let within = [swallowed(body, other, allowed), swallowed(other, body, allowed)];
+            depth = within.into_iter().flatten().fold(depth, f64::max);
             if depth > allowed {
-                let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
-                return Err(inside(&solids[inner], &solids[outer], depth, allowed).at(
-                    "",
-                    None,
-                    format!("solid.{inner}.at"),
-                ));
+                let help = cramped(body, &parts[inner], other, allowed);
+                let help = help.unwrap_or_else(|| {
+                    format!("move one of them by that much or more, or make it smaller; {allowed:.5} m (0.05 dp) is let pass")
+                });
+                let what = format!("\"{}\" starts {depth:.5} m inside \"{}\"", body.0.name, other.0.name);
+                return Err(Error::scene(what).help(help).at("", None, format!("solid.{inner}.at")));
             }
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::FreeBody;
+
+    /// What is said of a free box of this length and height (m) with its centre here (m), in a tank a metre long or such a basin.
+    fn refusal(length: f64, height: f64, at: f64, basin: bool) -> String {
+        let mut size = Vector::repeat(0.2);
+        (size[0], size[D - 1]) = (length, height);
+        let shape = Shape::Box { size };
+        let role = Role::Free(FreeBody::from_density(&shape, 500.0));
+        let solid = |name: &str, shape: Shape<D>, at: Vector<D>, role: Role<D>| {
+            let (name, pose) = (name.into(), Pose::at(at));
+            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0 }
+        };
+        let point = |x: f64, up: f64| {
+            Vector::from_fn(|i, _| {
+                if i == 0 {
+                    x
+                } else if i == D - 1 {
+                    up
+                } else {
+                    0.5
+                }
+            })
+        };
+        let points = vec![point(0.0, 1.0), point(0.0, 0.0), point(1.0, 0.0), point(1.0, 1.0)];
+        let tank = Shape::Tank { size: Vector::repeat(1.0), thickness: 0.1 };
+        let outer = if basin { Shape::Polyline { points, thickness: 0.1 } } else { tank };
+        let solids = [solid("tank", outer, Vector::zeros(), Role::Fixed), solid("box", shape, point(0.5, at), role)];
+        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+        let parts: Vec<Parts> = solids
+            .iter()
+            .map(|solid| {
+                let mut parts = Parts::new();
+                collect(&solid.shape, &Pose::identity(), true, &mut parts).map(|()| parts).unwrap_or_default()
+            })
+            .collect();
+        let refused = refuse_overlap(&solids, &start, &parts, &Links::default(), 0.001);
+        refused.err().map(|e| e.to_string()).unwrap_or_default()
+    }
+
+    #[test]
+    fn a_body_without_room_is_named_with_what_there_is() {
+        for basin in [false, true] {
+            if basin && D == 3 {
+                continue; // a polyline is flat
+            }
+            assert_eq!(refusal(0.9, 0.3, 0.5, basin), "");
+            let long = refusal(1.05, 0.3, 0.5, basin);
+            assert!(long.contains("is 1.0500 m long along x and \"tank\" has room for 1.0000 m"), "{long}");
+            let high = refusal(0.9, 0.3, 0.1, basin);
+            assert!(high.contains("is 0.3000 m high and reaches 0.0500 m below the floor of \"tank\""), "{high}");
+        }
+    }
 }

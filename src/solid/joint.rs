@@ -251,6 +251,14 @@ impl<const D: usize> Joint<D> {
         (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
     }
 
+    /// How far (m) and by what angle (rad) its ends are apart where it locks them together.
+    pub(super) fn gap(&self, ends: &[Kinematics<D>; 2]) -> [f64; 2] {
+        let locked = |modes: std::ops::Range<usize>| modes.filter(|&mode| self.spec.locks(mode));
+        let off = |mode: usize| self.coordinate(mode, ends);
+        let apart = locked(0..D).map(|mode| off(mode).powi(2)).sum::<f64>().sqrt();
+        [apart, locked(D..modes::<D>()).map(|mode| off(mode).abs()).fold(0.0, f64::max)]
+    }
+
     /// The row of its coordinate, if it has one.
     pub(super) fn free(&self, ends: &[Kinematics<D>; 2]) -> Option<Row<D>> {
         self.spec.own().map(|mode| self.row(mode, ends))

@@ -1,5 +1,7 @@
 //! What ties solids to one another and to the world: joints, springs, ropes, forces after a law, and who touches whom.
 
+use std::collections::BTreeMap;
+
 use super::{
     Role, SolidSpec,
     force::ForceSpec,
@@ -22,7 +24,7 @@ pub struct Links<const D: usize> {
     /// Free solids that are held still at first.
     pub holds: Vec<Hold>,
     /// Pairs of solids that touch otherwise than their own friction and restitution say, or not at all.
-    pub contacts: Vec<ContactSpec>,
+    pub contacts: Contacts,
 }
 
 /// A free solid that is held still, whatever pushes it, until it is let go.
@@ -54,6 +56,45 @@ pub struct ContactSpec {
     pub restitution: Option<f64>,
 }
 
+/// Contacts of pairs, found by the numbers of both in either order; of several of the same pair the last counts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contacts(BTreeMap<[usize; 2], ContactSpec>);
+
+impl Contacts {
+    /// How many pairs there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// That of solids `a` and `b`.
+    pub fn find(&self, a: usize, b: usize) -> Option<&ContactSpec> {
+        self.0.get(&[a.min(b), a.max(b)])
+    }
+}
+
+impl Extend<ContactSpec> for Contacts {
+    fn extend<T: IntoIterator<Item = ContactSpec>>(&mut self, specs: T) {
+        let keyed = |spec: ContactSpec| {
+            let [a, b] = spec.between;
+            ([a.min(b), a.max(b)], spec)
+        };
+        self.0.extend(specs.into_iter().map(keyed));
+    }
+}
+
+impl FromIterator<ContactSpec> for Contacts {
+    fn from_iter<T: IntoIterator<Item = ContactSpec>>(specs: T) -> Self {
+        let mut contacts = Self::default();
+        contacts.extend(specs);
+        contacts
+    }
+}
+
 impl<const D: usize> Links<D> {
     /// Whether there is nothing.
     pub fn is_empty(&self) -> bool {
@@ -68,8 +109,7 @@ impl<const D: usize> Links<D> {
     /// Whether solids `a` and `b` may touch: not if a joint holds them without contacts, or a pair is told not to.
     pub fn touch(&self, a: usize, b: usize) -> bool {
         let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts;
-        let apart = |pair: &ContactSpec| same(pair.between, [a, b]) && !pair.touch;
-        !(self.joints.iter().any(jointed) || self.contacts.iter().any(apart))
+        self.contacts.find(a, b).is_none_or(|pair| pair.touch) && !self.joints.iter().any(jointed)
     }
 
     /// The name of a tie of solid number `solid`, if it has one.
@@ -94,7 +134,7 @@ impl<const D: usize> Links<D> {
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
         self.forces.iter().try_for_each(|force| check_force(force, solids))?;
         self.holds.iter().try_for_each(|hold| check_hold(hold, solids))?;
-        self.contacts.iter().try_for_each(|pair| check_contact(pair, solids))
+        self.contacts.0.values().try_for_each(|pair| check_contact(pair, solids))
     }
 
     /// Refuses joint number `i` if it cannot be meant.

@@ -27,7 +27,7 @@ pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};
 pub use force::ForceSpec;
 pub use formula::{Field, Formula};
 pub use joint::{Drive, FreeMode, JointKind, JointSpec, Motor};
-pub use links::{ContactSpec, Hold, Links};
+pub use links::{ContactSpec, Contacts, Hold, Links};
 pub use load::Load;
 pub use mooring::{Elastic, End, RopeSpec, SpringSpec};
 pub use rig::{JointReading, LineReading};

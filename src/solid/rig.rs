@@ -314,6 +314,11 @@ impl<const D: usize> Rig<D> {
         joint.spec.free.iter().map(|free| joint.coordinate(free.mode, &ends)).collect()
     }
 
+    /// How far (m) and by what angle (rad) joint number `i` is torn where the solids are.
+    pub(crate) fn gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
+        self.joints[i].gap(&self.joints[i].ends(solids))
+    }
+
     /// What spring number `i` felt in the last step.
     pub(crate) fn spring(&self, i: usize) -> LineReading {
         self.state.springs[i].1

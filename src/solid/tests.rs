@@ -143,10 +143,21 @@ fn rests<const D: usize>()
 where
     Dim<D>: HasEngine<D>,
 {
-    let solids = [floor(), solid("box", cube(0.1), at_height(0.05), Role::Free(light()))];
+    rests_on(floor::<D>());
+    // A driven floor that stands is no other floor.
+    let stands = Motion::slide(at_height(1.0).into(), Law::constant(0.0));
+    rests_on(SolidSpec { role: Role::Driven(stands), ..floor::<D>() });
+}
+
+fn rests_on<const D: usize>(floor: SolidSpec<D>)
+where
+    Dim<D>: HasEngine<D>,
+{
+    let driven = matches!(floor.role, Role::Driven(_)).then(|| floor.start());
+    let solids = [floor, solid("box", cube(0.1), at_height(0.05), Role::Free(light()))];
     let mut engine = engine(&solids, down()).unwrap();
     for _ in 0..5000 {
-        engine.step(1e-4, &idle(2), &[None, None]).unwrap();
+        engine.step(1e-4, &idle(2), &[driven, None]).unwrap();
     }
     // A contact of 500 Hz sinks g/(2πf)² = 1 µm; the bound leaves room for the landing.
     let sink = 0.05 - engine.kinematics(1).pose.position[D - 1];
@@ -156,6 +167,8 @@ where
     assert!((contacts[0].pressing / (2.0 * G) - 1.0).abs() < 1e-3, "{contacts:?}");
     // Between the faces in the middle of the box, within what it sinks and creeps; the floor's centre is half a metre below.
     assert!(contacts[0].at.norm() < 1e-3, "{contacts:?}");
+    // So the floor, whose centre is straight below, feels the weight and no moment.
+    assert!(contacts[0].loads[0].torque.0.norm() < 2e-3 * 2.0 * G, "{contacts:?}");
 }
 
 #[test]

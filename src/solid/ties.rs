@@ -9,7 +9,7 @@ use super::super::rapier::{
         GenericJoint, ImpulseJointHandle, JointAxesMask, JointLimits, RigidBodyBuilder, RigidBodyHandle,
         SpringCoefficients,
     },
-    geometry::{ColliderHandle, SolverFlags},
+    geometry::{ColliderHandle, ColliderSet, SolverFlags},
     math::Pose as Frame,
     pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld},
 };
@@ -18,7 +18,7 @@ use crate::{
     solid::{
         Kinematics,
         joint::turns_first,
-        links::{ContactSpec, Links},
+        links::{ContactSpec, Contacts, Links},
         mooring::{Line, start_length},
     },
     space::Pose,
@@ -111,7 +111,7 @@ impl Ties {
 }
 
 /// Pairs of solids that touch in their own way.
-pub(super) struct Pairs(Vec<ContactSpec>);
+pub(super) struct Pairs(Contacts);
 
 impl Pairs {
     /// Whether there is none.
@@ -121,31 +121,26 @@ impl Pairs {
 
     /// Restitution and friction of two solids, of which each has a `restitution` of its own and `friction` is the mean.
     pub(super) fn bounce(&self, a: usize, b: usize, restitution: &[f64], friction: f64) -> (f64, f64) {
-        let own = self.find(a as u128, b as u128);
+        let own = self.0.find(a, b);
         let usual = 0.5 * (restitution[a] + restitution[b]);
         (own.and_then(|spec| spec.restitution).unwrap_or(usual), own.and_then(|spec| spec.friction).unwrap_or(friction))
     }
 
-    /// That of two solids.
-    fn find(&self, a: u128, b: u128) -> Option<&ContactSpec> {
-        let pair = [a.min(b), a.max(b)];
-        self.0.iter().find(|spec| {
-            let [a, b] = spec.between.map(|solid| solid as u128);
-            [a.min(b), a.max(b)] == pair
-        })
+    /// That of the solids of two colliders.
+    fn of(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<&ContactSpec> {
+        let [a, b] = pair.map(|collider| colliders[collider].user_data as usize);
+        self.0.find(a, b)
     }
 }
 
 impl PhysicsHooks for Pairs {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
-        let solid = |collider: ColliderHandle| context.colliders[collider].user_data;
-        let apart = self.find(solid(context.collider1), solid(context.collider2)).is_some_and(|spec| !spec.touch);
-        (!apart).then(SolverFlags::default)
+        let own = self.of(context.colliders, [context.collider1, context.collider2]);
+        own.is_none_or(|spec| spec.touch).then(SolverFlags::default)
     }
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
-        let solid = |collider: ColliderHandle| context.colliders[collider].user_data;
-        let Some(spec) = self.find(solid(context.collider1), solid(context.collider2)) else { return };
+        let Some(spec) = self.of(context.colliders, [context.collider1, context.collider2]) else { return };
         if let Some(contact) = context.rigid_mut() {
             *contact.friction = spec.friction.unwrap_or(*contact.friction);
         }

@@ -45,9 +45,9 @@ pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[
     pairs.0.into_iter().map(mean).collect()
 }
 
-/// Where a contact is whose `arm` of `body` the engine keeps (m): of what no load moves it keeps the place itself.
+/// Where a contact is whose `arm` of `body` the engine keeps (m): of what is fixed it keeps the place itself.
 fn place(body: &RigidBody, arm: Point) -> Point {
-    if body.is_dynamic() { body.center_of_mass() + arm } else { arm }
+    if body.is_fixed() { arm } else { body.center_of_mass() + arm }
 }
 
 /// The impulse of a contact on its second solid, N s.

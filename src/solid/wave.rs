@@ -10,6 +10,7 @@
 //! the solitary one is in `solitary`.
 
 mod absorb;
+mod extent;
 mod paddle;
 mod record;
 mod second;
@@ -18,6 +19,7 @@ mod spectrum;
 mod train;
 
 pub use absorb::{Absorber, Tuning, Yielding};
+pub use extent::FAST;
 pub use paddle::Paddle;
 pub use solitary::{Solitary, Theory};
 pub use spectrum::Spectrum;
@@ -74,6 +76,8 @@ pub struct Facts {
     pub train: Option<Train>,
     /// The solitary one.
     pub solitary: Option<Solitary>,
+    /// Distance (m) from the paddle and time (s) of a focused group's crest.
+    pub focus: Option<(f64, f64)>,
 }
 
 /// The motion of a paddle that makes a wave.
@@ -201,7 +205,7 @@ impl Maker {
     /// motion that keeps the paddle from making free waves of twice the frequency.
     ///
     /// # Errors
-    /// `Scene` if the wave would break or the order is neither 1 nor 2.
+    /// `Scene` if the wave would break, the paddle outrun it, or the order is neither 1 nor 2.
     pub fn regular(&self, height: f64, period: f64, phase: f64, order: usize) -> Result<Wave> {
         let train = self.train(period)?;
         self.unbroken("a regular wave", height, &train)?;
@@ -217,7 +221,7 @@ impl Maker {
             }
             _ => return Err(Error::scene(format!("waves of order {order} are not known")).help("order = 1 or 2")),
         }
-        Ok(self.wave("regular", height, order, train, tones).ramp(2.0 * period))
+        self.wave("regular", height, order, train, tones).ramp(2.0 * period).outrun(&train)
     }
 
     /// The irregular waves of significant height `height` (m) and this spectrum: `count` components of equal energy,
@@ -251,7 +255,9 @@ impl Maker {
             Component { amplitude: crest / count as f64, omega, phase }
         };
         let components: Vec<Component> = omegas.into_iter().map(component).collect();
-        Ok(self.wave("focused", 2.0 * crest, 1, train, self.tones(&components)?))
+        let mut wave = self.wave("focused", 2.0 * crest, 1, train, self.tones(&components)?);
+        wave.facts.focus = Some((distance, time));
+        Ok(wave)
     }
 
     /// The waves that add up from these components, to first order.
@@ -304,7 +310,7 @@ impl Maker {
                 .help(format!("the highest is 0.78 of the depth, {most:.3} m")));
         }
         let wave = Solitary::new(height, self.depth, self.g, theory);
-        let facts = Facts { kind: "solitary", height, order: 1, train: None, solitary: Some(wave) };
+        let facts = Facts { kind: "solitary", height, order: 1, train: None, solitary: Some(wave), focus: None };
         let (course, paddle) = (Course::Solitary(wave), self.paddle);
         Ok(Wave { facts, course, ramp: wave.lead(), end: f64::INFINITY, paddle })
     }
@@ -357,7 +363,7 @@ impl Maker {
     }
 
     fn wave(&self, kind: &'static str, height: f64, order: usize, train: Train, tones: Vec<Component>) -> Wave {
-        let facts = Facts { kind, height, order, train: Some(train), solitary: None };
+        let facts = Facts { kind, height, order, train: Some(train), solitary: None, focus: None };
         Wave { facts, course: Course::Tones(tones), ramp: train.period(), end: f64::INFINITY, paddle: self.paddle }
     }
 }

@@ -12,5 +12,5 @@ pub use harmonic::{Harmonic, harmonic};
 pub use moments::{Moments, moments};
 pub use reflection::{Reflection, reflection};
 pub use response::{Response, response};
-pub use spectrum::{Spectrum, spectra, spectrum};
+pub use spectrum::{Spectrum, spectra, spectrum, swing};
 pub use waves::{Waves, waves};

@@ -14,6 +14,12 @@ const WAVES_A_PART: usize = 16;
 /// Into how many quarters a long record is cut; with those that lie half over two there are seven.
 const QUARTERS: usize = 4;
 
+/// Waves that a series has at least whose spectrum is shown: fewer lines than that a wave's width are no spectrum.
+const SHOWN_WAVES: usize = 8;
+
+/// How much of a spectrum's variance is shown, –; what is faster is noise.
+const SHOWN: f64 = 0.999;
+
 /// Complex amplitudes, from frequency 0 up.
 pub type Lines = Vec<Complex<f64>>;
 
@@ -86,6 +92,21 @@ pub fn spectrum(series: &Series) -> Option<Spectrum> {
     }
     density.iter_mut().for_each(|s| *s *= variance / sum);
     Some(Spectrum { step, density })
+}
+
+/// The spectrum of `series` as it is shown: of eight waves or more, up to the frequency below which 99.9 % of the variance lies.
+pub fn swing(series: &Series) -> Option<Spectrum> {
+    waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
+    let mut all = spectrum(series)?;
+    let whole: f64 = all.density.iter().sum();
+    let mut sum = 0.0;
+    let below = all.density.iter().take_while(|s| {
+        sum += **s;
+        sum - **s < SHOWN * whole
+    });
+    let rows = below.count();
+    all.density.truncate(rows);
+    Some(all)
 }
 
 /// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series

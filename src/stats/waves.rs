@@ -7,6 +7,9 @@ use crate::series::Series;
 /// is none.
 const BAND: f64 = 0.1;
 
+/// Least range of a series that has waves, over its largest magnitude and in its unit: below, it is round-off.
+const ROUND_OFF: [f64; 2] = [1e-9, 1e-12];
+
 /// Waves of a series. Heights are from trough to crest, in the unit of the series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waves {
@@ -25,9 +28,14 @@ pub struct Waves {
 }
 
 /// The waves of `series`; none if there are fewer than two. Crossings are linear between samples; a wave goes a tenth of
-/// the standard deviation to both sides of the mean.
+/// the standard deviation to both sides of the mean. Round-off has none: a range below 1e-9 of the largest magnitude, or below
+/// 1e-12 in the unit of the series.
 pub fn waves(series: &Series) -> Option<Waves> {
     let of = moments(series);
+    let (least, largest) = (of.least.0, of.largest.0);
+    if largest - least < (ROUND_OFF[0] * largest.abs().max(least.abs())).max(ROUND_OFF[1]) {
+        return None;
+    }
     let (t, x) = (series.times(), series.values());
     let band = BAND * of.deviation;
     let (mut below, mut crossing, mut ups) = (false, None, Vec::new());
@@ -109,6 +117,18 @@ mod tests {
         assert!((found.third - 3.0).abs() < 1e-2 && (found.largest - 3.0).abs() < 1e-2, "{found:?}");
         // The first wave begins with the record and is none, nor is the last: 28 of 30, of which nine are 3 high.
         assert!((found.mean - 2.0).abs() < 0.05, "{found:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn round_off_has_no_waves() -> Result<()> {
+        let sine = |mean: f64, size: f64| sampled(move |t| mean + size * (TAU * t / 1.25).sin(), 10.0);
+        for (mean, size) in [(0.0, 5e-15), (0.0, 1e-17), (1e5, 1e-5), (3.0, 1e-13)] {
+            assert_eq!(waves(&sine(mean, size)?), None, "{mean} ± {size}");
+        }
+        for (mean, size) in [(0.0, 1e-11), (1e5, 1e-3)] {
+            assert!(waves(&sine(mean, size)?).is_some(), "{mean} ± {size}");
+        }
         Ok(())
     }
 

@@ -250,6 +250,9 @@ impl<const D: usize> Handover<'_, D> {
         for (i, solid) in self.system.solids.iter().enumerate() {
             if let Role::Free(_) = solid.spec.role {
                 self.solids[i] = engine.kinematics(i);
+                if !self.system.domain().contains(&self.solids[i].centre) {
+                    return Err(stopped(self.system, gone(i, &self.solids[i]), *steps, t));
+                }
             }
         }
         for (light, before) in light.iter_mut().zip(&before) {
@@ -366,6 +369,18 @@ fn drifted<const D: usize>(k: &Kinematics<D>, dt: f64) -> Kinematics<D> {
     let centre: Vector<D> = k.centre + k.velocity * dt;
     let pose = Pose { position: centre + turn * (k.pose.position - k.centre), rotation: turn * k.pose.rotation };
     Kinematics { pose, centre, ..*k }
+}
+
+/// That solid number `solid` has left the domain.
+fn gone<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> {
+    EngineFault {
+        solid,
+        reason: "escape from the domain".into(),
+        cause: "Usual cause: it starts beside the tank, a blow threw it over a wall, or nothing holds it up. If it is to go there, set \
+                domain.min and domain.max wider.",
+        position: now.centre,
+        velocity: now.velocity,
+    }
 }
 
 fn stopped<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {

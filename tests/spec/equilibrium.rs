@@ -111,6 +111,28 @@ fn a_crate_on_a_raft_is_borne_by_it_and_both_by_the_water() -> Result<()> {
 }
 
 #[test]
+fn a_catamaran_floats_on_its_hulls_and_lists_as_hydrostatics_says() -> Result<()> {
+    // Two hulls of 8 × 8 dp under a deck of 28 × 3 dp, with its ballast aside: 15 kg/m, which the hulls alone displace.
+    let hull = |x: f64| format!("{{ shape = {{ box = {{ size = [0.16, 0.16] }} }}, at = {{ x = {x} }} }}");
+    let deck = "{ shape = { box = { size = [0.56, 0.06] } }, at = { y = 0.11 } }";
+    let shape = format!("{{ compound = [{}, {}, {deck}] }}", hull(-0.2), hull(0.2));
+    let words = format!(
+        "[[solid]]\nname = \"cat\"\nshape = {shape}\nfree = {{ mass = 30, centre_offset = [0.02, 0] }}\n\
+         at = {{ x = 0.6, draft = \"equilibrium\" }}"
+    );
+    let mut sim = afloat(60.0, 16.0, &words)?;
+    let exact = list(&sim, 1)?;
+    let [found, keel] = mean(&mut sim, 5.0, 2.0, |sim| [tilt(sim, 1), height(sim, 1)])?;
+    // Stiff as two hulls are: a quarter of a dp at 10 dp on either side of the middle is 0.7°.
+    assert!(exact.abs() > 0.02 && (found - exact).abs() < 0.7f64.to_radians(), "{found} rad, hydrostatics {exact}");
+    let Role::Free(body) = &sim.system().solids()[1].spec.role else { panic!("a free body") };
+    let mut rest = Pose::turned(Vector::zeros(), &[exact]);
+    rest.position[1] += equilibrium_height(&sim.system().solids()[1].spec.shape, &rest, body.mass, 1000.0, 0.32)?;
+    assert!((keel - rest.position[1]).abs() < 0.25 * DP, "{keel} m, hydrostatics {} m", rest.position[1]);
+    Ok(())
+}
+
+#[test]
 fn a_box_floats_in_a_tub_that_floats() -> Result<()> {
     // Walls of 0.0864 m², 0.0512 m² of water and half of 0.0128 m² in it displace 0.64 m × 0.14 m.
     let words = "[[water]]\nfill = { box = { min = [0.44, 0.42], max = [0.92, 0.54] } }\n\

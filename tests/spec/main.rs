@@ -10,6 +10,7 @@ mod determinism;
 mod equilibrium;
 mod errors;
 mod gauges;
+mod groups;
 mod guards;
 mod hostile;
 mod hosted;

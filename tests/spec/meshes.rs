@@ -285,3 +285,39 @@ fn what_others_touch_of_a_mesh_is_a_choice() {
     }
     fs::remove_dir_all(folder).unwrap();
 }
+
+#[test]
+fn a_body_wholly_inside_a_fixed_mesh_is_refused() {
+    let folder = folder("swallowed");
+    fs::write(folder.join("text.stl"), text_stl(&FACETS)).unwrap();
+    // The pyramid is 2 m × 1 m wide and 1.5 m high, the box 0.1 m: nowhere near the surface.
+    let start = |contact: &str, x: f64| {
+        let text = format!(
+            "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = {{ box = {{ min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 0.5] }} }}\n\
+             [[solid]]\nname = \"rock\"\nfixed = true\nat = {{ x = 2.0, y = 0.0, z = 0.0 }}\n\
+             shape = {{ mesh = {{ file = \"text.stl\", scale = 4.0, contact = \"{contact}\" }} }}\n\
+             [[solid]]\nname = \"box\"\nshape = {{ box = {{ size = [0.1, 0.1, 0.1] }} }}\n\
+             at = {{ x = {x}, y = 0.5, z = 0.4 }}\nfree = {{ density = 500.0 }}\n"
+        );
+        let setup = Scene::parse(&text, &folder, &[]).unwrap().build::<3>().unwrap().setup;
+        Simulation::new(setup).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    for contact in ["fitting", "surface", "hull"] {
+        let message = start(contact, 2.75);
+        assert!(message.contains("\"box\" starts 0.") && message.contains("m inside \"rock\""), "{contact}: {message}");
+        assert_eq!(start(contact, 4.0), "", "{contact}: beside it");
+    }
+    assert_eq!(start("none", 2.75), "");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_body_that_leaves_no_water_is_named() {
+    let text = "dimension = 2\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }\n\
+                [[solid]]\nname = \"barge\"\nshape = { box = { size = [1.2, 0.8] } }\nat = { x = 0.5, bottom = -0.1 }\n\
+                free = { density = 500.0 }\n";
+    let scene = Scene::parse(text, Path::new("."), &[]).unwrap();
+    let message = scene.build::<2>().map(|_| ()).unwrap_err().to_string();
+    assert!(message.contains("\"barge\" is 1.2000 m long along x and the water 1.0000 m"), "{message}");
+    assert!(message.contains("make it smaller"), "{message}");
+}

@@ -148,7 +148,7 @@ fn nothing_is_said_of_a_sound_scene() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 18] = [
+const FAULTS: [Fault; 22] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // The square half sunk: GM = 0.2²/(12·0.1) + 0.05 − 0.1 = −1/60 m.
     (
@@ -159,6 +159,20 @@ const FAULTS: [Fault; 18] = [
     ),
     ("lists", &[("solid.box.free.centre_offset", "[0.005, 0.0]")], "angle_deg", &[]),
     ("off_draft", &[("solid.box.at", "{ x = 1.0, bottom = 0.5 }")], "draft = \"equilibrium\"", &[]),
+    ("beside_water", &[("solid.box.at", "{ x = 2.5, bottom = 0.3 }")], "over the water", &[]),
+    (
+        "larger_than_water",
+        &[("solid.box.shape.box.size", "[2.4, 0.1]"), ("solid.box.at", "{ x = 1.0, bottom = 0.85 }")],
+        "longer by 0.5",
+        &[],
+    ),
+    ("large_inertia", &[("solid.box.free.inertia", "100.0")], "leave inertia out", &[]),
+    (
+        "far_tie",
+        &[("joint", "[{ name = \"arm\", kind = \"hinge\", between = [\"box\"], at = [1.0, 5.0] }]")],
+        "0.224 m large",
+        &[("joint", "[{ name = \"arm\", kind = \"hinge\", between = [\"box\"], at = [1.0, 0.5] }]")],
+    ),
     ("light_body", &[("solid.box.free.density", "20.0")], "density = 37", &[("solid.box.free.density", "37.0")]),
     (
         "thin_body",

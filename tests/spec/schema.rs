@@ -1,6 +1,6 @@
 //! The JSON schema of scenes takes what the program takes, and tells what it refuses.
 
-use std::{fs, path::Path};
+use std::{collections::BTreeSet, fs, path::Path};
 
 use pontoon::scene::schema;
 use serde_json::{Value, json};
@@ -113,6 +113,8 @@ fn words_in_each_of_their_forms_keep_the_schema() {
         "[[joint]]\nname = \"a\"\nkind = \"hinge\"\nbetween = [\"box\"]\nat = [0, 0]",
         "[[joint]]\nname = \"a\"\nkind = \"revolute\"\nbetween = [\"box\"]\nat = [0, 0]",
         "[[joint]]\nname = \"a\"\nkind = \"prismatic\"\nbetween = [\"box\"]\nat = [0, 0]\nalong = [1, 0]",
+        "[[joint]]\nname = \"a\"\nkind = \"generic\"\nbetween = [\"box\"]\nat = [0, 0]\nfree = [\"y\", \"turn\"]\nlimits = { y = [-0.1, 0.1] }",
+        "[[joint]]\nname = \"a\"\nkind = \"slider\"\nbetween = [\"box\"]\nat = [0, 0]\nalong = [1, 0]\nlimits = [-0.1, 0.1]",
         "[[statistic]]\nrao = { motion = \"box\", wave = \"gauge\" }",
         "[[force]]\nname = \"wind\"\non = \"box\"\nforce = [\"20*sin(t)\", 0.0]\ntorque = 2",
         "[[solid]]\nname = \"a\"\nshape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }\nat = { draft = \"equilibrium\" }\nfree = { density = 500 }",
@@ -138,4 +140,31 @@ fn a_misspelt_key_and_a_wrong_word_break_the_schema() {
         assert!(wrong.iter().any(|wrong| wrong.contains(expected)), "{words}: {wrong:?}");
     }
     assert!(of("dimension = 2\ndp = 0.1").iter().any(|wrong| wrong.contains("until")), "what is needed is told");
+}
+
+/// The keys and words that a schema knows, wherever they stand in it.
+fn known(schema: &Value, found: &mut BTreeSet<String>) {
+    if let Some(keys) = schema.get("properties").and_then(Value::as_object) {
+        found.extend(keys.keys().cloned());
+    }
+    let words = schema.get("enum").and_then(Value::as_array).into_iter().flatten().chain(schema.get("const"));
+    found.extend(words.filter_map(Value::as_str).map(String::from));
+    match schema {
+        Value::Object(all) => all.values().for_each(|inner| known(inner, found)),
+        Value::Array(all) => all.iter().for_each(|inner| known(inner, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_and_word_of_a_scene_is_in_its_reference() {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene.md")).unwrap();
+    // What stands between back-quotes, in pieces.
+    let code = text.split('`').skip(1).step_by(2);
+    let said: BTreeSet<&str> = code.flat_map(|code| code.split(|c: char| !c.is_alphanumeric() && c != '_')).collect();
+    let mut words = BTreeSet::new();
+    known(&schema(), &mut words);
+    assert!(words.len() > 150, "the words were found: {}", words.len());
+    let missing: Vec<&String> = words.iter().filter(|word| !said.contains(word.as_str())).collect();
+    assert!(missing.is_empty(), "not in docs/scene.md: {missing:?}");
 }

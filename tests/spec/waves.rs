@@ -5,7 +5,7 @@ use std::{f64::consts::TAU, path::Path};
 use pontoon::{
     Error,
     model::{Dimension, Model, Scheme, Viscosity},
-    preflight::{self, Preflight, Wave},
+    preflight::{self, Finding, Preflight, Wave},
     scene::{Built, DampingWords, DrivenWords, ProbeEntry, Scene, ShapeWords, SolidWords, WaveWords},
     simulation::{Setup, Simulation},
     solid::{Dim, wave::Region},
@@ -65,12 +65,24 @@ fn wave(driven: &str) -> Wave {
     told(driven).waves.remove(0)
 }
 
+/// The number after `key` in `text`.
+fn number(text: &str, key: &str) -> f64 {
+    let after = text.split(key).nth(1).unwrap_or_else(|| panic!("no {key:?} in {text:?}"));
+    let digits: String = after.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    digits.parse().unwrap()
+}
+
+/// The finding of this topic about a scene, if any.
+fn finding(text: &str, topic: &str) -> Option<Finding> {
+    look(built(text).unwrap()).findings.into_iter().find(|f| f.topic == topic)
+}
+
 #[test]
 fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
     let piston = |wave: &str| format!("along = [1.0, 0.0], wave = {{ {wave} }}");
     let flap =
         |height: f64| format!("hinge = [0.0, {height:?}], wave = {{ regular = {{ height = 0.1, period = 1.2 }} }}");
-    let cases: [(String, &str, &str); 18] = [
+    let cases: [(String, &str, &str); 20] = [
         (piston("regular = { height = 0.3, period = 1.2 }"), "wave.regular.height", "highest that does not is 0.198 m"),
         (piston("regular = { height = 0.1, period = 0.0 }"), "wave.regular.period", "positive"),
         (piston("regular = { height = -0.1, period = 1.0 }"), "wave.regular.height", "positive"),
@@ -90,6 +102,13 @@ fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
         (piston("pierson_moskowitz = { height = 0.1, peak_period = 1.2 }"), "moskowitz.peak_period", "bretschneider"),
         (piston("components = { file = \"none.csv\" }"), "wave.components.file", "no file"),
         (piston("regular = { height = 0.1, period = 60.0, order = 1 }"), "driven.wave", "the water is 5.000 m long"),
+        // The first order has 0.6 m/s, the crests 1.7 m/s; the second order has more than both.
+        (piston("regular = { height = 0.2, period = 5.0 }"), "wave.regular.height", "period = 1.2"),
+        (
+            piston("focused = { crest = 0.05, peak_period = 1.2, distance = 0.0, time = 9.0 }"),
+            "wave.focused.distance",
+            "positive",
+        ),
         (flap(0.28), "wave.regular.height", "60 is the most"),
         (flap(0.35), "driven.hinge", "above the still level"),
         (PISTON.replace("[1.0, 0.0]", "[-1.0, 0.0]"), "driven.along", "no water before the paddle"),
@@ -160,6 +179,13 @@ fn a_doubtful_wave_is_told_with_the_number_that_mends_it() {
     let finding = found.findings.iter().find(|f| f.topic == "beyond_stokes").expect("H L²/d³ = 110");
     let height: f64 = finding.mend.rsplit(' ').next().unwrap().parse().unwrap();
     assert!(!topics(&regular(height, 3.0)).contains(&"beyond_stokes"), "{finding:?}");
+    // That is less than five dp; a shorter period will do for the height that was asked for.
+    let period = number(&finding.mend, "period = ");
+    assert!(height < 0.1 && !topics(&regular(0.12, period)).contains(&"beyond_stokes"), "{finding:?}");
+    assert!(topics(&regular(0.12, 1.1 * period)).contains(&"beyond_stokes"), "{finding:?}");
+    let found = told(&regular(0.15, 4.0));
+    let finding = found.findings.iter().find(|f| f.topic == "fast_paddle").expect("2ωA₂ is 0.6 of the celerity");
+    assert!(!topics(&regular(number(&finding.mend, "height = "), 4.0)).contains(&"fast_paddle"), "{finding:?}");
     assert!(topics(&regular(0.01, 0.4)).contains(&"short_waves"));
     let flap = "hinge = [0.0, 0.15], wave = { regular = { height = 0.1, period = 1.2 } }";
     assert!(topics(flap).contains(&"steep_flap"));
@@ -167,6 +193,113 @@ fn a_doubtful_wave_is_told_with_the_number_that_mends_it() {
     assert!(topics(sea).contains(&"breaking_waves"));
     let low = with(PISTON).replace("size = [0.1, 0.6] }", "size = [0.1, 0.33] }");
     assert!(look(built(&low).unwrap()).findings.iter().any(|f| f.topic == "overtopped_paddle"));
+}
+
+#[test]
+fn a_group_that_cannot_come_together_is_told_with_the_place_and_the_time_that_can() {
+    let group = |distance: f64, time: f64| {
+        with(&format!(
+            "along = [1.0, 0.0], wave = {{ focused = {{ crest = 0.04, peak_period = 1.2, distance = {distance:?}, \
+             time = {time:?} }} }}"
+        ))
+    };
+    let far = finding(&group(30.0, 40.0), "far_focus").expect("the flume is 5 m long");
+    assert_eq!(finding(&group(number(&far.mend, "distance = "), 40.0), "far_focus"), None);
+    // 3 m at 1.12 m/s, and the ramp of a period.
+    let early = finding(&group(3.0, 2.0), "early_focus").expect("3.9 s is the least");
+    let time = number(&early.mend, "time = ");
+    assert!((3.8..4.1).contains(&time), "{early:?}");
+    assert_eq!(finding(&group(3.0, time), "early_focus"), None);
+}
+
+#[test]
+fn zones_that_damp_the_paddle_or_no_water_are_told() {
+    let zone = |from: &str, to: &str| format!("{FLUME}\n[[damping]]\nfrom = {from}\nto = {to}\n");
+    let (right, wrong) = (zone("[3.0, 0.0]", "[5.0, 0.0]"), zone("[5.0, 0.0]", "[3.0, 0.0]"));
+    let said = finding(&wrong, "reversed_damping").expect("it is full before x = 3 m");
+    assert!(said.mend.contains("from = [3, 0], to = [5, 0]"), "{said:?}");
+    assert!(finding(&zone("[6.0, 0.0]", "[8.0, 0.0]"), "idle_damping").is_some());
+    let silent = [(&right, "reversed_damping"), (&right, "idle_damping"), (&wrong, "idle_damping")];
+    assert!(silent.iter().all(|(text, topic)| finding(text, topic).is_none()));
+}
+
+#[test]
+fn a_paddle_that_stands_as_no_paddle_of_theory_does_is_told() {
+    let sized = |height: f64, bottom: f64| {
+        let paddle = format!("[0.1, {height:?}] }} }}\nat     = {{ x = -0.05, bottom = {bottom:?}");
+        FLUME.replacen("[0.1, 0.6] } }\nat     = { x = -0.05, bottom = 0.0", &paddle, 1)
+    };
+    let drowned = finding(&sized(0.25, 0.0), "drowned_paddle").expect("it ends 0.05 m below the level");
+    let more: f64 = drowned.mend.split(' ').next().unwrap().parse().unwrap();
+    assert!(["drowned_paddle", "overtopped_paddle"].iter().all(|t| finding(&sized(0.25 + more, 0.0), t).is_none()));
+    let lifted = finding(&sized(0.6, 0.1), "lifted_paddle").expect("0.1 m above the bed");
+    assert!(lifted.mend.contains("bottom = 0"), "{lifted:?}");
+    assert_eq!(finding(&sized(0.6, 0.02), "lifted_paddle"), None, "one dp is no gap");
+    let more = |words: &str| with(&PISTON.replace("} }", &format!("}}, {words} }}")));
+    let deep = finding(&more("depth = 0.31"), "wrong_depth").expect("there are 0.3 m");
+    assert!(deep.mend.contains("depth = 0.3"), "{deep:?}");
+    let long = finding(&more("ramp = 4.0"), "long_ramp").expect("of a run of 6 s");
+    let ramp = format!("ramp = {:?}", number(&long.mend, "ramp = "));
+    assert_eq!(finding(&more(&ramp), "long_ramp"), None);
+}
+
+#[test]
+fn how_a_paddle_goes_does_not_hang_on_when_a_run_ends() {
+    let short = |driven: &str| {
+        let text = with(driven).replacen("until     = 6.0", "until     = 0.3", 1);
+        look(built(&text).unwrap()).waves.remove(0)
+    };
+    let solitary = "along = [1.0, 0.0], wave = { solitary = { height = 0.1 } }";
+    for driven in [PISTON, solitary] {
+        let (short, long) = (short(driven), wave(driven));
+        assert_eq!((short.stroke_m, short.paddle_mps), (long.stroke_m, long.paddle_mps), "{driven}");
+    }
+    // cH/(d + H), √(g(d + H)) as c; sampled.
+    let fastest = (9.81_f64 * 0.4).sqrt() * 0.1 / 0.4;
+    assert!((short(solitary).paddle_mps / fastest - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn the_first_answer_is_that_of_what_stands_in_the_way() {
+    let wall = |height: f64| {
+        let wall = format!(
+            "\n[[solid]]\nname = \"wall\"\nfixed = true\nshape = {{ box = {{ size = [0.1, {height:?}] }} }}\n\
+             at = {{ x = 2.05, bottom = 0.1 }}\n\n[[damping]]\nfrom = [1.5, 0.0]\nto = [4.0, 0.0]\n"
+        );
+        look(built(&format!("{FLUME}{wall}")).unwrap()).waves.remove(0)
+    };
+    let first = wall(0.4);
+    assert!(first.answers.as_deref() == Some("wall") && (first.reach_m - 2.0).abs() < 1e-6, "{first:?}");
+    assert!((first.back_s - 4.0 / first.group_mps).abs() < 1e-6 && first.damping_m == Some(1.5), "{first:?}");
+    let line = first.first_answer();
+    assert!(line.contains("2 m to \"wall\"") && line.contains("a damping zone begins at 1.5 m"), "{line}");
+    // Waves pass over it.
+    let over = wall(0.1);
+    assert!(over.answers.is_none() && (over.reach_m - 4.99).abs() < 1e-3, "{over:?}");
+}
+
+#[test]
+fn a_statistic_of_another_period_than_the_paddles_is_told() {
+    let asked = |period: f64| {
+        format!(
+            "{FLUME}\n[[probe]]\nname = \"row\"\nelevation = {{ from = 1.9, to = 2.3, count = 3 }}\n\n\
+             [[statistic]]\nreflection = [\"row\"]\nperiod = {period:?}\n"
+        )
+    };
+    let stale = finding(&asked(1.4), "stale_period").expect("the paddle makes waves of 1.2 s");
+    assert!(stale.what.contains("1.4 s") && stale.what.contains("1.2 s"), "{stale:?}");
+    assert_eq!(finding(&asked(number(&stale.mend, "period = ")), "stale_period"), None);
+}
+
+#[test]
+fn a_table_of_components_without_phases_is_refused_by_both_names_and_its_key() {
+    let folder = std::env::temp_dir().join(format!("pontoon-components-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("sea.csv"), "amplitude_m,period_s\n0.02,1.2\n").unwrap();
+    let text = with("along = [1.0, 0.0], wave = { components = { file = \"sea.csv\" } }");
+    let message = Scene::parse(&text, &folder, &[]).and_then(|s| s.build::<2>()).map(|_| ()).unwrap_err().to_string();
+    assert!(["phase_deg", "phase_rad", "wave.components.file"].iter().all(|w| message.contains(w)), "{message}");
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

@@ -163,6 +163,33 @@ fn what_is_no_solid_is_refused_with_the_place() {
 }
 
 #[test]
+fn a_shell_within_a_shell_faces_the_other_way() {
+    let (points, facets) = cuboid([2.0; 3]);
+    // Boxes of these scales, turned inside out or not, around places along x; of all the first is the largest.
+    let of = |boxes: &[(f64, bool, f64)]| {
+        let place =
+            |&(scale, _, x): &(f64, bool, f64)| points.iter().map(move |p| p * scale + Vector::from([x, 0.0, 0.0]));
+        let facet = |(n, &(_, over, _)): (u32, &(f64, bool, f64))| {
+            let turned = move |f: &[u32; 3]| if over { [f[1], f[0], f[2]] } else { *f };
+            facets.iter().map(turned).map(move |f| f.map(|p| p + 8 * n)).collect::<Vec<_>>()
+        };
+        let (points, facets): (Vec<_>, Vec<_>) =
+            (boxes.iter().flat_map(place).collect(), (0..).zip(boxes).flat_map(facet).collect());
+        Mesh::new(&points, &facets).map(|mesh| mesh.volume().volume).map_err(|e| e.to_string())
+    };
+    let twice = of(&[(1.0, false, 0.0), (0.5, false, 0.0)]).unwrap_err();
+    assert!(twice.contains("1.000e0 m³ count twice") && twice.contains("has to face inward"), "{twice}");
+    assert!(of(&[(1.0, false, 0.0), (0.5, true, 0.0), (0.25, true, 0.0)]).is_err());
+    assert!(of(&[(1.0, false, 0.0), (0.5, true, 2.0)]).unwrap_err().contains("inside out"));
+    let sound = |boxes: &[(f64, bool, f64)], volume: f64| assert!((of(boxes).unwrap() - volume).abs() < 1e-12);
+    sound(&[(1.0, false, 0.0), (0.5, true, 0.0)], 7.0);
+    sound(&[(1.0, false, 0.0), (0.5, true, 0.0), (0.25, false, 0.0)], 7.125);
+    // Beside one another, with and without a face in touch.
+    sound(&[(1.0, false, 0.0), (0.5, false, 1.5)], 9.0);
+    sound(&[(1.0, false, 0.0), (0.5, false, 2.0)], 9.0);
+}
+
+#[test]
 fn corners_in_one_place_are_one_and_facets_without_area_are_left_out() {
     let (points, facets) = cuboid([2.0; 3]);
     let loose: Vec<_> = facets.iter().flat_map(|f| f.map(|p| points[p as usize])).collect();

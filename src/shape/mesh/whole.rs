@@ -52,7 +52,7 @@ pub fn crossed(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> Error {
 }
 
 /// A place as a user reads it, to a part in ten thousand of a metre or finer.
-fn place(x: &Vector<3>) -> String {
+pub fn place(x: &Vector<3>) -> String {
     let number = |x: f64| if x != 0.0 && x.abs() < 0.01 { format!("{x:.3e}") } else { format!("{x:.4}") };
     format!("({}, {}, {})", number(x[0]), number(x[1]), number(x[2]))
 }

@@ -141,6 +141,14 @@ impl Train {
         URSELL / self.ursell(1.0)
     }
 
+    /// The longest period (s) at which two terms of Stokes are enough for a wave of `height` (m) in this depth; none if
+    /// it would break.
+    pub fn longest_of_stokes(&self, height: f64) -> Option<f64> {
+        let k = TAU / (URSELL * self.depth.powi(3) / height).sqrt();
+        let own = Self { k, omega: (self.g * k * (k * self.depth).tanh()).sqrt(), ..*self };
+        (height < own.highest()).then(|| own.period())
+    }
+
     /// Which theory holds for a wave of `height` (m).
     pub fn region(&self, height: f64) -> Region {
         match height {

@@ -1,0 +1,206 @@
+//! Contacts of groups of solids: which pairs they are about, which entry counts, and what is refused of them.
+
+use std::path::Path;
+
+use pontoon::{
+    Result,
+    scene::Scene,
+    simulation::Simulation,
+    solid::{ContactSpec, Links},
+};
+
+/// Three floats, and a beam of steel over them, in a tank with a post of steel; numbers 1 to 3, 4, 0 and 5.
+const CROWD: &str = r#"
+dimension = 2
+dp        = 0.05
+until     = 1.0
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [2.0, 0.3] } }
+
+[[solid]]
+name  = "tank"
+group = "walls"
+fixed = true
+shape = { tank = { size = [2.0, 1.0] } }
+
+[[solid]]
+name  = "a"
+group = "floats"
+shape = { box = { size = [0.2, 0.2] } }
+at    = { x = 0.3, draft = "equilibrium" }
+free  = { density = 500.0 }
+
+[[solid]]
+name  = "b"
+group = "floats"
+shape = { box = { size = [0.2, 0.2] } }
+at    = { x = 0.8, draft = "equilibrium" }
+free  = { density = 500.0 }
+
+[[solid]]
+name  = "c"
+group = "floats"
+shape = { box = { size = [0.2, 0.2] } }
+at    = { x = 1.3, draft = "equilibrium" }
+free  = { density = 500.0 }
+
+[[solid]]
+name  = "beam"
+group = "steel"
+shape = { box = { size = [0.4, 0.2] } }
+at    = { x = 1.0, y = 0.7 }
+free  = { density = 800.0 }
+
+[[solid]]
+name  = "post"
+group = "steel"
+fixed = true
+shape = { box = { size = [0.1, 0.5] } }
+at    = { x = 1.75, bottom = 0.0 }
+"#;
+
+const IGNORED: &str = "[[contact]]\nbetween = [\"floats\", \"floats\"]\ntouch = false\n";
+
+fn crowd(words: &str) -> Result<Scene> {
+    Scene::parse(&format!("{CROWD}\n{words}"), Path::new(""), &[])
+}
+
+fn links(words: &str) -> Result<Links<2>> {
+    Ok(crowd(words)?.build::<2>()?.setup.links)
+}
+
+fn friction(links: &Links<2>, a: usize, b: usize) -> Option<f64> {
+    links.contacts.find(a, b).and_then(|pair| pair.friction)
+}
+
+#[test]
+fn floats_of_a_group_pass_through_one_another_and_not_through_their_tank() -> Result<()> {
+    let links = links(IGNORED)?;
+    assert!(!links.touch(1, 2) && !links.touch(3, 1) && !links.touch(2, 3));
+    assert!((1..4).all(|float| links.touch(0, float) && links.touch(float, 4) && links.touch(5, float)));
+    assert_eq!(links.contacts.len(), 3, "each pair once");
+    // So they may start inside one another, too.
+    let met = |words: &str| -> Result<Simulation<2>> {
+        let text = format!("{}\n{words}", CROWD.replacen("x = 0.8", "x = 0.35", 1));
+        Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)
+    };
+    assert!(met("").err().is_some_and(|e| e.to_string().contains("inside")));
+    met(IGNORED)?;
+    let scene = crowd(IGNORED)?;
+    assert!(Scene::parse(&scene.to_toml()?, Path::new(""), &[])? == scene, "{}", scene.to_toml()?);
+    Ok(())
+}
+
+#[test]
+fn a_contact_of_groups_is_of_every_pair_of_one_of_each_that_can_touch() -> Result<()> {
+    let of = |between: &str| links(&format!("[[contact]]\nbetween = [{between}]\nfriction = 0.1"));
+    let both = of("\"floats\", \"steel\"")?;
+    assert_eq!(both.contacts.len(), 6);
+    assert!((1..4).all(|float| friction(&both, float, 4) == Some(0.1) && friction(&both, 5, float) == Some(0.1)));
+    assert!(both.contacts.find(4, 5).is_none() && both.contacts.find(1, 2).is_none());
+    // The beam with all five others, the post with the three floats.
+    let all = of("\"steel\"")?;
+    assert_eq!((all.contacts.len(), friction(&all, 4, 5), friction(&all, 0, 5)), (8, Some(0.1), None));
+    assert_eq!(of("\"a\", \"floats\"")?.contacts.len(), 2, "one of a group and the others");
+    assert_eq!(of("\"post\", \"floats\"")?.contacts.len(), 3);
+    assert_eq!(of("\"walls\", \"steel\"")?.contacts.len(), 1, "tank and post never touch");
+    Ok(())
+}
+
+#[test]
+fn of_two_contacts_of_a_pair_the_later_counts() -> Result<()> {
+    let own = "[[contact]]\nbetween = [\"b\", \"a\"]\nfriction = 0.4\n";
+    let refined = links(&format!("{IGNORED}{own}"))?;
+    assert!(refined.touch(1, 2) && !refined.touch(1, 3));
+    assert_eq!((refined.contacts.len(), friction(&refined, 1, 2)), (3, Some(0.4)));
+    let ruled = links(&format!("{own}{IGNORED}"))?;
+    assert!(!ruled.touch(1, 2) && friction(&ruled, 1, 2).is_none());
+    let usual = links(&format!("{IGNORED}[[contact]]\nbetween = [\"a\", \"b\"]\ntouch = true"))?;
+    assert!(usual.touch(1, 2) && !usual.touch(2, 3));
+    // From Rust, too.
+    let pair = |between, touch| ContactSpec { between, touch, friction: None, restitution: None };
+    let mut contacts: Links<2> = Links::default();
+    contacts.contacts.extend([pair([1, 0], false), pair([0, 1], true)]);
+    assert!(contacts.touch(0, 1) && contacts.contacts.len() == 1);
+    Ok(())
+}
+
+#[test]
+fn a_thousand_floats_that_ignore_one_another_cost_a_moment() {
+    let pairs = (0..1000).flat_map(|a| (0..a).map(move |b| [a, b]));
+    let apart = |between| ContactSpec { between, touch: false, friction: None, restitution: None };
+    let links: Links<2> = Links { contacts: pairs.clone().map(apart).collect(), ..Links::default() };
+    // Half a million pairs: a search through all of them for each would take minutes.
+    assert!(pairs.into_iter().all(|[a, b]| !links.touch(a, b)));
+}
+
+/// What is said of the crowd with `from` replaced by `to`, and with these words.
+fn said(from: &str, to: &str, words: &str) -> String {
+    assert!(CROWD.contains(from), "\"{from}\" is not in the scene");
+    let text = format!("{}\n{words}", CROWD.replacen(from, to, 1));
+    let built = Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.build::<2>().map(|_| ()));
+    built.expect_err("this scene is wrong").to_string()
+}
+
+#[test]
+fn wrong_contacts_are_told_with_what_to_write() {
+    let cases: [(&str, &[&str]); 9] = [
+        ("between = [\"a\", \"b\", \"c\"]", &["not 3", "one alone means its contacts with all others", "contact.0"]),
+        ("between = []", &["two solids or groups, or one, not 0"]),
+        ("between = [\"flots\", \"tank\"]", &["no solid or group is called \"flots\"; did you mean \"floats\"?"]),
+        ("between = [\"a\", \"a\"]", &["\"a\" is named twice"]),
+        ("between = [\"tank\", \"post\"]", &["of \"tank\" and \"post\" no two solids can touch", "free = {"]),
+        ("between = [\"walls\", \"post\"]", &["of \"walls\" and \"post\" no two solids can touch"]),
+        ("between = [\"walls\", \"walls\"]", &["of \"walls\" no two solids can touch", "it takes two"]),
+        ("between = [\"floats\"]\ntouch = true", &["this contact is as any other"]),
+        ("between = [\"floats\"]\nfriction = 0.1\ntouch = false", &["has neither friction nor restitution"]),
+    ];
+    for (words, expected) in cases {
+        let rest = if words.contains('\n') { "" } else { "\nfriction = 0.1" };
+        let message = said("until", "until", &format!("[[contact]]\n{words}{rest}"));
+        for part in expected {
+            assert!(message.contains(part), "{words}: \"{part}\" is not in\n{message}");
+        }
+    }
+    let group = "group = \"floats\"";
+    let two = said(group, "group = \"two words\"", "");
+    assert!(two.contains("\"two words\" cannot be a name") && two.contains("one word of letters"), "{two}");
+    let taken = said(group, "group = \"c\"", "");
+    assert!(taken.contains("a solid is called \"c\", too") && taken.contains("a name of its own"), "{taken}");
+}
+
+#[test]
+fn a_probe_of_a_contact_that_cannot_be_is_refused_with_the_reason() -> Result<()> {
+    let probe = "[[probe]]\ncontact = [\"a\", \"b\"]\n";
+    let pin = "[[joint]]\nname = \"pin\"\nkind = \"hinge\"\nbetween = [\"a\", \"b\"]\nat = [0.55, 0.3]\n";
+    let cases: [(&str, &str, &[&str]); 4] = [
+        (IGNORED, probe, &["never touch: contact.0 says  touch = false", "probe.0.contact"]),
+        (pin, probe, &["\"a\" and \"b\" never touch: joint \"pin\" holds them", "contacts = true"]),
+        ("", "[[probe]]\ncontact = [\"a\", \"a\"]", &["they are one solid"]),
+        ("", "[[probe]]\ncontact = [\"tank\", \"post\"]", &["neither is free"]),
+    ];
+    for (words, probe, expected) in cases {
+        let message = said("until", "until", &format!("{words}{probe}"));
+        for part in expected {
+            assert!(message.contains(part), "\"{part}\" is not in\n{message}");
+        }
+    }
+    links(&format!("{pin}contacts = true\n{probe}"))?;
+    links(&format!("{IGNORED}[[contact]]\nbetween = [\"a\", \"b\"]\nfriction = 0.2\n{probe}"))?;
+    Ok(())
+}
+
+#[test]
+fn a_turn_and_a_mass_are_refused_in_their_own_words() {
+    let hinge =
+        "[[joint]]\nname = \"pin\"\nkind = \"hinge\"\nbetween = [\"a\"]\nat = [0.3, 0.3]\nlimits_deg = [-400, 400]";
+    let turn = said("until", "until", hinge);
+    assert!(turn.contains("from -400 to 400 degrees") && turn.contains("less than 360"), "{turn}");
+    assert!(turn.contains("joint.0.limits_deg"), "{turn}");
+    for mass in ["0", "-1"] {
+        let message = said("density = 500.0", &format!("mass = {mass}"), "");
+        assert!(message.contains(&format!("mass must be a positive number, not {mass}")), "{message}");
+        assert!(message.contains("write  free = { mass = 10.0 }"), "{message}");
+    }
+}
