@@ -22,9 +22,10 @@ pub(crate) use folder::{same_tables, scene_file};
 pub use inspect::{Inspection, MeshFacts, Report, SeriesColumns, SolidCount, Timing, inspect};
 pub(crate) use kept::any as has_checkpoint;
 pub(crate) use lock::Lock;
+pub use lock::owner;
 pub(crate) use outputs::series_folder;
 pub(crate) use statistics::told;
-pub use statistics::{Asked, Statistic, Told, statistics};
+pub use statistics::{Asked, SPECTRA, Statistic, Told, statistics};
 
 use std::path::{Path, PathBuf};
 

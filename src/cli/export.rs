@@ -6,6 +6,7 @@ use clap::{ArgGroup, Args};
 use pontoon::{
     error::{Error, Kind, Result},
     record::{Manifest, Readings, arrays},
+    run,
 };
 
 /// Which run, what of it, and where to.
@@ -57,7 +58,7 @@ fn series(folder: &Path, out: PathBuf) -> Result<String> {
 
 /// Frequencies (Hz) and densities of every spectrum of the run, if it wrote some.
 fn spectra(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
-    let path = folder.join("spectra.csv");
+    let path = folder.join(run::SPECTRA);
     if !path.exists() {
         return Ok(vec![]);
     }

@@ -17,6 +17,7 @@ use pontoon::{
     error::{Error, Kind, Result, nearest},
     preflight::three,
     record::{Manifest, Readings, manifest::Status},
+    run,
 };
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
@@ -97,7 +98,7 @@ fn left(wait: Duration) -> bool {
 
 /// The process that the lock in `folder` names, and whether it lives, where the system keeps /proc.
 fn process(folder: &Path) -> Option<(u32, Option<bool>)> {
-    let id: u32 = std::fs::read_to_string(folder.join("run.lock")).ok()?.trim().parse().ok()?;
+    let id = run::owner(folder)?;
     let all = Path::new("/proc");
     Some((id, all.join("self").exists().then(|| all.join(id.to_string()).exists())))
 }

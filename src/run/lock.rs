@@ -9,6 +9,14 @@ use std::{
 
 use crate::error::{Error, Kind, Result};
 
+/// The file.
+const LOCK: &str = "run.lock";
+
+/// The process that writes in the run's `folder`, or was killed there, if one has left its number.
+pub fn owner(folder: &Path) -> Option<u32> {
+    fs::read_to_string(folder.join(LOCK)).ok()?.trim().parse().ok()
+}
+
 /// The right to write in a run's folder; the file goes when this is dropped.
 pub struct Lock {
     path: PathBuf,
@@ -21,7 +29,7 @@ impl Lock {
     /// # Errors
     /// `Restart` if a run goes on there: names its process; `File` if the lock cannot be made.
     pub fn take(folder: &Path) -> Result<Self> {
-        let path = folder.join("run.lock");
+        let path = folder.join(LOCK);
         let refused = |why: std::io::Error| Error::file(&path, format!("cannot be written: {why}"));
         let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(refused)?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {

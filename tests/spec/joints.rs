@@ -116,20 +116,17 @@ fn probes_of_ties_name_their_units_and_read_what_the_simulation_tells() -> Resul
     Ok(())
 }
 
+/// A tank of water 1.2 m × 0.4 m, and what else `words` say, at this spacing (m).
+fn pool(dp: f64, words: &str) -> Result<Scene> {
+    let text = format!(
+        "dimension = 2\ndp = {dp}\nuntil = 4.0\n[[water]]\nfill = {{ box = {{ min = [0, 0], max = [1.2, 0.4] }} }}\n\
+         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.2, 0.6] }} }}\n{words}"
+    );
+    Scene::parse(&text, Path::new(""), &[])
+}
+
 /// A barge with its ballast on one side, in a guide in which it may heave and turn by 2°.
 const GUIDED: &str = r#"
-dimension = 2
-dp        = 0.0125
-until     = 4.0
-
-[[water]]
-fill = { box = { min = [0.0, 0.0], max = [1.2, 0.4] } }
-
-[[solid]]
-name  = "tank"
-fixed = true
-shape = { tank = { size = [1.2, 0.6] } }
-
 [[solid]]
 name  = "barge"
 shape = { box = { size = [0.3, 0.1] } }
@@ -148,7 +145,7 @@ limits_deg = { turn = [-2.0, 2.0] }
 
 #[test]
 fn a_guide_with_play_carries_the_moment_that_the_water_does_not() -> Result<()> {
-    let mut sim = Simulation::new(Scene::parse(GUIDED, Path::new(""), &[])?.build::<2>()?.setup)?;
+    let mut sim = Simulation::new(pool(0.0125, GUIDED)?.build::<2>()?.setup)?;
     let guide = Joint::new(sim.system(), "guide")?;
     assert_eq!(Probe::<2>::columns(&guide)[3..], ["y_m", "turn_deg"]);
     let mut carried = 0.0;
@@ -171,18 +168,6 @@ fn a_guide_with_play_carries_the_moment_that_the_water_does_not() -> Result<()> 
 
 /// A flap pinned under a paddle that goes to and fro in the surface.
 const PINNED: &str = r#"
-dimension = 2
-dp        = 0.02
-until     = 1.0
-
-[[water]]
-fill = { box = { min = [0.0, 0.0], max = [1.2, 0.4] } }
-
-[[solid]]
-name  = "tank"
-fixed = true
-shape = { tank = { size = [1.2, 0.6] } }
-
 [[solid]]
 name   = "paddle"
 shape  = { box = { size = [0.1, 0.16] } }
@@ -204,7 +189,7 @@ at      = [0.5, 0.34]
 
 #[test]
 fn a_flap_pinned_to_a_moving_paddle_goes_with_it_and_its_loads_add_up() -> Result<()> {
-    let mut sim = Simulation::new(Scene::parse(PINNED, Path::new(""), &[])?.build::<2>()?.setup)?;
+    let mut sim = Simulation::new(pool(0.02, PINNED)?.build::<2>()?.setup)?;
     sim.keep_loads();
     let (mut torn, mut swung): (f64, f64) = (0.0, 0.0);
     while sim.time() < 1.0 {
@@ -223,12 +208,11 @@ fn a_flap_pinned_to_a_moving_paddle_goes_with_it_and_its_loads_add_up() -> Resul
     Ok(())
 }
 
-/// A body that is fixed to one thing that stands and to another that goes.
 #[test]
 fn a_joint_that_something_contradicts_is_told_of() -> Result<()> {
     let more = "[[joint]]\nname = \"weld\"\nkind = \"fixed\"\nbetween = [\"tank\", \"flap\"]\nat = [0.5, 0.14]\n";
     let text = format!("{PINNED}\n{more}");
-    let mut sim = Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)?;
+    let mut sim = Simulation::new(pool(0.02, &text)?.build::<2>()?.setup)?;
     assert!(sim.torn().is_empty(), "whole at the start");
     while sim.time() < 0.3 {
         sim.step_to(0.3)?;
@@ -335,7 +319,7 @@ fn values_of_ties_may_be_numbers_formulas_or_tables() -> Result<()> {
         let again = Scene::parse(&scene.to_toml()?, Path::new(""), &[])?;
         assert!(again == scene && again.to_toml()? == scene.to_toml()?, "{motor}: {}", scene.to_toml()?);
     }
-    let guided = Scene::parse(GUIDED, Path::new(""), &[])?;
+    let guided = pool(0.0125, GUIDED)?;
     assert!(Scene::parse(&guided.to_toml()?, Path::new(""), &[])? == guided, "{}", guided.to_toml()?);
     let force = "[[force]]\nname = \"wind\"\non = \"buoy\"\nforce = [\"10*t\", 0]\ntorque = 0.5\nframe = \"body\"\n\n\
                  [[contact]]\nbetween = [\"buoy\"]\nfriction = 0.1\n\n[[contact]]\nbetween = [\"buoy\", \"flap\"]\ntouch = false\n\n[[joint]]";
