@@ -300,6 +300,7 @@ pub fn terms(dimension: usize, water: usize) -> Vec<Work> {
         base.with("laminar", &[("model.viscosity", "laminar")]),
         base.with("sps", &[("model.viscosity", "sps")]),
         base.with("shifting", &[("model.shifting", "away_from_solids")]),
+        base.with("corrected gradients", &[("model.gradient", "corrected")]),
         base.with("sps, shifting", &[("model.viscosity", "sps"), ("model.shifting", "away_from_solids")]),
         base.with("cubic", &[("model.kernel", "{ cubic = { tensile = false } }")]),
         base.with("cubic, tensile", &[("model.kernel", "cubic")]),

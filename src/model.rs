@@ -11,6 +11,7 @@ use crate::{
         Medium, Term, Units,
         continuity::Continuity,
         diffusion::{Fourtakas, Molteni},
+        gradient::{Corrected, Moments},
         kernel::{self, Kernel as _, REACH},
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
@@ -53,6 +54,17 @@ pub enum Viscosity {
     Laminar(Laminar),
     /// Laminar with sub-particle-scale turbulence (Dalrymple & Rogers 2006).
     Sps(Sps),
+}
+
+/// Which slope the pressure has. Scene word `model.gradient`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Gradient {
+    /// By the kernel's gradient as it is.
+    #[default]
+    Plain,
+    /// Corrected by how the neighbours of each particle lie (Bonet & Lok 1999); with the Wendland kernel and no shifting.
+    Corrected,
 }
 
 /// Which density diffusion acts. Scene word `model.diffusion`.
@@ -147,6 +159,9 @@ pub struct Model {
     pub gamma: f64,
     /// Acceleration of gravity, m/s²: `D` components.
     pub gravity: Vec<f64>,
+    /// The pressure's gradient.
+    #[serde(default)]
+    pub gradient: Gradient,
     /// Viscosity.
     pub viscosity: Viscosity,
     /// Density diffusion.
@@ -189,6 +204,7 @@ impl Model {
             c0: C0_FACTOR * (G * depth).sqrt(),
             gamma: 7.0,
             gravity,
+            gradient: Gradient::Plain,
             viscosity: Viscosity::Artificial(Artificial::default()),
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
@@ -240,6 +256,13 @@ impl Model {
         }
     }
 
+    /// What of the choices does not go together, if anything.
+    pub fn clash(&self) -> Option<&'static str> {
+        let alone = matches!(self.kernel, Kernel::Wendland) && self.shifting == Shifting::None;
+        let clash = "corrected gradients are made for the Wendland kernel without shifting";
+        (self.gradient == Gradient::Corrected && !alone).then_some(clash)
+    }
+
     /// The shifting parameters, if any.
     pub fn shift(&self) -> Option<Shift> {
         match self.shifting {
@@ -257,13 +280,21 @@ impl Model {
         };
         let make = Make { model: self, medium: self.medium::<D>().counted_in(&units), units, level };
         let Medium { h, dp, .. } = make.medium;
+        let plain = (Pressure, Continuity);
         match self.kernel {
-            Kernel::Wendland => make.with_kernel(kernel::Wendland::new(h, D), (Pressure, Continuity)),
-            Kernel::Cubic { tensile: false } => make.with_kernel(kernel::Cubic::new(h, D), (Pressure, Continuity)),
+            Kernel::Wendland => match self.gradient {
+                Gradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
+                Gradient::Corrected => make.with_viscosity(
+                    kernel::Wendland::new(h, D),
+                    ((Pressure, Corrected), Continuity),
+                    ((Pressure, Moments), Continuity),
+                ),
+            },
+            Kernel::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
             Kernel::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
                 let tensile = Tensile { inv_w_dp: 1.0 / kernel.on_lattice(&make.medium).w(dp * dp) };
-                make.with_kernel(kernel, ((Pressure, tensile), Continuity))
+                make.with_shifting(kernel, ((Pressure, tensile), Continuity))
             }
         }
     }
@@ -298,20 +329,36 @@ struct Make<'a, const D: usize> {
 }
 
 impl<const D: usize> Make<'_, D> {
-    fn with_kernel<K: kernel::Kernel + 'static, P: Term<D> + 'static>(&self, kernel: K, base: P) -> Box<dyn Sweep<D>> {
+    fn with_shifting<K: kernel::Kernel + 'static, P: Term<D> + 'static>(
+        &self,
+        kernel: K,
+        base: P,
+    ) -> Box<dyn Sweep<D>> {
+        match self.model.shifting {
+            Shifting::None => self.with_viscosity(kernel, base, base),
+            _ => self.with_viscosity(kernel, (base, ShiftTerm), ((base, ShiftTerm), HeldTerm)),
+        }
+    }
+
+    fn with_viscosity<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
+        &self,
+        kernel: K,
+        base: T,
+        wall: W,
+    ) -> Box<dyn Sweep<D>> {
         let damped = || kernel.damped(&self.medium);
-        let held = (base, Barrier::new(kernel, &self.medium));
+        let held = (wall, Barrier::new(kernel, &self.medium));
         // Which part of the viscosity acts between water and solids.
         let beside = if self.model.slip == Slip::Free { 0.0 } else { 1.0 };
         match self.model.viscosity {
-            Viscosity::None => self.with_viscosity(kernel, base, held),
+            Viscosity::None => self.with_diffusion(kernel, base, held),
             Viscosity::Artificial(v) => {
                 let wall = Artificial { alpha: v.alpha * beside };
-                self.with_viscosity(kernel, (base, v.term(&self.medium)), (held, wall.term(&self.medium)))
+                self.with_diffusion(kernel, (base, v.term(&self.medium)), (held, wall.term(&self.medium)))
             }
             Viscosity::Laminar(v) => {
                 let wall = Laminar { nu0: v.nu0 * beside };
-                self.with_viscosity(
+                self.with_diffusion(
                     kernel,
                     (base, v.term(&self.units, damped())),
                     (held, wall.term(&self.units, damped())),
@@ -319,7 +366,7 @@ impl<const D: usize> Make<'_, D> {
             }
             Viscosity::Sps(v) => {
                 let wall = Sps { nu0: v.nu0 * beside, ..v };
-                self.with_viscosity(
+                self.with_diffusion(
                     kernel,
                     (base, v.terms(&self.units, damped())),
                     (held, wall.terms(&self.units, damped())),
@@ -328,19 +375,7 @@ impl<const D: usize> Make<'_, D> {
         }
     }
 
-    fn with_viscosity<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
-        &self,
-        kernel: K,
-        inner: T,
-        wall: W,
-    ) -> Box<dyn Sweep<D>> {
-        match self.model.shifting {
-            Shifting::None => self.with_shifting(kernel, inner, wall),
-            _ => self.with_shifting(kernel, (inner, ShiftTerm), ((wall, ShiftTerm), HeldTerm)),
-        }
-    }
-
-    fn with_shifting<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
+    fn with_diffusion<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
         &self,
         kernel: K,
         inner: T,

@@ -6,6 +6,7 @@
 
 pub mod continuity;
 pub mod diffusion;
+pub mod gradient;
 pub mod kernel;
 mod lanes;
 mod medium;

@@ -69,6 +69,8 @@ pub struct Side<N, const D: usize> {
     /// Sub-particle stress ρ₀ τ/ρ², m²/s²; symmetric, of which laws read `[i][j]` with j ≤ i (read by laws with
     /// [`Term::STRESS`]).
     pub stress: [[N; D]; D],
+    /// B − 1 of the corrected gradient, –; symmetric, as above (read by laws with [`Term::FORM`]).
+    pub form: [[N; D]; D],
 }
 
 /// Two particles a and b, and what their places give.
@@ -129,13 +131,15 @@ pub struct Extra<N, const D: usize> {
     pub held: N,
     /// Strain rate S_ij, symmetric, of which `[i][j]` with j ≤ i is kept, 1/s ([`Term::STRESS`]).
     pub strain: [[N; D]; D],
+    /// Moment M_ij of the neighbours, symmetric, of which `[i][j]` with j ≤ i is kept, – ([`Term::MOMENT`]).
+    pub moment: [[N; D]; D],
 }
 
 impl<N: Num, const D: usize> Extra<N, D> {
     /// All sums `zero`.
     #[inline(always)]
     pub fn all(zero: N) -> Self {
-        Self { grad_c: [zero; D], div_r: zero, held: zero, strain: [[zero; D]; D] }
+        Self { grad_c: [zero; D], div_r: zero, held: zero, strain: [[zero; D]; D], moment: [[zero; D]; D] }
     }
 }
 
@@ -151,12 +155,18 @@ pub trait Term<const D: usize>: Copy + Send + Sync {
     const REPULSION: bool = false;
     /// Whether the sides' `stress` is read, in `vector`, and the strain summed.
     const STRESS: bool = false;
+    /// Whether the sides' `form` is read, in `vector`.
+    const FORM: bool = false;
+    /// Whether the moment of the neighbours is summed.
+    const MOMENT: bool = false;
     /// Whether the sums of shifting are made.
     const SHIFT: bool = false;
     /// Whether the sides' `mark` is read and `held` summed.
     const MARK: bool = false;
     /// Whether `extra` is used.
-    const EXTRA: bool = Self::STRESS || Self::SHIFT || Self::MARK;
+    const EXTRA: bool = Self::STRESS || Self::MOMENT || Self::SHIFT || Self::MARK;
+    /// Whether `vector` is used.
+    const VECTOR: bool = Self::STRESS || Self::FORM;
 
     /// Share along r_ab, m²/s²; symmetric under the swap of a and b.
     #[inline(always)]
@@ -192,6 +202,8 @@ macro_rules! tuple_of_terms {
             const DRAG: bool = $($name::DRAG)|+;
             const REPULSION: bool = $($name::REPULSION)|+;
             const STRESS: bool = $($name::STRESS)|+;
+            const FORM: bool = $($name::FORM)|+;
+            const MOMENT: bool = $($name::MOMENT)|+;
             const SHIFT: bool = $($name::SHIFT)|+;
             const MARK: bool = $($name::MARK)|+;
             #[inline(always)]

@@ -64,7 +64,7 @@ fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
     for i in 0..D {
         sum.dv[i] += factor * if L::DRAG { along_r * r_ab[i] + along_v * v_ab[i] } else { along_r * r_ab[i] };
     }
-    if L::STRESS {
+    if L::VECTOR {
         for (dv, vector) in sum.dv.iter_mut().zip(law.vector(&ab, [0.0; D])) {
             *dv += factor * vector;
         }
@@ -127,12 +127,13 @@ fn nodes<const D: usize>(
     input: &Input<'_, D>,
     particles: &Particles<D>,
     v: &[Vector<D>],
-    stress: &[Matrix<D>],
+    tensors: [&[Matrix<D>]; 2],
     marks: &[bool],
     needs: Needs,
     nodes: &mut Vec<Node<D>>,
 ) {
-    let rho0 = input.medium.rho0;
+    let (rho0, [stress, forms]) = (input.medium.rho0, tensors);
+    let tensor = |of: &[Matrix<D>], i: usize| of.get(i).map_or([[0.0; D]; D], rows);
     (0..particles.len())
         .into_par_iter()
         .with_min_len(PER_TASK)
@@ -146,7 +147,8 @@ fn nodes<const D: usize>(
                 s,
                 repulsion: if needs.repulsion { repulsion(p, s) } else { 0.0 },
                 mark: marks.get(i).map_or(0.0, |&m| f64::from(u8::from(m))),
-                stress: stress.get(i).map_or([[0.0; D]; D], rows),
+                stress: tensor(stress, i),
+                form: tensor(forms, i),
             };
             Node { r: particles.r[i].into(), v: v[i].into(), side }
         })
@@ -165,8 +167,8 @@ impl<const D: usize> Sweep<D> for Gather<D> {
     fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]) {
         let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
         let needs = self.laws.needs();
-        nodes(input, input.water, &input.water.v, input.stress, &[], needs, &mut self.nodes[0]);
-        nodes(input, input.skin, input.shown, &[], input.marks, needs, &mut self.nodes[1]);
+        nodes(input, input.water, &input.water.v, [input.stress, input.forms], &[], needs, &mut self.nodes[0]);
+        nodes(input, input.skin, input.shown, [&[], &[]], input.marks, needs, &mut self.nodes[1]);
         let start = Instant::now();
         let (sums, nodes) = (&self.fits, [&self.nodes[0][..], &self.nodes[1][..]]);
         let chunks = fits.par_chunks_mut(CHUNK).zip(input.near.wet().par_chunks(CHUNK)).zip(&lists.skin);
@@ -177,8 +179,8 @@ impl<const D: usize> Sweep<D> for Gather<D> {
     fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
         let Pairs::Lists(lists) = input.near.pairs() else { unreachable!("the oracle has lists of particles") };
         let needs = self.laws.needs();
-        nodes(input, input.water, &input.water.v, input.stress, &[], needs, &mut self.nodes[0]);
-        nodes(input, input.skin, input.shown, &[], input.marks, needs, &mut self.nodes[1]);
+        nodes(input, input.water, &input.water.v, [input.stress, input.forms], &[], needs, &mut self.nodes[0]);
+        nodes(input, input.skin, input.shown, [&[], &[]], input.marks, needs, &mut self.nodes[1]);
         let start = Instant::now();
         let (laws, nodes) = (&self.laws, [&self.nodes[0][..], &self.nodes[1][..]]);
         let g = input.medium.gravity;

@@ -99,8 +99,9 @@ impl<const D: usize> Lanes<D> {
         let (sum, mut sums) = (self.of_slot(slot, needs.sums(D)), Running::all(0.0));
         sums.each(needs, needs, |row, x| *x = sum(row));
         let Units { length, time } = self.units;
-        let Extra { grad_c, div_r, held, strain } = sums.extra;
-        Extra { grad_c: grad_c.map(|x| x / length), div_r, held, strain: strain.map(|row| row.map(|x| x / time)) }
+        let Extra { grad_c, div_r, held, strain, moment } = sums.extra;
+        let strain = strain.map(|row| row.map(|x| x / time));
+        Extra { grad_c: grad_c.map(|x| x / length), div_r, held, strain, moment }
     }
 
     /// Sums over all slabs; gives the largest |v_ab·r_ab|/(r² + η²), 1/s.
@@ -293,8 +294,8 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
     #[inline(always)]
     fn side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> Side<f32x8<S>, D> {
         let [x, low, p, s] = s;
-        let (repulsion, mark, stress) = (self.zero, self.zero, [[self.zero; D]; D]);
-        let mut side = Side { x, low, p, s, repulsion, mark, stress };
+        let (repulsion, mark, none) = (self.zero, self.zero, [[self.zero; D]; D]);
+        let mut side = Side { x, low, p, s, repulsion, mark, stress: none, form: none };
         let inputs = self.needs.inputs(D);
         if inputs > 0 {
             let rows = &self.rows[c * inputs..][..inputs];
@@ -304,14 +305,19 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
             if self.needs.repulsion {
                 side.repulsion = read(&rows[self.needs.repulsion_at()].0);
             }
-            if self.needs.stress {
-                let mut row = self.needs.stress_at();
-                for i in 0..D {
-                    for j in 0..=i {
-                        side.stress[i][j] = read(&rows[row].0);
+            let tensor = |tensor: &mut [[f32x8<S>; D]; D], mut row: usize| {
+                for (i, entries) in tensor.iter_mut().enumerate() {
+                    for entry in &mut entries[..=i] {
+                        *entry = read(&rows[row].0);
                         row += 1;
                     }
                 }
+            };
+            if self.needs.stress {
+                tensor(&mut side.stress, self.needs.stress_at());
+            }
+            if self.needs.form {
+                tensor(&mut side.form, self.needs.form_at(D));
             }
         }
         side
@@ -358,7 +364,7 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
                     *force = along_v.mul_add(*v, *force);
                 }
             }
-            if L::STRESS {
+            if L::VECTOR {
                 let vector = law.vector(&ab, [zero; D]);
                 for (force, vector) in force.iter_mut().zip(&vector) {
                     *force = factor.mul_add(*vector, *force);

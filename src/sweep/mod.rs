@@ -32,6 +32,8 @@ pub struct Input<'a, const D: usize> {
     pub shown: &'a [Vector<D>],
     /// Stress of the water, m²/s²; empty unless a law reads it.
     pub stress: &'a [Matrix<D>],
+    /// B − 1 of the water's corrected gradients, –; empty unless a law reads it.
+    pub forms: &'a [Matrix<D>],
     /// Beside which boundary particles water is not shifted; empty unless a law reads it.
     pub marks: &'a [bool],
     /// Constants of the water.

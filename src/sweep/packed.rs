@@ -7,7 +7,7 @@ use crate::{
     lanes::{LANES, Row},
     law::{Units, pressure::repulsion},
     near::{self, Clusters},
-    space::Vector,
+    space::{Matrix, Vector},
 };
 
 /// Eight particles of one kind as a pair needs them, in the sweep's units.
@@ -51,9 +51,9 @@ impl<const D: usize> Packed<D> {
         });
     }
 
-    /// Packs the rows of input that the laws need: marks of the skin, stress of the water, repulsion of both.
+    /// Packs the rows of input that the laws need: marks of the skin, stress and corrected gradients of the water, repulsion of both.
     pub(super) fn pack_rows(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units, needs: Needs) {
-        let (mark, stress, count) = (needs.mark, needs.stress, needs.inputs(D));
+        let (mark, count) = (needs.mark, needs.inputs(D));
         self.rows.clear();
         self.rows.resize(clusters.len() * count, Row::default());
         let scale = (units.time / units.length).powi(2);
@@ -71,14 +71,19 @@ impl<const D: usize> Packed<D> {
                     if mark && c >= slab.middle {
                         rows[0].0[l] = f32::from(u8::from(input.marks[i]));
                     }
-                    if stress && c < slab.middle {
-                        let mut k = needs.stress_at();
+                    let mut tensor = |tensor: &Matrix<D>, mut k: usize, scale: f64| {
                         for row in 0..D {
                             for column in 0..=row {
-                                rows[k].0[l] = (input.stress[i][(row, column)] * scale) as f32;
+                                rows[k].0[l] = (tensor[(row, column)] * scale) as f32;
                                 k += 1;
                             }
                         }
+                    };
+                    if needs.stress && c < slab.middle {
+                        tensor(&input.stress[i], needs.stress_at(), scale);
+                    }
+                    if needs.form && c < slab.middle {
+                        tensor(&input.forms[i], needs.form_at(D), 1.0);
                     }
                 }
             }

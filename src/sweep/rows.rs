@@ -13,17 +13,28 @@ pub struct Needs {
     pub mark: bool,
     /// Stress, and the sum of strain.
     pub stress: bool,
+    /// Corrected gradients.
+    pub form: bool,
+    /// The moment of the neighbours.
+    pub moment: bool,
 }
 
 impl Needs {
     /// Those of the laws `Y`.
     pub const fn of<Y: Term<D>, const D: usize>() -> Self {
-        Self { shift: Y::SHIFT, repulsion: Y::REPULSION, mark: Y::MARK, stress: Y::STRESS }
+        Self {
+            shift: Y::SHIFT,
+            repulsion: Y::REPULSION,
+            mark: Y::MARK,
+            stress: Y::STRESS,
+            form: Y::FORM,
+            moment: Y::MOMENT,
+        }
     }
 
     /// Whether there are sums.
     pub const fn any(self) -> bool {
-        self.shift || self.mark || self.stress
+        self.shift || self.mark || self.stress || self.moment
     }
 
     const fn held_at(self, dimension: usize) -> usize {
@@ -34,9 +45,13 @@ impl Needs {
         self.held_at(dimension) + if self.mark { 1 } else { 0 }
     }
 
+    const fn moment_at(self, dimension: usize) -> usize {
+        self.strain_at(dimension) + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+    }
+
     /// Rows of sums: acceleration and density rate, then what the laws ask for.
     pub(super) const fn sums(self, dimension: usize) -> usize {
-        self.strain_at(dimension) + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+        self.moment_at(dimension) + if self.moment { dimension * (dimension + 1) / 2 } else { 0 }
     }
 
     /// The row of repulsion among the inputs beside places, velocities and densities; before it is the mark.
@@ -49,9 +64,14 @@ impl Needs {
         self.repulsion_at() + if self.repulsion { 1 } else { 0 }
     }
 
+    /// The first row of the corrected gradient, after the stress.
+    pub(super) const fn form_at(self, dimension: usize) -> usize {
+        self.stress_at() + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+    }
+
     /// Rows of such inputs.
     pub(super) const fn inputs(self, dimension: usize) -> usize {
-        self.stress_at() + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+        self.form_at(dimension) + if self.form { dimension * (dimension + 1) / 2 } else { 0 }
     }
 }
 
@@ -86,12 +106,17 @@ impl<N: Num, const D: usize> Running<N, D> {
         if own.mark {
             visit(all.held_at(D), &mut self.extra.held);
         }
-        if own.stress {
-            let mut row = all.strain_at(D);
-            for (i, strain) in self.extra.strain.iter_mut().enumerate() {
-                for strain in &mut strain[..=i] {
-                    visit(row, strain);
-                    row += 1;
+        let tensors = [
+            (own.stress, all.strain_at(D), &mut self.extra.strain),
+            (own.moment, all.moment_at(D), &mut self.extra.moment),
+        ];
+        for (needed, mut row, tensor) in tensors {
+            if needed {
+                for (i, entries) in tensor.iter_mut().enumerate() {
+                    for entry in &mut entries[..=i] {
+                        visit(row, entry);
+                        row += 1;
+                    }
                 }
             }
         }

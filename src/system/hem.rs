@@ -12,7 +12,8 @@ use crate::{
 /// Faces touch if they are no further apart, dp.
 const TOUCH: f64 = 0.1;
 
-/// A solid slides along a face if it sets out at more than 60° from the face's normal: what rises from its bed, as a gate, opens.
+/// A solid slides along a face if each of its motions sets out at more than 60° from the face's normal: what rises from its bed, as a
+/// gate, opens.
 const ALONG: f64 = 0.5;
 
 /// A boundary particle of a hem, in the frame of its solid.
@@ -44,7 +45,7 @@ pub(super) fn hem<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Mode
                 continue;
             }
             let out = at.rotation * other.shape.outward(&at.local(&x), 0.05 * dp);
-            if motion.heading(&x).dot(&out).abs() > ALONG {
+            if motion.headings(&x).iter().any(|way| way.dot(&out).abs() > ALONG) {
                 continue;
             }
             let high = pose.local(&(x + out * (model.layers() as f64 * dp)));
@@ -75,6 +76,7 @@ mod tests {
             role,
             friction: 0.0,
             restitution: 0.0,
+            contact_skin: 0.0,
         };
         let specs = [
             solid("bed", [10.0, 1.0], -0.5, Role::Fixed),
@@ -108,6 +110,9 @@ mod tests {
         let about = |y: f64| Motion::hinge(Vector::from([0.0, y]), &[1.0], Law::constant(0.0));
         assert!(paddle(0.0, about(0.0)).is_empty(), "a flap hinged at the bed turns there");
         assert!(!paddle(0.0, about(-1.0)).is_empty(), "one hinged far below slides");
+        let both = |other: Motion<2>| Motion::chain([along([1.0, 0.0]), other]);
+        assert!(!paddle(0.0, both(about(-1.0))).is_empty(), "one that slides in both its motions");
+        assert!(paddle(0.0, both(along([0.0, 1.0]))).is_empty(), "a piston that is lifted, too");
         assert!(paddle(0.3, along([1.0, 0.0])).is_empty(), "a gap of 3 dp");
         assert!(paddle(-0.4, along([1.0, 0.0])).is_empty(), "rows of its own");
     }

@@ -26,6 +26,7 @@ pub(crate) struct SystemState<const D: usize> {
     accelerations: Vec<(Vector<D>, Wedge<D>)>,
     yielding: Vec<Yielding>,
     stress: Vec<Matrix<D>>,
+    forms: Vec<Matrix<D>>,
     /// Where the water and the solids were when the lists were made.
     built: (Vec<Vector<D>>, Vec<Pose<D>>),
     passes: u64,
@@ -43,6 +44,7 @@ impl<const D: usize> System<D> {
             accelerations: self.solids.iter().map(|s| (s.acceleration, s.whirl)).collect(),
             yielding: self.solids.iter().map(|s| s.yielding).collect(),
             stress: self.stress.clone(),
+            forms: self.forms.clone(),
             built: (self.near.built().to_vec(), self.built.clone().unwrap_or_default()),
             passes: self.passes,
         }
@@ -51,7 +53,7 @@ impl<const D: usize> System<D> {
     /// Goes back to a kept state of the same scene.
     pub(crate) fn restore(&mut self, kept: SystemState<D>) -> Result<()> {
         let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
-        let stress = if self.stress.is_empty() { 0 } else { kept.fluid.len() };
+        let number = |own: &[Matrix<D>]| if own.is_empty() { 0 } else { kept.fluid.len() };
         let Some(real) = kept.fluid.len().checked_sub(kept.images.len()) else { return Err(other()) };
         let all =
             if self.changed || self.limits.escape == Escape::Remove { real <= self.count } else { real == self.count };
@@ -63,7 +65,8 @@ impl<const D: usize> System<D> {
             && kept.accelerations.len() == self.solids.len()
             && kept.yielding.len() == self.solids.len()
             && kept.yielding.iter().all(Yielding::is_finite)
-            && kept.stress.len() == stress
+            && kept.stress.len() == number(&self.stress)
+            && kept.forms.len() == number(&self.forms)
             && kept.built.0.len() == kept.fluid.len()
             && kept.built.1.len() == kept.kinematics.len()
             && whole(&kept.fluid)
@@ -84,7 +87,8 @@ impl<const D: usize> System<D> {
         if !near || !skin.iter().chain(&kept.skin.r).all(|x| x.amax() < FARTHEST) {
             return Err(Error::new(Kind::Restart, "the checkpoint holds a particle that is nowhere"));
         }
-        (self.fluid, self.skin, self.stress, self.passes) = (kept.fluid, kept.skin, kept.stress, kept.passes);
+        (self.fluid, self.skin, self.passes) = (kept.fluid, kept.skin, kept.passes);
+        (self.stress, self.forms) = (kept.stress, kept.forms);
         self.images.of = kept.images;
         self.sums.resize(self.fluid.len(), Sums::zero());
         for ((solid, k), load) in self.solids.iter_mut().zip(kept.kinematics).zip(kept.loads) {

@@ -12,13 +12,15 @@
 //!
 //! with the dashed ones those of the pressure alone: Ė = viscous + diffusion + walls + work. What is called walls is what the
 //! boundary particles, which are springs of their own, and their barrier give to the water. The sum of the three needs no second pass.
+//! Where gradients are corrected, the force does not take from the motion what compression gets; a third pass, of the pressure with
+//! plain gradients, tells by how much, as viscosity is told, and that is called gradient.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::System;
 use crate::{
-    model::{Diffusion, Dimension, Model, Shifting, Viscosity},
+    model::{Diffusion, Dimension, Gradient, Model, Shifting, Viscosity},
     near::CHUNK,
     solid::{Dim, Load},
     space::Vector,
@@ -32,11 +34,15 @@ pub(crate) struct Powers {
     pub(crate) viscous: f64,
     /// What the diffusion of density gives.
     pub(crate) diffusion: f64,
+    /// What the correction of gradients gives.
+    pub(crate) gradient: f64,
 }
 
-/// The pass of the pressure alone.
+/// The passes of the pressure alone.
 pub(super) struct Meter<const D: usize> {
-    plain: Box<dyn Sweep<D>>,
+    pressure: Box<dyn Sweep<D>>,
+    /// With plain gradients, if they are corrected.
+    plain: Option<Box<dyn Sweep<D>>>,
     sums: Vec<Sums<D>>,
     skin: Vec<Sums<D>>,
 }
@@ -47,9 +53,11 @@ impl<const D: usize> Meter<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let plain =
+        let pressure =
             Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };
-        Self { plain: Dim::<D>::sweep(&plain), sums: Vec::new(), skin: Vec::new() }
+        let plain = Model { gradient: Gradient::Plain, ..pressure.clone() };
+        let plain = (model.gradient != Gradient::Plain).then(|| Dim::<D>::sweep(&plain));
+        Self { pressure: Dim::<D>::sweep(&pressure), plain, sums: Vec::new(), skin: Vec::new() }
     }
 }
 
@@ -64,23 +72,36 @@ impl<const D: usize> System<D> {
 
     /// The powers at the last force pass, and the loads of the pressure alone on the solids; the state must be that of the pass.
     pub(crate) fn tell_apart(&mut self) -> Option<(Powers, Vec<Load<D>>)> {
-        let mut meter = self.meter.take()?;
-        meter.sums.resize(self.fluid.len(), Sums::zero());
-        meter.skin.resize(self.near.wet().len(), Sums::zero());
-        let Self { near, fluid, skin, shown, stress, marks, medium, state, .. } = &*self;
-        let shown = if shown.is_empty() { &skin.v } else { shown };
-        let input = Input { near, water: fluid, skin, shown, stress, marks, medium, state };
-        meter.plain.rates(&input, &mut Output { water: &mut meter.sums, skin: &mut meter.skin, extra: &mut [] });
-        let loads = self.loads(&meter.skin);
-        let [all, plain] = [&self.sums, &meter.sums].map(|sums| self.gains(sums));
-        let drags =
-            self.solids.iter().zip(&loads).map(|(solid, pressure)| (solid.load - *pressure).power(&solid.kinematics));
-        let powers = Powers { viscous: all[0] - plain[0] + drags.sum::<f64>(), diffusion: all[1] - plain[1] };
-        self.meter = Some(meter);
+        let Meter { mut pressure, mut plain, mut sums, mut skin } = self.meter.take()?;
+        sums.resize(self.fluid.len(), Sums::zero());
+        skin.resize(self.near.wet().len(), Sums::zero());
+        let mut pass = |sweep: &mut dyn Sweep<D>| self.pass(sweep, &mut sums, &mut skin);
+        let (gains, loads) = pass(&mut *pressure);
+        let before = plain.as_mut().map(|plain| pass(&mut **plain));
+        let all = self.gains(&self.sums);
+        let on_solids = |more: &dyn Fn(usize) -> Load<D>| -> f64 {
+            self.solids.iter().enumerate().map(|(i, solid)| more(i).power(&solid.kinematics)).sum()
+        };
+        let powers = Powers {
+            viscous: all[0] - gains[0] + on_solids(&|i| self.solids[i].load - loads[i]),
+            diffusion: all[1] - gains[1],
+            gradient: before
+                .map_or(0.0, |(plain, plain_loads)| gains[0] - plain[0] + on_solids(&|i| loads[i] - plain_loads[i])),
+        };
+        self.meter = Some(Meter { pressure, plain, sums, skin });
         Some((powers, loads))
     }
 
-    /// viscous + diffusion + walls, W: what the water gained at the last force pass beyond the work of the solids.
+    /// What the water gains ([`System::gains`]) and the loads on the solids by another sweep, at the places of the last force pass.
+    fn pass(&self, sweep: &mut dyn Sweep<D>, sums: &mut [Sums<D>], on: &mut [Sums<D>]) -> ([f64; 2], Vec<Load<D>>) {
+        let Self { near, fluid, skin, shown, stress, forms, marks, medium, state, .. } = self;
+        let shown = if shown.is_empty() { &skin.v } else { shown };
+        let input = Input { near, water: fluid, skin, shown, stress, forms, marks, medium, state };
+        sweep.rates(&input, &mut Output { water: sums, skin: on, extra: &mut [] });
+        (self.gains(sums), self.loads(on))
+    }
+
+    /// viscous + diffusion + gradient + walls, W: what the water gained at the last force pass beyond the work of the solids.
     pub(crate) fn unworked(&self) -> f64 {
         let on_solids: f64 = self.solids.iter().map(|solid| solid.load.power(&solid.kinematics)).sum();
         self.gains(&self.sums).iter().sum::<f64>() + on_solids

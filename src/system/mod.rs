@@ -31,9 +31,9 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::{
-    error::Result,
-    law::{Extra, Medium, state::State, wall::Cover},
-    model::{Dimension, Model, Viscosity},
+    error::{Error, Result},
+    law::{Extra, Medium, gradient, state::State, wall::Cover},
+    model::{Dimension, Gradient, Model, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
     solid::{Dim, Links, Load, Solid, skin},
@@ -83,6 +83,8 @@ pub struct System<const D: usize> {
     images: Images<D>,
     /// Stress of the water from the last pass, m²/s²; empty unless the viscosity has one.
     stress: Vec<Matrix<D>>,
+    /// B − 1 of the water's corrected gradients from the last pass, –; empty unless they are.
+    forms: Vec<Matrix<D>>,
     /// Beside which boundary particles water is not shifted; empty unless water is shifted.
     marks: Vec<bool>,
     pub(crate) sums: Vec<Sums<D>>,
@@ -121,6 +123,9 @@ impl<const D: usize> System<D> {
     {
         let Setup { model, water, levels, velocity, pressure, solids: specs, links, domain, periodic, limits, damping } =
             setup;
+        if let Some(what) = model.clash() {
+            return Err(Error::scene(what));
+        }
         let (medium, reach) = (model.medium::<D>(), model.reach());
         let state = State::new(medium.c0, medium.gamma);
         // Depth along g: the level is a height on the last axis.
@@ -135,15 +140,13 @@ impl<const D: usize> System<D> {
         let fluid = Particles { r: water, v, rho, id };
         let (top, count) = (fluid.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max), fluid.len());
         let cover = Cover::new(|r2| model.kernel_value(r2, D) * medium.volume0(), model.dp, reach, D);
+        let zeros = |needed: bool| if needed { vec![Matrix::zeros(); fluid.len()] } else { Vec::new() };
         let mut system = Self {
             sweep: Dim::<D>::sweep(&model),
             meter: None,
             near: Near::new(reach, model.dp, model.sweep.level()),
-            stress: if matches!(model.viscosity, Viscosity::Sps(_)) {
-                vec![Matrix::zeros(); fluid.len()]
-            } else {
-                Vec::new()
-            },
+            stress: zeros(matches!(model.viscosity, Viscosity::Sps(_))),
+            forms: zeros(model.gradient == Gradient::Corrected),
             marks: Vec::new(),
             sums: vec![Sums::zero(); fluid.len()],
             skin_sums: Vec::new(),
@@ -256,9 +259,9 @@ impl<const D: usize> System<D> {
         if self.sweep.extra() {
             self.extra.resize(self.fluid.len(), Extra::all(0.0));
         }
-        let Self { sweep, near, fluid, skin, shown, stress, marks, medium, state, .. } = self;
+        let Self { sweep, near, fluid, skin, shown, stress, forms, marks, medium, state, .. } = self;
         let shown = if shown.is_empty() { &skin.v } else { shown };
-        let input = Input { near, water: fluid, skin, shown, stress, marks, medium, state };
+        let input = Input { near, water: fluid, skin, shown, stress, forms, marks, medium, state };
         let mut output = Output { water: &mut self.sums, skin: &mut self.skin_sums, extra: &mut self.extra };
         self.peaks = sweep.rates(&input, &mut output);
         self.reflect();
@@ -269,6 +272,10 @@ impl<const D: usize> System<D> {
                 *stress = Matrix::from_fn(|i, j| rows[i][j]);
             });
         }
+        self.forms.par_iter_mut().zip(&self.extra).with_min_len(PER_TASK).for_each(|(form, extra)| {
+            let rows = gradient::close(&extra.moment);
+            *form = Matrix::from_fn(|i, j| rows[i][j]);
+        });
         let loads = self.loads(&self.skin_sums);
         self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
         self.passes += 1;

@@ -112,6 +112,7 @@ impl<const D: usize> System<D> {
         permute(&mut self.fluid.rho, &order);
         permute(&mut self.fluid.id, &order);
         permute(&mut self.stress, &order);
+        permute(&mut self.forms, &order);
         for (r, (_, away)) in self.fluid.r[real..].iter_mut().zip(&images) {
             *r += away;
         }

@@ -20,8 +20,6 @@ use crate::{
 impl<const D: usize> System<D> {
     /// Gives each boundary particle of `whose` beside water the density of still water at its depth.
     pub(super) fn still_skin(&mut self, whose: Range<usize>) {
-        let up = D - 1;
-        let g = -self.medium.gravity[up];
         let still: Vec<f64> = self
             .near
             .wet()
@@ -33,7 +31,7 @@ impl<const D: usize> System<D> {
                     let d = (self.fluid.r[j] - x).norm_squared();
                     if d < nearest.0 {
                         let head = self.state.pressure(self.fluid.rho[j] / self.medium.rho0 - 1.0);
-                        nearest = (d, head + g * (self.fluid.r[j][up] - x[up]));
+                        nearest = (d, head + self.medium.gravity.dot(&(x - self.fluid.r[j])));
                     }
                 });
                 self.medium.rho0 * (1.0 + self.state.excess(nearest.1.max(0.0)))
@@ -67,8 +65,8 @@ impl<const D: usize> System<D> {
         if !settling && !sticks && !self.feels {
             return;
         }
-        let Self { sweep, near, fluid, skin, stress, marks, medium, state, .. } = self;
-        let input = Input { near, water: fluid, skin, shown: &skin.v, stress, marks, medium, state };
+        let Self { sweep, near, fluid, skin, stress, forms, marks, medium, state, .. } = self;
+        let input = Input { near, water: fluid, skin, shown: &skin.v, stress, forms, marks, medium, state };
         let mut fits = vec![Fit::all(0.0); input.near.wet().len()];
         sweep.fits(&input, sticks, &mut fits);
         if self.feels {

@@ -2,7 +2,7 @@
 
 use pontoon::{
     law::{shifting::Shift, viscosity::Sps},
-    model::{Model, Scheme, Shifting, Viscosity, Walls},
+    model::{Gradient, Model, Scheme, Shifting, Viscosity, Walls},
     shape::Shape,
     simulation::Simulation,
     solid::{Formula, Law, Motion, Role},
@@ -11,20 +11,23 @@ use pontoon::{
 
 use crate::rig;
 
-/// Both steppers and both walls.
-const BOTH: [(Scheme, Walls); 3] = [
-    (Scheme::Symplectic, Walls::Dbc),
-    (Scheme::Verlet { euler_every: 50 }, Walls::Dbc),
-    (Scheme::Symplectic, Walls::Settling),
+/// Both steppers, walls and gradients.
+const KINDS: [(Scheme, Walls, Gradient); 4] = [
+    (Scheme::Symplectic, Walls::Dbc, Gradient::Plain),
+    (Scheme::Verlet { euler_every: 50 }, Walls::Dbc, Gradient::Plain),
+    (Scheme::Symplectic, Walls::Settling, Gradient::Plain),
+    (Scheme::Symplectic, Walls::Settling, Gradient::Corrected),
 ];
 
 /// A dam break onto two floats that collide, one as light as foam, beside a paddle, with every term that remembers something.
-fn scene(scheme: Scheme, walls: Walls) -> Simulation<2> {
+fn scene((scheme, walls, gradient): (Scheme, Walls, Gradient)) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.scheme, model.cfl, model.walls) = (scheme, 0.2, walls);
-    model.viscosity = Viscosity::Sps(Sps::default());
-    model.shifting = Shifting::AwayFromFixed(Shift::default());
+    (model.viscosity, model.gradient) = (Viscosity::Sps(Sps::default()), gradient);
+    if gradient == Gradient::Plain {
+        model.shifting = Shifting::AwayFromFixed(Shift::default());
+    }
     let mut water = rig::lattice([0.1, 0.0], [0.5, 0.3], dp);
     water.extend(rig::lattice([0.6, 0.0], [0.8, 0.1], dp));
     let mut second = rig::float(Shape::Ball { radius: 0.06 }, [1.16, 0.17], 30.0);
@@ -48,42 +51,42 @@ fn steps(sim: &mut Simulation<2>, n: u32) {
 
 #[test]
 fn one_two_three_and_eight_threads_give_the_same_bits() {
-    for (scheme, walls) in BOTH {
+    for kind in KINDS {
         let runs: Vec<Vec<u8>> = [1, 2, 3, 8]
             .into_iter()
             .map(|n| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
                 pool.install(|| {
-                    let mut sim = scene(scheme, walls);
+                    let mut sim = scene(kind);
                     steps(&mut sim, 150);
                     sim.save().unwrap()
                 })
             })
             .collect();
-        assert!(runs.iter().all(|run| *run == runs[0]), "{scheme:?} {walls:?}");
+        assert!(runs.iter().all(|run| *run == runs[0]), "{kind:?}");
     }
 }
 
 #[test]
 fn a_resumed_run_goes_on_to_the_same_bits() {
-    for (scheme, walls) in BOTH {
-        let mut whole = scene(scheme, walls);
+    for kind in KINDS {
+        let mut whole = scene(kind);
         steps(&mut whole, 73);
         let kept = whole.save().unwrap();
         steps(&mut whole, 120);
-        let mut resumed = scene(scheme, walls);
+        let mut resumed = scene(kind);
         resumed.restore(&kept).unwrap();
         assert_eq!(resumed.save().unwrap(), kept, "what was kept comes back whole");
         steps(&mut resumed, 120);
-        assert!(resumed.save().unwrap() == whole.save().unwrap(), "{scheme:?} {walls:?}");
+        assert!(resumed.save().unwrap() == whole.save().unwrap(), "{kind:?}");
     }
 }
 
 #[test]
 fn damaged_bytes_are_refused() {
-    let sim = scene(Scheme::Symplectic, Walls::Dbc);
+    let sim = scene(KINDS[0]);
     let kept = sim.save().unwrap();
-    let mut other = scene(Scheme::Symplectic, Walls::Dbc);
+    let mut other = scene(KINDS[0]);
     assert!(other.restore(&kept[..kept.len() / 2]).is_err());
     assert!(other.restore(&[]).is_err());
     // Eight bytes after eight are made a number that is none, or far too large: told, or of no consequence.

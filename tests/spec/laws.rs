@@ -6,6 +6,7 @@ use pontoon::{
         Extra, Medium, Pair, Side, Term, Units,
         continuity::Continuity,
         diffusion::{Fourtakas, Molteni},
+        gradient::{Corrected, Moments},
         kernel::{Kernel as _, Wendland},
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
@@ -26,9 +27,12 @@ fn medium() -> Medium<3> {
 fn pair(dice: &mut Dice) -> [Pair<f64, 3>; 2] {
     let mut side = || {
         let x = 0.02 * (dice.roll() - 0.5);
-        let [xx, yy, zz, xy, xz, yz]: [f64; 6] = std::array::from_fn(|_| dice.roll() - 0.5);
-        let stress = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        Side { x, low: 0.0, p: 400.0 * x, s: 1.0 / (1.0 + x), repulsion: 4.0 * x.abs(), mark: 1.0, stress }
+        let mut tensor = || {
+            let [xx, yy, zz, xy, xz, yz]: [f64; 6] = std::array::from_fn(|_| dice.roll() - 0.5);
+            [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+        };
+        let (stress, form) = (tensor(), tensor());
+        Side { x, low: 0.0, p: 400.0 * x, s: 1.0 / (1.0 + x), repulsion: 4.0 * x.abs(), mark: 1.0, stress, form }
     };
     let (a, b) = (side(), side());
     let r: [f64; 3] = std::array::from_fn(|_| 0.02 * (dice.roll() - 0.5));
@@ -68,6 +72,8 @@ fn swapping_the_particles_changes_the_sign_and_no_bit() {
     odd_under_swap("fourtakas", Fourtakas::default().term(&m));
     odd_under_swap("shifting", ShiftTerm);
     odd_under_swap("held", HeldTerm);
+    odd_under_swap("corrected", Corrected);
+    odd_under_swap("moments", Moments);
 }
 
 #[test]
@@ -102,8 +108,11 @@ fn still_water_has_no_dynamic_density_to_diffuse() {
     let term = Fourtakas::default().term(&m);
     let plain = Molteni::default().term(&m);
     let still = |r: Vector<3>| (6.0f64 / 400.0 * m.gravity.dot(&r)).ln_1p() / 6.0;
-    let side =
-        |x: f64| Side { x, low: 0.0, p: 0.0, s: 1.0 / (1.0 + x), repulsion: 0.0, mark: 1.0, stress: [[0.0; 3]; 3] };
+    let none = [[0.0; 3]; 3];
+    let side = |x: f64| {
+        let s = 1.0 / (1.0 + x);
+        Side { x, low: 0.0, p: 0.0, s, repulsion: 0.0, mark: 1.0, stress: none, form: none }
+    };
     let mut dice = Dice(11);
     for _ in 0..100 {
         // Ten metres down (in the units of this c₀: x up to 1 %), at any angle to g.
@@ -121,7 +130,7 @@ fn still_water_has_no_dynamic_density_to_diffuse() {
 #[test]
 fn shifting_stops_at_the_free_surface_and_is_held_to_a_tenth_of_dp() {
     let m = medium();
-    let sums = |div_r| Extra { grad_c: [1e6, -1e6, 0.0], div_r, held: 0.0, strain: [[0.0; 3]; 3] };
+    let sums = |div_r| Extra { grad_c: [1e6, -1e6, 0.0], div_r, ..Extra::all(0.0) };
     let shift = Shift::default();
     assert_eq!(shift.close(&sums(2.7), 1.0, 1e-4, &m), Vector::<3>::zeros());
     let inside = shift.close(&sums(3.0), 1.0, 1e-4, &m);

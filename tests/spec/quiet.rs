@@ -2,7 +2,7 @@
 
 use pontoon::{
     law::shifting::Shift,
-    model::{Model, Scheme, Shifting, Walls},
+    model::{Gradient, Model, Scheme, Shifting, Walls},
     simulation::Simulation,
 };
 
@@ -40,6 +40,7 @@ fn profile(sim: &Simulation<2>) -> Vec<(f64, f64)> {
 fn the_pressure_is_hydrostatic_and_the_level_stands() {
     for walls in [Walls::Dbc, Walls::Settling] {
         stands(&still_tank(Model { walls, ..Model::water(2, DP, DEPTH) }, 5.0));
+        stands(&still_tank(Model { walls, gradient: Gradient::Corrected, ..Model::water(2, DP, DEPTH) }, 5.0));
         // At h = 1.7 dp rows of the lattice fall out of step now and then, and stir the water by up to 3 % of √(g depth).
         let wide = Model { walls, h: 2.0 * DP, ..Model::water(2, DP, DEPTH) };
         let mut sim = still_tank(wide, 1.0);
