@@ -119,14 +119,15 @@ impl<const D: usize> Cells<D> {
     }
 }
 
-/// The points that keep `distance` (m) from every earlier point that was kept, as flags.
-pub(super) fn spaced<const D: usize>(points: &[Vector<D>], distance: f64) -> Vec<bool> {
+/// The points that keep `distance` (m) from every earlier point that was kept, as flags; the first `given` are kept
+/// however near they are.
+pub(super) fn spaced<const D: usize>(points: &[Vector<D>], given: usize, distance: f64) -> Vec<bool> {
     let cells = Cells::new(points, distance);
     let mut kept = vec![false; points.len()];
     for (i, x) in points.iter().enumerate() {
         let mut free = true;
         cells.near(x, distance, |j, y| free &= !(kept[j] && (x - y).norm_squared() < distance * distance));
-        kept[i] = free;
+        kept[i] = i < given || free;
     }
     kept
 }

@@ -46,6 +46,17 @@ impl<const D: usize> Shape<D> {
         }
         n.try_normalize(1e-9 * step).unwrap_or_else(Vector::zeros)
     }
+
+    /// The signed distance at `x`, m, and the outward direction, as by themselves; of a mesh by one search.
+    pub(super) fn slope(&self, x: &Vector<D>, step: f64) -> (f64, Vector<D>) {
+        match self {
+            Shape::Mesh { mesh, .. } => {
+                let (distance, n) = mesh.distance(&in_space(x));
+                (distance, Vector::from_fn(|i, _| n[i]))
+            }
+            _ => (self.signed_distance(x), self.outward(x, step)),
+        }
+    }
 }
 
 /// A point of space, whatever `D`.

@@ -195,7 +195,7 @@ mod tests {
         // fits; uneven places add a fifth.
         let most = if D == 2 { 0.85 } else { 1.04 };
         assert!(bare <= most, "{shape:?}: a gap of {bare} dp");
-        let cells = crate::shape::cells::spaced(&filled.r, 0.5 * dp);
+        let cells = crate::shape::cells::spaced(&filled.r, 0, 0.5 * dp);
         assert!(cells.iter().all(|kept| *kept), "{shape:?}: points nearer than half a dp");
     }
 

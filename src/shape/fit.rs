@@ -184,7 +184,7 @@ pub(super) fn fit<const D: usize>(
         let skin = o.shape.skin(dp, LAYERS);
         points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
     }
-    pack::relax(&mut points, all_movable, dp, |i, x| {
+    pack::relax(&mut points, all_movable, dp, |i, _, x| {
         let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].keep_within(x));
         // Twice: what one face of a corner pushes out, it may push into the other.
         (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))

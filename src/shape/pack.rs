@@ -46,13 +46,13 @@ impl Pace {
 
 /// Moves the first `movable` of `points` until they are evenly spread among all of them.
 ///
-/// `confine(i, x)` may put point `i` back where it is allowed to be, and says how far (m) it may then go before
-/// it has to be asked again.
+/// `confine(i, from, x)` may put point `i`, which has come from `from`, back where it is allowed to be, and says how
+/// far (m) it may then go before it has to be asked again.
 pub(super) fn relax<const D: usize>(
     points: &mut [Vector<D>],
     movable: usize,
     dp: f64,
-    confine: impl Fn(usize, &mut Vector<D>) -> f64 + Sync,
+    confine: impl Fn(usize, &Vector<D>, &mut Vector<D>) -> f64 + Sync,
 ) {
     let pace = Pace::of(D);
     let (mut next, mut room) = (points[..movable].to_vec(), vec![0.0; movable]);
@@ -72,7 +72,7 @@ pub(super) fn relax<const D: usize>(
                 *room -= (*x - at).norm();
                 if *room <= 0.0 {
                     // A hair less than allowed: the sum of the moves is rounded.
-                    *room = 0.999 * confine(c * CHUNK + k, x);
+                    *room = 0.999 * confine(c * CHUNK + k, &at, x);
                 }
                 moved = moved.max((*x - at).norm());
             }
@@ -153,7 +153,7 @@ mod tests {
         let movable = points.len();
         let outer = (0..225_i32).map(|k| (k % 15 - 7, k / 15 - 7)).filter(|(i, j)| i.abs() > 3 || j.abs() > 3);
         points.extend(outer.map(|(i, j)| cell(i, j)));
-        relax(&mut points, movable, 1.0, |_, _| f64::INFINITY);
+        relax(&mut points, movable, 1.0, |_, _, _| f64::INFINITY);
         for (k, x) in points.iter().enumerate() {
             let nearest = points.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, y)| (x - y).norm());
             let gap = nearest.fold(f64::INFINITY, f64::min);
@@ -169,7 +169,7 @@ mod tests {
         // Every other row is a little to the left, the rest to the right: the wave that swings first.
         let shifted = inner.iter().map(|x| x + Vector::from([0.03 * (x[0] * std::f64::consts::PI).cos(), 0.0, 0.0]));
         let mut points: Vec<_> = shifted.chain(outer).collect();
-        relax(&mut points, inner.len(), 1.0, |_, _| f64::INFINITY);
+        relax(&mut points, inner.len(), 1.0, |_, _, _| f64::INFINITY);
         let off = points.iter().zip(&inner).map(|(x, at)| (x - at).norm()).fold(0.0, f64::max);
         assert!(off < 0.01, "{off} dp off the lattice");
     }

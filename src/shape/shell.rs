@@ -1,18 +1,25 @@
 //! Layers of a shape that has only its signed distance: points spread evenly over the surfaces of equal depth, as many
 //! in each layer as its shell holds cells of dp.
 //!
-//! Candidates are the middles of small cells near such a surface, moved onto it along the distance's gradient. Of these
-//! as many as are wanted are kept, as far apart as they can be, and pushed apart until they lie evenly.
+//! Candidates are the middles of small cells near such a surface, moved onto it along the distance's gradient, or, where
+//! the faces on either side are too near each other for it, halfway between them. Of these as many as are wanted are
+//! kept, as far apart as they can be, and pushed apart until they lie evenly. What a layer has no room for goes to the
+//! next one outward, so that the whole skin has the solid's volume.
 
 use rayon::prelude::*;
 
-use super::{Shape, SkinPoint, cells::spaced, pack};
+use super::{Shape, SkinPoint, cells::spaced, pack, skin::APART};
 use crate::space::Vector;
 
 /// Edge of the cells, dp: eight candidates for each point.
 const GRAIN: f64 = 0.5;
 /// How far from its depth a point may be left, dp.
 const OFF: f64 = 1e-4;
+/// How far from its depth a point between two faces may be, dp; not in the first layer.
+const SHORT: f64 = 0.25;
+/// The faces on either side of a place are held to be opposite where their normals are more than 120 degrees apart: this
+/// is −cos 120°.
+const OPPOSITE: f64 = 0.5;
 
 /// A cell: its middle, m, and that middle's signed distance, m.
 type Cell<const D: usize> = (Vector<D>, f64);
@@ -34,20 +41,30 @@ pub(super) fn shell_skin<const D: usize>(shape: &Shape<D>, dp: f64, layers: usiz
     let doublings = (bounds.size().max() / grain).log2().ceil().max(0.0) as i32;
     let middle = (bounds.min + bounds.max) * 0.5;
     let found = walk(shape, &middle, grain * 2f64.powi(doublings), grain, layers as f64 * dp);
-    let wanted = counts(shape, &found, dp, layers);
-    let layer = |(k, wanted): (usize, f64)| {
-        let depth = (k as f64 + 0.5) * dp;
-        let near = found.cells.par_iter().filter(|(_, d)| (d + depth).abs() <= grain);
-        let candidates: Vec<_> = near.filter_map(|(x, _)| at_depth(shape, *x, depth, dp)).collect();
-        let mut points = chosen(&candidates, wanted.round().max(0.0) as usize, dp);
-        let many = points.len();
-        pack::relax(&mut points, many, dp, |_, x| {
-            *x = at_depth(shape, *x, depth, dp).unwrap_or(*x);
-            0.0
-        });
-        points.into_iter().map(move |r| SkinPoint { r, layer: k as u8 })
-    };
-    wanted.into_iter().enumerate().flat_map(layer).collect()
+    let (mut skin, mut owed) = (Vec::new(), 0.0);
+    for (k, cells) in counts(shape, &found, dp, layers).into_iter().enumerate().rev() {
+        owed += cells;
+        let points = layer(shape, &found.cells, k, owed.round().max(0.0) as usize, dp);
+        owed -= points.len() as f64;
+        skin.push(points.into_iter().map(|r| SkinPoint { r, layer: k as u8 }).collect::<Vec<_>>());
+    }
+    skin.reverse();
+    skin.concat()
+}
+
+/// The points of layer `k`: `wanted` of them, or as many as it has room for.
+fn layer<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>], k: usize, wanted: usize, dp: f64) -> Vec<Vector<D>> {
+    let depth = (k as f64 + 0.5) * dp;
+    let short = if k == 0 { OFF * dp } else { SHORT * dp };
+    let near = cells.par_iter().filter(|(_, d)| (d + depth).abs() <= GRAIN * dp);
+    let candidates: Vec<_> = near.filter_map(|(x, _)| at_depth(shape, *x, depth, short, dp)).collect();
+    let mut points = chosen(&candidates, wanted, dp);
+    let many = points.len();
+    pack::relax(&mut points, many, dp, |_, from, x| {
+        *x = at_depth(shape, *x, depth, short, dp).unwrap_or(*from);
+        0.0
+    });
+    apart(&[], &points, APART * dp)
 }
 
 /// The small cells no deeper than `depth` (m), by halving a cube of edge `edge` (m) about `middle` wherever it may hold
@@ -84,15 +101,15 @@ fn walk<const D: usize>(shape: &Shape<D>, middle: &Vector<D>, edge: f64, grain: 
     found
 }
 
-/// How many cells of dp the shell of each layer holds. What lies deeper than the last surface of equal depth, too little
-/// for a layer, goes to the last layer.
+/// How many cells of dp the shell of each layer holds. What lies deeper than the last layer, too little for one more, goes
+/// to that.
 fn counts<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64, layers: usize) -> Vec<f64> {
     let grain = GRAIN * dp;
     let deeper = |depth: f64| {
         let share = |&(_, d): &Cell<D>| (0.5 - (d + depth) / grain).clamp(0.0, 1.0);
         found.inner + found.cells.iter().map(share).sum::<f64>() * grain.powi(D as i32)
     };
-    let last = (-found.deepest / dp - 0.5).floor().max(0.0) as usize;
+    let last = (-found.deepest / dp - 0.5 + SHORT).floor().max(0.0) as usize;
     let mut volume = vec![shape.volume().volume];
     volume.extend((1..=layers.min(last + 1)).map(|k| deeper(k as f64 * dp)));
     if last < layers
@@ -103,34 +120,65 @@ fn counts<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64, layers: u
     volume.windows(2).map(|pair| (pair[0] - pair[1]) / dp.powi(D as i32)).collect()
 }
 
-/// The place at the depth `depth` (m) that the point `x` comes to along the gradient; `None` where there is none.
-fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, dp: f64) -> Option<Vector<D>> {
+/// The place at the depth `depth` (m) that the point `x` comes to along the gradient; or the place halfway between two
+/// opposite faces, if it meets that first and no more than `short` (m) is missing there. `None` where there is none.
+fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, short: f64, dp: f64) -> Option<Vector<D>> {
+    let slope = |x: &Vector<D>| shape.slope(x, 1e-3 * dp);
+    let (mut distance, mut normal) = slope(&x);
     for _ in 0..40 {
-        let off = shape.signed_distance(&x) + depth;
+        let off = distance + depth;
         if off.abs() < 1e-9 * dp {
             return Some(x);
         }
-        x -= shape.outward(&x, 1e-3 * dp) * off;
+        let next = x - normal * off;
+        let (beyond, facing) = slope(&next);
+        let turn = -normal.dot(&facing);
+        if off > 0.0 && turn > OPPOSITE {
+            // One face is left by `off` on this way and the other neared by `turn * off`: where they are equally far.
+            let half = x - normal * ((distance - beyond + off * turn) / (1.0 + turn));
+            return (shape.signed_distance(&half) + depth < short).then_some(half);
+        }
+        (x, distance, normal) = (next, beyond, facing);
     }
-    ((shape.signed_distance(&x) + depth).abs() < OFF * dp).then_some(x)
+    ((distance + depth).abs() < OFF * dp).then_some(x)
 }
 
-/// About evenly, `wanted` of `candidates`: as far apart as so many can be, taken in order.
+/// About evenly, `wanted` of `candidates`, if there are so many: as far apart as the most can be that are not too many,
+/// and as far from these and one another as those that lack then can be.
 fn chosen<const D: usize>(candidates: &[Vector<D>], wanted: usize, dp: f64) -> Vec<Vector<D>> {
+    let (mut kept, _) = farthest(&[], candidates, wanted, dp);
+    let lack = wanted - kept.len();
+    let (_, more) = farthest(&kept, candidates, lack, dp);
+    // The few too many go here and there.
+    let many = more.len();
+    let stays = |i: usize| many <= lack || (i + 1) * lack / many > i * lack / many;
+    kept.extend((0..many).filter(|&i| stays(i)).map(|i| more[i]));
+    kept
+}
+
+/// The farthest apart that at most `wanted` of `candidates` can be, from `fixed` too, taken in order; and the farthest
+/// apart that more can be.
+fn farthest<const D: usize>(
+    fixed: &[Vector<D>],
+    candidates: &[Vector<D>],
+    wanted: usize,
+    dp: f64,
+) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
+    let (mut few, mut many) = (Vec::new(), candidates.to_vec());
     let (mut low, mut high) = (0.0, 1.5);
-    let mut kept = candidates.to_vec();
     for _ in 0..8 {
-        let apart = 0.5 * (low + high);
-        let flags = spaced(candidates, apart * dp);
-        if flags.iter().filter(|keep| **keep).count() >= wanted {
-            kept = candidates.iter().zip(flags).filter_map(|(x, keep)| keep.then_some(*x)).collect();
-            low = apart;
-        } else {
-            high = apart;
+        let middle = 0.5 * (low + high);
+        let some = apart(fixed, candidates, middle * dp);
+        match some.len() > wanted {
+            true => (low, many) = (middle, some),
+            false => (high, few) = (middle, some),
         }
     }
-    // The few too many go here and there.
-    let many = kept.len();
-    let stays = |i: usize| (i + 1) * wanted / many > i * wanted / many;
-    if many <= wanted { kept } else { (0..many).filter(|&i| stays(i)).map(|i| kept[i]).collect() }
+    (few, many)
+}
+
+/// Those of `points` that keep `distance` (m) from all of `fixed` and from all earlier ones.
+fn apart<const D: usize>(fixed: &[Vector<D>], points: &[Vector<D>], distance: f64) -> Vec<Vector<D>> {
+    let kept = spaced(&[fixed, points].concat(), fixed.len(), distance);
+    points.iter().zip(&kept[fixed.len()..]).filter_map(|(x, keep)| keep.then_some(*x)).collect()
 }

@@ -18,7 +18,8 @@ impl<const D: usize> Shape<D> {
     ///
     /// Layer k lies (k + ½) dp inside the face. A box is divided into cells, round(size/dp) along each edge,
     /// so that one whose size is a multiple of dp reproduces the lattice; round shapes get rings and shells,
-    /// outlines parallel curves, meshes even places on surfaces of equal depth. A tank's layers go outwards into its walls, as many as are asked for.
+    /// outlines parallel curves, meshes even places on surfaces of equal depth, the innermost
+    /// up to a quarter dp short of it where faces are too near each other. A tank's layers go outwards into its walls, as many as are asked for.
     /// A polygon or a tip thinner than dp has no room for a particle half a dp inside and gets none there.
     pub fn skin(&self, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
         let layers = layers.min(u8::MAX as usize);
@@ -39,7 +40,7 @@ impl<const D: usize> Shape<D> {
 
 /// The points that keep `distance` from all earlier ones.
 fn thinned<const D: usize>(points: Vec<SkinPoint<D>>, distance: f64) -> Vec<SkinPoint<D>> {
-    let kept = spaced(&points.iter().map(|p| p.r).collect::<Vec<_>>(), distance);
+    let kept = spaced(&points.iter().map(|p| p.r).collect::<Vec<_>>(), 0, distance);
     points.into_iter().zip(kept).filter_map(|(p, keep)| keep.then_some(p)).collect()
 }
 

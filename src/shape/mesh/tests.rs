@@ -207,12 +207,16 @@ fn spacing(skin: &[SkinPoint<3>]) -> (f64, f64) {
     skin.iter().map(nearest).fold((f64::INFINITY, 0.0), |(a, b), d| (a.min(d), b.max(d)))
 }
 
-/// The skin's volume over the solid's, when it has all layers; asserts that it lies as it should.
+/// The skin's volume over the solid's, when it has all layers; asserts that it lies as it should: at its depth, or up to
+/// a quarter dp short of it where farther from the nearest face is nearer to the one opposite.
 fn filled(shape: &Shape<3>, dp: f64) -> f64 {
     let skin = shape.skin(dp, 99);
     for p in &skin {
-        let depth = -shape.signed_distance(&p.r) / dp;
-        assert!((depth - (f64::from(p.layer) + 0.5)).abs() < 1e-3, "layer {} at {depth} dp", p.layer);
+        let depth = |x: &Vector<3>| -shape.signed_distance(x) / dp;
+        let short = f64::from(p.layer) + 0.5 - depth(&p.r);
+        let farther = depth(&(p.r - shape.outward(&p.r, 1e-3 * dp) * (0.1 * dp)));
+        let halfway = p.layer > 0 && (0.0..0.251).contains(&short) && farther < depth(&p.r);
+        assert!(short.abs() < 1e-3 || halfway, "layer {} is {short} dp short", p.layer);
     }
     let (least, most) = spacing(&skin);
     // As the skins of the other shapes.
@@ -236,5 +240,15 @@ fn a_skin_stands_for_the_volume_of_its_mesh() {
     for mesh in [ball(0.5, 20), ball(0.43, 3)] {
         let volume = filled(&shape(mesh), 0.05);
         assert!((volume - 1.0).abs() < 0.005, "{volume} of the volume");
+    }
+}
+
+#[test]
+fn a_slab_of_any_thickness_has_its_volume_and_what_no_layer_holds_lies_halfway() {
+    for thickness in [2.8, 3.4, 4.2, 4.5, 4.9] {
+        let (slab, _) = boxes([1.0, 0.93, thickness * 0.05]);
+        let volume = filled(&slab, 0.05);
+        // Found: at most 0.54 %, at 3.4 dp, where two sheets of a layer lie 0.4 dp apart and are as dense as they may be.
+        assert!((volume - 1.0).abs() < 0.01, "{thickness} dp: {volume} of the volume");
     }
 }
