@@ -30,11 +30,11 @@ pub(super) use world::World;
 
 use nalgebra::SMatrix;
 use rapier::{
-    dynamics::{IntegrationParameters, RigidBodyBuilder},
+    dynamics::{IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
     geometry::{ContactData, SharedShape, TriMesh, TypedShape},
     math::{Pose as Frame, Rotation, Vector as Point},
     parry::{mass_properties::MassProperties, transformation::hertel_mehlhorn},
-    pipeline::PhysicsWorld,
+    pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
     utils::OrthonormalBasis,
 };
 
@@ -90,14 +90,28 @@ fn friction(direction: Point, data: &ContactData) -> Point {
     direction.orthonormal_vector() * data.tangent_impulse[0]
 }
 
-/// Nothing: a plane's bodies do not tumble.
-struct Tumbling;
+/// What the engine asks about each contact by default: nothing.
+const HOOKS: ActiveHooks = ActiveHooks::empty();
 
-fn wind(_world: &mut PhysicsWorld, _dt: f64) -> Tumbling {
-    Tumbling
+/// Nothing: in a plane friction has one direction.
+fn align(_context: &mut ContactModificationContext) {}
+
+/// Nothing: a plane's bodies do not tumble.
+struct Turning;
+
+fn wind(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _dt: f64) -> Turning {
+    Turning
 }
 
-fn unwind(_world: &mut PhysicsWorld, _tumbling: Tumbling) {}
+fn unwind(
+    _world: &mut PhysicsWorld,
+    _bodies: &[RigidBodyHandle],
+    _turning: Turning,
+    _spins: &[Angular],
+    _dt: f64,
+) -> Vec<Option<Wedge<D>>> {
+    Vec::new()
+}
 
 /// Settings that only this dimension has: none.
 fn tune(_parameters: &mut IntegrationParameters) {}

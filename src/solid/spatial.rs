@@ -34,14 +34,14 @@ use std::{
 };
 
 use rapier::{
-    dynamics::{FrictionModel, IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
+    dynamics::{FrictionModel, IntegrationParameters, LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle},
     geometry::{ContactData, SharedShape, TriMeshFlags, TypedShape},
     math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
     parry::{
         mass_properties::MassProperties,
         transformation::vhacd::{VHACD, VHACDParameters},
     },
-    pipeline::PhysicsWorld,
+    pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
     utils::OrthonormalBasis,
 };
 
@@ -102,13 +102,13 @@ fn mass_properties(body: &FreeBody<D>, start: &Matrix<D>) -> MassProperties {
     MassProperties::with_inertia_matrix(world::to_point(&body.centre), body.mass, square(&inertia))
 }
 
-/// Locks what is locked; a body that may turn any way gets its gyroscopic torque.
+/// Locks what is locked. The gyroscopic torque is ours.
 fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
     let ([x, y, z], [about_x, about_y, about_z]) = (body.locked_translations, body.locked_rotations);
     builder
         .enabled_translations(!x, !y, !z)
         .enabled_rotations(!about_x, !about_y, !about_z)
-        .gyroscopic_forces_enabled(!(about_x || about_y || about_z))
+        .gyroscopic_forces_enabled(false)
 }
 
 /// Friction impulse (N s) of a contact on its first solid, which is pushed along `direction`.
@@ -117,45 +117,119 @@ fn friction(direction: Point, data: &ContactData) -> Point {
     tangent * data.tangent_impulse[0] + direction.cross(tangent) * data.tangent_impulse[1]
 }
 
-/// A body that turns about three axes: its angular momentum (kg m²/s) and spin (rad/s) before a step, and its principal axes then.
-struct Tumbling {
-    body: RigidBodyHandle,
-    momentum: Point,
-    spin: Point,
-    axes: Rotation,
+/// What the engine asks about each contact by default: how its friction is to be.
+const HOOKS: ActiveHooks = ActiveHooks::MODIFY_SOLVER_CONTACTS;
+
+/// Lets the friction of a contact act against its sliding. At a point that slides at v the engine takes K⁻¹ v off the impulse, K the
+/// speeds that impulses in the plane of contact give there, and cuts it to μ N: it pushes along K⁻¹ v, and not along v, where K is
+/// not the same in all directions, as at the corner of a box. With a belt's speed of K v/k̄ − v, k̄ the mean of K, it takes off v/k̄.
+/// v is what the last step left: none where it sticks, so that no belt moves that.
+fn align(context: &mut ContactModificationContext) {
+    let bodies = context.bodies;
+    let pair = [context.rigid_body1, context.rigid_body2].map(|body| body.and_then(|body| bodies.get(body)));
+    let ([Some(first), Some(second)], Some(contact)) = (pair, context.rigid_mut()) else { return };
+    let normal = *contact.normal;
+    let tangent = normal.orthonormal_vector();
+    let within = |x: Point| x - normal * normal.dot(x);
+    for point in contact.solver_contacts.iter_mut() {
+        let data = &contact.manifold.points[point.contact_indices()[0] as usize].data;
+        let arms = [data.solver_dp1, data.solver_dp2];
+        let gives = |impulse| within(gained(first, arms[0], impulse) + gained(second, arms[1], impulse));
+        let mean = 0.5 * (tangent.dot(gives(tangent)) + normal.cross(tangent).dot(gives(normal.cross(tangent))));
+        // What only now comes to touch may be stopped at once.
+        if data.warmstart_impulse > 0.0 && mean > 0.0 {
+            let velocity = |body: &RigidBody, arm| body.linvel() + body.angvel().cross(arm);
+            let sliding = within(velocity(first, arms[0]) - velocity(second, arms[1]));
+            point.tangent_velocity = gives(sliding) / mean - sliding;
+        }
+    }
+}
+
+/// The velocity (m/s) that an impulse (N s) on a body gives it where it acts, an `arm` (m) from its centre.
+fn gained(body: &RigidBody, arm: Point, impulse: Point) -> Point {
+    let mass = body.mass_properties();
+    mass.effective_inv_mass * impulse + (mass.effective_world_inv_inertia * arm.cross(impulse)).cross(arm)
+}
+
+/// How a free body is turned in a step.
+enum Turning {
+    /// By its angular momentum, kg m²/s: with the spin that it turns by, and its principal axes before the step.
+    Loose { momentum: Point, spin: Point, axes: Rotation },
+    /// By its spin: with its inertia (kg m², the world's axes before the step, none about what is locked) and gyroscopic torque, N m.
+    Bound { inertia: Matrix<D>, torque: Point },
 }
 
 /// Gives each body that turns as it likes the spin that it has in the middle of the step by Euler's equations, I ω̇ = −ω ∧ I ω, to turn
-/// by: rapier's own gyroscopic torque acts once a step and loses energy with Δt. Bodies in joints keep that.
-fn wind(world: &mut PhysicsWorld, dt: f64) -> Vec<Tumbling> {
-    let mut all = Vec::new();
-    for (handle, body) in world.bodies.iter_mut() {
-        let tied = world.impulse_joints.attached_joints(handle).next().is_some();
-        if !(body.is_dynamic() && body.is_enabled() && body.locked_axes().is_empty()) || tied {
-            continue;
+/// by, and each that is in a joint or locked, whose spin the engine has to fit to that, its gyroscopic torque over the step.
+fn wind(world: &mut PhysicsWorld, bodies: &[RigidBodyHandle], dt: f64) -> Vec<Option<Turning>> {
+    let PhysicsWorld { bodies: all, impulse_joints, .. } = world;
+    let one = |&handle: &RigidBodyHandle| {
+        let body = all.get_mut(handle).filter(|body| body.is_dynamic() && body.is_enabled())?;
+        if !body.locked_axes().is_empty() || impulse_joints.attached_joints(handle).next().is_some() {
+            let inertia = about_unlocked(&inverse_inertia(&body.mass_properties().effective_world_inv_inertia));
+            let torque = gyroscopic(body, dt);
+            body.add_torque(torque, false);
+            return Some(Turning::Bound { inertia, torque });
         }
-        body.enable_gyroscopic_forces(false);
         let own = &body.mass_properties().local_mprops;
         let (axes, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
         let spin = axes.inverse() * body.angvel();
         let momentum = inertia * spin;
         let middle = axes * (spin - 0.5 * dt * (spin.cross(momentum) / inertia));
-        all.push(Tumbling { body: handle, momentum: axes * momentum, spin: middle, axes });
         body.set_angvel(middle, false);
-    }
-    all
+        Some(Turning::Loose { momentum: axes * momentum, spin: middle, axes })
+    };
+    bodies.iter().map(one).collect()
 }
 
-/// Adds the angular impulse that each of them got in the step to its angular momentum, and gives it the spin that this is now.
-fn unwind(world: &mut PhysicsWorld, tumbling: Vec<Tumbling>) {
-    for Tumbling { body, momentum, spin, axes } in tumbling {
-        let Some(body) = world.bodies.get_mut(body) else { continue };
-        let own = &body.mass_properties().local_mprops;
-        let (now, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
-        let impulse = axes * (inertia * (axes.inverse() * (body.angvel() - spin)));
-        let spin = now * ((now.inverse() * (momentum + impulse)) / inertia);
-        body.set_angvel(spin, false);
+/// The inertia of its inverse, which is 0 about what is locked; it stays so.
+fn about_unlocked(inverse: &Matrix<D>) -> Matrix<D> {
+    let locked = Matrix::from_diagonal(&inverse.diagonal().map(|x| if x == 0.0 { 1.0 } else { 0.0 }));
+    (inverse + locked).try_inverse().map_or_else(Matrix::zeros, |inertia| inertia - locked)
+}
+
+/// The gyroscopic torque (N m) on a body in a step: −ω ∧ I ω at the spin that it has after the loads on it, held to what leaves the
+/// size of I ω as it is. That is rapier's, which gives it in each iteration and does not tell it. None if a turn is locked.
+fn gyroscopic(body: &RigidBody, dt: f64) -> Point {
+    let (all, own) = (body.mass_properties(), &body.mass_properties().local_mprops);
+    let axes = *body.rotation() * own.principal_inertia_local_frame;
+    let loaded = body.angvel() + dt * (all.effective_world_inv_inertia * body.user_torque());
+    let spin = axes.inverse() * loaded;
+    let momentum = own.principal_inertia() * spin;
+    let turned = momentum - dt * spin.cross(momentum);
+    if turned == Point::ZERO || body.locked_axes().intersects(LockedAxes::ROTATION_LOCKED) {
+        return Point::ZERO;
     }
+    axes * ((turned * (momentum.length() / turned.length()) - momentum) / dt)
+}
+
+/// Adds the angular impulse that each loose one got in the step to its angular momentum, and gives it the spin that this is now. Tells
+/// what the bound ones did, whose spins before were `spins`: I(R₀) ΔΩ/Δt less the gyroscopic torque, N m.
+fn unwind(
+    world: &mut PhysicsWorld,
+    bodies: &[RigidBodyHandle],
+    turnings: Vec<Option<Turning>>,
+    spins: &[Angular],
+    dt: f64,
+) -> Vec<Option<Wedge<D>>> {
+    let one = |((&handle, turning), before): ((&RigidBodyHandle, Option<Turning>), &Angular)| {
+        let body = world.bodies.get_mut(handle)?;
+        match turning? {
+            Turning::Loose { momentum, spin, axes } => {
+                let own = &body.mass_properties().local_mprops;
+                let (now, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
+                let impulse = axes * (inertia * (axes.inverse() * (body.angvel() - spin)));
+                let spin = now * ((now.inverse() * (momentum + impulse)) / inertia);
+                body.set_angvel(spin, false);
+                None
+            }
+            Turning::Bound { inertia, torque } => {
+                let turned = inertia * world::from_point(body.angvel() - *before) / dt - world::from_point(torque);
+                Some(Wedge::from_axial(turned.as_slice()))
+            }
+        }
+    };
+    bodies.iter().zip(turnings).zip(spins).map(one).collect()
 }
 
 /// Settings that only this dimension has: Coulomb's law at every contact point.

@@ -13,7 +13,7 @@ use super::super::rapier::{
     math::Pose as Frame,
     pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld},
 };
-use super::{D, from_angular, to_frame};
+use super::{super::align, D, from_angular, to_frame};
 use crate::{
     solid::{
         Kinematics,
@@ -140,9 +140,10 @@ impl PhysicsHooks for Pairs {
     }
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
-        let Some(spec) = self.of(context.colliders, [context.collider1, context.collider2]) else { return };
-        if let Some(contact) = context.rigid_mut() {
-            *contact.friction = spec.friction.unwrap_or(*contact.friction);
+        let own = self.of(context.colliders, [context.collider1, context.collider2]).and_then(|spec| spec.friction);
+        if let (Some(friction), Some(contact)) = (own, context.rigid_mut()) {
+            *contact.friction = friction;
         }
+        align(context);
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[
     for pair in world.narrow_phase.contact_pairs() {
         let between = [pair.collider1, pair.collider2].map(|c| world.colliders[c].user_data as usize);
         let [first, second] = between.map(|solid| &world.bodies[bodies[solid]]);
-        for manifold in pair.manifolds() {
+        for manifold in pair.solver_manifolds() {
             let normal = manifold.data.normal;
             for contact in manifold.data.solver_contacts.iter() {
                 let data = &manifold.points[contact.contact_indices()[0] as usize].data;
@@ -33,7 +33,9 @@ pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[
                     let force = from_point(impulse(normal, data)) * rate;
                     let (at, other) = (place(first, data.solver_dp1), place(second, data.solver_dp2));
                     let arms = [(first, at), (second, other)].map(|(body, at)| from_point(at - body.center_of_mass()));
-                    pairs.add(between, data.impulse * rate, &from_point(at), arms, force);
+                    // The engine pushes at the second's face, the first's skin and its own before it: it is told where they meet.
+                    let meet = at - normal * world.colliders[pair.collider2].contact_skin();
+                    pairs.add(between, data.impulse * rate, &from_point(meet), arms, force);
                 }
             }
         }
