@@ -8,7 +8,7 @@ use super::{
     kept::{Kept, Table},
     words::{bare, unit},
 };
-use crate::{check::Verdict, series::Series, stats};
+use crate::{check::Verdict, run::Answer, series::Series, stats};
 
 /// Rows of a table above which it is thinned.
 const MOST_ROWS: usize = 6000;
@@ -65,6 +65,27 @@ pub struct Spectral {
     pub f: usize,
     /// Where the densities begin.
     pub s: usize,
+}
+
+/// How a motion answers irregular waves.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answered<'a> {
+    /// Name of the statistic.
+    pub name: &'a str,
+    /// The motion, in words.
+    pub label: String,
+    /// Unit of the ratio.
+    pub unit: &'a str,
+    /// Number of frequencies.
+    pub rows: usize,
+    /// Where the frequencies (Hz) begin.
+    pub f: usize,
+    /// Where the ratios begin.
+    pub rao: usize,
+    /// Where the phases (degrees) begin.
+    pub phase: usize,
+    /// Where the coherences begin.
+    pub coherence: usize,
 }
 
 /// A check and its curves.
@@ -152,6 +173,25 @@ fn spectra(table: &Table, charts: &[Chart], blob: &mut Blob) -> Vec<Spectral> {
         Some(Spectral { column, rows: spectrum.density.len(), f, s })
     };
     shown.filter_map(of).collect()
+}
+
+/// The answers of motions over frequency, added to `blob`.
+pub fn answered<'a>(answers: &'a [Answer], blob: &mut Blob) -> Vec<Answered<'a>> {
+    let of = |rows: &'a [Answer]| {
+        let (probe, column) = rows[0].series.split_once('.').unwrap_or(("", &rows[0].series));
+        let mut put = |x: fn(&Answer) -> f64| blob.floats(rows.iter().map(|row| x(row) as f32));
+        Answered {
+            name: &rows[0].name,
+            label: format!("{probe} {}", bare(column)),
+            unit: &rows[0].unit,
+            rows: rows.len(),
+            f: put(|row| row.band.frequency),
+            rao: put(|row| row.band.ratio),
+            phase: put(Answer::degrees),
+            coherence: put(|row| row.band.coherence),
+        }
+    };
+    answers.chunk_by(|a, b| (&a.name, &a.series) == (&b.name, &b.series)).map(of).collect()
 }
 
 /// The rows of a table that its plots need: of each of many equal stretches the least and the largest of every column.

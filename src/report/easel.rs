@@ -1,6 +1,6 @@
 //! The drawing of pictures: panels with particles and solids, metres along their edges, the bar of colours.
 
-use tiny_skia::{PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, Transform};
+use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash, Transform};
 
 use super::{
     colour::{self, Map},
@@ -54,12 +54,15 @@ impl View {
         for (points, closed, _) in panel.lines.iter().filter(|(_, _, moves)| *moves && flat) {
             here.line(&mut own, points, *closed, Some(BODY), 0.12);
         }
+        for (points, closed, _) in &panel.rims {
+            here.dashed(&mut own, points, *closed);
+        }
         let (x, y) = (self.corner.0 as i32, self.corner.1 as i32);
         on.draw_pixmap(x, y, own.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
     }
 
-    /// A line `thick` em thick.
-    fn line(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool, inside: Option<[u8; 3]>, thick: f32) {
+    /// The line through `points`.
+    fn path(&self, points: &[[f64; 2]], closed: bool) -> Option<Path> {
         let mut path = PathBuilder::new();
         for (i, x) in points.iter().enumerate() {
             let (x, y) = self.pixel(x);
@@ -68,7 +71,20 @@ impl View {
         if closed {
             path.close();
         }
-        let Some(path) = path.finish() else { return };
+        path.finish()
+    }
+
+    /// A thin dashed line.
+    fn dashed(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool) {
+        let Some(path) = self.path(points, closed) else { return };
+        let dash = StrokeDash::new(vec![0.4 * self.em, 0.3 * self.em], 0.0);
+        let stroke = Stroke { width: (0.06 * self.em).max(1.0), dash, ..Stroke::default() };
+        on.stroke_path(&path, &paint(EDGE, 255), &stroke, Transform::identity(), None);
+    }
+
+    /// A line `thick` em thick.
+    fn line(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool, inside: Option<[u8; 3]>, thick: f32) {
+        let Some(path) = self.path(points, closed) else { return };
         if let Some(colour) = inside {
             fill(on, &path, colour, 255);
         }

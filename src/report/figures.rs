@@ -2,6 +2,7 @@
 
 use super::{kept::Table, words};
 use crate::{
+    probe::unaccounted,
     series::Series,
     stats::{moments, waves},
 };
@@ -74,7 +75,7 @@ pub fn budget(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     }
     let unit = words::unit(table.columns.first()?);
     let last = table.x.iter().map(|x| x.last().copied()).collect::<Option<Vec<f64>>>()?;
-    let (residual, entries) = last.split_last().and_then(|(residual, rest)| Some((residual, rest.get(1..)?)))?;
+    let entries = last.get(1..last.len().checked_sub(1)?)?;
     let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
     let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
     let row = |(name, energy): (&String, &f64)| {
@@ -84,7 +85,7 @@ pub fn budget(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();
     let said = format!(
         "All entries but {:.2} % of what was turned over add up to what water and bodies have stored.",
-        share(residual.abs())
+        100.0 * unaccounted(&last).unwrap_or_default()
     );
     Some((rows, said))
 }

@@ -9,13 +9,14 @@ use std::{
 use super::{
     outline::{Outline, outlines},
     pose::Placement,
+    rim::Rim,
 };
 use crate::{
     check::{Check, Curves},
     error::{Error, Result},
     plan::{Plan, ProbeKind},
     record::{Film, Manifest, Readings},
-    run,
+    run::{self, Asked, Told},
     scene::{Scene, Stage},
     solid::Role,
 };
@@ -38,6 +39,8 @@ pub struct Kept {
     pub film: Option<Film>,
     /// Its tables.
     pub tables: Vec<Table>,
+    /// What is said of its series.
+    pub told: Told,
     /// Its checks with their curves; as many as the manifest has verdicts if the run has finished.
     pub checks: Vec<(Check, Option<Curves>)>,
     /// What could not be read, and why.
@@ -70,6 +73,8 @@ pub struct Solid {
     pub role: &'static str,
     /// Its lines, in its own frame.
     pub lines: Vec<Outline>,
+    /// Where others touch it, if that is not at its faces, in its own frame.
+    pub rim: Rim,
     /// Where that frame is at the start.
     pub start: Placement,
 }
@@ -122,6 +127,7 @@ impl Kept {
             }
         }
         let checks = checks.into_iter().map(|(curves, check)| (check, curves)).collect();
+        let told = plan.map_or_else(Told::default, |plan| run::told(folder, plan, &Asked::default()));
         Ok(Self {
             name: folder
                 .canonicalize()
@@ -135,6 +141,7 @@ impl Kept {
             set,
             film,
             tables,
+            told,
             checks,
             remarks,
         })
@@ -188,6 +195,7 @@ impl Set {
                 Role::Free(_) => "free",
             },
             lines: outlines(&spec.shape),
+            rim: Rim::of(&spec.shape, spec.contact_skin, scene.dp),
             start: Placement::of(&spec.start().pose),
         });
         let solids = solids.collect();

@@ -19,6 +19,7 @@ mod outline;
 mod page;
 mod picture;
 mod pose;
+mod rim;
 mod sections;
 mod wire;
 pub(crate) mod words;
@@ -82,6 +83,7 @@ fn laid(folders: &[PathBuf], out: &Path) -> Result<Page> {
     let runs = Kept::all(folders)?;
     let text = page::page(&runs)?;
     write_whole(out, text.as_bytes())?;
-    let remarks = runs.into_iter().flat_map(|run| run.remarks).collect();
+    let apart = sections::strangers(&runs).then(|| "the runs have no series in common: each is drawn by itself".into());
+    let remarks = runs.into_iter().flat_map(|run| run.remarks).chain(apart).collect();
     Ok(Page { path: out.to_owned(), bytes: text.len(), seconds: begun.elapsed().as_secs_f64(), remarks })
 }

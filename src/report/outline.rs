@@ -45,7 +45,8 @@ pub fn spread<const D: usize>(x: &Vector<D>) -> [f64; 3] {
     std::array::from_fn(|i| if i < D { x[i] } else { 0.0 })
 }
 
-fn placed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
+/// The lines of a part that is placed so in its solid.
+pub fn placed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
     for x in lines.iter_mut().flat_map(|line| &mut line.points) {
         *x = spread(&pose.point(&Vector::from_fn(|i, _| x[i])));
     }

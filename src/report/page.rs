@@ -5,12 +5,13 @@ use serde::Serialize;
 use super::{
     MOST_BYTES,
     blob::Blob,
-    charts::{self, Held, Plotted},
+    charts::{self, Answered, Held, Plotted},
     colour::{MAPS, Maps},
     figures,
     film::{Reel, reel},
     kept::{Kept, Set},
     outline::Outline,
+    rim::Rim,
     sections,
     words::escape,
 };
@@ -47,6 +48,7 @@ struct Run<'a> {
     reel: Option<Reel>,
     tables: Vec<Plotted>,
     checks: Vec<Held>,
+    answers: Vec<Answered<'a>>,
 }
 
 /// What stands around the water.
@@ -66,6 +68,7 @@ struct Solid<'a> {
     name: &'a str,
     role: &'a str,
     lines: &'a [Outline],
+    rim: &'a Rim,
 }
 
 #[derive(Serialize)]
@@ -77,7 +80,8 @@ struct Gauge<'a> {
 
 impl<'a> From<&'a Set> for Stage<'a> {
     fn from(set: &'a Set) -> Self {
-        let solids = set.solids.iter().map(|s| Solid { name: &s.name, role: s.role, lines: &s.lines }).collect();
+        let solids =
+            set.solids.iter().map(|s| Solid { name: &s.name, role: s.role, lines: &s.lines, rim: &s.rim }).collect();
         let gauges = set.gauges().map(|(name, what, at)| Gauge { name, what, at }).collect();
         Self { dimension: set.dimension, dp: set.dp, level: set.level, rho0: set.rho0, g: set.g, solids, gauges }
     }
@@ -112,6 +116,7 @@ fn attempt(runs: &[Kept], samples: usize) -> Result<String> {
             reel,
             tables: run.tables.iter().map(|table| charts::plotted(table, &mut blob)).collect(),
             checks: charts::held(run, sections::caption, &mut blob),
+            answers: charts::answered(&run.told.answers, &mut blob),
         });
     }
     let data = serde_json::to_string(&told).unwrap_or_default().replace('<', "\\u003c");
@@ -173,7 +178,11 @@ fn single(run: &Kept, told: &Run) -> String {
         + &section("player", "Player", &player(std::slice::from_ref(told)))
         + &section("checks", "Against references", &(held + &charts("held", !told.checks.is_empty())))
         + &section("series", "Series", &charts("charts", !told.tables.is_empty()))
-        + &section("statistics", "Statistics", &sections::statistics(run))
+        + &section(
+            "statistics",
+            "Statistics",
+            &(sections::statistics(run) + &charts("answers", !told.answers.is_empty())),
+        )
         + &section("energy", "Energy", &sections::energy(run))
         + &section(
             "figures",
@@ -200,5 +209,9 @@ fn several(runs: &[Kept], told: &[Run]) -> String {
             "Against references",
             &(sections::verdicts(runs) + &any("held", told.iter().any(|run| !run.checks.is_empty()))),
         )
-        + &section("series", "Series", &any("charts", told.iter().any(|run| !run.tables.is_empty())))
+        + &section(
+            "series",
+            "Series",
+            &(sections::alone(runs) + &any("charts", told.iter().any(|run| !run.tables.is_empty()))),
+        )
 }

@@ -9,7 +9,8 @@ use super::{
     easel::{INK, View, legend},
     film::{members, placed},
     ink::{Anchor, Ink},
-    kept::{Kept, Set},
+    kept::{Kept, Set, Solid},
+    outline::Outline,
 };
 use crate::{
     error::{Error, Kind, Result},
@@ -39,6 +40,8 @@ pub struct Shot {
     pub range: Option<[f64; 2]>,
     /// Width of the picture, pixels.
     pub width: u32,
+    /// What stands over the columns, one for each run; the names of the runs' folders if there is none.
+    pub heads: Vec<String>,
 }
 
 /// How near a point is to who looks, its place on the sheet (m), and its value.
@@ -57,6 +60,8 @@ pub struct Panel<'a> {
     pub points: Vec<([f64; 2], Option<f64>)>,
     /// Lines of solids on the sheet: whether they are closed, and whether their solid moves.
     pub lines: Vec<Drawn>,
+    /// Those of contact skins, in 2-D.
+    pub rims: Vec<Drawn>,
 }
 
 impl Field {
@@ -115,7 +120,9 @@ pub fn picture(folders: &[PathBuf], shot: &Shot, out: &Path) -> Result<(u32, u32
         rows.push(runs.iter().map(|run| panel(run, t, shot.field)).collect::<Result<_>>()?);
     }
     let range = shot.range.unwrap_or_else(|| range(&rows, shot.field));
-    let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
+    let own = shot.heads.len() == runs.len();
+    let names: Vec<&str> =
+        runs.iter().enumerate().map(|(i, run)| if own { &shot.heads[i] } else { &run.name }.as_str()).collect();
     let sheet = draw(&names, &rows, shot, range)?;
     let png = sheet.encode_png().map_err(|why| Error::file(out, why))?;
     write_whole(out, &png)?;
@@ -148,7 +155,9 @@ fn panel(run: &Kept, t: f64, field: Field) -> Result<Panel<'_>> {
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let points = points.into_iter().map(|(_, on, value)| (on, value)).collect();
-    Ok(Panel { set, t: film.times()[number], points, lines: lines(film, number, set, flat)? })
+    let drawn = |which: fn(&Solid) -> &[Outline]| lines(film, number, set, flat, which);
+    let (lines, rims) = (drawn(|solid| &solid.lines)?, drawn(|solid| &solid.rim.lines)?);
+    Ok(Panel { set, t: film.times()[number], points, lines, rims })
 }
 
 /// The boundary particles of moving solids in frame `number` of a 3-D film: depth and place on the sheet.
@@ -159,15 +168,15 @@ fn bodies(film: &Film, number: usize, set: &Set) -> Result<Vec<Deep>> {
     Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
-/// The lines of all solids in frame `number`.
-fn lines(film: &Film, number: usize, set: &Set, flat: bool) -> Result<Vec<Drawn>> {
+/// The lines of all solids in frame `number`, of each `which` ones.
+fn lines(film: &Film, number: usize, set: &Set, flat: bool, which: fn(&Solid) -> &[Outline]) -> Result<Vec<Drawn>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let mut lines = Vec::new();
     for (i, solid) in set.solids.iter().enumerate() {
         let own = members(&first, i);
         let fixed = solid.role == "fixed";
         let pose = placed(fixed, &solid.start, &own, &first, &now);
-        for line in &solid.lines {
+        for line in which(solid) {
             lines.push((line.points.iter().map(|x| sheet(&pose.point(x), flat).0).collect(), line.closed, !fixed));
         }
     }

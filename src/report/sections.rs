@@ -5,13 +5,12 @@ use std::{fs, time::SystemTime};
 use super::{
     figures,
     film::Reel,
-    kept::Kept,
+    kept::{Kept, Table},
     words::{self, bytes, digits, duration, escape, table, thousands},
 };
 use crate::{
     check::{Verdict, said},
     record::{Manifest, manifest::Status},
-    run::{Asked, told},
 };
 
 /// How a run stands, in a word, and the class of its badge.
@@ -155,15 +154,14 @@ pub fn verdicts(runs: &[Kept]) -> String {
 
 /// What the scene asks for of its series; empty if it asks for nothing.
 pub fn statistics(run: &Kept) -> String {
-    let Some(set) = &run.set else { return String::new() };
-    let told = told(&run.folder, &set.plan, &Asked::default());
     let mut rows =
         vec![["statistic", "series", "figure", "value", "unit", "from, s", "until, s"].map(String::from).to_vec()];
-    rows.extend(told.rows.into_iter().filter(|row| !row.name.is_empty()).map(|row| {
+    rows.extend(run.told.rows.iter().filter(|row| !row.name.is_empty()).map(|row| {
         let [from, until] = [row.from_s, row.until_s].map(|t| format!("{t:.3}"));
-        vec![row.name, row.series, row.quantity.into(), digits(row.value), row.unit, from, until]
+        let [name, series, unit] = [&row.name, &row.series, &row.unit].map(String::clone);
+        vec![name, series, row.quantity.into(), digits(row.value), unit, from, until]
     }));
-    let remarks = told.remarks.iter().map(|remark| format!("<p class=\"quiet\">{}</p>\n", escape(remark)));
+    let remarks = run.told.remarks.iter().map(|remark| format!("<p class=\"quiet\">{}</p>\n", escape(remark)));
     let table = if rows.len() > 1 { wide(&rows) } else { String::new() };
     table + &remarks.collect::<String>()
 }
@@ -273,6 +271,42 @@ pub fn differences(runs: &[Kept]) -> String {
         return "<p>All values in force are the same.</p>\n".into();
     }
     wide(&rows)
+}
+
+/// The names of the runs that have the table called `table` and, if one is named, a column of it.
+fn who_has<'a>(runs: &'a [Kept], table: &str, column: Option<&str>) -> Vec<&'a str> {
+    let holds = |t: &Table| t.name == table && column.is_none_or(|column| t.columns.iter().any(|own| own == column));
+    runs.iter().filter(|run| run.tables.iter().any(holds)).map(|run| run.name.as_str()).collect()
+}
+
+/// Whether several runs have no series in common.
+pub fn strangers(runs: &[Kept]) -> bool {
+    let common = |t: &Table| t.columns.iter().any(|column| who_has(runs, &t.name, Some(column)).len() == runs.len());
+    runs.len() > 1 && !runs[0].tables.iter().any(common)
+}
+
+/// Which series not all of several runs have, and who has them; empty if all have all.
+pub fn alone(runs: &[Kept]) -> String {
+    let mut groups: Vec<(Vec<&str>, Vec<String>)> = Vec::new();
+    for table in runs.iter().flat_map(|run| &run.tables) {
+        let whole = (table.name.clone(), who_has(runs, &table.name, None));
+        let column = |name: &String| (format!("{}.{name}", table.name), who_has(runs, &table.name, Some(name)));
+        let all =
+            if whole.1.len() < runs.len() { vec![whole] } else { table.columns.iter().map(column).collect::<Vec<_>>() };
+        for (name, who) in all.into_iter().filter(|(_, who)| who.len() < runs.len()) {
+            match groups.iter_mut().find(|group| group.0 == who) {
+                Some((_, names)) if names.contains(&name) => {}
+                Some((_, names)) => names.push(name),
+                None => groups.push((who, vec![name])),
+            }
+        }
+    }
+    let said: Vec<String> =
+        groups.iter().map(|(who, names)| format!("only in {}: {}", who.join(", "), names.join(", "))).collect();
+    match said.is_empty() {
+        true => String::new(),
+        false => format!("<p class=\"quiet\">Not every run has every series; {}.</p>\n", escape(&said.join("; "))),
+    }
 }
 
 /// The facts of several runs side by side.

@@ -4,7 +4,7 @@ use super::Simulation;
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    solid::{Dim, HasEngine as _, Kinematics, Links, Role, SolidSpec},
+    solid::{Dim, HasEngine as _, Kinematics, Links, Role, Solid, SolidSpec, within::swallowed},
     time::Light,
 };
 
@@ -114,14 +114,30 @@ where
     fn refuse_overlap(&self, spec: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         let Some(engine) = self.bodies.engine() else { return Ok(()) };
         let allowed = OVERLAP_MAX * self.system.model().dp;
-        match engine.overlap(spec, start)? {
+        let touched = engine.overlap(spec, start)?.into_iter();
+        match touched.chain(self.swallowing(spec, start, allowed)).max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((other, depth)) if depth > allowed => {
-                let other = &self.system.solids()[other].spec.name;
-                Err(Error::scene(format!("\"{}\" would come {depth:.5} m inside \"{other}\"", spec.name))
+                let other = &self.system.solids()[other].spec;
+                let what = format!("\"{}\" would come {depth:.5} m inside \"{}\"", spec.name, other.name);
+                let padded = if spec.contact_skin + other.contact_skin > 0.0 { ", contact skins counted" } else { "" };
+                Err(Error::scene(what + padded)
                     .help(format!("move it by that much or more; {allowed:.5} m (0.05 dp) is let pass")))
             }
             _ => Ok(()),
         }
+    }
+
+    /// With which solid, and how deep (m), one that comes would overlap most where it touches nothing: inside a mesh.
+    fn swallowing(&self, spec: &SolidSpec<D>, start: &Kinematics<D>, allowed: f64) -> Option<(usize, f64)> {
+        let free = |role: &Role<D>| matches!(role, Role::Free(_));
+        let depth = |(i, other): (usize, &Solid<D>)| {
+            let meets = !other.skin.is_empty() && (free(&spec.role) || free(&other.spec.role));
+            let (new, old) = ((spec, &start.pose), (&other.spec, &other.kinematics.pose));
+            let within = [(new, old), (old, new)].into_iter().filter(|_| meets);
+            Some((i, within.filter_map(|(inner, outer)| swallowed(inner, outer, allowed)).reduce(f64::max)?))
+        };
+        let depths = self.system.solids().iter().enumerate().filter_map(depth);
+        depths.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Lets a solid come into water and world, unchecked and without making room for it.

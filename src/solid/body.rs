@@ -26,7 +26,8 @@ impl<const D: usize> SolidSpec<D> {
         }
     }
 
-    /// Whether this solid can be meant: shape (of a free one without parts that overlap), pose, role, friction and restitution.
+    /// Whether this solid can be meant: shape (of a free one without parts that overlap), pose, role, friction, restitution and
+    /// contact skin.
     ///
     /// # Errors
     /// `Scene`: names the solid, what is wrong with it, and what would be right.
@@ -53,9 +54,21 @@ impl<const D: usize> SolidSpec<D> {
             let friction = self.friction;
             require(friction >= 0.0 && friction.is_finite(), || format!("friction is {friction}"), "0 or more")?;
             let bounce = self.restitution;
-            require((0.0..=1.0).contains(&bounce), || format!("restitution is {bounce}"), "0 (stays) … 1 (bounces)")
+            require((0.0..=1.0).contains(&bounce), || format!("restitution is {bounce}"), "0 (stays) … 1 (bounces)")?;
+            let (skin, most) = (self.contact_skin, self.thickest_skin());
+            let right = format!("0 to {most:.4} m, half of its smallest extent");
+            require(self.skin_fits(), || format!("its contact skin is {skin} m"), &right)
         })
         .map_err(|e| self.named(e))
+    }
+
+    /// Whether it has no contact skin, or one that is not thicker than half of its smallest extent.
+    pub(crate) fn skin_fits(&self) -> bool {
+        self.contact_skin == 0.0 || (0.0..=self.thickest_skin()).contains(&self.contact_skin)
+    }
+
+    fn thickest_skin(&self) -> f64 {
+        0.5 * self.shape.bounds().size().min()
     }
 
     fn named(&self, mut error: Error) -> Error {
@@ -147,6 +160,7 @@ mod tests {
             role: Role::Free(body),
             friction: 0.3,
             restitution: 0.0,
+            contact_skin: 0.0,
         }
     }
 
@@ -169,6 +183,11 @@ mod tests {
         assert!(slippery.check_role().unwrap_err().to_string().contains("friction is -0.1"));
         let bouncy = SolidSpec { restitution: 1.5, ..spec(1.0, [1.0; 3]) };
         assert!(bouncy.check_role().unwrap_err().to_string().contains("restitution is 1.5"));
+        for skin in [-0.01, 0.11, f64::NAN] {
+            let padded = SolidSpec { contact_skin: skin, ..spec(1.0, [1.0; 3]) };
+            let error = padded.check_role().unwrap_err().to_string();
+            assert!(error.contains(&format!("its contact skin is {skin} m")), "a ball of 0.1 m: {error}");
+        }
     }
 
     #[test]

@@ -11,13 +11,13 @@ use super::super::{
 use super::{D, from_point, to_frame, to_point};
 use crate::{
     error::{Error, Result},
-    shape::{Shape, Touchable, overlap::shared},
-    solid::{Kinematics, Links, Role, SolidSpec},
+    shape::Shape,
+    solid::{
+        Kinematics, Links, Role, SolidSpec,
+        within::{Placed, swallowed},
+    },
     space::{Bounds, Pose, Vector},
 };
-
-/// A solid and where it starts.
-type Placed<'a> = (&'a SolidSpec<D>, &'a Pose<D>);
 
 /// A solid's convex parts in its own frame.
 pub(super) type Parts = Vec<(Frame, SharedShape)>;
@@ -72,33 +72,6 @@ pub(super) fn thickness(parts: &Parts) -> f64 {
     around(parts, &Frame::IDENTITY).map_or(f64::INFINITY, |(min, max)| (max - min).min())
 }
 
-/// The single shapes of a posed shape that others touch.
-fn touchable<'a>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut Vec<(&'a Shape<D>, Pose<D>)>) {
-    match shape {
-        Shape::Compound(parts) => parts.iter().for_each(|(inner, part)| touchable(part, pose.then(inner), found)),
-        Shape::Mesh { contact: Touchable::None, .. } => {}
-        _ => found.push((shape, pose)),
-    }
-}
-
-/// How deep (m) a place of one solid, more than `allowed` (m) inside, lies in a mesh of the other that is touched by its
-/// surface only: what is wholly inside is in touch with nothing there.
-fn swallowed((one, here): Placed, (other, there): Placed, allowed: f64) -> Option<f64> {
-    let (mut inner, mut outer) = (Vec::new(), Vec::new());
-    touchable(&one.shape, *here, &mut inner);
-    touchable(&other.shape, *there, &mut outer);
-    let fixed = matches!(other.role, Role::Fixed);
-    let surface = |shape: &Shape<D>| match shape {
-        Shape::Mesh { contact, .. } => *contact == Touchable::Surface || fixed && *contact == Touchable::Fitting,
-        _ => false,
-    };
-    let deep = |(mesh, there): &(&Shape<D>, Pose<D>)| {
-        let places = inner.iter().filter_map(|(shape, here)| shared((shape, here), (mesh, there), allowed));
-        places.map(|(x, _)| -mesh.signed_distance(&there.local(&x))).reduce(f64::max)
-    };
-    outer.iter().filter(|(shape, _)| surface(shape)).filter_map(deep).reduce(f64::max)
-}
-
 /// The inner room of a tank, or of a polyline whose two ends rise: its least and its largest corner, m.
 fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
     let corners: Vec<Vector<D>> = match shape {
@@ -116,7 +89,7 @@ fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
 }
 
 /// What to do about a body that has no room in a tank or basin.
-fn cramped((inner, here): Placed, parts: &Parts, (outer, there): Placed, allowed: f64) -> Option<String> {
+fn cramped((inner, here): Placed<D>, parts: &Parts, (outer, there): Placed<D>, allowed: f64) -> Option<String> {
     let ((min, max), own) = (room(&outer.shape, there)?, around(parts, &to_frame(here))?);
     let (body, tank, size, space) = (&inner.name, &outer.name, own.1 - own.0, max - min);
     if let Some(axis) = (0..D - 1).find(|&axis| size[axis] > space[axis]) {
@@ -137,7 +110,7 @@ fn cramped((inner, here): Placed, parts: &Parts, (outer, there): Placed, allowed
     })
 }
 
-/// Refuses a free solid that starts deeper than `allowed` (m) inside another.
+/// Refuses a free solid that starts deeper than `allowed` (m) inside another, contact skins counted.
 pub(super) fn refuse_overlap(
     solids: &[SolidSpec<D>],
     start: &[Kinematics<D>],
@@ -152,11 +125,12 @@ pub(super) fn refuse_overlap(
                 continue;
             }
             let (frame_a, frame_b) = (to_frame(&start[a].pose), to_frame(&start[b].pose));
+            let skins = solids[a].contact_skin + solids[b].contact_skin;
             let mut depth: f64 = 0.0;
             for (inner_a, part_a) in &parts[a] {
                 for (inner_b, part_b) in &parts[b] {
-                    let touch = contact(&(frame_a * *inner_a), &**part_a, &(frame_b * *inner_b), &**part_b, 0.0);
-                    depth = touch.ok().flatten().map_or(depth, |touch| depth.max(-touch.dist));
+                    let touch = contact(&(frame_a * *inner_a), &**part_a, &(frame_b * *inner_b), &**part_b, skins);
+                    depth = touch.ok().flatten().map_or(depth, |touch| depth.max(skins - touch.dist));
                 }
             }
             let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
@@ -166,10 +140,13 @@ pub(super) fn refuse_overlap(
             if depth > allowed {
                 let help = cramped(body, &parts[inner], other, allowed);
                 let help = help.unwrap_or_else(|| {
-                    format!("move one of them by that much or more, or make it smaller; {allowed:.5} m (0.05 dp) is let pass")
+                    let less = if skins > 0.0 { "a skin thinner" } else { "it smaller" };
+                    let past = format!("{allowed:.5} m (0.05 dp) is let pass");
+                    format!("move one of them by that much or more, or make {less}; {past}")
                 });
                 let what = format!("\"{}\" starts {depth:.5} m inside \"{}\"", body.0.name, other.0.name);
-                return Err(Error::scene(what).help(help).at("", None, format!("solid.{inner}.at")));
+                let padded = if skins > 0.0 { ", contact skins counted" } else { "" };
+                return Err(Error::scene(what + padded).help(help).at("", None, format!("solid.{inner}.at")));
             }
         }
     }
@@ -189,7 +166,7 @@ mod tests {
         let role = Role::Free(FreeBody::from_density(&shape, 500.0));
         let solid = |name: &str, shape: Shape<D>, at: Vector<D>, role: Role<D>| {
             let (name, pose) = (name.into(), Pose::at(at));
-            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0 }
+            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
         };
         let point = |x: f64, up: f64| {
             Vector::from_fn(|i, _| {

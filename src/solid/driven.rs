@@ -1,4 +1,5 @@
-//! Prescribed motions: a slide along a direction or a turn about a hinge, after a table or a formula.
+//! Prescribed motions: a slide along a direction or a turn about a hinge, after a table or a formula; or several of them, each
+//! carried by those before it, as actuators that stand on one another.
 //!
 //! Positions and velocities both come from the law itself, never from differences of poses, so that a slow
 //! start is as exact as a fast swing. At time t a driven solid is its start pose moved by the law's value
@@ -44,9 +45,16 @@ impl Law {
 /// A prescribed motion.
 #[derive(Clone, Debug)]
 pub struct Motion<const D: usize> {
+    /// From the ground up; most have one.
+    stages: Vec<Stage<D>>,
+    absorbing: Option<Box<Absorbing<D>>>,
+}
+
+/// One way to go, and how far.
+#[derive(Clone, Debug)]
+struct Stage<const D: usize> {
     path: Path<D>,
     law: Law,
-    absorbing: Option<Box<Absorbing<D>>>,
 }
 
 /// What makes a paddle absorb, and where its gauge is.
@@ -70,7 +78,7 @@ enum Path<const D: usize> {
 impl<const D: usize> Motion<D> {
     /// Sliding along `direction` (any length but zero) by the law's value (m).
     pub fn slide(direction: Vector<D>, law: Law) -> Self {
-        Self { path: Path::Slide(direction.normalize()), law, absorbing: None }
+        Self::of(Path::Slide(direction.normalize()), law)
     }
 
     /// Turning about the world point `centre` (m) by the law's angle (rad).
@@ -80,7 +88,17 @@ impl<const D: usize> Motion<D> {
     pub fn hinge(centre: Vector<D>, axis: &[f64], law: Law) -> Self {
         let axis = Wedge::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
-        Self { path: Path::Hinge { centre, axis: axis * (1.0 / length) }, law, absorbing: None }
+        Self::of(Path::Hinge { centre, axis: axis * (1.0 / length) }, law)
+    }
+
+    fn of(path: Path<D>, law: Law) -> Self {
+        Self { stages: vec![Stage { path, law }], absorbing: None }
+    }
+
+    /// Several motions at once, from the ground up: each goes in the frame that those before it have moved, its direction or hinge being
+    /// where it says when they are all at zero. What lies at x then lies at A₁(t) A₂(t) … Aₙ(t) x. None of them makes a wave.
+    pub fn chain(motions: impl IntoIterator<Item = Self>) -> Self {
+        Self { stages: motions.into_iter().flat_map(|motion| motion.stages).collect(), absorbing: None }
     }
 
     /// The same motion, of a paddle that absorbs: its gauge is above `gauge` (m) when it is at rest, and goes with it along
@@ -94,80 +112,126 @@ impl<const D: usize> Motion<D> {
         self.absorbing.as_ref().map(|own| &own.absorber)
     }
 
+    /// The wave that it makes, if it is a paddle that makes one by name.
+    pub fn wave(&self) -> Option<&Wave> {
+        match &self.stages[..] {
+            [Stage { law: Law::Wave(wave), .. }] => Some(wave),
+            _ => None,
+        }
+    }
+
     /// Where the gauge of a paddle that absorbs is at time `t` (s); nowhere if it does not.
     pub(crate) fn gauge(&self, yielding: &Yielding, t: f64) -> Option<Vector<D>> {
-        let (Some(own), Law::Wave(wave)) = (&self.absorbing, &self.law) else { return None };
+        let (own, wave) = (self.absorbing.as_ref()?, self.wave()?);
         Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.at(t).0))
     }
 
     /// How it goes on yielding from time `t` (s), when the water at its gauge stands at `level` (m), if there is any.
     pub(crate) fn steer(&self, before: &Yielding, t: f64, level: Option<f64>) -> Yielding {
-        match (&self.absorbing, &self.law) {
-            (Some(own), Law::Wave(wave)) => own.absorber.steer(wave, before, t, level),
+        match (&self.absorbing, self.wave()) {
+            (Some(own), Some(wave)) => own.absorber.steer(wave, before, t, level),
             _ => *before,
         }
     }
 
-    /// Height (m) of the world point about which it turns; none of a slide.
+    /// World point (m) about which it turns; none of a slide, or of several motions.
+    fn hinged(&self) -> Option<&Vector<D>> {
+        match &self.stages[..] {
+            [Stage { path: Path::Hinge { centre, .. }, .. }] => Some(centre),
+            _ => None,
+        }
+    }
+
+    /// Height (m) of the world point about which it turns; none of a slide, or of several motions.
     pub fn hinge_height(&self) -> Option<f64> {
-        match &self.path {
-            Path::Slide(_) => None,
-            Path::Hinge { centre, .. } => Some(centre[D - 1]),
-        }
+        self.hinged().map(|centre| centre[D - 1])
     }
 
-    /// Which way its point that is at `x` (m) goes as the law's value grows, a unit vector; zero on the axis of a hinge.
-    pub fn heading(&self, x: &Vector<D>) -> Vector<D> {
-        match &self.path {
-            Path::Slide(direction) => *direction,
-            Path::Hinge { centre, axis } => axis.at(&(x - centre)).try_normalize(0.0).unwrap_or_else(Vector::zeros),
-        }
-    }
-
-    /// How it goes along its way.
-    pub fn law(&self) -> &Law {
-        &self.law
+    /// Which way its point that is at `x` (m) at the start goes as the value of each of its laws grows: unit vectors, from the ground
+    /// up; zero on the axis of a hinge.
+    pub fn headings(&self, x: &Vector<D>) -> Vec<Vector<D>> {
+        let way = |k: usize| {
+            let alone = |i: usize, law: &Law| (law.at(0.0).0, if i == k { 1.0 } else { 0.0 });
+            let now = self.moved(&Pose::identity(), alone);
+            (now.velocity + now.spin.at(&(x - now.centre))).try_normalize(0.0).unwrap_or_else(Vector::zeros)
+        };
+        (0..self.stages.len()).map(way).collect()
     }
 
     /// Where a solid that starts at `start` is at time `t` (s), and how it moves there: exact rates.
     ///
-    /// The `centre` of the result is the hinge, or the frame's origin of a sliding solid.
+    /// The `centre` of the result is the hinge of what turns about one and does nothing else, or the frame's origin.
     pub fn kinematics(&self, start: &Pose<D>, t: f64) -> Kinematics<D> {
-        self.moved(start, self.law.at(t))
+        self.moved(start, |_, law| law.at(t))
     }
 
     /// As [`Motion::kinematics`], of a paddle that has yielded.
     pub(crate) fn beside(&self, start: &Pose<D>, t: f64, yielding: &Yielding) -> Kinematics<D> {
-        match (&self.absorbing, &self.law) {
-            (Some(_), Law::Wave(wave)) => self.moved(start, wave.beside(t, yielding.at(t))),
+        match (&self.absorbing, self.wave()) {
+            (Some(_), Some(wave)) => self.moved(start, |_, _| wave.beside(t, yielding.at(t))),
             _ => self.kinematics(start, t),
         }
     }
 
-    fn moved(&self, start: &Pose<D>, (value, rate): (f64, f64)) -> Kinematics<D> {
-        match &self.path {
-            Path::Slide(direction) => {
-                let position = start.position + direction * value;
-                Kinematics {
-                    pose: Pose { position, rotation: start.rotation },
-                    centre: position,
-                    velocity: direction * rate,
-                    spin: Wedge::zero(),
-                }
-            }
-            Path::Hinge { centre, axis } => {
-                let turn = Pose { position: *centre, rotation: (*axis * value).exp() };
-                let arm = Pose { position: start.position - centre, rotation: start.rotation };
-                Kinematics { pose: turn.then(&arm), centre: *centre, velocity: Vector::zeros(), spin: *axis * rate }
-            }
+    /// Where a solid that starts at `start` is when the law of each stage has a value and a rate.
+    fn moved(&self, start: &Pose<D>, values: impl Fn(usize, &Law) -> (f64, f64)) -> Kinematics<D> {
+        let still = Kinematics { pose: *start, centre: start.position, velocity: Vector::zeros(), spin: Wedge::zero() };
+        let stages = self.stages.iter().enumerate().rev();
+        let moved = stages.fold(still, |inner, (i, stage)| stage.path.carry(&inner, values(i, &stage.law)));
+        match self.hinged() {
+            Some(hinge) => Kinematics { centre: *hinge, velocity: Vector::zeros(), ..moved },
+            None => moved,
         }
     }
 
     /// Whether the motion can be meant.
     ///
     /// # Errors
-    /// `Scene` if its direction or axis is zero or not finite, or its law is not finite at time 0.
+    /// `Scene` if there is none, one of several makes a wave, a direction or axis is zero or not finite, or a law is not finite at time 0.
     pub fn check(&self) -> Result<()> {
+        let several = self.stages.len() > 1;
+        if self.stages.is_empty() {
+            return Err(Error::scene("its list of motions is empty").help("give one or more, or make the solid fixed"));
+        }
+        if several && self.stages.iter().any(|stage| matches!(stage.law, Law::Wave(_))) {
+            return Err(Error::scene("one of its several motions makes a wave")
+                .help("a paddle that makes waves by name has no other motion beside it"));
+        }
+        self.stages.iter().enumerate().try_for_each(|(i, stage)| {
+            stage.check().map_err(|e| match several {
+                true => Error { what: format!("motion {}: {}", i + 1, e.what), ..e },
+                false => e,
+            })
+        })
+    }
+}
+
+impl<const D: usize> Path<D> {
+    /// What moves as `inner` says, centre and all, carried along this path by a value (m or rad) that grows at a rate.
+    fn carry(&self, inner: &Kinematics<D>, (value, rate): (f64, f64)) -> Kinematics<D> {
+        match self {
+            Self::Slide(direction) => {
+                let centre = inner.centre + direction * value;
+                let pose = Pose { position: centre, ..inner.pose };
+                Kinematics { pose, centre, velocity: inner.velocity + direction * rate, ..*inner }
+            }
+            Self::Hinge { centre, axis } => {
+                let (turn, spin) = ((*axis * value).exp(), *axis * rate);
+                let arm = turn * (inner.centre - centre);
+                let pose = Pose { position: centre + arm, rotation: turn * inner.pose.rotation };
+                Kinematics {
+                    pose,
+                    centre: pose.position,
+                    velocity: turn * inner.velocity + spin.at(&arm),
+                    spin: inner.spin.turned(&turn) + spin,
+                }
+            }
+        }
+    }
+}
+
+impl<const D: usize> Stage<D> {
+    fn check(&self) -> Result<()> {
         let (fine, what) = match &self.path {
             Path::Slide(direction) => (direction.norm().is_finite(), "direction of its slide"),
             Path::Hinge { centre, axis } => {
@@ -189,6 +253,8 @@ impl<const D: usize> Motion<D> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     fn formula(text: &str) -> Law {
@@ -233,11 +299,63 @@ mod tests {
         assert!(now.pose.position[1] > 0.4 && now.spin.axial()[0] == 1.0);
     }
 
+    /// The largest distance (m) of the velocities of some points from the central difference of where they are.
+    fn off<const D: usize>(motion: &Motion<D>, start: &Pose<D>, t: f64) -> f64 {
+        let step = 1e-6;
+        let [a, now, b] = [t - step, t, t + step].map(|t| motion.kinematics(start, t));
+        let point = |i: usize| {
+            let local = Vector::from_fn(|k, _| if k == i { 0.7 } else { -0.2 });
+            let difference = (b.pose.point(&local) - a.pose.point(&local)) / (2.0 * step);
+            (now.velocity + now.spin.at(&(now.pose.point(&local) - now.centre)) - difference).norm()
+        };
+        (0..D).map(point).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn each_motion_of_several_goes_in_the_frame_that_those_before_it_have_moved() {
+        let turn = || Motion::hinge(Vector::from([1.0, 0.0]), &[1.0], formula("0.5*pi*t"));
+        let slide = || Motion::slide(Vector::from([1.0, 0.0]), formula("2*t"));
+        let start = Pose::at(Vector::from([1.0, 1.0]));
+        let at = |motion: &Motion<2>| motion.kinematics(&start, 1.0);
+        // A rail on the turntable points up by then; a turntable on the rail is 2 m further on. Round-off of cos π/2.
+        let (railed, carted) = (Motion::chain([turn(), slide()]), Motion::chain([slide(), turn()]));
+        assert!((at(&railed).pose.position - Vector::from([0.0, 2.0])).norm() < 1e-15);
+        assert!((at(&carted).pose.position - Vector::from([2.0, 0.0])).norm() < 1e-15);
+        assert!((at(&railed).velocity - Vector::from([-PI, 2.0 - 0.5 * PI])).norm() < 1e-14, "{:?}", at(&railed));
+        assert!((at(&carted).velocity - Vector::from([2.0, -0.5 * PI])).norm() < 1e-14, "{:?}", at(&carted));
+        assert_eq!(at(&carted).centre, at(&carted).pose.position, "the origin of its frame");
+        // Truncation and round-off of the difference, as above.
+        assert!(off(&railed, &start, 0.3) < 1e-8 && off(&carted, &start, 0.3) < 1e-8);
+        let one = Motion::chain([turn()]);
+        assert_eq!(at(&one), at(&turn()), "of one it is that one");
+        assert!(one.hinge_height().is_some() && carted.hinge_height().is_none());
+    }
+
+    #[test]
+    fn several_motions_in_space_have_their_exact_rates() {
+        let centre = |x: f64| Vector::from([x, 0.2, -0.1]);
+        let motion = Motion::chain([
+            Motion::slide(Vector::from([1.0, 0.0, 0.2]), formula("0.1*sin(3*t)")),
+            Motion::hinge(centre(0.0), &[0.0, 1.0, 0.0], formula("0.4*sin(2*t)")),
+            Motion::hinge(centre(0.3), &[0.2, 0.0, 1.0], formula("0.3*t")),
+            Motion::slide(Vector::from([0.0, 1.0, 0.0]), formula("0.2*cos(t)")),
+        ]);
+        let start = Pose::turned(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
+        assert!(off(&motion, &start, 0.7) < 1e-8);
+        let ways = motion.headings(&Vector::from([0.4, 0.5, 0.3]));
+        assert!(ways.len() == 4 && ways.iter().all(|way| (way.norm() - 1.0).abs() < 1e-14), "{ways:?}");
+        assert!((ways[0] - Vector::from([1.0, 0.0, 0.2]).normalize()).norm() < 1e-15);
+    }
+
     #[test]
     fn a_motion_without_direction_is_refused() {
         assert!(Motion::slide(Vector::<2>::zeros(), formula("t")).check().is_err());
         assert!(Motion::hinge(Vector::<3>::zeros(), &[0.0; 3], formula("t")).check().is_err());
         assert!(Motion::slide(Vector::from([1.0, 0.0]), formula("1/t")).check().is_err());
-        assert!(Motion::slide(Vector::from([1.0, 0.0]), formula("t")).check().is_ok());
+        let slide = |law: &str| Motion::slide(Vector::from([1.0, 0.0]), formula(law));
+        assert!(slide("t").check().is_ok());
+        let second = Motion::chain([slide("t"), slide("1/t")]).check().unwrap_err();
+        assert!(second.to_string().contains("motion 2: the law of motion gives"), "{second}");
+        assert!(Motion::<2>::chain([]).check().is_err());
     }
 }

@@ -11,7 +11,7 @@ use crate::{
 /// Moves the free solids of one world under weight, water, contacts and the user's pushes.
 ///
 /// Solids are named by their index in the list that the engine was made from. Fixed and driven solids take
-/// part as obstacles; free ones touch those and one another at their true faces.
+/// part as obstacles; free ones touch those and one another at their true faces, or at the contact skins that they ask for.
 pub trait Engine<const D: usize>: Send + Sync {
     /// Pose, centre of mass, its velocity, and spin of the free solid `solid`.
     fn kinematics(&self, solid: usize) -> Kinematics<D>;
@@ -50,7 +50,7 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Holds a free solid still, or lets it go as it was made.
     fn hold(&mut self, solid: usize, held: bool);
 
-    /// With which solid, and how deep (m), a `solid` that starts as `start` would overlap most.
+    /// With which solid, and how deep (m), a `solid` that starts as `start` would overlap most, contact skins counted.
     ///
     /// # Errors
     /// `Scene` if its shape cannot be touched.
@@ -64,6 +64,10 @@ pub trait Engine<const D: usize>: Send + Sync {
 
     /// Takes a solid out that nothing is tied to: it keeps its number and takes no part any more.
     fn oust(&mut self, solid: usize);
+
+    /// What a free solid did in the last step against torques (N m), if it is one that the engine turns by its spin: in space one in
+    /// a joint, on a rope, or with something locked, I(R₀) ΔΩ/Δt less its gyroscopic torque. All others turn by their angular momentum.
+    fn turned(&self, solid: usize) -> Option<Wedge<D>>;
 
     /// How easily a solid is moved now.
     fn mobility(&self, solid: usize) -> Mobility<D>;

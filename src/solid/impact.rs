@@ -95,6 +95,7 @@ fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, 
             continue;
         }
         let bodies = [first, second];
+        let skins = colliders.map(|c| c.contact_skin());
         let (mut close, mut struck) = (Vec::new(), false);
         for manifold in pair.manifolds() {
             let poses = [
@@ -104,7 +105,9 @@ fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, 
             let normal = poses[0].rotation * manifold.local_n1;
             for point in &manifold.points {
                 let (p1, p2) = (poses[0] * point.local_p1, poses[1] * point.local_p2);
-                let (gap, at) = ((p2 - p1).dot(normal), 0.5 * (p1 + p2));
+                // From skin to skin, and in the middle between these.
+                let gap = (p2 - p1).dot(normal) - skins[0] - skins[1];
+                let at = 0.5 * (p1 + p2) + normal * (0.5 * (skins[0] - skins[1]));
                 let meeting = parting(world, bodies, at).dot(normal);
                 struck |= meeting < -slowest && gap + AHEAD * meeting * dt < 0.0;
                 if meeting < 0.0 && gap + 2.0 * AHEAD * meeting * dt < 0.0 {

@@ -10,7 +10,7 @@
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
-use super::rows::{Mobility, Row, part};
+use super::rows::{Mobility, Row, of, part};
 use crate::{
     solid::{Engine, Kinematics, Law},
     space::{Matrix, Pose, Vector, Wedge},
@@ -268,7 +268,13 @@ impl<const D: usize> Joint<D> {
     fn row(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> Row<D> {
         let [first, second] = self.sits(ends);
         match mode.checked_sub(D) {
-            None => Row::along(first.rotation.column(mode).into(), &second.position, ends),
+            None => {
+                // The engine takes the first one, too, where the second is, but for what it holds of the way between them.
+                let off = first.local(&second.position);
+                let held = Vector::from_fn(|axis, _| if self.spec.locks(axis) { off[axis] } else { 0.0 });
+                let places = [second.position - first.rotation * held, second.position];
+                Row::between(first.rotation.column(mode).into(), &places, ends)
+            }
             Some(axis) => Row::about(turning(&first.rotation.column(axis).into())),
         }
     }
@@ -358,13 +364,6 @@ impl<const D: usize> JointSpec<D> {
         };
         turns_first::<D>().filter_map(|mode| Some((mode, of(mode)?))).collect()
     }
-}
-
-/// How the solid at an end moves; the world does not.
-pub(super) fn of<const D: usize>(end: Option<usize>, solids: &[Kinematics<D>]) -> Kinematics<D> {
-    let world =
-        Kinematics { pose: Pose::identity(), centre: Vector::zeros(), velocity: Vector::zeros(), spin: Wedge::zero() };
-    end.and_then(|solid| solids.get(solid)).copied().unwrap_or(world)
 }
 
 /// Turning once about `axis`; in 2-D counter-clockwise.

@@ -21,6 +21,7 @@ pub mod spatial;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 mod tests;
 pub mod wave;
+pub(crate) mod within;
 
 pub use driven::{Law, Motion};
 pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};
@@ -58,6 +59,8 @@ pub struct SolidSpec<const D: usize> {
     pub friction: f64,
     /// Restitution coefficient, –.
     pub restitution: f64,
+    /// How far outside its faces others begin to touch it, m; 0: at the faces. The water does not see it.
+    pub contact_skin: f64,
 }
 
 /// What moves a solid.

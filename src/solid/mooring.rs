@@ -6,10 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    joint::of,
-    rows::{Mobility, Row},
-};
+use super::rows::{Mobility, Row, of};
 use crate::{
     solid::{Engine, Kinematics},
     space::Vector,

@@ -59,7 +59,7 @@ pub fn solid(
         return refuse("has no mass yet", help);
     }
     let pose = world::from_frame(body.position());
-    Ok(SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0 })
+    Ok(SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 })
 }
 
 /// Gives a body the water's load in place of all forces and torques of the step before. Rapier keeps forces until it is told

@@ -9,7 +9,7 @@ use super::super::rapier::{
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    D, World,
+    D, HOOKS, World,
     colliders::{Parts, collect, thickness},
     lock, mass_properties, to_angular, to_frame, to_point,
 };
@@ -20,7 +20,7 @@ use crate::{
 };
 
 impl World {
-    /// With which solid, and how deep (m), `solid` would overlap most.
+    /// With which solid, and how deep (m), `solid` would overlap most, contact skins counted.
     pub(super) fn overlap_of(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
         let (parts, frame) = (parts(solid)?, to_frame(&start.pose));
         let mut deepest: Option<(usize, f64)> = None;
@@ -31,8 +31,9 @@ impl World {
                 continue;
             }
             for (inner, part) in &parts {
-                let touch = contact(&(frame * *inner), &**part, other.position(), other.shape(), 0.0);
-                let depth = touch.ok().flatten().map_or(0.0, |touch| -touch.dist);
+                let skins = solid.contact_skin + other.contact_skin();
+                let touch = contact(&(frame * *inner), &**part, other.position(), other.shape(), skins);
+                let depth = touch.ok().flatten().map_or(0.0, |touch| skins - touch.dist);
                 if depth > deepest.map_or(0.0, |(_, depth)| depth) {
                     deepest = Some((owner, depth));
                 }
@@ -44,7 +45,7 @@ impl World {
     /// Lets a solid come, behind all others.
     pub(super) fn admit_one(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         let parts = parts(solid)?;
-        let hooks = if self.ties.pairs.is_empty() { ActiveHooks::empty() } else { ActiveHooks::all() };
+        let hooks = if self.ties.pairs.is_empty() { HOOKS } else { ActiveHooks::all() };
         let body = insert(&mut self.world, self.bodies.len(), solid, start, &parts, hooks);
         if let Role::Free(_) = solid.role {
             self.reach = self.reach.min(0.1 * thickness(&parts));
@@ -106,7 +107,7 @@ pub(super) fn insert(
         let collider = ColliderBuilder::new(part.clone())
             .position(*frame)
             .density(0.0)
-            .contact_skin(0.0)
+            .contact_skin(solid.contact_skin)
             .friction(solid.friction)
             .restitution(0.0)
             .active_hooks(hooks)

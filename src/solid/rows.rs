@@ -7,7 +7,7 @@ use nalgebra::SMatrix;
 
 use crate::{
     solid::{Kinematics, Load},
-    space::{Vector, Wedge},
+    space::{Pose, Vector, Wedge},
 };
 
 /// How easily a solid is moved: zero where it is not free.
@@ -46,7 +46,12 @@ pub(super) struct Row<const D: usize> {
 impl<const D: usize> Row<D> {
     /// Along the unit vector `n`, at the world point `x` (m) of both.
     pub(super) fn along(n: Vector<D>, x: &Vector<D>, ends: &[Kinematics<D>; 2]) -> Self {
-        Self { along: n, about: ends.each_ref().map(|end| Wedge::torque(&(x - end.centre), &n)) }
+        Self::between(n, &[*x, *x], ends)
+    }
+
+    /// Along the unit vector `n`, at a world point (m) of each.
+    pub(super) fn between(n: Vector<D>, places: &[Vector<D>; 2], ends: &[Kinematics<D>; 2]) -> Self {
+        Self { along: n, about: [0, 1].map(|k| Wedge::torque(&(places[k] - ends[k].centre), &n)) }
     }
 
     /// About the axis `a`.
@@ -83,6 +88,13 @@ impl<const D: usize> Row<D> {
         let about = [0, 1].map(|k| self.about[k] + other.about[k] * -part);
         Self { along: self.along - other.along * part, about }
     }
+}
+
+/// How the solid at an end moves; the world does not.
+pub(super) fn of<const D: usize>(end: Option<usize>, solids: &[Kinematics<D>]) -> Kinematics<D> {
+    let world =
+        Kinematics { pose: Pose::identity(), centre: Vector::zeros(), velocity: Vector::zeros(), spin: Wedge::zero() };
+    end.and_then(|solid| solids.get(solid)).copied().unwrap_or(world)
 }
 
 /// Takes out of each row what those before it among the first `locks` do already (Gram and Schmidt): the rows along which the

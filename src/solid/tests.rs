@@ -21,7 +21,8 @@ fn down<const D: usize>() -> Vector<D> {
 }
 
 fn solid<const D: usize>(name: &str, shape: Shape<D>, at: [f64; D], role: Role<D>) -> SolidSpec<D> {
-    SolidSpec { name: name.into(), shape, pose: Pose::at(at.into()), role, friction: 0.5, restitution: 0.0 }
+    let (name, pose) = (name.into(), Pose::at(at.into()));
+    SolidSpec { name, shape, pose, role, friction: 0.5, restitution: 0.0, contact_skin: 0.0 }
 }
 
 /// A free body of 2 kg with the moments of inertia 1, 2, 2.5 g m² (in 2-D: 1 g m²).
@@ -175,6 +176,9 @@ where
 fn a_box_at_rest_weighs_on_the_floor() {
     rests::<2>();
     rests::<3>();
+    // Where two facets meet, the engine solves the points of both as one face's.
+    let seabed = meshed([1.0, 1.0, 1.0], false, Touchable::Fitting);
+    rests_on(solid("seabed", seabed, [0.0, 0.0, -0.5], Role::Fixed));
 }
 
 #[test]

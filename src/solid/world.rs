@@ -6,9 +6,9 @@
 //! whose contacts more of them stiffen; contacts as critically damped springs of min(0.05/dt, 1000) Hz for each
 //! iteration, which sink g/(2πf)² under the lighter body's weight; no contact recycling, which leaves small
 //! bodies hanging on ledges; no sleep; no continuous detection, since a step of the water moves no body
-//! through a wall. Bodies that bounce do so in `impact`, not by the springs. Colliders have the true faces
-//! (no contact skin), friction and restitution of a pair are the means of both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh
-//! nothing.
+//! through a wall. Bodies that bounce do so in `impact`, not by the springs. Colliders have the true faces, and others
+//! touch them there or at the contact skin that the solid asks for; friction and restitution of a pair are the means of
+//! both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh nothing.
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "colliders.rs"]
@@ -32,8 +32,8 @@ use super::rapier::{
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular, to_rotation, tune,
-    unwind, wind,
+    Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular,
+    to_rotation, tune, unwind, wind,
 };
 use crate::{
     error::Result,
@@ -77,6 +77,8 @@ pub(in crate::solid) struct World {
     locks: Vec<LockedAxes>,
     /// Which of them have been taken out.
     gone: Vec<bool>,
+    /// What those did in the last step that the engine turns by their spin, N m.
+    turned: Vec<Option<Wedge<D>>>,
 }
 
 /// A load on a solid in the next step.
@@ -105,7 +107,7 @@ impl World {
         let free = solids.iter().zip(&all_parts).filter(|(solid, _)| matches!(solid.role, Role::Free(_)));
         let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
         settle(&mut world, reach);
-        let hooks = if links.contacts.is_empty() { ActiveHooks::empty() } else { ActiveHooks::all() };
+        let hooks = if links.contacts.is_empty() { HOOKS } else { ActiveHooks::all() };
         let insert = |i: usize| roster::insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
         let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
         let ties = Ties::new(&mut world, &bodies, links, start);
@@ -126,6 +128,7 @@ impl World {
             ties,
             locks,
             gone,
+            turned: Vec::new(),
         })
     }
 
@@ -258,14 +261,12 @@ impl Engine<D> for World {
         self.load(loads)?;
         self.drive(driven)?;
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
+        let spins: Vec<Angular> = (0..self.bodies.len()).map(|i| self.body(i).angvel()).collect();
         self.met = impact::rebound(&mut self.world, dt, |a, b, mu| self.ties.pairs.bounce(a, b, &self.restitution, mu));
         self.ties.tighten(&mut self.world, dt);
-        let tumbling = wind(&mut self.world, dt);
-        match self.ties.pairs.is_empty() {
-            true => self.world.step(),
-            false => self.world.step_with_events(&self.ties.pairs, &()),
-        }
-        unwind(&mut self.world, tumbling);
+        let turnings = wind(&mut self.world, &self.bodies, dt);
+        self.world.step_with_events(&self.ties.pairs, &());
+        self.turned = unwind(&mut self.world, &self.bodies, turnings, &spins, dt);
         self.iterations = self.world.integration_parameters.num_solver_iterations;
         self.fall(dt, &before);
         self.foresee();
@@ -314,6 +315,10 @@ impl Engine<D> for World {
             body.set_angvel(to_angular(&Wedge::zero()), true);
         }
         body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
+    }
+
+    fn turned(&self, solid: usize) -> Option<Wedge<D>> {
+        self.turned.get(solid).copied().flatten()
     }
 
     fn mobility(&self, solid: usize) -> Mobility<D> {

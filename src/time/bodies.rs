@@ -267,16 +267,15 @@ impl<const D: usize> Handover<'_, D> {
             tied,
             before: &began[i],
             after: &self.solids[i],
+            turned: engine.turned(i),
             dt,
             iterated,
         };
         let of = |i: usize| Shares::of(self.system, i, &moved(i, rig.tied(i)));
         let shares: Vec<_> = (0..touching.len()).map(of).collect();
         if tied {
-            // In space what turns a body while its spin changes is not in its angular momentum to the last digits.
             let unexplained: Vec<_> = shares.iter().map(Shares::residual).collect();
-            let wanted = D == 2 || iterated;
-            rig.learn(&**engine, [&began, &self.solids], dt, wanted.then_some(&unexplained[..]));
+            rig.learn(&**engine, [&began, &self.solids], dt, Some(&unexplained));
         }
         if let Some(books) = books {
             for (i, shares) in shares.into_iter().enumerate() {

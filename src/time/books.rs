@@ -40,7 +40,8 @@ pub struct Shares<const D: usize> {
     pub pushes: Load<D>,
     /// What holds its locked motions: by definition what the others come to there.
     pub locks: Load<D>,
-    /// Rate at which its momentum and angular momentum changed: m a in a plane.
+    /// Rate at which its momentum and angular momentum changed; of a body in space that is in a joint, on a rope or partly locked the
+    /// latter as the engine steps it, I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
     pub change: Load<D>,
 }
 
@@ -94,12 +95,9 @@ impl<const D: usize> Shares<D> {
     }
 
     /// Gives what is left over to the ties that pull hardest: from one iteration of a step to the next they turn, and the rows along which
-    /// their pulls are told do not. In space what turns a body while its spin changes is left over too, and not theirs.
+    /// their pulls are told do not.
     fn give_ties_the_rest(&mut self) {
-        let mut rest = self.residual();
-        if D == 3 {
-            rest.torque = Wedge::zero();
-        }
+        let rest = self.residual();
         let ties = if self.joints.force.norm() >= self.ropes.force.norm() { &mut self.joints } else { &mut self.ropes };
         if *ties != Load::zero() {
             *ties += rest;
@@ -111,7 +109,8 @@ impl<const D: usize> Shares<D> {
     pub(super) fn of(system: &System<D>, i: usize, moved: &Moved<'_, D>) -> Self {
         let solid = &system.solids()[i];
         let Role::Free(body) = &solid.spec.role else { return Self::zero() };
-        let Moved { given, pushes, touching, tied, before, after, dt, .. } = *moved;
+        let Moved { given, pushes, touching, tied, before, after, turned, dt, .. } = *moved;
+        let change = (momentum(body, after) - momentum(body, before)) * (1.0 / dt);
         Self {
             pressure: solid.load,
             delayed: given - solid.load,
@@ -121,7 +120,7 @@ impl<const D: usize> Shares<D> {
             motors: tied.motors,
             forces: tied.forces,
             pushes,
-            change: (momentum(body, after) - momentum(body, before)) * (1.0 / dt),
+            change: Load { torque: turned.unwrap_or(change.torque), ..change },
             ..Self::zero()
         }
     }
@@ -146,6 +145,8 @@ pub struct Ledger {
     pub viscous: f64,
     /// What the diffusion of density gives.
     pub diffusion: f64,
+    /// What the correction of gradients gives.
+    pub gradient: f64,
     /// What shifting gives.
     pub shifting: f64,
     /// What damping zones give: negative.
@@ -162,7 +163,7 @@ pub struct Ledger {
 
 impl Ledger {
     /// All entries with their names.
-    pub fn entries(&self) -> [(&'static str, f64); 14] {
+    pub fn entries(&self) -> [(&'static str, f64); 15] {
         [
             ("driven", self.driven),
             ("motors", self.motors),
@@ -172,6 +173,7 @@ impl Ledger {
             ("joints", self.joints),
             ("viscous", self.viscous),
             ("diffusion", self.diffusion),
+            ("gradient", self.gradient),
             ("shifting", self.shifting),
             ("damping", self.damping),
             ("walls", self.walls),
@@ -207,6 +209,8 @@ pub(super) struct Moved<'a, const D: usize> {
     pub(super) tied: Tied<D>,
     pub(super) before: &'a Kinematics<D>,
     pub(super) after: &'a Kinematics<D>,
+    /// What it did against torques, if the engine turns it by its spin.
+    pub(super) turned: Option<Wedge<D>>,
     pub(super) dt: f64,
     /// Whether the engine took the step in several iterations.
     pub(super) iterated: bool,
@@ -252,10 +256,11 @@ impl<const D: usize> Books<D> {
             self.since = (self.since + 1) % every;
         }
         if self.energy {
-            let Powers { viscous, diffusion } = self.powers;
+            let Powers { viscous, diffusion, gradient } = self.powers;
             self.ledger.viscous += viscous * dt;
             self.ledger.diffusion += diffusion * dt;
-            self.ledger.walls += (system.unworked() - viscous - diffusion) * dt;
+            self.ledger.gradient += gradient * dt;
+            self.ledger.walls += (system.unworked() - viscous - diffusion - gradient) * dt;
             self.ledger.driven += system.periodic_power() * dt;
         }
         for (solid, work) in system.solids().iter().zip(&mut self.work) {

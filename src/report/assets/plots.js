@@ -90,25 +90,33 @@ function series(home, charts, runs, bytes) {
   for (const table of tables) {
     home.append(make("h3", {}, table.name, make("span", {}, ` · ${table.what}`)));
     const open = make("div", { className: "charts" }), folded = make("div", { className: "charts" });
-    for (const chart of table.charts) {
-      const into = chart.folded ? folded : open;
-      if (!several) {
-        const first = table.columns[chart.columns[0]], title = chart.columns.length > 3 ? table.what : chart.columns.map(c => table.columns[c].label).join(", ");
-        const known = references(runs[0], table, chart.columns, bytes);
-        charts.add(into, { title, unit: first.unit, lines: [...lines(table, chart.columns, bytes), ...known] });
-      } else for (const c of chart.columns) {
-        const { name, label, unit } = table.columns[c], all = [];
-        runs.forEach((run, r) => {
-          const own = run.tables.find(t => t.name === table.name), k = own ? own.columns.findIndex(column => column.name === name) : -1;
-          if (k >= 0) all.push(...lines(own, [k], bytes, run.name, r));
-        });
-        charts.add(into, { title: label, unit, lines: all });
-      }
+    if (several) abreast(open, folded, charts, runs, table.name, bytes);
+    else for (const chart of table.charts) {
+      const first = table.columns[chart.columns[0]], title = chart.columns.length > 3 ? table.what : chart.columns.map(c => table.columns[c].label).join(", ");
+      const known = references(runs[0], table, chart.columns, bytes);
+      charts.add(chart.folded ? folded : open, { title, unit: first.unit, lines: [...lines(table, chart.columns, bytes), ...known] });
     }
     home.append(open);
     if (table.rows[0] < table.rows[1]) home.append(make("p", { className: "quiet" }, `${table.rows[0]} of ${table.rows[1]} rows are drawn, with every peak.`));
     spectra(home, charts, runs, table, bytes);
-    if (folded.childElementCount) home.append(make("details", {}, make("summary", {}, `More of ${table.name}: ` + table.charts.filter(c => c.folded).map(c => c.columns.map(k => table.columns[k].label).join(", ")).join("; ")), folded));
+    const more = several ? [...folded.children].map(figure => figure.chart.what.title) : table.charts.filter(c => c.folded).map(c => c.columns.map(k => table.columns[k].label).join(", "));
+    if (folded.childElementCount) home.append(make("details", {}, make("summary", {}, `More of ${table.name}: ${more.join("; ")}`), folded));
+  }
+}
+
+/** The columns that any of several runs has in its table called `name`, each in a chart: what one run alone has, too, with a remark. */
+function abreast(open, folded, charts, runs, name, bytes) {
+  const drawn = new Set(), tables = runs.map(run => run.tables.find(table => table.name === name));
+  for (const table of tables) for (const chart of table?.charts ?? []) for (const c of chart.columns) {
+    const { name: column, label, unit } = table.columns[c], all = [];
+    if (drawn.has(column)) continue;
+    drawn.add(column);
+    tables.forEach((own, r) => {
+      const k = own ? own.columns.findIndex(other => other.name === column) : -1;
+      if (k >= 0) all.push(...lines(own, [k], bytes, runs[r].name, r));
+    });
+    const alone = all.length < runs.length ? `only in ${all.map(line => line.label).join(", ")}` : "";
+    charts.add(chart.folded ? folded : open, { title: label, unit, said: alone, lines: all });
   }
 }
 
@@ -149,6 +157,20 @@ function held(home, charts, runs, bytes) {
   home.append(grid);
 }
 
+/** How motions answer irregular waves over frequency: of each statistic the ratios by their units, the phases, the coherences. */
+function answers(home, charts, run, bytes) {
+  const grid = make("div", { className: "charts" }), all = new Map();
+  for (const { name, label, unit: own, rows, f, rao, phase, coherence } of run.answers) {
+    for (const [what, unit, x] of [["ratio", own, rao], ["phase", "°", phase], ["coherence", "–", coherence]]) {
+      const title = `${name} · ${what}`, key = title + unit;
+      if (!all.has(key)) all.set(key, { title, unit, spectral: true, lines: [] });
+      all.get(key).lines.push({ label, t: floats(bytes, f, rows), x: floats(bytes, x, rows) });
+    }
+  }
+  for (const chart of all.values()) charts.add(grid, chart);
+  home.append(grid);
+}
+
 /** Unpacks the numbers and fills the page. */
 async function begin() {
   const home = id => document.getElementById(id);
@@ -158,6 +180,7 @@ async function begin() {
     const deck = home("deck") && films.length ? new Deck(home("deck"), films, told.maps) : null;
     const charts = new Charts(deck);
     if (home("held")) held(home("held"), charts, told.runs, bytes);
+    if (home("answers")) answers(home("answers"), charts, told.runs[0], bytes);
     if (home("charts")) series(home("charts"), charts, told.runs, bytes);
     Object.assign(window.pontoon, { deck, charts, films });
     document.documentElement.dataset.ready = "";
