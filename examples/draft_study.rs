@@ -84,7 +84,7 @@ where
         let water = fill(&[region], &[(&tank, &Pose::identity()), (&self.shape, &pose)], dp)?.r;
         let solid = |name: &str, shape, pose, role| {
             let name = name.into();
-            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0 }
+            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
         };
         let tank = solid("tank", tank, Pose::identity(), Role::Fixed);
         let float = solid("float", self.shape.clone(), pose, Role::Free(body));

@@ -67,6 +67,7 @@ fn setup() -> Result<Setup<2>> {
         role: Role::Fixed,
         friction: 0.3,
         restitution: 0.0,
+        contact_skin: 0.0,
     };
     // The frame of a box is its middle.
     let size = Vector::from(SIZE);

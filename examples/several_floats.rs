@@ -82,7 +82,7 @@ fn exchange(mut sim: Simulation<2>, before: f64) -> Result<()> {
     let shape = Shape::Box { size: Vector::from(size) };
     let role = Role::Free(FreeBody::from_density(&shape, density));
     let pose = Pose::at(Vector::from([0.4, before + 0.5 * size[1] + 0.5 * DP]));
-    let beam = SolidSpec { name: "beam".into(), shape, pose, role, friction: 0.3, restitution: 0.0 };
+    let beam = SolidSpec { name: "beam".into(), shape, pose, role, friction: 0.3, restitution: 0.0, contact_skin: 0.0 };
     assert_eq!(sim.add_solid(beam)?.displaced, 0, "it comes on the water, not into it");
 
     // The water closes over the oak's place with a splash; the mean is over a whole swing after it.

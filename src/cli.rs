@@ -81,9 +81,12 @@ Examples:
   pontoon study still-tank --dp 0.04,0.02,0.01 --dry-run
   pontoon study column --dp 0.03,0.02 --vary model.kernel=wendland,cubic --until 1
   pontoon study flume-box --vary \"model.viscosity={ artificial = { alpha = 0.02 } },none\"
+  pontoon study dam-break --vary model.diffusion=none,fourtakas --png fields.png --time 0.3,0.5
 Every spacing is run with every combination of values, one run after the other, each with all
 threads, without frames. Results are in DIR/study.html, .csv and .json, whole after every run; the
 runs in DIR/runs. A run that has finished is not run again; after Ctrl-C the same command goes on.
+With --png the runs keep frames at the times of --time, and are drawn at the end: a column for each
+run, a row for each time, equal colours.
 Exit codes: 0 all well; 1 a run failed; 2 something in the command, the scene or a file is wrong;
 3 a check misses its bound; 130 interrupted.")]
     Study(study::StudyArgs),

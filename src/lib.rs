@@ -39,3 +39,9 @@ pub mod study;
 pub mod bench;
 
 pub use error::{Error, Result};
+
+/// The programs of the book, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/coupling.md")]
+#[doc = include_str!("../docs/scene.md")]
+pub struct Book;

@@ -14,6 +14,8 @@ pub struct Plan {
     pub until: f64,
     /// What is watched.
     pub probes: Vec<ProbeWords>,
+    /// Lists of all contacts.
+    pub contacts: Vec<ListWords>,
     /// Frames for ParaView, if any.
     pub frames: Option<FrameWords>,
     /// Simulated time from one checkpoint to the next, s; none if not asked for.
@@ -39,6 +41,15 @@ pub struct ProbeWords {
     pub every: f64,
     /// Whether a reading is the mean since the one before.
     pub average: bool,
+}
+
+/// A list of all contacts: at each reading a row for each pair that touches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ListWords {
+    /// Stem of the file; no probe of the scene has the same.
+    pub name: String,
+    /// Simulated time from one reading to the next, s.
+    pub every: f64,
 }
 
 /// Which surface of the water an elevation gauge tells, where there are several above one another.

@@ -11,6 +11,7 @@
 //! ```
 
 mod course;
+mod drift;
 mod folder;
 mod inspect;
 mod kept;
@@ -18,6 +19,7 @@ mod lock;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 
+pub use drift::Drift;
 pub(crate) use folder::{same_tables, scene_file};
 pub use inspect::{Inspection, MeshFacts, Report, SeriesColumns, SolidCount, Timing, inspect};
 pub(crate) use kept::any as has_checkpoint;
@@ -25,7 +27,7 @@ pub(crate) use lock::Lock;
 pub use lock::owner;
 pub(crate) use outputs::series_folder;
 pub(crate) use statistics::told;
-pub use statistics::{Asked, SPECTRA, Statistic, Told, statistics};
+pub use statistics::{Answer, Asked, RAO, SPECTRA, Statistic, Told, statistics};
 
 use std::path::{Path, PathBuf};
 
@@ -75,6 +77,8 @@ pub struct Progress {
     pub wall: f64,
     /// Water and boundary particles beside it × force passes ÷ wall time of stepping, 1/s.
     pub rate: f64,
+    /// What became of the energy, if a probe watches it.
+    pub energy: Option<Drift>,
 }
 
 /// Someone who follows a run. Any `FnMut(&Progress) -> bool` does.

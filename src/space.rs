@@ -63,6 +63,14 @@ impl<const D: usize> Wedge<D> {
         0.5 * self.0.component_mul(&spin.0).sum()
     }
 
+    /// The same turning, carried along by `rotation`: R Ω Rᵀ.
+    pub fn turned(&self, rotation: &Matrix<D>) -> Self {
+        match D {
+            2 => *self,
+            _ => Self::from_axial((rotation * Vector::<D>::from_iterator(self.axial())).as_slice()),
+        }
+    }
+
     /// The rotation matrix of turning with this spin for a unit of time, exp Ω (Rodrigues).
     pub fn exp(&self) -> Matrix<D> {
         let angle = (0.5 * self.0.norm_squared()).sqrt();

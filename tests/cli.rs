@@ -525,7 +525,7 @@ fn a_run_is_told_in_figures_watched_and_exported() {
 
     let watched = desk.pontoon(&["watch", "a", "--series", "low.p_Pa"]);
     assert_eq!(watched.code, Some(0), "{}", watched.err);
-    for word in ["finished: t = 0.050 of 0.05 s", "low.p_Pa", "now"] {
+    for word in ["finished: t = 0.050 of 0.05 s", " at the last frame, energy ", " J/m\n", "low.p_Pa", "now"] {
         assert!(watched.out.contains(word), "\"{word}\" is not in:\n{}", watched.out);
     }
     assert!(watched.out.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c)), "a curve in dots:\n{}", watched.out);
@@ -640,6 +640,7 @@ fn a_log_for_programs_is_an_object_a_line_from_start_to_end_or_error() {
     assert!(told[told.len() - 1]["frames"].as_u64().is_some_and(|count| count > 0));
     let last = told.iter().rfind(|event| event["event"] == "progress").unwrap();
     assert_eq!(last["warnings"], 0);
+    assert!(last["energy_change_J_per_m"].is_number() && last["energy_residual"].is_null(), "by its probe: {last}");
     assert_eq!((last["t_s"].as_f64(), last["until_s"].as_f64()), (Some(0.02), Some(0.02)));
     let wrong = run(&["--dp", "-1"]);
     assert_eq!(wrong.code, Some(2));

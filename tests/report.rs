@@ -14,7 +14,7 @@ use pontoon::{
     report,
 };
 use serde_json::Value;
-use tiny_skia::Pixmap;
+use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// A box afloat in a small tank; its title is one that could break a page.
 const BAY: &str = r#"
@@ -295,6 +295,87 @@ fn runs_are_laid_over_one_another_locked_in_time() {
 }
 
 #[test]
+fn runs_of_unlike_scenes_are_drawn_with_who_has_what() {
+    let desk = desk("unlike");
+    ran(&desk, "a", BAY, &["--no-report"]);
+    let fronted = BAY.replace("[[probe]]\nenergy = true", "[[probe]]\nfront = true");
+    ran(&desk, "b", &fronted, &["--no-report"]);
+    ran(&desk, "tub", &DEEP.replace("[[probe]]", "[[probe]]\nname = \"box\""), &["--no-report"]);
+    let compare = |names: &[&str], out: &str| {
+        let said = pontoon(&desk, &[&["compare"][..], names, &["--out", out]].concat());
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+        (fs::read_to_string(desk.join(out)).unwrap(), String::from_utf8_lossy(&said.stderr).into_owned())
+    };
+    let (text, said) = compare(&["a", "b"], "ab.html");
+    assert!(text.contains("Not every run has every series; only in a: energy; only in b: front."), "who has what");
+    assert!(!said.contains("in common"), "{said}");
+    let (text, _) = compare(&["a", "tub"], "flat.html");
+    assert!(
+        text.contains("only in a: box.spin_radps, gauge, energy; only in tub: box.z_m, box.sway_m, box.roll_deg"),
+        "columns, too"
+    );
+    ran(&desk, "ball", DEEP, &["--no-report"]);
+    let (_, said) = compare(&["a", "ball"], "none.html");
+    assert!(said.contains("the runs have no series in common"), "{said}");
+    if chromium().is_none() {
+        return;
+    }
+    // What the first run lacks is drawn, too.
+    let said = asked(
+        &desk.join("flat.html"),
+        "said.charts = charts.all.map(chart => [chart.what.title, chart.what.said ?? '', chart.what.lines.length]);",
+    );
+    let chart = |title: &str| {
+        let all = said["charts"].as_array().unwrap();
+        all.iter().find(|chart| chart[0] == title).unwrap_or_else(|| panic!("{title}: {said}")).clone()
+    };
+    assert_eq!(chart("heave"), serde_json::json!(["heave", "", 2]));
+    assert_eq!(chart("sway"), serde_json::json!(["sway", "only in tub", 1]));
+    assert_eq!(chart("eta"), serde_json::json!(["eta", "only in a", 1]));
+}
+
+#[test]
+fn the_answer_of_a_body_to_waves_is_drawn_over_frequency() {
+    let desk = desk("answers");
+    let scene = format!("{BAY}\n[[statistic]]\nrao = {{ motion = \"box.heave_m\", wave = \"gauge\" }}\n");
+    let run = ran(&desk, "bay", &scene, &["--no-report"]);
+    let sections = |run: &Path| fs::read_to_string(report::write(run).unwrap().path).unwrap();
+    assert!(!sections(&run).contains("<div id=\"answers\">"), "0.2 s have no waves");
+    // A hundred waves of three periods, to which the box rises twice as high.
+    let mut tables = [
+        ("gauge", String::from("t_s,level_m,eta_m")),
+        ("box", String::from("t_s,x_m,y_m,surge_m,heave_m,pitch_deg,vx_mps,vy_mps,spin_radps")),
+    ];
+    for i in 0..4000 {
+        let t = 0.05 * f64::from(i);
+        let eta: f64 = [0.4, 0.5, 0.6].iter().map(|f| 0.01 * (std::f64::consts::TAU * f * t).sin()).sum();
+        tables[0].1 += &format!("\n{t:?},{:?},{eta:?}", 0.3 + eta);
+        tables[1].1 += &format!("\n{t:?},0.5,0.3,0.0,{:?},0.0,0.0,0.0,0.0", 2.0 * eta);
+    }
+    for (name, text) in tables {
+        fs::write(run.join(format!("series/{name}.csv")), text + "\n").unwrap();
+    }
+    assert!(sections(&run).contains("<div id=\"answers\">"));
+    if chromium().is_none() {
+        return;
+    }
+    let said = asked(
+        &run.join(report::FILE),
+        "said.all = charts.all.filter(chart => chart.what.title.startsWith('rao'))
+           .map(({ what }) => [what.title, what.unit, what.lines[0].label, Math.min(...what.lines[0].x), Math.max(...what.lines[0].x)]);",
+    );
+    let expected = [("ratio", "m/m", 2.0), ("phase", "°", 0.0), ("coherence", "–", 1.0)];
+    for ((what, unit, value), chart) in expected.into_iter().zip(said["all"].as_array().unwrap()) {
+        assert_eq!(chart[0], format!("rao · {what}"));
+        assert!(chart[1] == unit && chart[2] == "box heave", "{chart}");
+        // A multiple of the wave is that multiple at every frequency, in single precision.
+        let off = |end: usize| (chart[end].as_f64().unwrap() - value).abs();
+        assert!(off(3) < 1e-5 && off(4) < 1e-5, "{chart}");
+    }
+    assert_eq!(said["all"].as_array().unwrap().len(), 3);
+}
+
+#[test]
 fn a_picture_has_a_column_for_each_run_and_a_row_for_each_time() {
     let desk = desk("picture");
     ran(&desk, "a", BAY, &["--no-report"]);
@@ -315,6 +396,43 @@ fn a_picture_has_a_column_for_each_run_and_a_row_for_each_time() {
     assert!(left > 5000 && (left as f64 / right as f64 - 1.0).abs() < 0.15, "{left} and {right} pixels of water");
     let said = pontoon(&desk, &["report", "a", "--time", "1"]);
     assert!(!said.status.success(), "a time belongs to a picture");
+}
+
+#[test]
+fn one_command_runs_the_laws_and_draws_their_fields_side_by_side() {
+    let desk = desk("study");
+    fs::write(desk.join("bay.toml"), BAY).unwrap();
+    let plain = ["study", "bay.toml", "--vary", "model.diffusion=none,fourtakas", "--out", "s", "--quiet"];
+    let asked = |more: &[&str]| {
+        let said = pontoon(&desk, &[&plain[..], more].concat());
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+        String::from_utf8(said.stdout).unwrap()
+    };
+    let run = desk.join("s/runs/dp-0.02_diffusion-none");
+    asked(&[]);
+    assert!(!run.join("frames.pvd").exists(), "a study keeps no frames");
+    // What was run without frames is run again with them, to the same readings.
+    let series = |folder: &str| fs::read(desk.join(folder).join("series/box.csv")).unwrap();
+    let said = asked(&["--png", "s/both.png", "--time", "0.1,0.2", "--width", "900"]);
+    let both = Pixmap::load_png(desk.join("s/both.png")).unwrap();
+    assert!(said.contains(&format!("both.png: 900 × {} pixels", both.height())), "{said}");
+    assert_eq!(series("s/runs/dp-0.02_diffusion-none"), series("s/runs/dp-0.02_diffusion-none.old"));
+    // A column for each law: the laws differ, but as much water stands in the left half as in the right one.
+    let coloured = |from: u32, to: u32| {
+        let inside = (from..to).flat_map(|x| (0..both.height()).map(move |y| (x, y)));
+        let grey = |p: PremultipliedColorU8| p.red().abs_diff(p.blue()) < 40 && p.red().abs_diff(p.green()) < 40;
+        inside.filter(|&(x, y)| both.pixel(x, y).is_some_and(|p| !grey(p))).count() as f64
+    };
+    let (left, right) = (coloured(0, 450), coloured(450, 900));
+    assert!(left > 5000.0 && (left / right - 1.0).abs() < 0.15, "{left} and {right} pixels of water");
+    // A row for each time; frames that are there are drawn without another run.
+    asked(&["--png", "s/one.png", "--time", "0.2", "--width", "900"]);
+    let one = Pixmap::load_png(desk.join("s/one.png")).unwrap();
+    assert!(one.height() < both.height() && !desk.join("s/runs/dp-0.02_diffusion-none.old-2").exists());
+    for (word, time, told) in [("no/x.png", "0.1", "no folder"), ("x.png", "0.3", "end at 0.2 s")] {
+        let said = pontoon(&desk, &[&plain[..], &["--png", word, "--time", time]].concat());
+        assert!(!said.status.success() && String::from_utf8_lossy(&said.stderr).contains(told), "{said:?}");
+    }
 }
 
 /// A fault as the guard would report it.

@@ -12,7 +12,7 @@ use std::{
 use pontoon::{
     error::Error,
     record::manifest::Status,
-    run::{Outcome, Progress, Start, Watch},
+    run::{Drift, Outcome, Progress, Start, Watch},
     simulation::Rescued,
 };
 use serde_json::{Value, json};
@@ -78,10 +78,18 @@ impl Watch for Journal {
             self.next = Some(clock + PAUSE);
             let (wall, done) = (begun.elapsed().as_secs_f64(), now.time - first);
             let left = (done > 0.0).then(|| wall * (now.until - now.time) / done);
-            tell(&json!({
+            let mut event = json!({
                 "event": "progress", "t_s": now.time, "until_s": now.until, "dt_s": now.dt, "steps": now.steps,
                 "wall_s": now.wall, "left_s": left, "particle_steps_per_second": now.rate, "warnings": self.warnings,
-            }));
+            });
+            match now.energy {
+                Some(Drift::Unaccounted(share)) => event["energy_residual"] = json!(share),
+                Some(Drift::Changed(energy, unit)) => {
+                    event[if unit == "J" { "energy_change_J" } else { "energy_change_J_per_m" }] = json!(energy);
+                }
+                None => {}
+            }
+            tell(&event);
         }
         !self.stop.load(Ordering::Relaxed)
     }

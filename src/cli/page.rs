@@ -43,6 +43,13 @@ struct PictureArgs {
     /// Write a picture to FILE instead of a page [default: frame.png]
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "frame.png")]
     png: Option<PathBuf>,
+    #[command(flatten)]
+    look: LookArgs,
+}
+
+/// What a picture shows.
+#[derive(Args)]
+pub struct LookArgs {
     /// Times of the pictures, s, separated by commas; of each the nearest frame [default: the last]
     #[arg(long, value_name = "SECONDS,..", value_delimiter = ',', requires = "png")]
     time: Vec<f64>,
@@ -83,12 +90,10 @@ fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
 /// As [`report::write`].
 pub fn report(args: &ReportArgs) -> Result<u8> {
     match &args.picture.png {
-        Some(png) => picture(std::slice::from_ref(&args.folder), &args.picture, png),
-        None => {
-            told(&report::write(&args.folder)?);
-            Ok(0)
-        }
+        Some(png) => draw(std::slice::from_ref(&args.folder), &args.picture.look.shot()?, png)?,
+        None => told(&report::write(&args.folder)?),
     }
+    Ok(0)
 }
 
 /// `pontoon compare`.
@@ -97,27 +102,39 @@ pub fn report(args: &ReportArgs) -> Result<u8> {
 /// As [`report::compare`].
 pub fn compare(args: &CompareArgs) -> Result<u8> {
     match &args.picture.png {
-        Some(png) => picture(&args.folders, &args.picture, png),
-        None => {
-            told(&report::compare(&args.folders, &args.out)?);
-            Ok(0)
+        Some(png) => draw(&args.folders, &args.picture.look.shot()?, png)?,
+        None => told(&report::compare(&args.folders, &args.out)?),
+    }
+    Ok(0)
+}
+
+impl LookArgs {
+    /// The picture that is asked for, with the runs' names over its columns.
+    ///
+    /// # Errors
+    /// `Usage` if a time is none.
+    pub fn shot(&self) -> Result<Shot> {
+        if let Some(t) = self.time.iter().find(|t| !t.is_finite()) {
+            let help = "give seconds, as in --time 0.5,1";
+            return Err(Error::new(Kind::Usage, format!("--time {t} is no time")).help(help));
         }
+        let field = match self.by {
+            By::Pressure => Field::Pressure,
+            By::Excess => Field::Excess,
+            By::Speed => Field::Speed,
+        };
+        Ok(Shot { times: self.time.clone(), field, range: self.range, width: self.width, heads: vec![] })
     }
 }
 
-fn picture(folders: &[PathBuf], args: &PictureArgs, out: &Path) -> Result<u8> {
-    if let Some(t) = args.time.iter().find(|t| !t.is_finite()) {
-        return Err(Error::new(Kind::Usage, format!("--time {t} is no time")).help("give seconds, as in --time 0.5,1"));
-    }
-    let field = match args.by {
-        By::Pressure => Field::Pressure,
-        By::Excess => Field::Excess,
-        By::Speed => Field::Speed,
-    };
-    let shot = Shot { times: args.time.clone(), field, range: args.range, width: args.width };
-    let (width, height) = report::picture(folders, &shot, out)?;
+/// Draws the runs in `folders` to `out`, and says so.
+///
+/// # Errors
+/// As [`report::picture`].
+pub fn draw(folders: &[PathBuf], shot: &Shot, out: &Path) -> Result<()> {
+    let (width, height) = report::picture(folders, shot, out)?;
     say(&format!("{}: {width} × {height} pixels\n", out.display()));
-    Ok(0)
+    Ok(())
 }
 
 /// Says where a page is and what is not on it.

@@ -79,6 +79,7 @@ impl Follow {
             (done > 0.0).then(left),
             (now.dt > 0.0).then(|| format!("dt {} s", three(now.dt))),
             report::warnings(self.warnings),
+            now.energy.map(|drift| drift.to_string()),
             Some(format!("step {}", now.steps)),
             going.then(speed),
             going.then(|| format!("{} particle-steps/s", report::short(now.rate))),
@@ -148,12 +149,18 @@ fn fitted(line: String, words: impl Iterator<Item = String>, room: usize) -> Str
 
 #[cfg(test)]
 mod tests {
+    use pontoon::run::Drift;
+
     use super::*;
+
+    fn now() -> Progress {
+        Progress { time: 1.25, until: 12.0, dt: 1.234e-4, steps: 10_234, wall: 0.0, rate: 1.234e7, energy: None }
+    }
 
     #[test]
     fn a_line_tells_step_and_warnings_and_stays_a_line() {
         let mut follow = Follow::new(true, Arc::default());
-        let now = Progress { time: 1.25, until: 12.0, dt: 1.234e-4, steps: 10_234, wall: 0.0, rate: 1.234e7 };
+        let now = now();
         assert_eq!(follow.line(&now, WIDE), "t = 1.250 of 12 s, dt 0.000123 s, step 10234");
         follow.warnings = 2;
         follow.begun = Instant::now().checked_sub(Duration::from_secs(50)).map(|then| (then, 0.0, 0));
@@ -164,6 +171,16 @@ mod tests {
         );
         assert!(follow.line(&now, 200).ends_with(" steps/s, 12.34 M particle-steps/s"));
         assert!(follow.line(&now, WIDE - BAR).chars().count() <= WIDE - BAR);
+    }
+
+    #[test]
+    fn a_line_tells_what_became_of_the_energy_if_somebody_watches_it() {
+        let follow = Follow::new(true, Arc::default());
+        let said = |energy| follow.line(&Progress { energy: Some(energy), ..now() }, WIDE);
+        let residual = Drift::Unaccounted(1.234e-3);
+        assert_eq!(said(residual), "t = 1.250 of 12 s, dt 0.000123 s, energy off 0.123 %, step 10234");
+        assert!(said(Drift::Changed(0.5, "J/m")).contains(", energy +0.5 J/m, "));
+        assert!(said(Drift::Changed(-0.5, "J")).contains(", energy -0.5 J, "));
     }
 
     #[test]

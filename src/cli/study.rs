@@ -1,19 +1,23 @@
 //! `pontoon study` and what it shares with `validate`: a list of runs, one after the other.
 
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
 };
 
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
+    record::has_folder,
+    report::Shot,
     scene::Scene,
-    study::{Grid, Job, Planned, Ran, Sheet, State, USUAL, Vary, plan, split},
+    study::{Grid, Job, Planned, Ran, Sheet, State, USUAL, Vary, heads, interval, plan, split},
 };
 
 use super::{
-    complain, pair,
+    complain,
+    page::{LookArgs, draw},
+    pair,
     progress::{Follow, Follower},
     report::{duration, short, table},
     say, shelf, stopper,
@@ -46,6 +50,11 @@ pub struct StudyArgs {
     /// Say what would be run and how long it would take; run nothing
     #[arg(long)]
     dry_run: bool,
+    /// Draw the runs side by side to FILE at the end, a column for each
+    #[arg(long, value_name = "FILE")]
+    png: Option<PathBuf>,
+    #[command(flatten)]
+    look: LookArgs,
     /// Say nothing but errors and the table
     #[arg(long, short)]
     quiet: bool,
@@ -157,14 +166,16 @@ pub fn study(args: StudyArgs) -> Result<u8> {
         return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
     }
     let name = name(&args.scene);
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
+    let shot = args.png.as_deref().map(|png| shot(&args.look, png, &out, scene.until)).transpose()?;
     let grid = Grid {
         dp: if args.dp.is_empty() { vec![scene.dp] } else { args.dp.clone() },
         vary: args.vary.iter().map(|(key, values)| Vary { key: key.clone(), values: split(values) }).collect(),
         scene: found.path().to_owned(),
         sets,
         name: name.clone(),
+        frames: shot.as_ref().map(|shot| interval(&shot.times, scene.until)),
     };
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
     let sheet = found.named(Sheet::new(&grid, out, super::command_line()))?;
     let list = List { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
     found.named(list.announce(args.dry_run))?;
@@ -176,7 +187,41 @@ pub fn study(args: StudyArgs) -> Result<u8> {
     for file in sheet.files() {
         say(&format!("{}\n", file.display()));
     }
+    if let (Some(png), Some(shot), false) = (&args.png, shot, done.interrupted) {
+        picture(&sheet.jobs, &done.ran, shot, png)?;
+    }
     Ok(code(&done))
+}
+
+/// The picture that is to be drawn to `png` of runs that end at `until` (s), the folder `out` being made by them: what is wrong
+/// with it is told before anything is run.
+fn shot(look: &LookArgs, png: &Path, out: &Path, until: f64) -> Result<Shot> {
+    if png.parent() != Some(out) {
+        has_folder(png)?;
+    }
+    let shot = look.shot()?;
+    match shot.times.iter().find(|t| !(0.0..=until).contains(*t)) {
+        Some(t) => Err(Error::new(Kind::Usage, format!("--time {t} is not within the runs, which end at {until} s"))
+            .help("give times from 0 to the end, or a later end with --until")),
+        None => Ok(shot),
+    }
+}
+
+/// Draws the runs that came to have frames, what is varied over their columns.
+fn picture(jobs: &[Job], ran: &[Ran], mut shot: Shot, png: &Path) -> Result<()> {
+    let mut folders = Vec::new();
+    for ((job, head), ran) in jobs.iter().zip(heads(jobs)).zip(ran) {
+        if ran.manifest.as_ref().is_some_and(|manifest| manifest.frames.count > 0) {
+            folders.push(job.folder.clone());
+            shot.heads.push(head);
+        } else {
+            complain(&format!("warning: {} has no frames: it is not in the picture\n", job.name));
+        }
+    }
+    if folders.is_empty() {
+        return Err(Error::new(Kind::Usage, "no run has frames to be drawn").help("take frames=off out of --set"));
+    }
+    draw(&folders, &shot, png)
 }
 
 /// The exit code of a list of runs.
@@ -194,7 +239,7 @@ pub fn code(done: &Done) -> u8 {
 }
 
 /// A short name for what the user called a scene.
-fn name(scene: &std::path::Path) -> String {
+fn name(scene: &Path) -> String {
     let whole = std::fs::canonicalize(scene).unwrap_or_else(|_| scene.to_owned());
     let own = if whole.ends_with("scene.toml") { whole.parent().unwrap_or(&whole).to_owned() } else { whole };
     own.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())

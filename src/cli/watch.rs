@@ -17,7 +17,8 @@ use pontoon::{
     error::{Error, Kind, Result, nearest},
     preflight::three,
     record::{Manifest, Readings, manifest::Status},
-    run,
+    run::{self, Drift},
+    words::unit,
 };
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
@@ -197,9 +198,10 @@ impl Seen {
             (Status::Failed, _) => "failed".into(),
         };
         let t = self.tables.iter().filter_map(|(_, of)| of.t.last()).copied().fold(m.simulated_s, f64::max);
-        let warned = warnings(m.warnings.len()).map_or(String::new(), |count| format!(", {count}"));
+        let words = self.drift().map(|drift| drift.to_string()).into_iter().chain(warnings(m.warnings.len()));
+        let more: String = words.map(|word| format!(", {word}")).collect();
         let text = format!(
-            "{how}: t = {t:.3} of {} s, {} of wall time at the last frame{warned}",
+            "{how}: t = {t:.3} of {} s, {} of wall time at the last frame{more}",
             m.until_s,
             duration(m.wall_s)
         );
@@ -212,6 +214,18 @@ impl Seen {
             duration(cost),
             duration(cost * (m.until_s - t).max(0.0))
         )
+    }
+
+    /// What became of the energy, if a table tells it.
+    fn drift(&self) -> Option<Drift> {
+        let table = |first: &str| self.tables.iter().find(|(_, of)| of.columns.iter().any(|c| c.starts_with(first)));
+        let row = |of: &Readings, i: usize| of.x.iter().map(|x| x.get(i).copied()).collect::<Option<Vec<f64>>>();
+        if let Some((_, of)) = table("residual_J") {
+            return Drift::of_budget(&row(of, of.t.len().checked_sub(1)?)?);
+        }
+        let (_, of) = table("total_J")?;
+        let unit = unit(of.columns.last()?);
+        Drift::of_energy(&row(of, 0)?, &row(of, of.t.len().checked_sub(1)?)?, unit)
     }
 
     /// The last reading of each series, its least and its largest.

@@ -16,7 +16,7 @@ const FACING: [f64; 2] = [-0.8, -0.99];
 
 /// What was found between solids.
 pub struct Gaps {
-    /// Which solids touch another.
+    /// Which solids touch another, by their skins too.
     pub touching: Vec<bool>,
 }
 
@@ -37,10 +37,11 @@ impl<const D: usize> Look<'_, D> {
             for j in 0..i {
                 let mut found = [None, None];
                 let mut touch = false;
+                let within = TOUCH * self.dp() + self.skins(i, j);
                 for (gap, (a, b)) in found.iter_mut().zip([(i, j), (j, i)]) {
                     if moves(a) {
                         let (nearest, facing) = self.between(a, b);
-                        (*gap, touch) = (facing, touch || nearest < TOUCH * self.dp());
+                        (*gap, touch) = (facing, touch || nearest < within);
                     }
                 }
                 touching[i] |= touch;
@@ -50,6 +51,11 @@ impl<const D: usize> Look<'_, D> {
             }
         }
         Gaps { touching }
+    }
+
+    /// How far (m) the contact skins of two solids keep their faces apart.
+    fn skins(&self, a: usize, b: usize) -> f64 {
+        self.solids()[a].spec.contact_skin + self.solids()[b].spec.contact_skin
     }
 
     /// The least distance (m) of the faces of solid `a` from solid `b`, and the narrowest gap between faces that look at
@@ -93,7 +99,8 @@ impl<const D: usize> Look<'_, D> {
         };
         if self.wet(&gap.middle) {
             let what = what + ": the water between them is not resolved";
-            Finding::warning("narrow_gap", what, apart("let them touch,"))
+            let touch = if self.skins(a, b) > 0.0 { "let them touch without a skin," } else { "let them touch," };
+            Finding::warning("narrow_gap", what, apart(touch))
         } else {
             Finding::note("narrow_gap", what + "; it is dry at the start", apart("if it floods,"))
         }

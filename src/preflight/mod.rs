@@ -7,7 +7,7 @@
 mod absorb;
 mod astray;
 mod bodies;
-mod faces;
+pub(crate) mod faces;
 mod gaps;
 mod paddles;
 mod places;
@@ -18,6 +18,8 @@ mod swings;
 mod thickness;
 mod waves;
 mod words;
+
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
@@ -107,20 +109,20 @@ pub struct Preflight {
 impl Preflight {
     /// The findings to read: of a kind the first three, and how many more there are.
     pub fn brief(&self) -> Vec<Finding> {
-        let like = |a: &Finding, b: &Finding| (a.severity, a.topic) == (b.severity, b.topic);
+        let kind = |finding: &Finding| (finding.severity, finding.topic);
+        let (mut all, mut seen) = (BTreeMap::new(), BTreeMap::new());
+        self.findings.iter().for_each(|finding| *all.entry(kind(finding)).or_insert(0) += 1);
         let mut brief = Vec::new();
-        for (i, finding) in self.findings.iter().enumerate() {
-            let [before, after] = [&self.findings[..i], &self.findings[i + 1..]]
-                .map(|others| others.iter().filter(|other| like(finding, other)).count());
-            if before < MOST || (before, after) == (MOST, 0) {
+        for finding in &self.findings {
+            let (all, seen) = (all[&kind(finding)], seen.entry(kind(finding)).or_insert(0));
+            *seen += 1;
+            // A fourth and last one takes no more room than to say that there is one.
+            if *seen <= MOST || all == MOST + 1 {
                 brief.push(finding.clone());
-            } else if before == MOST {
-                let what = format!("{} more of this kind ({})", after + 1, finding.topic);
-                brief.push(Finding {
-                    what,
-                    mend: "`pontoon inspect SCENE --json` has them all".into(),
-                    ..finding.clone()
-                });
+            } else if *seen == MOST + 1 {
+                let what = format!("{} more of this kind ({})", all - MOST, finding.topic);
+                let mend = "`pontoon inspect SCENE --json` has them all".into();
+                brief.push(Finding { what, mend, ..finding.clone() });
             }
         }
         brief

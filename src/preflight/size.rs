@@ -6,7 +6,11 @@ use super::{
     Finding, Look, Step,
     words::{three, up},
 };
-use crate::{model::Viscosity, record::frame::particle_bytes, words::bytes};
+use crate::{
+    model::{Gradient, Viscosity},
+    record::frame::particle_bytes,
+    words::bytes,
+};
 
 /// Disk that frames may take without a word, B.
 const BUDGET: f64 = 10e9;
@@ -97,10 +101,12 @@ impl<const D: usize> Look<'_, D> {
         let (fluid, boundary) = (system.fluid().len() as f64, system.skin().len() as f64);
         let (d, number) = (D as f64, 8.0);
         let particle = 2.0 * d * number + number + 4.0;
-        let stress = if matches!(system.model().viscosity, Viscosity::Sps(_)) { 3.0 * d * d * number } else { 0.0 };
+        let tensor = |needed: bool| if needed { 3.0 * d * d * number } else { 0.0 };
+        let stress = tensor(matches!(system.model().viscosity, Viscosity::Sps(_)));
+        let forms = tensor(system.model().gradient == Gradient::Corrected);
         let extra = if system.model().shift().is_some() { (2.0 * d + 2.0) * number } else { 0.0 };
         // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
-        let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + extra;
+        let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + forms + extra;
         let skin = particle + (2.0 * d + 2.0) * number;
         // A frame is put together as numbers, packed, as text and as the file's text.
         let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * particle_bytes(&frames.fields).1);

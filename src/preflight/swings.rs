@@ -2,7 +2,7 @@
 
 use super::Look;
 use crate::{
-    solid::{Law, Motion, Solid},
+    solid::{Motion, Solid},
     space::{Bounds, Vector},
 };
 
@@ -28,7 +28,7 @@ impl<const D: usize> Look<'_, D> {
     pub(super) fn swing(&self, solid: &Solid<D>, motion: &Motion<D>, bounds: &Bounds<D>) -> Option<Swing<D>> {
         let mut mark = 0.5 * (bounds.min + bounds.max);
         mark[D - 1] = self.still.level;
-        if let Law::Wave(law) = motion.law() {
+        if let Some(law) = motion.wave() {
             let (way, speed): (Vec<f64>, Vec<f64>) = law.course(self.until()).into_iter().unzip();
             let stroke = swing(&way).map_or_else(|| range(&way), |(stroke, _)| stroke);
             let speed = speed.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
@@ -56,7 +56,7 @@ impl<const D: usize> Look<'_, D> {
 
 /// Where the waves of a paddle by name go, whose point at `mark` (m) is in the still level; level, a unit vector.
 pub(super) fn heading<const D: usize>(motion: &Motion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
-    let mut way = motion.heading(mark);
+    let mut way = *motion.headings(mark).first()?;
     way[D - 1] = 0.0;
     way.try_normalize(0.0)
 }

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     scene::world_bounds,
     solid::{
-        Law, Motion, Role, Solid,
+        Motion, Role, Solid,
         wave::{Paddle, Regime, Region, Train},
     },
 };
@@ -87,13 +87,13 @@ impl<const D: usize> Look<'_, D> {
         }
         for solid in self.solids() {
             let Role::Driven(motion) = &solid.spec.role else { continue };
-            if let Law::Wave(law) = motion.law() {
+            if let Some(law) = motion.wave() {
                 self.placed(solid, motion, law, findings);
             }
             let Some((wave, stand)) = self.wave(solid, motion) else { continue };
             self.low(&wave, findings);
             self.zones(&wave, &stand, findings);
-            if let Law::Wave(law) = motion.law() {
+            if let Some(law) = motion.wave() {
                 self.named(&wave, solid, law, findings);
                 self.quick(&wave, law, findings);
                 self.focus(&wave, &stand, law, findings);
@@ -134,10 +134,7 @@ impl<const D: usize> Look<'_, D> {
             return None;
         }
         let swing = self.swing(solid, motion, &bounds)?;
-        let named = match motion.law() {
-            Law::Wave(wave) => Some(wave),
-            _ => None,
-        };
+        let named = motion.wave();
         let [stand, behind] = [swing.way, -swing.way].map(|way| Stand::of(&bounds, way, level));
         // A given motion makes waves to both sides: those count that go the longer way.
         let stand = if named.is_none() && self.end(&behind) > self.end(&stand) { behind } else { stand };

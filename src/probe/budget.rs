@@ -11,6 +11,13 @@ pub struct Budget {
     start: f64,
 }
 
+/// What the residual of a row of a [`Budget`] is over all that was turned over, –; none before anything was.
+pub fn unaccounted(row: &[f64]) -> Option<f64> {
+    let (residual, rest) = row.split_last()?;
+    let turned: f64 = rest.get(1..)?.iter().map(|energy| energy.abs()).sum();
+    (turned > 0.0).then(|| residual.abs() / turned)
+}
+
 impl Budget {
     /// The probe; the store counts from now.
     pub fn new<const D: usize>(system: &System<D>) -> Self {

@@ -21,7 +21,7 @@ mod runup;
 mod velocity;
 
 pub use balance::Balance;
-pub use budget::Budget;
+pub use budget::{Budget, unaccounted};
 pub use elevation::Elevation;
 pub use energy::Energy;
 pub use flow::Flow;
@@ -31,7 +31,7 @@ pub use joint::Joint;
 pub use line::Line;
 pub use motion::Motion;
 pub use patch::Patch;
-pub use press::Press;
+pub use press::{Contacts, Press};
 pub use pressure::Pressure;
 pub use row::{Row, named};
 pub use runup::Runup;

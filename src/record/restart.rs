@@ -44,13 +44,13 @@ pub struct Checkpoint {
     pub sets: Vec<(String, String)>,
     /// Simulated time, s.
     pub time: f64,
-    /// Length of each table, bytes, in the order of the probes.
+    /// Length of each table, bytes, in the order of the probes, then of the lists.
     pub tables: Vec<u64>,
     /// Means in the making, of the probes that take some.
     pub means: Vec<Option<Mean>>,
     /// Times of the frames written, s.
     pub frames: Vec<f64>,
-    /// Numbers of the next looks, frame and checkpoint that are due.
+    /// Numbers of the next looks, frame and checkpoint that are due, then of the lists' looks.
     pub due: Vec<u64>,
     /// Wall time of the run so far, s.
     pub wall: f64,

@@ -22,6 +22,7 @@ pub struct Table {
     file: File,
     bytes: u64,
     columns: usize,
+    first: Option<Vec<f64>>,
     last: Option<(f64, Vec<f64>)>,
 }
 
@@ -32,7 +33,7 @@ impl Table {
     /// `File` if it exists or cannot be written.
     pub fn create(path: &Path, columns: &[String]) -> Result<Self> {
         let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(|e| cannot_write(path, &e))?;
-        let mut table = Self { path: path.to_owned(), file, bytes: 0, columns: columns.len(), last: None };
+        let mut table = Self { path: path.to_owned(), file, bytes: 0, columns: columns.len(), first: None, last: None };
         table.append(&format!("t_s,{}\n", columns.join(",")))?;
         Ok(table)
     }
@@ -50,7 +51,9 @@ impl Table {
             let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
             return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
         };
-        let last = last_row(&String::from_utf8_lossy(&kept[header.len()..]));
+        let rows = String::from_utf8_lossy(&kept[header.len()..]);
+        let (first, last) = (rows.lines().next().and_then(read_row).map(|(_, row)| row), rows.lines().next_back());
+        let last = last.and_then(read_row);
         let open = || -> std::io::Result<File> {
             let mut file = OpenOptions::new().write(true).open(path)?;
             file.set_len(bytes)?;
@@ -58,7 +61,7 @@ impl Table {
             Ok(file)
         };
         let file = open().map_err(|e| cannot_write(path, &e))?;
-        Ok(Self { path: path.to_owned(), file, bytes, columns: columns.len(), last })
+        Ok(Self { path: path.to_owned(), file, bytes, columns: columns.len(), first, last })
     }
 
     /// Adds the row of time `t` (s).
@@ -74,8 +77,33 @@ impl Table {
         }
         line.push('\n');
         self.append(&line)?;
+        self.first.get_or_insert_with(|| values.to_vec());
         self.last = Some((t, values.to_vec()));
         Ok(())
+    }
+
+    /// Adds rows of time `t` (s), each of words and of values for the columns behind them: all rows or none.
+    ///
+    /// # Errors
+    /// `File` if they cannot be written; the rows before stay whole.
+    pub fn rows(&mut self, t: f64, rows: &[([&str; 2], Vec<f64>)]) -> Result<()> {
+        let mut lines = String::new();
+        for (words, values) in rows {
+            assert_eq!(words.len() + values.len(), self.columns, "a word or a value for each column");
+            let numbers = values.iter().map(|&x| number(x));
+            let fields = [number(t)].into_iter().chain(words.map(String::from)).chain(numbers);
+            lines += &(fields.collect::<Vec<_>>().join(",") + "\n");
+        }
+        self.append(&lines)?;
+        if let Some((_, values)) = rows.last() {
+            self.last = Some((t, values.clone()));
+        }
+        Ok(())
+    }
+
+    /// Values of the first row.
+    pub fn first(&self) -> Option<&[f64]> {
+        self.first.as_deref()
     }
 
     /// Time (s) and values of the last row.
@@ -158,9 +186,9 @@ fn number(x: f64) -> String {
     if x.is_nan() { String::new() } else { format!("{x:?}") }
 }
 
-/// The last row of `rows`, empty fields as NaN.
-fn last_row(rows: &str) -> Option<(f64, Vec<f64>)> {
-    let mut fields = rows.lines().next_back()?.split(',').map(|x| x.parse().unwrap_or(f64::NAN));
+/// Time and values of a row, empty fields as NaN.
+fn read_row(line: &str) -> Option<(f64, Vec<f64>)> {
+    let mut fields = line.split(',').map(|x| x.parse().unwrap_or(f64::NAN));
     Some((fields.next()?, fields.collect()))
 }
 
@@ -188,6 +216,7 @@ mod tests {
         let (t, row) = again.last().map(|(t, row)| (t, row.to_vec())).unwrap_or_default();
         assert!(t == 0.0 && row[0] == 1.0 / 3.0 && row[1].is_nan(), "the same bits; got {t} {row:?}");
         again.row(0.1, &[-1e-9, 2.0])?;
+        assert!(again.first().is_some_and(|row| row[0] == 1.0 / 3.0), "the first row stays: {:?}", again.first());
         assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
         assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
         assert!(Table::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");

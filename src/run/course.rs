@@ -5,7 +5,9 @@ use std::{path::PathBuf, time::Instant};
 use cpu_time::ProcessTime;
 
 use super::{
-    Body, Origin, Outcome, Progress, Start, Watch, folder, kept,
+    Body, Origin, Outcome, Progress, Start, Watch,
+    drift::Teller,
+    folder, kept,
     lock::Lock,
     outputs::{self, Outputs, series_folder},
     statistics,
@@ -29,6 +31,7 @@ use crate::{
 pub struct Course<const D: usize> {
     sim: Simulation<D>,
     outputs: Outputs<D>,
+    teller: Option<Teller>,
     checks: Vec<Check>,
     plan: Plan,
     manifest: Manifest,
@@ -92,6 +95,7 @@ where
         Ok(Self {
             sim,
             outputs,
+            teller: Teller::of(&plan, D),
             checks,
             plan,
             manifest,
@@ -238,6 +242,7 @@ impl<const D: usize> Course<D> {
         let fixed = [
             statistics::STATISTICS,
             statistics::SPECTRA,
+            statistics::RAO,
             "frames.pvd",
             restart::LAST,
             restart::PREVIOUS,
@@ -274,6 +279,7 @@ impl<const D: usize> Course<D> {
             steps: self.sim.steps(),
             wall: self.wall(),
             rate: if stepping > 0.0 { work / stepping } else { 0.0 },
+            energy: self.teller.and_then(|teller| teller.told(self.outputs.table(teller.probe))),
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::{
     error::Result,
     model::Dimension,
     preflight::{self, Finding, Preflight},
+    probe,
     record::manifest::InForce,
     scene::{Built, Scene},
     shape::Shape,
@@ -47,7 +48,7 @@ pub struct Report {
     pub timing: Option<Timing>,
     /// The solids.
     pub solids: Vec<SolidCount>,
-    /// Files of the probes.
+    /// Files of the probes, lists last.
     pub series: Vec<SeriesColumns>,
     /// Every value in force and where it comes from.
     pub values: Vec<InForce>,
@@ -147,8 +148,9 @@ where
         mesh: MeshFacts::of(&s.spec.shape),
     });
     let solids = solids.collect();
-    let series = plan.probes.iter().zip(&probes);
-    let series = series.map(|(words, p)| SeriesColumns { name: words.name.clone(), columns: p.columns() }).collect();
+    let series = plan.probes.iter().zip(&probes).map(|(words, p)| (&words.name, p.columns()));
+    let lists = plan.contacts.iter().map(|words| (&words.name, probe::Contacts::columns::<D>()));
+    let series = series.chain(lists).map(|(name, columns)| SeriesColumns { name: name.clone(), columns }).collect();
     let timing = if timed { time(&mut sim, &mut preflight) } else { None };
     // What was said wins over what follows from it.
     let of_sound = values.iter().filter(|v| v.key == "model.c0" || v.key == "model.c0_factor");

@@ -3,7 +3,10 @@
 
 use std::{fs, path::Path};
 
-use super::{folder, outputs::series_folder};
+use super::{
+    folder,
+    outputs::{list_of, series_folder},
+};
 use crate::{
     error::{Error, Kind, Result},
     record::{Checkpoint, restart},
@@ -61,8 +64,10 @@ fn usable(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
     }
-    for (probe, &bytes) in scene.plan()?.probes.iter().zip(&checkpoint.tables) {
-        let table = series_folder(folder).join(format!("{}.csv", probe.name));
+    let plan = scene.plan()?;
+    let series = plan.probes.iter().map(|probe| series_folder(folder).join(format!("{}.csv", probe.name)));
+    let lists = plan.contacts.iter().map(|list| list_of(folder, &list.name));
+    for (table, &bytes) in series.chain(lists).zip(&checkpoint.tables) {
         let there = fs::metadata(&table).map_or(0, |file| file.len());
         if there < bytes {
             let what = format!("{} has {there} bytes, fewer than the {bytes} of {name}", table.display());

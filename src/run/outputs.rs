@@ -82,6 +82,23 @@ impl<const D: usize> Watched<D> {
     }
 }
 
+/// A list of all contacts, and when it grows.
+struct Listed {
+    table: Table,
+    due: Due,
+}
+
+impl Listed {
+    /// Writes a row for each pair that touches now, unless there are some of this instant.
+    fn look<const D: usize>(&mut self, sim: &Simulation<D>) -> Result<()> {
+        let t = sim.time();
+        match self.table.last() {
+            Some((last, _)) if last >= t => Ok(()),
+            _ => self.table.rows(t, &probe::Contacts::look(sim)),
+        }
+    }
+}
+
 /// What a look wrote besides rows, or asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Written {
@@ -94,6 +111,7 @@ pub struct Written {
 /// All outputs of a run.
 pub struct Outputs<const D: usize> {
     watched: Vec<Watched<D>>,
+    contacts: Vec<Listed>,
     frames: Option<(Frames, Due)>,
     checkpoint: Option<Due>,
 }
@@ -105,11 +123,16 @@ impl<const D: usize> Outputs<D> {
     /// # Errors
     /// `File` if a file cannot be written; `Restart` if what is there does not fit the checkpoint.
     pub fn new(plan: &Plan, probes: Vec<Box<dyn Probe<D>>>, folder: &Path, from: Option<&Checkpoint>) -> Result<Self> {
-        if from.is_some_and(|c| c.tables.len() != probes.len() || c.due.len() != probes.len() + 2) {
+        let lists = plan.contacts.len();
+        let all = probes.len() + lists;
+        if from.is_some_and(|c| c.tables.len() != all || c.due.len() != all + 2) {
             return Err(Error::new(Kind::Restart, "the checkpoint was made with other probes"));
         }
         let series = series_folder(folder);
-        fs::create_dir_all(&series).map_err(|why| Error::file(&series, format!("cannot be made: {why}")))?;
+        let lists = (lists > 0).then(|| folder.join(LISTS));
+        for folder in [&series].into_iter().chain(&lists) {
+            fs::create_dir_all(folder).map_err(|why| Error::file(folder, format!("cannot be made: {why}")))?;
+        }
         let next = |i: usize, start: u64| from.map_or(start, |c| c.due[i]);
         let mut watched = Vec::new();
         for (i, (probe, words)) in probes.into_iter().zip(&plan.probes).enumerate() {
@@ -123,6 +146,15 @@ impl<const D: usize> Outputs<D> {
             watched.push(Watched { probe, table, due, mean: words.average.then(|| kept.unwrap_or_default()) });
         }
         let count = watched.len();
+        let mut contacts = Vec::new();
+        for (i, words) in plan.contacts.iter().enumerate() {
+            let (path, columns) = (list_of(folder, &words.name), probe::Contacts::columns::<D>());
+            let table = match from {
+                Some(checkpoint) => Table::resume(&path, &columns, checkpoint.tables[count + i])?,
+                None => Table::create(&path, &columns)?,
+            };
+            contacts.push(Listed { table, due: Due { every: words.every, next: next(count + 2 + i, 0) } });
+        }
         let frames = match &plan.frames {
             Some(words) => {
                 let times = from.map_or_else(Vec::new, |c| c.frames.clone());
@@ -132,7 +164,7 @@ impl<const D: usize> Outputs<D> {
             None => None,
         };
         let checkpoint = plan.checkpoint_every.map(|every| Due { every, next: next(count + 1, 1) });
-        Ok(Self { watched, frames, checkpoint })
+        Ok(Self { watched, contacts, frames, checkpoint })
     }
 
     /// Writes what is due now, but for the checkpoint.
@@ -145,6 +177,11 @@ impl<const D: usize> Outputs<D> {
         for watched in &mut self.watched {
             let due = watched.due.take(t);
             watched.look(sim, due)?;
+        }
+        for list in &mut self.contacts {
+            if list.due.take(t) {
+                list.look(sim)?;
+            }
         }
         if let Some((frames, due)) = &mut self.frames
             && due.take(t)
@@ -165,6 +202,10 @@ impl<const D: usize> Outputs<D> {
         for watched in &mut self.watched {
             watched.look(sim, true)?;
             watched.table.sync()?;
+        }
+        for list in &mut self.contacts {
+            list.look(sim)?;
+            list.table.sync()?;
         }
         self.last_frame(sim)
     }
@@ -188,9 +229,18 @@ impl<const D: usize> Outputs<D> {
         self.frames.as_ref().map_or_else(Pictures::default, kept)
     }
 
+    /// The table of the plan's probe number `probe`.
+    pub fn table(&self, probe: usize) -> &Table {
+        &self.watched[probe].table
+    }
+
     /// Paths of the tables, from the run's folder.
     pub fn tables(&self) -> impl Iterator<Item = String> + '_ {
-        self.watched.iter().filter_map(|w| Some(format!("series/{}", w.table.path().file_name()?.to_string_lossy())))
+        let series = self.watched.iter().map(|watched| ("series", &watched.table));
+        let lists = self.contacts.iter().map(|list| (LISTS, &list.table));
+        let name =
+            |(folder, table): (&str, &Table)| Some(format!("{folder}/{}", table.path().file_name()?.to_string_lossy()));
+        series.chain(lists).filter_map(name)
     }
 
     /// Notes in `checkpoint` how far the outputs are, once they are on the disk.
@@ -198,16 +248,18 @@ impl<const D: usize> Outputs<D> {
     /// # Errors
     /// `File` if the disk refuses.
     pub fn note(&mut self, checkpoint: &mut Checkpoint) -> Result<()> {
-        self.watched.iter().try_for_each(|w| w.table.sync())?;
+        let tables = || self.watched.iter().map(|w| &w.table).chain(self.contacts.iter().map(|list| &list.table));
+        tables().try_for_each(Table::sync)?;
+        checkpoint.tables = tables().map(Table::bytes).collect();
         if let Some((frames, _)) = &mut self.frames {
             frames.sync()?;
         }
-        checkpoint.tables = self.watched.iter().map(|w| w.table.bytes()).collect();
         checkpoint.means = self.watched.iter().map(|w| w.mean.clone()).collect();
         checkpoint.frames = self.frames.as_ref().map_or_else(Vec::new, |(frames, _)| frames.times().to_vec());
         checkpoint.due = self.watched.iter().map(|w| w.due.next).collect();
         checkpoint.due.push(self.frames.as_ref().map_or(0, |(_, due)| due.next));
         checkpoint.due.push(self.checkpoint.map_or(0, |due| due.next));
+        checkpoint.due.extend(self.contacts.iter().map(|list| list.due.next));
         Ok(())
     }
 }
@@ -215,6 +267,14 @@ impl<const D: usize> Outputs<D> {
 /// The folder of the tables in the run's `folder`.
 pub fn series_folder(folder: &Path) -> PathBuf {
     folder.join("series")
+}
+
+/// Where the lists of contacts lie in the run's folder: with many rows at one time, they are no series.
+const LISTS: &str = "lists";
+
+/// The file of the list called `name` in the run's `folder`.
+pub fn list_of(folder: &Path, name: &str) -> PathBuf {
+    folder.join(LISTS).join(format!("{name}.csv"))
 }
 
 /// The probes that `plan` asks for, made from the simulation at its start, which keeps the books that they read.

@@ -1,5 +1,6 @@
 //! What is said of a run's series at its end: `statistics.csv`, a row for each figure.
 
+mod answers;
 mod spectra;
 
 use std::{collections::BTreeMap, f64::consts::PI, path::Path};
@@ -13,10 +14,11 @@ use crate::{
     record::{Manifest, Readings, write_whole},
     scene::Scene,
     series::Series,
-    stats::{self, moments, reflection, response, spectrum},
+    stats::{self, Band, moments, reflection, response, spectrum, transfer},
     words::unit,
 };
 
+pub use answers::{Answer, RAO};
 pub use spectra::SPECTRA;
 
 /// The file, in the run's folder.
@@ -57,6 +59,8 @@ pub struct Asked {
 pub struct Told {
     /// The figures.
     pub rows: Vec<Statistic>,
+    /// How motions answer irregular waves over frequency.
+    pub answers: Vec<Answer>,
     /// What could not be formed, in words.
     pub remarks: Vec<String>,
 }
@@ -106,12 +110,13 @@ fn apart(folder: &Path, plan: &Plan, asked: &Asked) -> Result<()> {
 /// `File` if they cannot be written.
 pub(super) fn write(folder: &Path, plan: &Plan) -> Result<Vec<String>> {
     let tables = tables(folder, plan);
-    let Told { rows, remarks } = of(&tables, plan, &Asked::default());
+    let Told { rows, answers, remarks } = of(&tables, plan, &Asked::default());
     let mut text = String::from("name,series,quantity,value,unit,from_s,until_s\n");
     for Statistic { name, series, quantity, value, unit, from_s, until_s } in rows {
         text += &format!("{name},{series},{quantity},{value:?},{unit},{from_s:?},{until_s:?}\n");
     }
     write_whole(&folder.join(STATISTICS), text.as_bytes())?;
+    answers::write(folder, &answers)?;
     spectra::write(folder, &tables)?;
     Ok(remarks)
 }
@@ -200,6 +205,12 @@ impl Told {
         }
     }
 
+    /// How a motion answers irregular waves over frequency.
+    fn answer(&mut self, name: &str, series: &str, unit: &str, bands: Vec<Band>) {
+        let answer = |band| Answer { name: name.into(), series: series.into(), unit: unit.into(), band };
+        self.answers.extend(bands.into_iter().map(answer));
+    }
+
     /// What the scene asks for.
     fn declared(&mut self, tables: &Tables, words: &StatisticWords, window: (f64, f64)) {
         let found: Option<Vec<Series>> =
@@ -227,8 +238,11 @@ impl Told {
             StatisticKind::Rao { motions, wave, period } => {
                 let (motion, last) = found.split_at(motions.len());
                 for (of, series) in motions.iter().zip(motion) {
-                    let Some(r) = response(series, &last[0], *period) else { continue };
                     let own = format!("{}/{}", unit(of), unit(wave));
+                    if period.is_none() {
+                        self.answer(&words.name, of, &own, transfer(series, &last[0]));
+                    }
+                    let Some(r) = response(series, &last[0], *period) else { continue };
                     let figures = [
                         ("rao", r.ratio, own.as_str()),
                         ("phase", r.phase * 180.0 / PI, "°"),

@@ -12,7 +12,7 @@ use super::{Scene, build_waves::Site};
 use crate::{
     error::Result,
     solid::{
-        Law, Motion,
+        Motion,
         wave::{Absorber, Maker, Tuning, Wave},
     },
     space::Vector,
@@ -98,7 +98,7 @@ impl Scene {
         site: &Site<D>,
         motion: Motion<D>,
     ) -> Result<Motion<D>> {
-        let Law::Wave(wave) = motion.law() else { return Ok(motion) };
+        let Some(wave) = motion.wave() else { return Ok(motion) };
         let AbsorbWords { period, stroke, speed } = *words;
         let tuning = Tuning { period, gauge: GAUGE * self.h(), level: site.level, stroke, speed };
         let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| self.origin.place(e, key))?;

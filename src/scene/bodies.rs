@@ -38,6 +38,9 @@ pub struct SolidWords {
     /// Restitution coefficient, –.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
+    /// How far outside its faces others begin to touch it, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skin: Option<f64>,
 }
 
 /// A shape in its own frame; lengths in m.
@@ -162,7 +165,7 @@ pub struct AtWords {
     pub turn_deg: Option<Vec<f64>>,
 }
 
-/// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`; either with a `wave` instead.
+/// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`; either with a `wave` instead; or `motions`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DrivenWords {
@@ -187,6 +190,9 @@ pub struct DrivenWords {
     /// The wave that it is to make.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wave: Option<WaveWords>,
+    /// Several motions at once, in place of all of these, each in the frame that those before it have moved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motions: Option<Vec<DrivenWords>>,
 }
 
 /// How a driven coordinate moves: `formula`, or `file` with `column`.
@@ -288,6 +294,7 @@ impl SolidWords {
             free: None,
             friction: None,
             restitution: None,
+            skin: None,
         }
     }
 

@@ -229,6 +229,7 @@ impl Scene {
             c0,
             gamma: words.gamma.ok_or_else(|| missing("model.gamma"))?,
             gravity,
+            gradient: words.gradient.ok_or_else(|| missing("model.gradient"))?,
             viscosity: words.viscosity.ok_or_else(|| missing("model.viscosity"))?,
             diffusion: words.diffusion.ok_or_else(|| missing("model.diffusion"))?,
             shifting: words.shifting.ok_or_else(|| missing("model.shifting"))?,
@@ -278,8 +279,13 @@ impl Scene {
         self.wrong_with(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
     }
 
-    /// Refuses a kernel under which the lattice on which water starts gives way by its own pressure.
+    /// Refuses laws that do not go together, and a kernel under which the lattice on which water starts gives way by its own
+    /// pressure.
     fn steady<const D: usize>(&self, model: &Model) -> Result<()> {
+        if let Some(what) = model.clash() {
+            let help = "write  kernel = \"wendland\"  and  shifting = \"none\", or  gradient = \"plain\"";
+            return Err(self.wrong_with("model.gradient", what, help));
+        }
         if model.gravity.iter().all(|g| *g == 0.0) {
             return Ok(());
         }
@@ -356,7 +362,8 @@ impl Scene {
         Ok(Plan {
             title: self.title.clone().unwrap_or_default(),
             until: self.until,
-            probes: self.probe.iter().map(|probe| probe.planned(self.until)).collect(),
+            probes: self.probe.iter().filter_map(|probe| probe.planned(self.until)).collect(),
+            contacts: self.probe.iter().filter_map(|probe| probe.listed(self.until)).collect(),
             frames,
             checkpoint_every: self.checkpoint.as_ref().and_then(|c| c.every),
             checkpoint_wall: self.checkpoint.as_ref().and_then(|c| c.wall).unwrap_or(CHECKPOINT_WALL),

@@ -1,7 +1,7 @@
 //! From words to solids: shape, pose, role; floats are put at their draft.
 
 use super::{
-    Draft, DrivenWords, FreeWords, LawWords, Numbers, Scene, SolidWords,
+    Draft, FreeWords, LawWords, Numbers, Scene, SolidWords,
     build_waves::Pool,
     geometry::{pose, shape, vector},
     table,
@@ -10,7 +10,7 @@ use crate::{
     error::{Error, Result},
     series::Series,
     shape::Shape,
-    solid::{Formula, FreeBody, Law, Motion, Role, SolidSpec, hydrostatics::equilibrium_height},
+    solid::{Formula, FreeBody, Law, Role, SolidSpec, hydrostatics::equilibrium_height},
     space::{Matrix, Pose, Vector, Wedge},
 };
 
@@ -76,8 +76,10 @@ impl Scene {
             role,
             friction: words.friction.unwrap_or_default(),
             restitution: words.restitution.unwrap_or_default(),
+            contact_skin: words.skin.unwrap_or_default(),
         };
-        spec.check().map_err(|e| self.origin.place(e, key))?;
+        let blamed = if spec.skin_fits() { key.to_string() } else { format!("{key}.skin") };
+        spec.check().map_err(|e| self.origin.place(e, &blamed))?;
         self.heavy_enough(key, &spec)?;
         self.thick_enough(key, &spec)?;
         Ok(spec)
@@ -123,21 +125,6 @@ impl Scene {
             0.5 * thickness
         );
         Err(self.wrong_with(&format!("{key}.free"), what, help))
-    }
-
-    fn motion<const D: usize>(&self, key: &str, words: &DrivenWords) -> Result<Motion<D>> {
-        let unit = |x: &[f64]| vector::<D>(x).normalize();
-        if let (Some(along), Some(distance)) = (&words.along, &words.distance) {
-            return Ok(Motion::slide(unit(along), self.law(&format!("{key}.distance"), distance, Unit::Metres)?));
-        }
-        let centre = vector(words.hinge.as_deref().unwrap_or(&[]));
-        let axis = words.axis.as_ref().map_or_else(|| vec![1.0], |axis| unit(axis).iter().copied().collect());
-        let law = match (&words.angle, &words.angle_deg) {
-            (Some(law), _) => self.law(&format!("{key}.angle"), law, Unit::Radians)?,
-            (None, Some(law)) => self.law(&format!("{key}.angle_deg"), law, Unit::Degrees)?,
-            (None, None) => return Err(self.wrong(key, "this does not say one motion")),
-        };
-        Ok(Motion::hinge(centre, &axis, law))
     }
 
     /// The law that `words` say in this unit.

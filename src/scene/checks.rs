@@ -19,10 +19,13 @@ impl Scene {
                 let what = "a series is a probe and its column, with a point between";
                 return Err(self.wrong(&format!("{key}.series"), what));
             };
-            if !names.iter().any(|name| name == probe) {
+            let Some(i) = names.iter().position(|name| name == probe) else {
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();
                 let what = format!("no probe is called \"{probe}\"{}", guess(probe, &names));
                 return Err(self.wrong_with(&format!("{key}.series"), what, format!("known: {}", names.join(", "))));
+            };
+            if self.probe[i].contacts.is_some() {
+                return Err(self.no_series(&format!("{key}.series"), probe));
             }
             self.verify_reference(&key, check)?;
             self.verify_times(&key, check)?;

@@ -22,12 +22,13 @@ use super::{Scene, sets, wording};
 use crate::error::{Error, Result};
 
 /// Keys whose value is one choice out of several laws.
-pub(super) const CHOICES: [&str; 8] = [
+pub(super) const CHOICES: [&str; 9] = [
     "model.kernel",
     "model.viscosity",
     "model.diffusion",
     "model.shifting",
     "model.walls",
+    "model.gradient",
     "model.slip",
     "model.sweep",
     "time.scheme",
@@ -74,7 +75,7 @@ pub enum Source {
 impl Origin {
     /// The place of `key`, or of the nearest key above it that was written, put on `error`.
     pub fn place(&self, error: Error, key: &str) -> Error {
-        if self.sets.iter().any(|set| key.starts_with(set.as_str())) {
+        if self.is_set(key) {
             return error.at("--set", None, self.shown(key));
         }
         if self.file.is_empty() {
@@ -90,13 +91,18 @@ impl Origin {
 
     /// Who said `key`; `None` if nobody did.
     pub fn source(&self, key: &str) -> Option<Source> {
-        if self.sets.iter().any(|set| key == set || key.starts_with(&format!("{set}."))) {
+        if self.is_set(key) {
             return Some(Source::Set);
         }
         if self.file.is_empty() {
             return None;
         }
         self.places.get(key).map(|start| Source::Line(self.lines.partition_point(|line| line <= start)))
+    }
+
+    /// Whether `key`, or one above it, was set on the command line.
+    fn is_set(&self, key: &str) -> bool {
+        self.sets.iter().any(|set| key == set || key.starts_with(&format!("{set}.")))
     }
 
     /// `key` with the names of solids in place of their numbers.
@@ -123,25 +129,22 @@ pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, Strin
     })?;
     let mut entries = Vec::new();
     walk(root.get_ref(), "", &mut entries);
-    let names = names(root.get_ref());
-    let mut origin = Origin { file: file.into(), folder: folder.into(), names, ..Origin::default() };
+    let mut origin = Origin { file: file.into(), folder: folder.into(), ..Origin::default() };
     origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
     origin.text = text.into();
     origin.lines = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
     spell_out(root.get_mut());
-    for (number, (key, value)) in sets.iter().enumerate() {
-        let span = beyond(text, number)..beyond(text, number);
-        let key = sets::set(root.get_mut(), key, value, span).map_err(|e| e.at("--set", None, key.clone()))?;
+    let mut marks = Marks { first: text.len() + 1, keys: Vec::new() };
+    for (key, value) in sets {
+        let key = sets::set(root.get_mut(), key, value, &mut marks).map_err(|e| e.at("--set", None, key.clone()))?;
         origin.sets.push(key);
     }
     spell_out(root.get_mut());
+    origin.names = names(root.get_ref());
     finite(root.get_ref(), "", &origin)?;
     let mut scene = Scene::deserialize(toml::Deserializer::from(root)).map_err(|e| {
         let start = e.span().map_or(0, |span| span.start);
-        let key = match start.checked_sub(beyond(text, 0)) {
-            Some(number) => origin.sets.get(number).cloned().unwrap_or_default(),
-            None => key_at(&entries, &e.span().unwrap_or(0..0)),
-        };
+        let key = marks.key(start).unwrap_or_else(|| key_at(&entries, &e.span().unwrap_or(0..0)));
         let (error, key) = wording::explain(e.message(), &key);
         let shown = origin.shown(&key);
         match start > text.len() {
@@ -153,9 +156,26 @@ pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, Strin
     Ok(scene)
 }
 
-/// A span that lies in no text: that of the words of `--set` number `number`.
-fn beyond(text: &str, number: usize) -> usize {
-    text.len() + 1 + number
+/// Where the words of `--set` stand: beyond the text, each key at a place of its own.
+pub(super) struct Marks {
+    /// The first such place.
+    first: usize,
+    /// The keys, from there on.
+    keys: Vec<String>,
+}
+
+impl Marks {
+    /// A place for `key`.
+    pub fn place(&mut self, key: &str) -> Range<usize> {
+        let place = self.first + self.keys.len();
+        self.keys.push(key.into());
+        place..place
+    }
+
+    /// The key at a place; none if that is in the text.
+    fn key(&self, place: usize) -> Option<String> {
+        self.keys.get(place.checked_sub(self.first)?).cloned()
+    }
 }
 
 /// Line and column, from 1, of the byte `at`.

@@ -19,7 +19,7 @@ use super::{
     statistics::StatisticEntry,
 };
 use crate::{
-    model::{Diffusion, Kernel, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
+    model::{Diffusion, Gradient, Kernel, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
     plan::{Align, Score},
 };
 
@@ -156,6 +156,9 @@ pub struct ModelWords {
     /// Smoothing length over the spacing's diagonal √D·dp, –.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub c_h: Option<f64>,
+    /// The pressure's gradient.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gradient: Option<Gradient>,
     /// Viscosity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Viscosity>,

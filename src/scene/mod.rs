@@ -13,6 +13,7 @@ mod checks;
 mod damping;
 mod document;
 mod drawing;
+mod driven;
 pub mod flexible;
 pub mod flow;
 pub mod format;

@@ -9,7 +9,7 @@ use serde::{
 };
 
 use super::{BoxWords, Numbers, ProbeKind, ProbeWords};
-use crate::plan::Surface;
+use crate::plan::{ListWords, Surface};
 
 /// One `[[probe]]`: exactly one of the words that say what it looks at.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -69,6 +69,9 @@ pub struct ProbeEntry {
     /// How the two solids of these names press on each other.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<[String; 2]>,
+    /// How all that touch press on each other, as a list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<bool>,
     /// Where energy came from and went.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub budget: Option<bool>,
@@ -253,14 +256,20 @@ impl ProbeEntry {
         Self { spring: Some(spring.into()), ..Self::default() }
     }
 
-    /// The probe of a scene with its defaults filled in, for the plan of a run that ends at `until` (s).
-    pub(super) fn planned(&self, until: f64) -> ProbeWords {
-        ProbeWords {
+    /// The probe of a scene with its defaults filled in, for the plan of a run that ends at `until` (s); none of a list.
+    pub(super) fn planned(&self, until: f64) -> Option<ProbeWords> {
+        self.contacts.is_none().then(|| ProbeWords {
             name: self.name.clone().unwrap_or_default(),
             what: self.kind(),
             every: self.every.unwrap_or(until),
             average: self.average.unwrap_or_default(),
-        }
+        })
+    }
+
+    /// The list of contacts that it is, with its defaults filled in; none of a probe that writes a series.
+    pub(super) fn listed(&self, until: f64) -> Option<ListWords> {
+        let name = self.name.clone().unwrap_or_default();
+        self.contacts.map(|_| ListWords { name, every: self.every.unwrap_or(until) })
     }
 
     fn kind(&self) -> ProbeKind {
@@ -306,6 +315,7 @@ impl ProbeEntry {
             ("energy", self.energy.is_some()),
             ("balance", self.balance.is_some()),
             ("contact", self.contact.is_some()),
+            ("contacts", self.contacts.is_some()),
             ("budget", self.budget.is_some()),
         ];
         given.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()

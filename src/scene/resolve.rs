@@ -106,6 +106,8 @@ impl Scene {
         if model.c_h.is_none() {
             filler.fill("model.h_over_dp", &mut model.h_over_dp, ratio, why);
         }
+        let why = "each pair by its own places alone; \"corrected\" where waves travel";
+        filler.fill("model.gradient", &mut model.gradient, usual.gradient, why);
         filler.fill(
             "model.viscosity",
             &mut model.viscosity,
@@ -156,19 +158,8 @@ impl Scene {
             filler.fill(format!("{key}.friction"), &mut solid.friction, 0.3, "wet wood or plastic");
             let why = "the water between bodies takes the bounce";
             filler.fill(format!("{key}.restitution"), &mut solid.restitution, 0.0, why);
-            let Some(driven) = &mut solid.driven else { continue };
-            if let Some(wave) = &mut driven.wave {
-                wave.fill(filler, &format!("{key}.driven.wave"));
-            }
-            let laws = [
-                ("distance", &mut driven.distance),
-                ("angle", &mut driven.angle),
-                ("angle_deg", &mut driven.angle_deg),
-            ];
-            for (word, law) in laws {
-                if let Some(law) = law {
-                    fill_law(filler, &format!("{key}.driven.{word}"), law);
-                }
+            if let Some(driven) = &mut solid.driven {
+                driven.fill(filler, &format!("{key}.driven"));
             }
         }
     }
@@ -341,7 +332,7 @@ const ORDER: [&str; 24] = [
 ];
 
 /// Fills in what a law that is a table does not say.
-fn fill_law(filler: &mut Filler, key: &str, law: &mut LawWords) {
+pub(super) fn fill_law(filler: &mut Filler, key: &str, law: &mut LawWords) {
     if law.file.is_some() {
         filler.fill(format!("{key}.time"), &mut law.time, "t_s".into(), "the name our own tables have");
         filler.fill(format!("{key}.scale"), &mut law.scale, 1.0, "as in the table");

@@ -1,7 +1,7 @@
 //! The words of a scene as a JSON schema, for editors: made from the types that read them, so that it cannot drift.
 //!
-//! It is coarser than the program where words depend on one another (exactly one of `fixed`, `driven`, `free`; as many
-//! numbers as dimensions).
+//! Where exactly one key of several is to be said (`fixed`, `driven`, `free` of a solid), it says so. It is coarser than the
+//! program where words depend on one another otherwise (as many numbers as dimensions).
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
@@ -9,7 +9,20 @@ use serde_json::{Map, Value, json};
 use super::Scene;
 
 /// Types whose choices may be written as bare words, as `viscosity = "artificial"`.
-const CHOICES: [&str; 8] = ["Kernel", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "Sweeping", "Scheme"];
+const CHOICES: [&str; 9] =
+    ["Kernel", "Gradient", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "Sweeping", "Scheme"];
+
+/// A type, and which of its keys are those of which exactly one is said.
+type Kinds = (&'static str, fn(&str) -> bool);
+
+/// What a solid, a body's weight, a water's room, a probe and a statistic are.
+const KINDS: [Kinds; 5] = [
+    ("SolidWords", |key| matches!(key, "fixed" | "driven" | "free")),
+    ("FreeWords", |key| matches!(key, "density" | "mass")),
+    ("FillWords", |key| matches!(key, "box" | "shape")),
+    ("ProbeEntry", |key| !matches!(key, "name" | "every" | "average")),
+    ("StatisticEntry", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
+];
 
 /// The JSON schema (draft 2020-12) of a scene.
 pub fn schema() -> Value {
@@ -23,8 +36,18 @@ pub fn schema() -> Value {
             .iter_mut()
             .filter(|(name, _)| CHOICES.contains(&name.as_str()))
             .for_each(|(_, choice)| bare_words(choice));
+        for (name, is_kind) in KINDS {
+            types.get_mut(name).into_iter().for_each(|words| one_of(words, is_kind));
+        }
     }
     schema
+}
+
+/// Says of a type that exactly one of the keys that are its kinds is there.
+fn one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
+    let keys = words["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
+    let kinds: Value = keys.filter(|key| is_kind(key)).map(|key| json!({ "required": [key] })).collect();
+    words["oneOf"] = kinds;
 }
 
 /// Takes out that a key may be null: TOML has none.

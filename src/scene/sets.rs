@@ -1,60 +1,68 @@
 //! `--set key=value`: puts a value into a scene that was read, before its words are understood.
 
-use std::{borrow::Cow, ops::Range};
+use std::borrow::Cow;
 
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
 };
 
-use super::document::{CHOICES, under};
+use super::document::{CHOICES, Marks, under};
 use crate::error::{Error, Result, nearest};
 
-/// Puts the value written as `text` at `key`, as if it had been written at `span`; what is no TOML value
-/// is a word. Returns the key with numbers in place of names.
+/// Puts the value written as `text` at `key`, every word of it at a place of `marks`; what is no TOML value is a word.
+/// Returns the key with numbers in place of names.
 ///
 /// # Errors
 /// `Scene` if `key` is no key, or names an entry of a list that is not there.
-pub(super) fn set<'i>(root: &mut DeTable<'i>, key: &'i str, text: &'i str, span: Range<usize>) -> Result<String> {
+pub(super) fn set<'i>(root: &mut DeTable<'i>, key: &'i str, text: &'i str, marks: &mut Marks) -> Result<String> {
     let parts: Vec<&str> = key.split('.').collect();
     if parts.iter().any(|part| part.is_empty()) {
         return Err(Error::scene(format!("\"{key}\" is not a key")).help("write  --set model.h_over_dp=1.5"));
     }
     let value = match DeValue::parse(text) {
-        Ok(value) => moved(value.into_inner(), &span),
-        Err(_) => Spanned::new(span, DeValue::String(Cow::Borrowed(text.trim()))),
+        Ok(value) => value.into_inner(),
+        Err(_) => DeValue::String(Cow::Borrowed(text.trim())),
     };
-    put_in(root, &parts, String::new(), value)
+    put_in(root, &parts, "", value, marks)
 }
 
-/// Puts `value` into a table; `parts` has one part or more.
-fn put_in<'i>(table: &mut DeTable<'i>, parts: &[&'i str], path: String, value: Spanned<DeValue<'i>>) -> Result<String> {
-    let span = value.span();
-    let nothing = Spanned::new(span.clone(), DeValue::Table(DeTable::new()));
-    let here = table.entry(Spanned::new(span, Cow::Borrowed(parts[0]))).or_insert_with(|| nothing);
-    put(here, &parts[1..], under(&path, parts[0]), value)
+/// Puts `value` into the table at `path`; `parts` has one part or more.
+fn put_in<'i>(
+    table: &mut DeTable<'i>,
+    parts: &[&'i str],
+    path: &str,
+    value: DeValue<'i>,
+    marks: &mut Marks,
+) -> Result<String> {
+    let path = under(path, parts[0]);
+    let place = marks.place(&path);
+    let nothing = Spanned::new(place.clone(), DeValue::Table(DeTable::new()));
+    let here = table.entry(Spanned::new(place, Cow::Borrowed(parts[0]))).or_insert_with(|| nothing);
+    put(here, &parts[1..], path, value, marks)
 }
 
 fn put<'i>(
     here: &mut Spanned<DeValue<'i>>,
     parts: &[&'i str],
     path: String,
-    value: Spanned<DeValue<'i>>,
+    value: DeValue<'i>,
+    marks: &mut Marks,
 ) -> Result<String> {
     let Some(part) = parts.first() else {
-        *here = value;
+        *here = placed(value, &path, marks);
         return Ok(path);
     };
     let choice = CHOICES.contains(&path.as_str());
     match here.get_mut() {
         DeValue::Array(items) => {
             let number = pick(&path, items, part)?;
-            put(&mut items.as_mut()[number], &parts[1..], under(&path, number), value)
+            put(&mut items.as_mut()[number], &parts[1..], under(&path, number), value, marks)
         }
-        DeValue::Table(inner) if !choice || inner.contains_key(*part) => put_in(inner, parts, path, value),
+        DeValue::Table(inner) if !choice || inner.contains_key(*part) => put_in(inner, parts, &path, value, marks),
         _ => {
             let mut inner = DeTable::new();
-            let path = put_in(&mut inner, parts, path, value)?;
+            let path = put_in(&mut inner, parts, &path, value, marks)?;
             *here.get_mut() = DeValue::Table(inner);
             Ok(path)
         }
@@ -75,21 +83,24 @@ fn pick(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usize> {
     })
 }
 
-/// The same value as if it had been written at `span`.
-fn moved<'i>(value: DeValue<'i>, span: &Range<usize>) -> Spanned<DeValue<'i>> {
+/// The value of `key` with every word of it at a place of its own.
+fn placed<'i>(value: DeValue<'i>, key: &str, marks: &mut Marks) -> Spanned<DeValue<'i>> {
+    let place = marks.place(key);
     let value = match value {
-        DeValue::Array(items) => DeValue::Array(items.into_iter().map(|i| moved(i.into_inner(), span)).collect()),
+        DeValue::Array(items) => {
+            let each = items.into_iter().enumerate();
+            DeValue::Array(each.map(|(i, item)| placed(item.into_inner(), &under(key, i), marks)).collect())
+        }
         DeValue::Table(table) => {
-            let rename = |(k, v): (Spanned<Cow<'i, str>>, Spanned<DeValue<'i>>)| {
-                (Spanned::new(span.clone(), k.into_inner()), moved(v.into_inner(), span))
-            };
             let mut inner = DeTable::new();
-            for (key, value) in table.into_iter().map(rename) {
-                inner.insert(key, value);
+            for (word, value) in table {
+                let key = under(key, word.get_ref());
+                let word = Spanned::new(marks.place(&key), word.into_inner());
+                inner.insert(word, placed(value.into_inner(), &key, marks));
             }
             DeValue::Table(inner)
         }
         other => other,
     };
-    Spanned::new(span.clone(), value)
+    Spanned::new(place, value)
 }

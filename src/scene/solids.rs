@@ -1,7 +1,7 @@
 //! Holds the words of solids against one another.
 
 use super::{
-    AtWords, DrivenWords, FreeWords, LawWords, Mode, Numbers, Scene, ShapeWords, SolidWords,
+    AtWords, FreeWords, Mode, Numbers, Scene, ShapeWords, SolidWords,
     flexible::LineWords,
     verify::{last, said},
 };
@@ -62,45 +62,12 @@ impl Scene {
             return Err(self.wrong_with(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
         }
         if let Some(words) = &solid.driven {
-            self.driven(&format!("{key}.driven"), words)?;
+            self.verify_driven(&format!("{key}.driven"), words)?;
         }
         if let Some(words) = &solid.free {
             self.free(&format!("{key}.free"), words)?;
         }
         Ok(())
-    }
-
-    fn driven(&self, key: &str, words: &DrivenWords) -> Result<()> {
-        let laws = [("distance", &words.distance), ("angle", &words.angle), ("angle_deg", &words.angle_deg)];
-        let laws: Vec<(&str, &LawWords)> = laws.into_iter().filter_map(|(word, l)| Some((word, l.as_ref()?))).collect();
-        let fits = match (&words.along, &words.hinge, &laws[..], &words.wave) {
-            (Some(_), None, [("distance", _)], None) | (Some(_), None, [], Some(_)) => words.axis.is_none(),
-            (None, Some(_), [("angle" | "angle_deg", _)], None) | (None, Some(_), [], Some(_)) => {
-                words.axis.is_some() == (self.dimension == 3)
-            }
-            _ => {
-                let help = "either  along with distance, or  hinge (in 3-D with axis) with angle or angle_deg; \
-                            either with wave instead";
-                return Err(self.wrong_with(key, "this does not say one motion", help));
-            }
-        };
-        if !fits {
-            let help =
-                "in 3-D a hinge has an axis, as in axis = [0.0, 1.0, 0.0]; in 2-D, and along a line, there is none";
-            return Err(self.wrong_with(key, "axis is missing, or has no meaning here", help));
-        }
-        for (word, vector) in [("along", &words.along), ("hinge", &words.hinge), ("axis", &words.axis)] {
-            let Some(vector) = vector else { continue };
-            let key = format!("{key}.{word}");
-            self.vector(&key, vector)?;
-            if word != "hinge" && vector.iter().all(|x| x.abs() < 1e-12) {
-                return Err(self.wrong(&key, format!("{word} points nowhere")));
-            }
-        }
-        if let Some(wave) = &words.wave {
-            return self.verify_wave(&format!("{key}.wave"), wave);
-        }
-        laws.iter().try_for_each(|(word, law)| self.one_law(&format!("{key}.{word}"), law))
     }
 
     fn free(&self, key: &str, words: &FreeWords) -> Result<()> {

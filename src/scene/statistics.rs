@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    plan::{ProbeKind, StatisticKind, StatisticWords},
+    plan::{ProbeKind, ProbeWords, StatisticKind, StatisticWords},
     probe,
 };
 
@@ -178,7 +178,9 @@ impl Scene {
             let what = format!("no probe is called \"{name}\"{}", guess(name, &names));
             return Err(self.wrong_with(key, what, format!("known: {}", names.join(", "))));
         };
-        let kind = self.probe[i].planned(self.until).what;
+        let Some(ProbeWords { what: kind, .. }) = self.probe[i].planned(self.until) else {
+            return Err(self.no_series(key, name));
+        };
         let all: Vec<Found> = match &kind {
             ProbeKind::Elevation { places, .. } if places.len() == 1 => {
                 vec![(format!("{name}.eta_m"), Some(places[0].clone()))]

@@ -164,6 +164,13 @@ impl Scene {
         if self.solid.iter().any(|solid| solid.name == name) {
             return Ok(());
         }
+        let members = self.solid.iter().filter(|solid| solid.group.as_deref() == Some(name));
+        let members: Vec<&str> = members.map(|solid| solid.name.as_str()).collect();
+        if !members.is_empty() {
+            let what = format!("\"{name}\" is a group, and here a single solid is meant");
+            let help = "ties, forces and probes are of single solids, and only  [[contact]] between  takes groups; of this one";
+            return Err(self.wrong_with(key, what, format!("{help}: {}", members.join(", "))));
+        }
         let names: Vec<&str> = self.solid.iter().map(|solid| solid.name.as_str()).collect();
         let known =
             if names.is_empty() { "the scene has no solids".into() } else { format!("known: {}", names.join(", ")) };

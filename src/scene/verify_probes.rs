@@ -6,7 +6,7 @@ use super::{
     ContactWords, GaugeWords, JointWords, PatchWords, PointWords, ProbeEntry, RowWords, Scene, SectionWords,
     verify::said,
 };
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Most places of a row.
 const MOST_PLACES: usize = 1000;
@@ -21,8 +21,8 @@ impl Scene {
             self.positive(&format!("{key}.every"), probe.every)?;
             if probe.kinds().len() != 1 {
                 let what = format!("a probe looks at one thing; this one at {}", said(&probe.kinds()));
-                let help = "one of motion, force, balance, contact, joint, spring, rope, elevation, velocity, pressure, flow, \
-                     runup, patch, front, energy, budget; a [[probe]] section for each";
+                let help = "one of motion, force, balance, contact, contacts, joint, spring, rope, elevation, velocity, pressure, \
+                     flow, runup, patch, front, energy, budget; a [[probe]] section for each";
                 return Err(self.wrong_with(&key, what, help));
             }
             self.known_solids(&key, probe)?;
@@ -31,11 +31,21 @@ impl Scene {
                 self.may_touch(&format!("{key}.contact"), between)?;
             }
             self.verify_places(&key, probe)?;
-            for (word, given) in [("front", probe.front), ("energy", probe.energy), ("budget", probe.budget)] {
+            let whole = [
+                ("front", probe.front),
+                ("energy", probe.energy),
+                ("budget", probe.budget),
+                ("contacts", probe.contacts),
+            ];
+            for (word, given) in whole {
                 if given == Some(false) {
                     let what = format!("{word} = false watches nothing");
                     return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
                 }
+            }
+            if probe.contacts.is_some() && probe.average.is_some() {
+                let help = "remove it; the mean of one pair is that of  contact = [\"crate\", \"raft\"]";
+                return Err(self.wrong_with(&format!("{key}.average"), "a list of contacts takes no means", help));
             }
             if let Some(name) = &probe.name {
                 self.good_name(&format!("{key}.name"), name)?;
@@ -51,6 +61,13 @@ impl Scene {
             )),
             None => Ok(()),
         }
+    }
+
+    /// That the probe `name`, of which a series is asked, is a list of contacts.
+    pub(super) fn no_series(&self, key: &str, name: &str) -> Error {
+        let what = format!("\"{name}\" lists all contacts, many at one time, and has no series");
+        let help = "of two solids there is one in a [[probe]] of their own:  contact = [\"crate\", \"raft\"]";
+        self.wrong_with(key, what, help)
     }
 
     fn known_solids(&self, key: &str, probe: &ProbeEntry) -> Result<()> {

@@ -43,6 +43,10 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("draft", "at = { x = 2.0, draft = \"equilibrium\" }"),
     ("fixed", "fixed = true"),
     ("driven", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
+    (
+        "motions",
+        "motions = [\n  { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } },\n  { hinge = [0.5, 0.0], angle_deg = { formula = \"2*sin(2*pi*t)\" } },\n]",
+    ),
     ("driven.wave", "wave = { regular = { height = 0.1, period = 1.2 } }"),
     ("wave.regular", "wave = { regular = { height = 0.1, period = 1.2 } }"),
     ("wave.jonswap", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
@@ -69,6 +73,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("inertia", "free = { density = 500.0, inertia = 0.005 }        # kg m²/m; three numbers in 3-D"),
     ("release", "free = { density = 500.0, release = 1.0 }        # s"),
     ("locked", "free = { density = 500.0, locked = [\"x\", \"turn\"] }"),
+    ("skin", "skin = 0.005        # m"),
     (
         "joint",
         "[[joint]]\nname    = \"hinge\"\nkind    = \"hinge\"\nbetween = [\"fore\", \"aft\"]\nat      = [2.0, 0.5]",
@@ -109,6 +114,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
     ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
     ("walls", "walls = \"settling\"      # or \"dbc\""),
+    ("gradient", "gradient = \"corrected\"    # or \"plain\""),
     ("slip", "slip = \"none\"         # or \"free\", \"partial\""),
     ("sweep", "sweep = \"fast\""),
     ("time", "[time]\nscheme = \"symplectic\""),
@@ -124,6 +130,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("count", "count = 5"),
     ("spacing", "spacing = 0.1        # m"),
     ("flow", "flow = { from = [1.0, 0.3], to = [1.0, 0.6] }        # positive to the right: along x, if upwards"),
+    ("probe.contacts", "contacts = true"),
     ("runup", "runup = \"slope\""),
     ("patch", "patch = { solid = \"wall\", box = { min = [0.9, 0.1], max = [1.1, 0.2] } }"),
     ("average", "average = true"),
@@ -192,10 +199,9 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         false => error.help(lines.join("\n")),
     };
     if let (true, [word, known @ ..]) = (message.starts_with("unknown field"), &words[..]) {
-        // The key ends with the unknown word or, after --set, goes on below it.
-        let parts: Vec<&str> = key.split('.').collect();
-        let known_parts = parts.iter().rposition(|part| part == word).unwrap_or(parts.len());
-        let parent = &parts[..known_parts].join(".");
+        // The key is the unknown one or, where its words are told apart by their form, the one above it.
+        let above = if key == *word { Some("") } else { key.strip_suffix(&format!(".{word}")) };
+        let parent = above.unwrap_or(key);
         let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // Of the same parent: a water's velocity is not a probe's.

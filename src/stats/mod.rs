@@ -1,5 +1,5 @@
 //! What is said of series after a run: extremes and means, waves between crossings, spectra, what is reflected, how a
-//! motion answers a wave. Pure functions of [`Series`](crate::series::Series): no files.
+//! motion answers a wave, at one frequency and over all. Pure functions of [`Series`](crate::series::Series): no files.
 
 mod harmonic;
 mod moments;
@@ -11,6 +11,6 @@ mod waves;
 pub use harmonic::{Harmonic, harmonic};
 pub use moments::{Moments, moments};
 pub use reflection::{Reflection, reflection};
-pub use response::{Response, response};
+pub use response::{Band, Response, response, transfer};
 pub use spectrum::{Spectrum, spectra, spectrum, swing};
 pub use waves::{Waves, waves};

@@ -12,7 +12,7 @@ const LEAST: usize = 16;
 const WAVES_A_PART: usize = 16;
 
 /// Into how many quarters a long record is cut; with those that lie half over two there are seven.
-const QUARTERS: usize = 4;
+pub(super) const QUARTERS: usize = 4;
 
 /// Waves that a series has at least whose spectrum is shown: fewer lines than that a wave's width are no spectrum.
 const SHOWN_WAVES: usize = 8;
@@ -80,7 +80,7 @@ pub fn spectrum(series: &Series) -> Option<Spectrum> {
     }
     let variance = of.deviation.powi(2);
     let cut = waves(series).is_some_and(|w| w.count >= QUARTERS * WAVES_A_PART);
-    let (step, parts) = transforms(&[series], cut)?;
+    let (step, parts) = transforms(&[series], if cut { QUARTERS } else { 1 })?;
     let count = parts[0].first()?.len();
     let mut density = vec![0.0; count];
     for part in &parts[0] {
@@ -112,13 +112,13 @@ pub fn swing(series: &Series) -> Option<Spectrum> {
 /// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
 /// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
 pub fn spectra(series: &[&Series]) -> Option<(f64, Vec<Lines>)> {
-    let (step, parts) = transforms(series, false)?;
+    let (step, parts) = transforms(series, 1)?;
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }
 
 /// From one frequency to the next (Hz), and for each series the transforms of its windowed parts, over the time that all
-/// cover.
-fn transforms(series: &[&Series], cut: bool) -> Option<(f64, Vec<Vec<Lines>>)> {
+/// cover: `cut` into so many, and those that lie half over two.
+pub(super) fn transforms(series: &[&Series], cut: usize) -> Option<(f64, Vec<Vec<Lines>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));
     let count = series.iter().map(|s| s.times().len()).min()?;
@@ -126,7 +126,7 @@ fn transforms(series: &[&Series], cut: bool) -> Option<(f64, Vec<Vec<Lines>>)> {
         return None;
     }
     let dt = (until - from) / (count - 1) as f64;
-    let length = if cut { count / QUARTERS } else { count } & !1;
+    let length = (count / cut) & !1;
     let mut planner = RealFftPlanner::<f64>::new();
     let plan = planner.plan_fft_forward(length);
     let hann = |i: usize| 0.5 - 0.5 * (std::f64::consts::TAU * i as f64 / length as f64).cos();

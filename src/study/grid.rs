@@ -11,6 +11,9 @@ use crate::{
 /// Longest name of a folder that is made of the values themselves.
 const LONGEST: usize = 80;
 
+/// Most frames that a run keeps for a picture.
+const MOST_FRAMES: f64 = 200.0;
+
 /// A key of the scene and the values that it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vary {
@@ -33,6 +36,8 @@ pub struct Grid {
     pub vary: Vec<Vary>,
     /// Keys that are changed in all runs.
     pub sets: Vec<(String, String)>,
+    /// Simulated time between the frames that each run keeps for a picture, s; without it none are kept.
+    pub frames: Option<f64>,
 }
 
 impl Grid {
@@ -53,10 +58,13 @@ impl Grid {
                 Error::new(Kind::Usage, "the spacing is varied apart from other keys").help("write  --dp 0.02,0.01")
             );
         }
+        let frames = self
+            .frames
+            .map_or("off".into(), |every| format!("{{ every = {every:?}, fields = [\"velocity\", \"pressure\"] }}"));
         let mut jobs: Vec<Job> = Vec::new();
         for &dp in &dp {
             for varied in self.combinations() {
-                let mut sets = vec![("frames".to_string(), "off".to_string())];
+                let mut sets = vec![("frames".to_string(), frames.clone())];
                 sets.extend(self.sets.iter().chain(&varied).cloned());
                 sets.push(("dp".into(), format!("{dp:?}")));
                 let name = slug(dp, &varied);
@@ -81,6 +89,39 @@ impl Grid {
             all.iter().flat_map(|before| vary.values.iter().map(move |value| with(before, value))).collect()
         })
     }
+}
+
+/// The longest interval (s) of which all `times` (s) are multiples, to a millisecond, as long as that makes no more than 200
+/// frames in a run of `until` (s); `until` if there is no time but the start.
+///
+/// ```
+/// # use pontoon::study::interval;
+/// assert_eq!(interval(&[0.3, 0.5], 1.5), 0.1);
+/// assert_eq!(interval(&[], 1.5), 1.5);
+/// ```
+pub fn interval(times: &[f64], until: f64) -> f64 {
+    let common = |mut a: u64, mut b: u64| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    match times.iter().map(|t| (t * 1e3).round() as u64).fold(0, common) {
+        0 => until,
+        every => (every as f64 / 1e3).max(until / MOST_FRAMES),
+    }
+}
+
+/// What makes each of `jobs` another than the rest, briefly.
+pub fn heads(jobs: &[Job]) -> Vec<String> {
+    let spacings = jobs.windows(2).any(|pair| pair[0].dp != pair[1].dp);
+    let head = |job: &Job| {
+        let spacing = spacings.then(|| format!("dp = {} m", job.dp));
+        let short = |(key, value): &(String, String)| format!("{} = {value}", key.rsplit('.').next().unwrap_or(key));
+        let words: Vec<String> = spacing.into_iter().chain(job.varied.iter().map(short)).collect();
+        if words.is_empty() { job.name.clone() } else { words.join(", ") }
+    };
+    jobs.iter().map(head).collect()
 }
 
 /// A combination in words.
@@ -142,7 +183,7 @@ mod tests {
         let vary = vary
             .iter()
             .map(|(key, values)| Vary { key: key.to_string(), values: values.iter().map(|v| v.to_string()).collect() });
-        Grid { name: "x".into(), scene: "x".into(), dp: dp.into(), vary: vary.collect(), sets: vec![] }
+        Grid { name: "x".into(), scene: "x".into(), dp: dp.into(), vary: vary.collect(), sets: vec![], frames: None }
     }
 
     #[test]
@@ -155,6 +196,23 @@ mod tests {
         assert_eq!(jobs[11].group, "model.kernel = wendland, time.cfl = 0.2");
         assert_eq!(jobs[11].sets.last(), Some(&("dp".to_string(), "0.005".to_string())));
         assert_eq!(grid(&[0.01], &[]).jobs(Path::new("out"))?[0].name, "dp-0.01");
+        Ok(())
+    }
+
+    #[test]
+    fn columns_are_headed_by_what_differs_and_frames_are_kept_at_their_times() -> Result<()> {
+        let laws: [(&str, &[&str]); 1] = [("model.diffusion", &["none", "fourtakas"])];
+        let named = |grid: Grid| grid.jobs(Path::new("out")).map(|jobs| heads(&jobs));
+        assert_eq!(named(grid(&[0.01], &laws))?, ["diffusion = none", "diffusion = fourtakas"]);
+        assert_eq!(named(grid(&[0.01, 0.02], &[]))?, ["dp = 0.02 m", "dp = 0.01 m"]);
+        assert_eq!(named(grid(&[0.01], &[]))?, ["dp-0.01"]);
+        let kept = Grid { frames: Some(0.1), ..grid(&[0.01], &[]) }.jobs(Path::new("out"))?[0].sets[0].clone();
+        assert_eq!((kept.0.as_str(), kept.1.starts_with("{ every = 0.1,")), ("frames", true));
+        // Times that have no long interval in common: 200 frames, the nearest of which is taken.
+        assert_eq!(
+            [interval(&[0.0], 2.0), interval(&[0.5, 1.25], 2.0), interval(&[0.333, 1.0], 2.0)],
+            [2.0, 0.25, 0.01]
+        );
         Ok(())
     }
 

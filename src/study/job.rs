@@ -10,7 +10,7 @@ use crate::{
     error::{Error, Result},
     record::{Manifest, manifest::Status},
     run::{self, Options, Watch},
-    scene::{Scene, Size},
+    scene::{Frames, FramesWords, Scene, Size},
 };
 
 /// Keys of a scene that change what is kept or judged of a run, never the run.
@@ -155,6 +155,7 @@ impl Job {
         // References are read anew whenever they are needed.
         let references: Vec<&str> = scene.check.iter().filter_map(|check| check.reference.as_deref()).collect();
         Ok(manifest.version == env!("CARGO_PKG_VERSION")
+            && has_frames(&scene, manifest)
             && own.is_some()
             && own == bare(&manifest.scene)
             && run::same_tables(&run::scene_file(&self.scene), &words, &self.folder, &references))
@@ -172,6 +173,14 @@ impl Job {
         let verdicts = if state == State::Finished { self.checks()?.into_iter().map(judge).collect() } else { vec![] };
         Ok(Ran { state, manifest: Some(manifest), verdicts })
     }
+}
+
+/// Whether a run kept the frames that its scene now asks for, if it names their times; there may be others between them.
+fn has_frames(scene: &Scene, manifest: &Manifest) -> bool {
+    let Some(Frames::On(FramesWords { every: Some(every), .. })) = &scene.frames else { return true };
+    let words = manifest.scene.parse::<toml::Table>().ok();
+    let kept = words.and_then(|words| words.get("frames")?.get("every")?.as_float());
+    kept.map(|kept| every / kept).is_some_and(|each| each > 0.5 && (each - each.round()).abs() < 1e-6)
 }
 
 /// The words of a scene that decide what a run computes.

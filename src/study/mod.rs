@@ -18,7 +18,7 @@ mod validation;
 
 pub use cases::{Case, Extent, cases, find};
 pub use estimate::{Planned, USUAL, plan};
-pub use grid::{Grid, Vary, split};
+pub use grid::{Grid, Vary, heads, interval, split};
 pub use job::{Job, Ran, State};
 pub use order::{Convergence, convergence, least_squares};
 pub use plot::{Line, Style, curves, log_log};

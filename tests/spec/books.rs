@@ -170,7 +170,7 @@ where
 fn the_energy_budget_closes() {
     // One in a hundred of what is turned over: steps are of second order.
     let shifting = "shifting = { everywhere = { a = 2.0 } }\nviscosity = { sps = { nu0 = 1e-6 } }";
-    for model in ["", "walls = \"dbc\"", "slip = \"partial\"", shifting] {
+    for model in ["", "walls = \"dbc\"", "slip = \"partial\"", "gradient = \"corrected\"", shifting] {
         let (off, turned) = residual(crowd(model), 3000);
         assert!(off < 0.01 * turned, "{model}: {off} J of {turned} J");
     }

@@ -246,10 +246,33 @@ fn every_shipped_scene_is_built() {
 
 #[test]
 fn a_misspelt_set_is_shown_as_it_was_written() {
-    for (key, shown) in [("modle.walls", "modle"), ("model.wals", "model.wals"), ("model.kernal.cubic", "model.kernal")]
-    {
-        let error = try_out(GOOD, &[(key, "1")]).unwrap_err().to_string();
+    for (key, value, shown) in [
+        ("modle.walls", "1", "modle"),
+        ("modle.walls.modle", "1", "modle"),
+        ("model.wals", "1", "model.wals"),
+        ("model.kernal.cubic", "1", "model.kernal"),
+        ("model.viscosity.artifical.alpha", "1", "model.viscosity"),
+        ("solid.2.driven.stroke", "1", "solid.paddle.driven.stroke"),
+        // Within a value, as within the text of a scene.
+        ("model.viscosity", "{ artificial = { alpah = 1 } }", "model.viscosity.artificial.alpah"),
+        ("solid.paddle.driven", "{ stroke = 1 }", "solid.paddle.driven.stroke"),
+        ("statistic", "[{ roa = 1 }]", "statistic.0.roa"),
+        ("contact", "[{ contact = 1 }]", "contact.0.contact"),
+        ("solid", "[{ name = 'raft', sahpe = 1 }]", "solid.raft.sahpe"),
+    ] {
+        let error = try_out(GOOD, &[(key, value)]).unwrap_err().to_string();
         assert!(error.contains(&format!("in --set, {shown}\n")), "{key}: {error}");
+    }
+}
+
+#[test]
+fn a_key_that_is_unknown_within_a_solid_is_told_with_all_that_is_above_it() {
+    for (from, to, shown) in [
+        ("distance = {", "stroke = 1.0, distance = {", "24:32, solid.paddle.driven.stroke"),
+        ("formula = ", "formla = ", "24:45, solid.paddle.driven.distance.formla"),
+    ] {
+        let error = try_out(&GOOD.replacen(from, to, 1), &[]).unwrap_err().to_string();
+        assert!(error.contains(&format!("in scene.toml:{shown}\n")), "{error}");
     }
 }
 

@@ -171,6 +171,23 @@ fn wrong_contacts_are_told_with_what_to_write() {
 }
 
 #[test]
+fn a_group_is_no_solid_to_be_tied_pushed_or_watched() {
+    let rope = "[[rope]]\nname = \"tie\"\nbetween = [\"tank\", \"floats\"]\nfrom = [0.0, 0.6]\nto = [0.3, 0.3]";
+    for (words, key) in [
+        ("[[joint]]\nname = \"pin\"\nkind = \"hinge\"\nbetween = [\"floats\"]\nat = [0.3, 0.3]", "joint.0.between"),
+        (rope.replace("rope", "spring").replace("to =", "stiffness = 10.0\nto =").as_str(), "spring.0.between"),
+        (rope, "rope.0.between"),
+        ("[[force]]\nname = \"wind\"\non = \"floats\"\nforce = [1.0, 0.0]", "force.0.on"),
+        ("[[probe]]\nmotion = \"floats\"", "probe.0.motion"),
+    ] {
+        let message = said("until", "until", words);
+        for part in ["\"floats\" is a group, and here a single solid is meant", "of this one: a, b, c", key] {
+            assert!(message.contains(part), "{words}: \"{part}\" is not in\n{message}");
+        }
+    }
+}
+
+#[test]
 fn a_probe_of_a_contact_that_cannot_be_is_refused_with_the_reason() -> Result<()> {
     let probe = "[[probe]]\ncontact = [\"a\", \"b\"]\n";
     let pin = "[[joint]]\nname = \"pin\"\nkind = \"hinge\"\nbetween = [\"a\", \"b\"]\nat = [0.55, 0.3]\n";

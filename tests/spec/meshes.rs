@@ -312,6 +312,34 @@ fn a_body_wholly_inside_a_fixed_mesh_is_refused() {
 }
 
 #[test]
+fn a_body_that_comes_wholly_inside_a_fixed_mesh_is_refused_and_so_is_a_mesh_round_a_body() {
+    let folder = folder("comes");
+    fs::write(folder.join("text.stl"), text_stl(&FACETS)).unwrap();
+    // As above: the rock is 2 m × 1 m × 1.5 m, the bodies 0.1 m.
+    let text = "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0, 0.0], max = [0.5, 0.5, 0.3] } }\n\
+                [[solid]]\nname = \"rock\"\nfixed = true\nat = { x = 2.0, y = 0.0, z = 0.0 }\n\
+                shape = { mesh = { file = \"text.stl\", scale = 4.0 } }\n\
+                [[solid]]\nname = \"float\"\nshape = { box = { size = [0.1, 0.1, 0.1] } }\nat = { x = 4.6, y = 0.5, z = 0.4 }\n\
+                free = { density = 500.0 }\n";
+    let setup = Scene::parse(text, &folder, &[]).unwrap().build::<3>().unwrap().setup;
+    let (rock, float) = (setup.solids[0].clone(), setup.solids[1].clone());
+    let mut sim = Simulation::new(setup).unwrap();
+    let mut come = |spec: &pontoon::solid::SolidSpec<3>, name: &str, x: f64| {
+        let mut spec = spec.clone();
+        spec.name = name.into();
+        spec.pose.position[0] = x;
+        sim.add_solid(spec).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    let message = come(&float, "box", 2.75);
+    assert!(message.contains("\"box\" would come 0.") && message.contains("m inside \"rock\""), "{message}");
+    // A rock whose inside is where the float is.
+    let message = come(&rock, "boulder", 3.85);
+    assert!(message.contains("\"boulder\" would come 0.") && message.contains("m inside \"float\""), "{message}");
+    assert_eq!(come(&float, "box", 4.3), "", "beside both, and nothing had changed");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn a_body_that_leaves_no_water_is_named() {
     let text = "dimension = 2\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }\n\
                 [[solid]]\nname = \"barge\"\nshape = { box = { size = [1.2, 0.8] } }\nat = { x = 0.5, bottom = -0.1 }\n\

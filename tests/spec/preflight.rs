@@ -259,6 +259,12 @@ fn a_crowd_is_told_of_by_its_first_three_and_a_number() {
         assert!(count <= 4 || brief[3].what == format!("{} more of this kind ({})", count - 3, finding.topic));
     }
     assert_eq!(found.warnings().len(), if finding.severity == Severity::Warning { 4 } else { 0 });
+    // Each kind is counted by itself, wherever its findings stand.
+    let note = preflight::Finding { severity: Severity::Note, ..finding.clone() };
+    found.findings = [finding, note].into_iter().cycle().take(12).collect();
+    let brief = found.brief();
+    let more: Vec<&str> = brief.iter().filter(|f| f.what.contains(" more of ")).map(|f| &f.what[..6]).collect();
+    assert_eq!((brief.len(), more), (8, vec!["3 more"; 2]));
 }
 
 #[test]
@@ -328,4 +334,22 @@ fn a_spring_that_slows_the_run_is_told_with_how_soft_it_may_be() {
     let soft = moored(1e9 * part);
     assert!(!topics(&soft).contains(&"stiff_spring") && soft.step.springs_s.unwrap() >= soft.step.sound_s);
     assert_eq!(with(&[]).step.springs_s, None);
+}
+
+#[test]
+fn a_paddle_in_a_list_of_motions_is_a_paddle() {
+    let alone = with(&[]);
+    let half = "{ along = [1.0, 0.0], distance = { formula = \"0.02*(1-cos(2*pi*t))\" } }";
+    let whole = "{ along = [1.0, 0.0], distance = { formula = \"0.04*(1-cos(2*pi*t))\" } }";
+    let text = GOOD.replace(whole, &format!("{{ motions = [{half}, {half}] }}"));
+    assert_ne!(text, GOOD);
+    let listed = look::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap());
+    assert_eq!(topics(&listed), topics(&alone));
+    let [one, other] = [&alone, &listed].map(|found| found.waves.first().expect("it makes waves"));
+    // The same way but for round-off.
+    for (a, b) in [(one.stroke_m, other.stroke_m), (one.height_m, other.height_m), (one.paddle_mps, other.paddle_mps)] {
+        assert!((a / b - 1.0).abs() < 1e-9, "{one:?} {other:?}");
+    }
+    assert_eq!((one.period_s, &one.answers), (other.period_s, &other.answers));
+    assert_eq!(alone.sound.expected.len(), listed.sound.expected.len());
 }

@@ -36,7 +36,7 @@ pub fn float<const D: usize>(shape: Shape<D>, at: [f64; D], density: f64) -> Sol
 
 /// A frictionless solid.
 pub fn solid<const D: usize>(name: &str, shape: Shape<D>, pose: Pose<D>, role: Role<D>) -> SolidSpec<D> {
-    SolidSpec { name: name.into(), shape, pose, role, friction: 0.0, restitution: 0.0 }
+    SolidSpec { name: name.into(), shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
 }
 
 /// A simulation of `water`, still below `level`, and `solids`.

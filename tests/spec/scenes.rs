@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     model::Dimension,
+    record::frame::particle_bytes,
     scene::{Built, Scene, shipped},
     simulation::Simulation,
     solid::Dim,
@@ -137,4 +138,15 @@ fn scatter_moves_every_particle_by_no_more_than_it_says_and_always_the_same() {
     let (most, mean) = (off.iter().fold(0.0, |m: f64, x| m.max(x.abs())), off.iter().sum::<f64>() / off.len() as f64);
     // Evenly spread between ±1e-3: the mean of n of them is 6e-4/√n, here 1e-5.
     assert!((0.99e-3..=1e-3 * (1.0 + 1e-9)).contains(&most) && mean.abs() < 5e-5, "{most} {mean}");
+}
+
+#[test]
+fn the_water_in_the_frames_of_a_scene_takes_200_mb_at_most_whoever_says_how_many() {
+    for name in names() {
+        let scene = Scene::read(&home().join(&name), &[]).unwrap();
+        let (size, plan) = (scene.size().unwrap(), scene.plan().unwrap());
+        let Some(frames) = plan.frames else { continue };
+        let bytes = (plan.until / frames.every).floor() * size.fluid * particle_bytes(&frames.fields).0;
+        assert!(bytes < 200e6, "{name}: {bytes:.2e} B");
+    }
 }

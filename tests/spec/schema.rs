@@ -142,6 +142,32 @@ fn a_misspelt_key_and_a_wrong_word_break_the_schema() {
     assert!(of("dimension = 2\ndp = 0.1").iter().any(|wrong| wrong.contains("until")), "what is needed is told");
 }
 
+#[test]
+fn a_solid_has_one_role_a_body_one_weight_and_a_probe_looks_at_one_thing() {
+    let solid = "[[solid]]\nname = \"a\"\nshape = { ball = { radius = 0.1 } }\n";
+    for (words, at) in [
+        (format!("{solid}fixed = true\nfree = {{ density = 500 }}"), "scene.solid"),
+        (solid.to_string(), "scene.solid"),
+        (format!("{solid}free = {{ density = 500, mass = 1 }}"), "scene.solid.free"),
+        (format!("{solid}free = {{ velocity = [0, 0] }}"), "scene.solid.free"),
+        ("[[probe]]\nmotion = \"a\"\nforce = \"a\"".into(), "scene.probe"),
+        ("[[probe]]\nname = \"a\"\nevery = 0.1\naverage = true".into(), "scene.probe"),
+        ("[[statistic]]\nwaves = \"a.eta_m\"\nreflection = [\"b\"]".into(), "scene.statistic"),
+        ("[[statistic]]\nperiod = 1.2".into(), "scene.statistic"),
+        ("[[water]]\nlevel = 0.1\nfill = {}".into(), "scene.water.fill"),
+    ] {
+        let wrong = of(&format!("{SCENE}{words}\n"));
+        assert!(wrong.contains(&format!("{at}: is not of one kind")), "{words}: {wrong:?}");
+    }
+    for role in ["fixed = true", "free = { mass = 1 }", "driven = { along = [1, 0], distance = { formula = \"t\" } }"] {
+        assert!(of(&format!("{SCENE}{solid}{role}\n")).is_empty(), "{role}");
+    }
+    for probe in ["motion = \"a\"", "force = \"a\"", "front = true", "energy = true", "budget = true"] {
+        let wrong = of(&format!("{SCENE}[[probe]]\nname = \"b\"\nevery = 0.1\n{probe}\n"));
+        assert!(wrong.is_empty(), "{probe}: {wrong:?}");
+    }
+}
+
 /// The keys and words that a schema knows, wherever they stand in it.
 fn known(schema: &Value, found: &mut BTreeSet<String>) {
     if let Some(keys) = schema.get("properties").and_then(Value::as_object) {

@@ -1,0 +1,68 @@
+//! Draws the plots of docs/choosing.md from the figures in docs/plots/choosing.toml, beside which it puts them.
+//!
+//! `cargo run --release --example choosing_plots`, at once.
+
+use std::{error::Error, fs, path::Path};
+
+use pontoon::study::{Line, Style, curves, log_log};
+use serde::Deserialize;
+
+/// Where the figures are, and the plots.
+pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/plots");
+
+/// All plots.
+#[derive(Deserialize)]
+pub struct Sheet {
+    /// Each of them.
+    pub plot: Vec<Plot>,
+}
+
+/// A plot.
+#[derive(Deserialize)]
+pub struct Plot {
+    /// Its file in [`FOLDER`].
+    pub file: String,
+    /// The page that has its figures.
+    pub source: String,
+    /// What stands at its axes.
+    pub axes: [String; 2],
+    /// Whether they are logarithmic.
+    #[serde(default)]
+    pub log: bool,
+    /// Its lines.
+    pub lines: Vec<Curve>,
+}
+
+/// A line of a plot.
+#[derive(Deserialize)]
+pub struct Curve {
+    /// What it is called where the plot is shown.
+    pub name: String,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Sheet {
+    /// The figures as they are kept.
+    pub fn read() -> Result<Self, Box<dyn Error>> {
+        Ok(toml::from_str(&fs::read_to_string(Path::new(FOLDER).join("choosing.toml"))?)?)
+    }
+}
+
+impl Plot {
+    /// The plot as SVG.
+    pub fn svg(&self) -> pontoon::Result<String> {
+        let line = |(colour, of): (usize, &Curve)| Line::new(colour, Style::Dotted, of.points.clone());
+        let lines: Vec<Line> = self.lines.iter().enumerate().map(line).collect();
+        let draw = if self.log { log_log } else { curves };
+        draw([&self.axes[0], &self.axes[1]], &lines)
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    for plot in Sheet::read()?.plot {
+        fs::write(Path::new(FOLDER).join(&plot.file), plot.svg()?)?;
+        println!("docs/plots/{}", plot.file);
+    }
+    Ok(())
+}

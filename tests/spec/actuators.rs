@@ -1,0 +1,198 @@
+//! Several prescribed motions of one solid: each goes in the frame that those before it have moved, with exact rates.
+
+use std::path::Path;
+
+use pontoon::{
+    Result,
+    scene::Scene,
+    simulation::Simulation,
+    solid::{Kinematics, Law, Motion, Role},
+    space::{Matrix, Pose, Vector, Wedge},
+};
+
+/// Water 0.1 m deep in a tank of 0.4 m × 0.3 m at the origin, at dp 10 mm, that moves as `driven` says.
+fn tank(driven: &str) -> Result<Scene> {
+    let text = format!(
+        "dimension = 2\ndp = 0.01\nuntil = 0.3\nwater = [{{ fill = {{ box = {{ min = [0, 0], max = [0.4, 0.1] }} }} }}]\n\
+         [[solid]]\nname = \"tank\"\nshape = {{ tank = {{ size = [0.4, 0.3] }} }}\ndriven = {driven}\n"
+    );
+    Scene::parse(&text, Path::new(""), &[])
+}
+
+/// The same with these as its list of motions.
+fn shaken(motions: &str) -> Result<Simulation<2>> {
+    Simulation::new(tank(&format!("{{ motions = [{motions}] }}"))?.build::<2>()?.setup)
+}
+
+const SURGE: &str = "{ along = [1, 0], distance = { formula = \"0.01*(1-cos(5*t))\" } }";
+const HEAVE: &str = "{ along = [0, 2], distance = { formula = \"0.004*(1-cos(7*t))\" } }";
+const PITCH: &str = "{ hinge = [0.2, -0.1], angle_deg = { formula = \"3*(1-cos(6*t))\" } }";
+
+#[test]
+fn a_tank_that_surges_heaves_and_pitches_carries_its_water_and_moves_by_the_derivatives_of_its_laws() -> Result<()> {
+    let mut sim = shaken(&format!("{SURGE}, {HEAVE}, {PITCH}"))?;
+    // A pitch about a hinge that surges and heaves: x = c + s + R (x₀ − c).
+    let (hinge, amplitude) = (Vector::from([0.2, -0.1]), 3f64.to_radians());
+    while sim.time() < 0.3 {
+        sim.step_to(0.3)?;
+        let (t, now) = (sim.time(), sim.system().solids()[0].kinematics);
+        let shift = Vector::from([0.01 * (1.0 - (5.0 * t).cos()), 0.004 * (1.0 - (7.0 * t).cos())]);
+        let rate = Vector::from([0.05 * (5.0 * t).sin(), 0.028 * (7.0 * t).sin()]);
+        let (angle, spin) = (amplitude * (1.0 - (6.0 * t).cos()), 6.0 * amplitude * (6.0 * t).sin());
+        let (sin, cos) = angle.sin_cos();
+        let arm = Vector::from([-0.2 * cos - 0.1 * sin, -0.2 * sin + 0.1 * cos]);
+        // Round-off of lengths, speeds and spins of order 1 and below.
+        assert_eq!(now.centre, now.pose.position, "the origin of its frame");
+        assert!((now.centre - (hinge + shift + arm)).norm() < 1e-14, "{now:?} at {t} s");
+        assert!((now.velocity - (rate + Vector::from([-arm[1], arm[0]]) * spin)).norm() < 1e-14, "{now:?} at {t} s");
+        assert!((now.spin.axial()[0] - spin).abs() < 1e-14, "{now:?} at {t} s");
+    }
+    // It swings by 9 mm and 4°: no particle is out through bottom or sides, seen from the tank.
+    let pose = sim.system().solids()[0].kinematics.pose;
+    let inside = |r: &Vector<2>| (0.0..0.4).contains(&r[0]) && (0.0..0.2).contains(&r[1]);
+    assert!(sim.system().fluid().r.iter().all(|r| inside(&pose.local(r))));
+    Ok(())
+}
+
+#[test]
+fn a_body_forced_two_ways_at_once_is_held_back_by_the_water_in_both() -> Result<()> {
+    let mean = |sense: &str| -> Result<Vector<2>> {
+        let law = format!("distance = {{ formula = \"{sense}0.5*t^2\" }}");
+        let text = format!(
+            "dimension = 2\ndp = 0.02\nuntil = 0.1\nwater = [{{ fill = {{ box = {{ min = [0, 0], max = [1, 0.6] }} }} }}]\n\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.0, 0.8] }} }}\n\
+             [[solid]]\nname = \"body\"\nshape = {{ box = {{ size = [0.2, 0.2] }} }}\nat = {{ x = 0.5, y = 0.3 }}\n\
+             driven = {{ motions = [{{ along = [1, 0], {law} }}, {{ along = [0, 1], {law} }}] }}\n"
+        );
+        let mut sim = Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)?;
+        let (mut sum, mut time) = (Vector::zeros(), 0.0);
+        while sim.time() < 0.1 {
+            sim.step_to(0.1)?;
+            // The sound of the start has gone to and fro by then.
+            if sim.time() > 0.04 {
+                sum += sim.system().solids()[1].load.force * sim.dt();
+                time += sim.dt();
+            }
+        }
+        Ok(sum / time)
+    };
+    // Half the difference leaves out the buoyancy. The added mass of a square is 1.19 times the water in its place, 40 kg/m, where that
+    // has no end, and more beside walls and a bed: at 1 m/s² one to two times 40 N/m against the acceleration, along each axis.
+    let held = (mean("")? - mean("-")?) * 0.5;
+    assert!(held.iter().all(|force| (-80.0..-40.0).contains(force)), "{held:?} N/m");
+    Ok(())
+}
+
+#[test]
+fn two_equal_translations_are_one_of_twice_the_way_also_after_a_restart() -> Result<()> {
+    let slide = |formula: &str| format!("{{ along = [1, 0], distance = {{ formula = \"{formula}\" }} }}");
+    let half = slide("0.01*(1-cos(9*t))");
+    let mut two = shaken(&format!("{half}, {half}"))?;
+    let mut one = Simulation::new(tank(&slide("2*(0.01*(1-cos(9*t)))"))?.build::<2>()?.setup)?;
+    for step in 0..40 {
+        if step == 20 {
+            let state = two.save()?;
+            two = shaken(&format!("{half}, {half}"))?;
+            two.restore(&state)?;
+        }
+        one.step()?;
+        two.step()?;
+    }
+    // To double a number rounds nothing, and the frame starts at the origin: the same bits.
+    assert_eq!(one.system().solids()[0].kinematics, two.system().solids()[0].kinematics);
+    assert_eq!(one.system().fluid().r, two.system().fluid().r);
+    Ok(())
+}
+
+/// Where and how the one solid of a scene of this dimension is at 1 s, that starts at `at` and moves so.
+fn after_a_second<const D: usize>(at: &str, motions: &str) -> Result<Kinematics<D>>
+where
+    pontoon::solid::Dim<D>: pontoon::model::Dimension<D>,
+{
+    let corner = vec!["1"; D].join(", ");
+    let size = vec!["0.1"; D].join(", ");
+    let text = format!(
+        "dimension = {D}\ndp = 0.1\nuntil = 1.0\nwater = [{{ fill = {{ box = {{ min = [{}], max = [{corner}] }} }} }}]\n\
+         [[solid]]\nname = \"head\"\nshape = {{ box = {{ size = [{size}] }} }}\nat = {{ {at} }}\n\
+         driven = {{ motions = [{motions}] }}\n",
+        vec!["0"; D].join(", ")
+    );
+    let setup = Scene::parse(&text, Path::new(""), &[])?.build::<D>()?.setup;
+    let Role::Driven(motion) = &setup.solids[0].role else { panic!("it is driven") };
+    Ok(motion.kinematics(&setup.solids[0].pose, 1.0))
+}
+
+#[test]
+fn a_rail_on_a_turntable_is_not_a_turntable_on_a_rail() -> Result<()> {
+    let turn = "{ hinge = [3, 0], angle_deg = { formula = \"90*t\" } }";
+    let slide = "{ along = [1, 0], distance = { formula = \"2*t\" } }";
+    let of = |motions: String| after_a_second::<2>("x = 3, y = 1", &motions);
+    let (rail, cart) = (of(format!("{turn}, {slide}"))?, of(format!("{slide}, {turn}"))?);
+    // 1 m above the hinge. On the turntable the rail points up by then; the turntable on the rail has gone 2 m. Round-off.
+    assert!((rail.pose.position - Vector::from([2.0, 2.0])).norm() < 1e-14, "{rail:?}");
+    assert!((cart.pose.position - Vector::from([4.0, 0.0])).norm() < 1e-14, "{cart:?}");
+    let w = std::f64::consts::FRAC_PI_2;
+    assert!((rail.velocity - Vector::from([-2.0 * w, 2.0 - w])).norm() < 1e-14, "{rail:?}");
+    assert!((cart.velocity - Vector::from([2.0, -w])).norm() < 1e-14, "{cart:?}");
+    Ok(())
+}
+
+#[test]
+fn turns_about_two_axes_in_space_are_the_product_of_their_rotations() -> Result<()> {
+    let turn = |axis: &str, rate: f64| {
+        format!("{{ hinge = [3, 0, 0], axis = [{axis}], angle = {{ formula = \"{rate}*t\" }} }}")
+    };
+    let (yaw, roll) = (turn("0, 0, 1", 0.5), turn("2, 0, 0", 0.8));
+    let of = |motions: String| after_a_second::<3>("x = 3, y = 0.6, z = 0.2", &motions);
+    let rotation = |axial: [f64; 3]| -> Matrix<3> { Wedge::from_axial(&axial).exp() };
+    let (z, x) = (rotation([0.0, 0.0, 0.5]), rotation([0.8, 0.0, 0.0]));
+    let (rolled, yawed) = (of(format!("{yaw}, {roll}"))?, of(format!("{roll}, {yaw}"))?);
+    assert!((rolled.pose.rotation - z * x).norm() < 1e-14 && (yawed.pose.rotation - x * z).norm() < 1e-14);
+    assert!((rolled.pose.rotation - yawed.pose.rotation).norm() > 0.1, "the order counts");
+    // The inner axis goes with the outer turn: Ω = 0.5 e_z + 0.8 R_z e_x.
+    let spin = Vector::from([0.8 * 0.5f64.cos(), 0.8 * 0.5f64.sin(), 0.5]);
+    assert!((Vector::<3>::from_iterator(rolled.spin.axial()) - spin).norm() < 1e-14, "{rolled:?}");
+    let arm = z * x * Vector::from([0.0, 0.6, 0.2]);
+    assert!((rolled.velocity - spin.cross(&arm)).norm() < 1e-14, "{rolled:?}");
+    Ok(())
+}
+
+#[test]
+fn a_list_of_motions_that_cannot_be_meant_is_refused_with_what_to_write() {
+    let wave = "{ along = [1, 0], wave = { regular = { height = 0.02, period = 1.2 } } }";
+    let cases: [(&str, &[&str]); 7] = [
+        ("{ motions = [] }", &["the list of motions is empty", "driven.motions", "write  motions = ["]),
+        (&format!("{{ motions = [{SURGE}, {wave}] }}"), &["has no other motion beside it", "wave"]),
+        (&format!("{{ motions = [{{ motions = [{SURGE}] }}] }}"), &["a list of motions within another", "in one list"]),
+        (&format!("{{ motions = [{SURGE}], along = [1, 0] }}"), &["along stands beside motions", "driven.along"]),
+        ("{ motions = [{ along = [1, 0] }] }", &["this does not say one motion", "driven.motions.0"]),
+        (
+            &format!("{{ motions = [{SURGE}, {{ along = [0, 0], distance = {{ formula = \"t\" }} }}] }}"),
+            &["along points nowhere"],
+        ),
+        ("{ along = [1, 0], hinge = [0, 0] }", &["this does not say one motion", "motions = [{ .. }, { .. }]"]),
+    ];
+    for (words, expected) in cases {
+        let message = tank(words).and_then(|scene| scene.build::<2>().map(|_| ())).expect_err(words).to_string();
+        for part in expected {
+            assert!(message.contains(part), "{words}: \"{part}\" is not in\n{message}");
+        }
+    }
+    // A program is told, too.
+    let chain = Motion::<2>::chain([]).check().expect_err("empty").to_string();
+    assert!(chain.contains("its list of motions is empty"), "{chain}");
+}
+
+#[test]
+fn a_scene_of_several_motions_is_written_as_it_is_read() -> Result<()> {
+    let scene = tank(&format!("{{ motions = [{SURGE}, {PITCH}] }}"))?;
+    assert!(Scene::parse(&scene.to_toml()?, Path::new(""), &[])? == scene, "{}", scene.to_toml()?);
+    let one = Motion::chain([Motion::slide(Vector::from([1.0, 0.0]), Law::constant(0.1))]);
+    let still = one.kinematics(&Pose::identity(), 2.0);
+    assert_eq!(
+        (still.centre, still.velocity),
+        (Vector::from([0.1, 0.0]), Vector::zeros()),
+        "a list of one is that one"
+    );
+    Ok(())
+}

@@ -1,0 +1,151 @@
+//! Loads by kind on bodies in space that are tied and turn: forces and torques add up to what the engine's step did.
+
+use std::path::Path;
+
+use pontoon::{Result, scene::Scene, simulation::Simulation, solid::Load};
+
+/// Above a little water: two bars, one on a slanting hinge and one on a ball joint under it, that spin; a brick that whirls on a rope;
+/// a plate on a ball joint that may not turn about x; a sled on a rail, pushed.
+const MOBILE: &str = r#"
+dimension = 3
+dp        = 0.05
+until     = 1.0
+domain    = { min = [-3.0, -3.0, -1.0], max = [4.0, 4.0, 5.0] }
+
+[[water]]
+fill = { box = { min = [0.0, 0.0, 0.0], max = [0.3, 0.3, 0.2] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [0.3, 0.3, 0.3] } }
+
+[[solid]]
+name  = "upper"
+shape = { box = { size = [0.1, 0.05, 0.3] } }
+at    = { x = 0.15, y = 0.15, z = 2.0, turn_deg = [0.0, 40.0, 0.0] }
+free  = { density = 600.0, inertia = [0.02, 0.05, 0.04] }
+
+[[solid]]
+name  = "lower"
+shape = { box = { size = [0.08, 0.06, 0.3] } }
+at    = { x = 0.15, y = 0.15, z = 1.6, turn_deg = [20.0, 0.0, 10.0] }
+free  = { density = 700.0, spin = [0.0, 1.0, 3.0] }
+
+[[solid]]
+name  = "brick"
+shape = { box = { size = [0.2, 0.1, 0.05] } }
+at    = { x = 1.5, y = 0.0, z = 2.0 }
+free  = { density = 900.0, spin = [1.0, 8.0, 2.0], velocity = [0.0, 0.5, 0.0] }
+
+[[solid]]
+name  = "plate"
+shape = { box = { size = [0.2, 0.3, 0.05] } }
+at    = { x = -1.0, y = 0.0, z = 2.0 }
+free  = { density = 500.0, spin = [0.0, 2.0, 1.0], locked = ["turn_x"] }
+
+[[solid]]
+name  = "sled"
+shape = { box = { size = [0.1, 0.1, 0.1] } }
+at    = { x = 0.0, y = 2.0, z = 2.0 }
+free  = { density = 500.0 }
+
+[[joint]]
+name    = "pin"
+kind    = "hinge"
+between = ["upper"]
+at      = [0.15, 0.15, 2.2]
+axis    = [0.0, 1.0, 0.2]
+
+[[joint]]
+name    = "knee"
+kind    = "ball"
+between = ["lower", "upper"]
+at      = [0.15, 0.15, 1.8]
+
+[[joint]]
+name    = "corner"
+kind    = "ball"
+between = ["plate"]
+at      = [-0.9, 0.1, 2.0]
+
+[[joint]]
+name    = "rail"
+kind    = "slider"
+between = ["sled"]
+at      = [0.1, 2.1, 2.0]
+along   = [1.0, 0.5, 0.2]
+motor   = { damping = 3.0 }
+
+[[rope]]
+name    = "tether"
+between = ["brick"]
+from    = [1.6, 0.05, 2.0]
+to      = [1.6, 0.05, 2.3]
+
+[[force]]
+name   = "twist"
+on     = "lower"
+torque = ["0.2*sin(20*t)", 0.0, 0.1]
+"#;
+
+/// The largest force (N) and torque (N m) among loads.
+fn largest(loads: &[Load<3>]) -> (f64, f64) {
+    let size = |x: &Load<3>| (x.force.norm(), x.torque.axial().iter().map(|t| t * t).sum::<f64>().sqrt());
+    loads.iter().map(size).fold((0.0, 0.0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
+}
+
+#[test]
+fn the_torques_on_tied_bodies_that_spin_in_space_add_up_in_every_step() -> Result<()> {
+    let mut sim = Simulation::new(Scene::parse(MOBILE, Path::new(""), &[])?.build::<3>()?.setup)?;
+    sim.keep_loads();
+    let mut turned = 0.0f64;
+    for step in 0..250 {
+        sim.step()?;
+        for i in 1..6 {
+            let (shares, name) = (sim.shares(i).unwrap(), &sim.system().solids()[i].spec.name);
+            let (force, torque) = largest(&shares.kinds().map(|(_, load)| load));
+            let off = largest(&[shares.residual()]);
+            // Round-off of I Ω/Δt and of sums that the pulls of the ties are found from: 1e-9 of the largest kind, and of a torque
+            // whose arm is 10 mm where a body is hardly turned.
+            assert!(off.0 < 1e-9 * force, "step {step}, {name}: {:e} N of {force} N", off.0);
+            let scale = torque.max(0.01 * force);
+            assert!(off.1 < 1e-9 * scale, "step {step}, {name}: {:e} N m of {scale} N m", off.1);
+        }
+        turned = turned.max(largest(&[sim.shares(2).unwrap().change]).1);
+    }
+    assert!(turned > 0.1, "the lower bar is turned by up to {turned} N m");
+    assert!(sim.rope(0).tension > 0.0 && sim.joint(3).motor != 0.0, "what is tied carries");
+    Ok(())
+}
+
+#[test]
+fn the_change_of_a_tied_body_is_that_of_its_angular_momentum_to_first_order_in_the_step() -> Result<()> {
+    // Over 50 ms, in N m s: Σ change Δt against I Ω at both ends, in the world's axes.
+    let off = |dt_max: &str| -> Result<(f64, f64)> {
+        let sets = [("time.dt_max".to_string(), dt_max.to_string())];
+        let mut sim = Simulation::new(Scene::parse(MOBILE, Path::new(""), &sets)?.build::<3>()?.setup)?;
+        sim.keep_loads();
+        let momentum = |sim: &Simulation<3>| {
+            let solid = &sim.system().solids()[2];
+            let pontoon::solid::Role::Free(body) = &solid.spec.role else { panic!("it is free") };
+            let turn = solid.kinematics.pose.rotation;
+            let spin = pontoon::space::Vector::<3>::from_iterator(solid.kinematics.spin.axial());
+            turn * body.inertia * turn.transpose() * spin
+        };
+        let before = momentum(&sim);
+        let mut sum = pontoon::space::Vector::<3>::zeros();
+        while sim.time() < 0.05 {
+            sim.step_to(0.05)?;
+            let change = sim.shares(2).unwrap().change.torque.axial();
+            sum += pontoon::space::Vector::<3>::from_iterator(change) * sim.dt();
+        }
+        let gained = momentum(&sim) - before;
+        Ok(((sum - gained).norm(), gained.norm()))
+    };
+    let ((coarse, gained), (fine, _)) = (off("1e-3")?, off("2.5e-4")?);
+    assert!(coarse < 0.02 * gained, "{coarse} of {gained} N m s");
+    // A quarter of the step leaves a quarter.
+    assert!((0.15..0.35).contains(&(fine / coarse)), "{fine} after {coarse} N m s");
+    Ok(())
+}
