@@ -16,7 +16,7 @@ use super::{
     fits::{self, Fits},
     laws::{Compiled, Laws},
     packed::{Cluster, Packed},
-    rows::{Needs, Running},
+    rows::{Needs, Running, triangle},
 };
 use crate::{
     lanes::{self, LANES, Level, Row, Simd, Work, f32x8, i32x8},
@@ -305,19 +305,12 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
             if self.needs.repulsion {
                 side.repulsion = read(&rows[self.needs.repulsion_at()].0);
             }
-            let tensor = |tensor: &mut [[f32x8<S>; D]; D], mut row: usize| {
-                for (i, entries) in tensor.iter_mut().enumerate() {
-                    for entry in &mut entries[..=i] {
-                        *entry = read(&rows[row].0);
-                        row += 1;
-                    }
-                }
-            };
+            let mut entry = |row: usize, entry: &mut f32x8<S>| *entry = read(&rows[row].0);
             if self.needs.stress {
-                tensor(&mut side.stress, self.needs.stress_at());
+                triangle(&mut side.stress, self.needs.stress_at(), &mut entry);
             }
             if self.needs.form {
-                tensor(&mut side.form, self.needs.form_at(D));
+                triangle(&mut side.form, self.needs.form_at(D), &mut entry);
             }
         }
         side

@@ -106,19 +106,26 @@ impl<N: Num, const D: usize> Running<N, D> {
         if own.mark {
             visit(all.held_at(D), &mut self.extra.held);
         }
-        let tensors = [
-            (own.stress, all.strain_at(D), &mut self.extra.strain),
-            (own.moment, all.moment_at(D), &mut self.extra.moment),
-        ];
-        for (needed, mut row, tensor) in tensors {
-            if needed {
-                for (i, entries) in tensor.iter_mut().enumerate() {
-                    for entry in &mut entries[..=i] {
-                        visit(row, entry);
-                        row += 1;
-                    }
-                }
-            }
+        if own.stress {
+            triangle(&mut self.extra.strain, all.strain_at(D), &mut visit);
+        }
+        if own.moment {
+            triangle(&mut self.extra.moment, all.moment_at(D), &mut visit);
+        }
+    }
+}
+
+/// Calls `visit` with the entries of a symmetric tensor that are kept, and their rows from `row` on.
+#[inline(always)]
+pub(super) fn triangle<N, const D: usize>(
+    tensor: &mut [[N; D]; D],
+    mut row: usize,
+    visit: &mut impl FnMut(usize, &mut N),
+) {
+    for (i, entries) in tensor.iter_mut().enumerate() {
+        for entry in &mut entries[..=i] {
+            visit(row, entry);
+            row += 1;
         }
     }
 }
