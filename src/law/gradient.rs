@@ -93,6 +93,7 @@ impl<const D: usize> Term<D> for Corrected {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::space::Matrix;
 
     /// B of a moment given whole.
     fn b<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
@@ -104,14 +105,10 @@ mod tests {
     #[test]
     fn it_is_the_inverse_where_there_are_neighbours() {
         // Round-off of a handful of operations.
-        let m = [[0.9, 0.0, 0.0], [0.1, 1.1, 0.0], [-0.05, 0.07, 0.95]];
-        let inverse = b(&m);
-        for i in 0..3 {
-            for j in 0..3 {
-                let product: f64 = (0..3).map(|k| m[i.max(k)][i.min(k)] * inverse[k][j]).sum();
-                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-14);
-            }
-        }
+        let rows = [[0.9, 0.0, 0.0], [0.1, 1.1, 0.0], [-0.05, 0.07, 0.95]];
+        let (inverse, moment) = (b(&rows), Matrix::<3>::from_fn(|i, j| rows[i.max(j)][i.min(j)]));
+        let product = moment * Matrix::from_fn(|i, j| inverse[i][j]);
+        assert!((product - Matrix::identity()).amax() < 1e-14);
     }
 
     #[test]

@@ -76,7 +76,7 @@ fn a_hull_with_its_weight_aside_of_both_axes_lists_and_trims_as_hydrostatics_say
     // As in the plane: the levels of both ends, 12 and 10 dp apart, are known to a quarter of a dp. 7.2 and 7.4 degrees; found: 0.9 and
     // 1.2 too little.
     for ((exact, found), long) in exact.into_iter().zip(found).zip([12.0, 10.0]) {
-        let bound = (0.25 / long as f64).to_degrees();
+        let bound = f64::to_degrees(0.25 / long);
         assert!(exact < -5.0 && (found - exact).abs() < bound, "{found} degrees, hydrostatics {exact}");
     }
     Ok(())
