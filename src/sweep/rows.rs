@@ -19,6 +19,11 @@ pub struct Needs {
     pub moment: bool,
 }
 
+/// Entries of a symmetric tensor that are kept.
+const fn entries(dimension: usize) -> usize {
+    dimension * (dimension + 1) / 2
+}
+
 impl Needs {
     /// Those of the laws `Y`.
     pub const fn of<Y: Term<D>, const D: usize>() -> Self {
@@ -46,12 +51,12 @@ impl Needs {
     }
 
     const fn moment_at(self, dimension: usize) -> usize {
-        self.strain_at(dimension) + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+        self.strain_at(dimension) + if self.stress { entries(dimension) } else { 0 }
     }
 
     /// Rows of sums: acceleration and density rate, then what the laws ask for.
     pub(super) const fn sums(self, dimension: usize) -> usize {
-        self.moment_at(dimension) + if self.moment { dimension * (dimension + 1) / 2 } else { 0 }
+        self.moment_at(dimension) + if self.moment { entries(dimension) } else { 0 }
     }
 
     /// The row of repulsion among the inputs beside places, velocities and densities; before it is the mark.
@@ -66,12 +71,12 @@ impl Needs {
 
     /// The first row of the corrected gradient, after the stress.
     pub(super) const fn form_at(self, dimension: usize) -> usize {
-        self.stress_at() + if self.stress { dimension * (dimension + 1) / 2 } else { 0 }
+        self.stress_at() + if self.stress { entries(dimension) } else { 0 }
     }
 
     /// Rows of such inputs.
     pub(super) const fn inputs(self, dimension: usize) -> usize {
-        self.form_at(dimension) + if self.form { dimension * (dimension + 1) / 2 } else { 0 }
+        self.form_at(dimension) + if self.form { entries(dimension) } else { 0 }
     }
 }
 

@@ -11,6 +11,8 @@ use pontoon::{
     scene::Scene,
 };
 
+use crate::rig::Home;
+
 /// Two boxes piled on a shelf beside a small pool, and a ball that falls onto the shelf later; 10, 5 and 3.93 kg/m.
 const PILE: &str = r#"
 dimension = 2
@@ -62,24 +64,7 @@ every = 0.02
 
 const G: f64 = 9.81;
 
-struct Home(PathBuf);
-
-impl Drop for Home {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 impl Home {
-    /// A folder for the test `name` with the scene in it.
-    fn new(name: &str) -> Self {
-        let home = Self(std::env::temp_dir().join(format!("pontoon-contacts-{name}-{}", std::process::id())));
-        let _ = fs::remove_dir_all(&home.0);
-        fs::create_dir_all(&home.0).unwrap();
-        fs::write(home.0.join("scene.toml"), PILE).unwrap();
-        home
-    }
-
     /// Runs the scene until time `until` (s) into the folder `name`.
     fn ran(&self, name: &str, until: f64) -> Result<PathBuf> {
         let options = Options { out: Some(self.0.join(name)), threads: Some(1), ..Options::default() };
@@ -98,7 +83,7 @@ fn rows(text: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn each_reading_has_a_row_for_each_pair_with_who_how_hard_and_where() -> Result<()> {
-    let home = Home::new("rows");
+    let home = Home::with("contacts-rows", PILE);
     let run = home.ran("run", f64::INFINITY)?;
     let text = list(&run);
     assert_eq!(
@@ -142,7 +127,7 @@ fn each_reading_has_a_row_for_each_pair_with_who_how_hard_and_where() -> Result<
 
 #[test]
 fn a_resumed_list_is_the_unbroken_one_byte_for_byte() -> Result<()> {
-    let home = Home::new("resume");
+    let home = Home::with("contacts-resume", PILE);
     let (whole, broken) = (home.ran("whole", f64::INFINITY)?, home.ran("broken", 0.25)?);
     // From the checkpoint of 0.2 s: the list is longer, and is cut back first.
     fs::rename(broken.join("checkpoint.previous.bin"), broken.join("checkpoint.bin")).unwrap();
@@ -159,7 +144,7 @@ fn a_resumed_list_is_the_unbroken_one_byte_for_byte() -> Result<()> {
 
 #[test]
 fn a_list_is_no_series_and_the_page_does_without_it() -> Result<()> {
-    let home = Home::new("page");
+    let home = Home::with("contacts-page", PILE);
     let run = home.ran("run", f64::INFINITY)?;
     let manifest = fs::read_to_string(run.join("manifest.json")).unwrap();
     assert!(manifest.contains("\"lists/contacts.csv\""), "the manifest names it");

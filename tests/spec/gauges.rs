@@ -14,7 +14,7 @@ use pontoon::{
     space::Vector,
 };
 
-use crate::rig;
+use crate::rig::{self, Home};
 
 const DP: f64 = 0.02;
 
@@ -29,17 +29,7 @@ fn pool() -> Simulation<2> {
     tank(&[([0.0, 0.0], [0.4, 0.2])])
 }
 
-/// A folder for a run, gone with this.
-struct Home(PathBuf);
-
 impl Home {
-    fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("pontoon-gauges-{name}-{}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&folder);
-        std::fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-
     fn scene(&self, probes: &str) -> PathBuf {
         let words = "dimension = 2\ndp = 0.02\nuntil = 0.06\nframes = \"off\"\n\
                      [[water]]\nfill = { box = { min = [0.0, 0.0], max = [0.2, 0.2] } }\n\
@@ -55,12 +45,6 @@ impl Home {
 
     fn options(&self, run: &str) -> Options {
         Options { out: Some(self.0.join(run)), threads: Some(1), ..Options::default() }
-    }
-}
-
-impl Drop for Home {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
@@ -110,7 +94,7 @@ fn what_flows_through_a_section_is_speed_times_depth_wherever_it_stands() -> Res
 
 #[test]
 fn the_volume_that_flowed_is_what_is_missing_before_the_section() -> Result<()> {
-    let home = Home::new("flow");
+    let home = Home::new("gauges-flow");
     // A column that falls, and a section through which all of its foot goes.
     let file = home
         .scene("[[probe]]\nflow = { from = [0.2, 0.0], to = [0.2, 0.3] }\nevery = 0.001\n[[probe]]\nfront = true\n");
@@ -166,7 +150,7 @@ const MEANED: &str = "[[probe]]\nname = \"mean\"\npressure = [0.1, 0.02]\nevery 
 
 #[test]
 fn an_average_is_the_mean_of_every_step_since_the_reading_before() -> Result<()> {
-    let home = Home::new("mean");
+    let home = Home::new("gauges-mean");
     run::run(&home.scene(MEANED), &home.options("a"), &mut go_on)?;
     let (mean, all) = (home.readings("a", "mean")?, home.readings("a", "all")?);
     assert_eq!(mean.x[0][0], all.x[0][0], "the first is the reading itself");
@@ -182,7 +166,7 @@ fn an_average_is_the_mean_of_every_step_since_the_reading_before() -> Result<()>
 
 #[test]
 fn means_and_volumes_of_an_interrupted_run_end_as_those_of_an_unbroken_one() -> Result<()> {
-    let home = Home::new("resumed");
+    let home = Home::new("gauges-resumed");
     let file =
         home.scene(&format!("{MEANED}[[probe]]\nflow = {{ from = [0.2, 0.0], to = [0.2, 0.3] }}\naverage = true\n"));
     run::run(&file, &home.options("whole"), &mut go_on)?;
@@ -199,7 +183,7 @@ fn means_and_volumes_of_an_interrupted_run_end_as_those_of_an_unbroken_one() -> 
 
 #[test]
 fn places_that_cannot_be_meant_are_refused_in_words() {
-    let home = Home::new("refused");
+    let home = Home::new("gauges-refused");
     for (probe, word) in [
         ("elevation = { x = 0.1, from = 0.0, to = 0.2, count = 3 }", "one place or is a row"),
         ("elevation = { from = 0.0, to = 0.2 }", "either a count or a spacing"),

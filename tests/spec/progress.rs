@@ -1,15 +1,14 @@
 //! What is told of a run while it goes on: of its energy, by the latest reading of a probe.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::Path;
 
 use pontoon::{
     Result,
     record::Readings,
     run::{self, Drift, Options, Progress},
 };
+
+use crate::rig::Home;
 
 /// A box dropped by half a draft, which moves the water within a few steps.
 const SCENE: &str = r#"
@@ -30,21 +29,9 @@ at = { x = 0.5, bottom = 0.35 }
 free = { density = 500.0 }
 "#;
 
-struct Home(PathBuf);
-
-impl Drop for Home {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// A folder with the scene and `more` words of it.
 fn home(name: &str, more: &str) -> Home {
-    let home = Home(std::env::temp_dir().join(format!("pontoon-progress-{name}-{}", std::process::id())));
-    let _ = fs::remove_dir_all(&home.0);
-    fs::create_dir_all(&home.0).unwrap();
-    fs::write(home.0.join("scene.toml"), format!("{SCENE}{more}")).unwrap();
-    home
+    Home::with(&format!("progress-{name}"), &format!("{SCENE}{more}"))
 }
 
 /// Runs the scene in `home`; what was told of the energy at each step.

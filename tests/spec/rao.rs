@@ -1,11 +1,13 @@
 //! How a float answers an irregular sea over frequency: what a run's tables hold, against the float's own equation.
 
-use std::{f64::consts::TAU, fs, path::PathBuf};
+use std::{f64::consts::TAU, fs};
 
 use pontoon::{
     Result,
     run::{self, Answer, Asked, Options, Progress},
 };
+
+use crate::rig::Home;
 
 const SCENE: &str = r#"
 dimension = 2
@@ -39,14 +41,6 @@ period = 2.0
 
 /// Natural frequency of the float, Hz, and its damping over critical damping.
 const OWN: (f64, f64) = (0.6, 0.15);
-
-struct Home(PathBuf);
-
-impl Drop for Home {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 /// A sea of 400 s of JONSWAP's form with its peak at 0.5 Hz, every half of `dt` (s), m.
 fn sea(dt: f64) -> Vec<f64> {
@@ -83,10 +77,7 @@ fn float(eta: &[f64], dt: f64) -> Vec<f64> {
 
 /// A finished run whose tables are those of the float in the sea; its pitch is 100 degrees a metre of heave.
 fn run_of_a_sea() -> Result<Home> {
-    let home = Home(std::env::temp_dir().join(format!("pontoon-rao-{}", std::process::id())));
-    let _ = fs::remove_dir_all(&home.0);
-    fs::create_dir_all(&home.0).unwrap();
-    fs::write(home.0.join("scene.toml"), SCENE).unwrap();
+    let home = Home::with("rao", SCENE);
     let out = home.0.join("run");
     let options = Options { out: Some(out.clone()), threads: Some(1), ..Options::default() };
     run::run(&home.0.join("scene.toml"), &options, &mut |_: &Progress| true)?;

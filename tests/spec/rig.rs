@@ -1,4 +1,6 @@
-//! What the tests share: models, lattices and tanks.
+//! What the tests share: models, lattices, tanks, and folders.
+
+use std::{fs, path::PathBuf};
 
 use pontoon::{
     model::{Dimension, Model},
@@ -71,5 +73,31 @@ impl Dice {
     /// A point in the unit box.
     pub fn point<const D: usize>(&mut self) -> Vector<D> {
         Vector::from_fn(|_, _| self.roll())
+    }
+}
+
+/// A folder for the files of one test, empty at first and gone with this.
+pub struct Home(pub PathBuf);
+
+impl Home {
+    /// The folder of the test `name`, a name that no other test has.
+    pub fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("pontoon-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    /// The same, with a `scene.toml` of that text in it.
+    pub fn with(name: &str, scene: &str) -> Self {
+        let home = Self::new(name);
+        fs::write(home.0.join("scene.toml"), scene).unwrap();
+        home
+    }
+}
+
+impl Drop for Home {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
     }
 }

@@ -1,12 +1,14 @@
 //! What is said of a run's series at its end: from the scene's words to the rows of `statistics.csv`.
 
-use std::{f64::consts::TAU, fs, path::PathBuf};
+use std::{f64::consts::TAU, fs};
 
 use pontoon::{
     Result,
     run::{self, Asked, Options, Progress, Statistic},
     scene::Scene,
 };
+
+use crate::rig::Home;
 
 const SCENE: &str = r#"
 dimension = 2
@@ -45,20 +47,9 @@ waves = "gauge"
 from = 5.0
 "#;
 
-struct Home(PathBuf);
-
-impl Drop for Home {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// A finished run whose tables are those of waves 0.1 m high, of which a quarter comes back.
 fn run_of_waves(name: &str) -> Result<Home> {
-    let home = Home(std::env::temp_dir().join(format!("pontoon-statistics-{name}-{}", std::process::id())));
-    let _ = fs::remove_dir_all(&home.0);
-    fs::create_dir_all(&home.0).unwrap();
-    fs::write(home.0.join("scene.toml"), SCENE).unwrap();
+    let home = Home::with(&format!("statistics-{name}"), SCENE);
     let out = home.0.join("run");
     let options = Options { out: Some(out.clone()), threads: Some(1), ..Options::default() };
     run::run(&home.0.join("scene.toml"), &options, &mut |_: &Progress| true)?;
