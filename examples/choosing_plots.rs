@@ -1,4 +1,4 @@
-//! Draws the plots of docs/choosing.md from the figures in docs/plots/choosing.toml, beside which it puts them.
+//! Draws the plots of docs/choosing.md and docs/stability.md from the figures in docs/plots/choosing.toml, beside which it puts them.
 //!
 //! `cargo run --release --example choosing_plots`, at once.
 
@@ -22,6 +22,9 @@ pub struct Sheet {
 pub struct Plot {
     /// Its file in [`FOLDER`].
     pub file: String,
+    /// The page that shows it; docs/choosing.md unless it is said.
+    #[serde(default = "choosing")]
+    pub page: String,
     /// The page that has its figures.
     pub source: String,
     /// What stands at its axes.
@@ -40,6 +43,13 @@ pub struct Curve {
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
+    /// What stands beside each point; may be left out.
+    #[serde(default)]
+    pub labels: Vec<String>,
+}
+
+fn choosing() -> String {
+    "choosing.md".into()
 }
 
 impl Sheet {
@@ -52,7 +62,10 @@ impl Sheet {
 impl Plot {
     /// The plot as SVG.
     pub fn svg(&self) -> pontoon::Result<String> {
-        let line = |(colour, of): (usize, &Curve)| Line::new(colour, Style::Dotted, of.points.clone());
+        let line = |(colour, of): (usize, &Curve)| Line {
+            labels: of.labels.clone(),
+            ..Line::new(colour, Style::Dotted, of.points.clone())
+        };
         let lines: Vec<Line> = self.lines.iter().enumerate().map(line).collect();
         let draw = if self.log { log_log } else { curves };
         draw([&self.axes[0], &self.axes[1]], &lines)

@@ -43,7 +43,8 @@ Try:
   pontoon run raft                    several floats, a paddle, a tank
   pontoon run raft --dp 0.01          the same, finer
   pontoon inspect raft                what it costs, what looks wrong, every value in force
-Results go to runs/<scene>: open report.html first; frames.pvd is for ParaView, series/*.csv for anything."
+Results go to runs/<scene>: open report.html first; frames.pvd is for ParaView, series/*.csv for
+anything."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -72,8 +73,9 @@ or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
 Examples:
   pontoon inspect raft --dp 0.01
   pontoon inspect my-bay.toml --no-timing --json
-What looks wrong comes first, each with the number that would mend it; `run` prints the warnings too.
-Nothing is written. The scene is stepped for a second to tell how long a run takes on this machine.")]
+What looks wrong comes first, each with the number that would mend it; `run` prints the warnings
+too. Nothing is written. The scene is stepped for a second to tell how long a run takes on
+this machine.")]
     Inspect(inspect::InspectArgs),
     /// Run a scene at several spacings, with several laws: errors against processor time, orders
     #[command(after_help = "\
@@ -129,15 +131,16 @@ Examples:
 Examples:
   pontoon compare runs/raft runs/raft-2 --out rafts.html
   pontoon compare runs/plain runs/delta runs/shifted --png fields.png --time 0.5,1.0
-Players go at equal times, with equal colours; pictures have a column for each run and a row for each time.")]
+Players go at equal times, with equal colours; pictures have a column for each run and a row for
+each time.")]
     Compare(page::CompareArgs),
     /// Write the series of a run for other programs
     #[command(after_help = "\
 Examples:
   pontoon export runs/raft --npz                    runs/raft/series.npz
   pontoon export runs/raft --npz raft.npz
-In Python: numpy.load(\"raft.npz\")[\"box.heave_m\"], and \"box.t_s\" for its times. For pandas the tables are
-as they should be: pandas.read_csv(\"runs/raft/series/box.csv\").")]
+In Python: numpy.load(\"raft.npz\")[\"box.heave_m\"], and \"box.t_s\" for its times. For pandas the
+tables are as they should be: pandas.read_csv(\"runs/raft/series/box.csv\").")]
     Export(export::ExportArgs),
     /// Watch a run's latest curves in the terminal, running or finished
     #[command(after_help = "\
@@ -169,8 +172,10 @@ Examples:
   pontoon stats runs/raft
   pontoon stats runs/raft --series gauge --from 5 --until 20
   pontoon stats runs/raft --json
-A run writes them at its end, to statistics.csv; [[statistic]] in the scene asks for more. H_third is the
-mean of the highest third of the waves, H_m0 four standard deviations.")]
+  pontoon stats runs/buoy --rao --json
+A run writes them at its end, to statistics.csv; [[statistic]] in the scene asks for more. H_third
+is the mean of the highest third of the waves, H_m0 four standard deviations. How motions answer
+irregular waves over frequency, as in rao.csv, is the last table, or with --rao the only one.")]
     Stats(stats::StatsArgs),
     /// List the scenes that come with the program
     Scenes,

@@ -125,6 +125,8 @@ pub struct Outcome {
     pub manifest: Manifest,
     /// The free bodies.
     pub bodies: Vec<Body>,
+    /// The last of the manifest's warnings: those that only the end could tell.
+    pub late: Vec<String>,
 }
 
 impl Outcome {

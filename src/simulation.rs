@@ -358,7 +358,7 @@ impl<const D: usize> Simulation<D> {
             (None, None) => {}
             _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
         }
-        if !self.bodies.restore(&kept.light) || !self.bodies.rig_mut().restore(kept.rig) {
+        if !self.bodies.restore(&kept.light, kept.clock.steps) || !self.bodies.rig_mut().restore(kept.rig) {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
         match (&self.bodies.books, &kept.books) {

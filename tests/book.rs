@@ -2,10 +2,13 @@
 //! run by `cargo test` as tests of the documentation (src/lib.rs).
 
 use std::{
+    collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
     process::Command,
 };
+
+use pontoon::scene::{Scene, shipped};
 
 #[path = "../examples/choosing_plots.rs"]
 #[allow(dead_code, reason = "its main is for who draws the plots anew")]
@@ -59,9 +62,62 @@ fn pages() -> Vec<String> {
     names.filter(|name| name.ends_with(".md")).map(|name| format!("docs/{name}")).collect()
 }
 
-fn pontoon(words: &[&str], folder: &Path) {
+/// What the program prints for these words.
+fn pontoon(words: &[&str], folder: &Path) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_pontoon")).args(words).current_dir(folder).output().unwrap();
     assert!(output.status.success(), "pontoon {}: {}", words.join(" "), String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A line as a shell takes it apart: what is quoted is one word, and a remark is none.
+fn words(line: &str) -> Vec<String> {
+    let (mut words, mut quote) = (vec![String::new()], None);
+    for sign in line.split(" #").next().unwrap().chars() {
+        match quote {
+            Some(end) if sign == end => quote = None,
+            None if sign == '\'' || sign == '"' => quote = Some(sign),
+            None if sign.is_whitespace() => words.push(String::new()),
+            _ => words.last_mut().unwrap().push(sign),
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// The keys that the arguments of a command change; of several values of one the first.
+fn sets(words: &[String]) -> Vec<(String, String)> {
+    let first = |values: &str| values.split(',').next().unwrap().to_string();
+    let pair = |text: &str| text.split_once('=').map(|(key, value)| (key.to_string(), value.to_string())).unwrap();
+    let known = words.windows(2).filter_map(|two| match two[0].as_str() {
+        "--set" => Some(pair(&two[1])),
+        "--vary" => Some(pair(&two[1])).map(|(key, values)| (key, first(&values))),
+        "--dp" | "--until" => Some((two[0][2..].to_string(), first(&two[1]))),
+        _ => None,
+    });
+    known.collect()
+}
+
+/// A page in pieces: a line of a shell, what stands in back-quotes, a block of TOML.
+enum Piece {
+    Line(String),
+    Code(String),
+    Toml(String),
+}
+
+/// The pieces of a page, in their order.
+fn pieces(page: &str) -> Vec<Piece> {
+    let text = read(page);
+    let of = |(i, part): (usize, &str)| -> Vec<Piece> {
+        match (i % 2, part.split_once('\n')) {
+            (0, _) => part.split('`').skip(1).step_by(2).map(|code| Piece::Code(code.to_string())).collect(),
+            (_, Some(("sh" | "console", block))) => {
+                block.replace("\\\n", " ").lines().map(|line| Piece::Line(line.trim().to_string())).collect()
+            }
+            (_, Some(("toml", block))) => vec![Piece::Toml(block.to_string())],
+            _ => vec![],
+        }
+    };
+    text.split("```").enumerate().flat_map(of).collect()
 }
 
 #[test]
@@ -100,6 +156,98 @@ fn every_command_of_the_book_does_what_it_says() {
     assert!(count >= 5, "{count} commands were found");
 }
 
+/// What the program knows: its subcommands with the words of their help, and the cases of `validate` and `stress`.
+#[derive(Default)]
+struct Known {
+    help: BTreeMap<String, BTreeSet<String>>,
+    cases: BTreeMap<String, BTreeSet<String>>,
+}
+
+impl Known {
+    /// Holds a command of a page to what there is, without running it.
+    fn check(&mut self, page: &str, words: &[String]) {
+        let (line, here) = (words.join(" "), Path::new(env!("CARGO_MANIFEST_DIR")));
+        let tokens = |text: String, apart: &[char]| -> BTreeSet<String> {
+            text.split(|c: char| c.is_whitespace() || apart.contains(&c)).map(String::from).collect()
+        };
+        let command = words[1].as_str();
+        let said = || tokens(pontoon(&[command, "--help"], here), &[',', '[', ']', '<', '>', '|', '=']);
+        let help = self.help.entry(command.into()).or_insert_with(said);
+        for flag in words[2..].iter().filter(|word| word.starts_with("--")) {
+            assert!(help.contains(flag.as_str()), "{page}: {line}: {flag} is none of {command}");
+        }
+        let plain: Vec<&String> = words[2..].iter().take_while(|word| !word.starts_with('-')).collect();
+        if matches!(command, "validate" | "stress") {
+            let said = || tokens(pontoon(&[command, "--list"], here), &[',', ':']);
+            let cases = self.cases.entry(command.into()).or_insert_with(said);
+            for case in plain.iter().filter(|case| **case != "…") {
+                assert!(cases.contains(case.as_str()), "{page}: {line}: there is no {case}");
+            }
+        }
+        let Some(scene) = plain.first().filter(|_| matches!(command, "run" | "inspect" | "study")) else { return };
+        let name = scene.trim_start_matches("scenes/");
+        if !name.contains(|c: char| c.is_uppercase() || c == '/' || c == '.') {
+            assert!(shipped().iter().any(|(known, ..)| *known == name), "{page}: {line}: there is no {name}");
+            let scene = Scene::read(&here.join("scenes").join(name).join("scene.toml"), &sets(words));
+            let why = scene.and_then(|scene| scene.plan()).err();
+            assert!(why.is_none(), "{page}: {line}: {}", why.unwrap());
+        }
+    }
+}
+
+#[test]
+fn every_command_that_a_page_names_is_one_that_the_program_knows() {
+    let (mut known, mut count) = (Known::default(), 0);
+    for page in ["README.md".to_string(), "CHANGELOG.md".into()].into_iter().chain(pages()) {
+        for piece in pieces(&page) {
+            let (Piece::Line(line) | Piece::Code(line)) = piece else { continue };
+            let words = words(&line.replace("DIR…", "DIR"));
+            if words.len() > 1 && words[0] == "pontoon" {
+                known.check(&page, &words);
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 100, "{count} commands were found");
+}
+
+#[test]
+fn every_change_that_a_page_shows_of_its_scene_can_be_made() {
+    let mut count = 0;
+    let mut made = |page: &str, words: &[String], scene: pontoon::Result<Scene>| {
+        let why = scene.and_then(|scene| scene.plan()).err();
+        assert!(why.is_none(), "{page}: {}: {}", words.join(" "), why.unwrap());
+        count += 1;
+    };
+    let changes = |code: &str| ["--set ", "--dp "].iter().any(|word| code.starts_with(word));
+    for (name, ..) in shipped() {
+        let page = format!("scenes/{name}/README.md");
+        for piece in pieces(&page) {
+            let Piece::Code(code) = piece else { continue };
+            if changes(&code) {
+                let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}/scene.toml"));
+                let words = words(&code);
+                made(&page, &words, Scene::read(&file, &sets(&words)));
+            }
+        }
+    }
+    for page in CHAPTERS {
+        let mut scene: Option<String> = None;
+        for piece in pieces(page) {
+            match (piece, &mut scene) {
+                (Piece::Toml(block), before) if block.starts_with("title") => *before = Some(block),
+                (Piece::Toml(block), Some(before)) if block.starts_with("[[") => *before += &block,
+                (Piece::Code(code), Some(text)) if changes(&code) => {
+                    let words = words(&code);
+                    made(page, &words, Scene::parse(text, Path::new(""), &sets(&words)));
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(count > 20, "{count} changes were found");
+}
+
 #[test]
 fn every_map_of_the_book_runs() {
     let folder = desk("maps");
@@ -127,16 +275,21 @@ fn every_program_of_the_book_is_compiled_and_run() {
 
 #[test]
 fn the_plots_of_choosing_are_those_of_their_table_and_its_figures_are_measured_ones() {
-    let page = read("docs/choosing.md");
     for plot in choosing_plots::Sheet::read().unwrap().plot {
         let (file, source) = (format!("plots/{}", plot.file), read(&format!("docs/{}", plot.source)));
-        assert!(page.contains(&format!("({file})")), "docs/choosing.md does not show {file}");
+        let page = read(&format!("docs/{}", plot.page));
+        assert!(page.contains(&format!("({file})")), "docs/{} does not show {file}", plot.page);
         assert!(
             read(&format!("docs/{file}")) == plot.svg().unwrap(),
             "{file} is old: cargo run --release --example choosing_plots"
         );
         for line in &plot.lines {
-            assert!(page.contains(&line.name), "docs/choosing.md does not say which line of {file} is {:?}", line.name);
+            assert!(
+                page.contains(&line.name),
+                "docs/{} does not say which line of {file} is {:?}",
+                plot.page,
+                line.name
+            );
             // A value is written in its source as it is here, but for zeros at its end.
             for (x, y) in &line.points {
                 assert!(source.contains(&y.abs().to_string()), "{file}: {y} at {x} is not in docs/{}", plot.source);

@@ -247,6 +247,24 @@ fn a_run_prints_its_warnings_and_keeps_them_in_the_manifest_and_no_notes() {
     assert!(warnings[0].as_str().is_some_and(|w| w.contains("7.83 m/s")), "{warnings}");
 }
 
+#[test]
+fn what_only_the_end_of_a_run_can_tell_is_told_at_its_end() {
+    let desk = Desk::new("late");
+    // Of 0.002 s a statistic from 5 s on has no reading.
+    let late = "statistic=[{name=\"late\",waves=\"elevation\",from=5.0}]";
+    let run = ["run", "raft", "--until", "0.002", "--set", "frames=off", "--no-report", "--set", late, "--out"];
+    let text = desk.pontoon(&[&run[..], &["a"]].concat());
+    assert_eq!(text.code, Some(0), "{}", text.err);
+    let words = "statistic late: a series has no two readings in its time";
+    assert_eq!(text.err.matches(&format!("warning: {words}\n")).count(), 1, "{}", text.err);
+    assert!(text.out.contains("pontoon stats a\n"), "the end says where figures are: {}", text.out);
+    let json = desk.pontoon(&[&run[..], &["b", "--log", "json"]].concat());
+    let events: Vec<serde_json::Value> = json.err.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let [.., warning, end] = &events[..] else { panic!("{}", json.err) };
+    assert!(warning["event"] == "warning" && warning["text"] == words && end["event"] == "end", "{}", json.err);
+    assert_eq!(desk.manifest("b")["warnings"].as_array().map(Vec::len), Some(1));
+}
+
 /// Three cases that are known to be right, to stop, and to miss a bound that nothing can keep.
 const PLANTED: &str = r#"
 [judge.energy]
@@ -533,6 +551,11 @@ fn a_run_is_told_in_figures_watched_and_exported() {
 
     let rows = "low.p_Pa,0.0,1.5,Pa²/Hz\nlow.p_Pa,0.5,2.5,Pa²/Hz\n";
     fs::write(desk.path("a/spectra.csv"), format!("series,f_Hz,S,unit\n{rows}")).unwrap();
+    // Two statistics of one name: both are kept.
+    let row = |f: f64, ratio: f64| format!("sea,low.p_Pa,{f:?},{:?},{ratio:?},Pa/m,-90.0,0.75\n", 1.0 / f);
+    let rows = [row(0.5, 1.5), row(0.625, 1.25), row(0.5, 3.5)].concat();
+    let head = "name,series,frequency_hz,period_s,rao,unit,phase_deg,coherence\n";
+    fs::write(desk.path("a/rao.csv"), format!("{head}{rows}")).unwrap();
     let exported = desk.pontoon(&["export", "a", "--npz", "b.npz"]);
     assert_eq!(exported.code, Some(0), "{}", exported.err);
     let bytes = fs::read(desk.path("b.npz")).unwrap();
@@ -541,10 +564,89 @@ fn a_run_is_told_in_figures_watched_and_exported() {
     assert!(
         holds(b"spectra.low.p_Pa.f_Hz.npy") && holds(b"spectra.low.p_Pa.S.npy") && exported.out.contains("1 spectra")
     );
+    for column in ["frequency_hz", "period_s", "rao", "phase_deg", "coherence"] {
+        assert!(holds(format!("rao.sea.low.p_Pa.{column}.npy").as_bytes()), "{column}");
+    }
+    let pair = |numbers: [f64; 2]| numbers.map(f64::to_le_bytes).concat();
+    assert!(
+        holds(&pair([0.5, 0.625])) && holds(&pair([2.0, 1.6])) && holds(&pair([1.5, 1.25])),
+        "the numbers, in a row"
+    );
+    assert!(holds(b"rao.sea_2.low.p_Pa.rao.npy") && exported.out.contains("2 RAOs"), "{}", exported.out);
     for words in [&["export", "a", "--npz", "no/b.npz"][..], &["report", "a", "--png", "no/b.png"]] {
         desk.pontoon(words).refused(2, &["there is no folder no", "make it first"]);
     }
     desk.pontoon(&["export", "a"]).refused(2, &["--npz"]);
+}
+
+const BUOY: &str = r#"
+dimension = 2
+dp = 0.05
+until = 0.01
+frames = "off"
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [2.0, 0.4] } }
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [2.0, 0.8] } }
+[[solid]]
+name = "buoy"
+shape = { box = { size = [0.4, 0.4] } }
+at = { x = 1.0, bottom = 0.2 }
+free = { density = 500.0 }
+[[probe]]
+name = "gauge"
+elevation = { x = 0.5 }
+[[probe]]
+motion = "buoy"
+[[statistic]]
+name = "sea"
+rao = { motion = "buoy.heave_m", wave = "gauge" }
+"#;
+
+#[test]
+fn answers_to_irregular_waves_are_printed_beside_the_figures_which_stay_as_they_are() {
+    let desk = Desk::new("answers");
+    fs::write(desk.path("buoy.toml"), BUOY).unwrap();
+    let said = desk.pontoon(&["run", "buoy.toml", "--out", "a", "--quiet", "--no-report"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let plain = desk.pontoon(&["stats", "a"]);
+    assert!(plain.code == Some(0) && !plain.out.contains("coherence"), "0.01 s have no waves: {}", plain.out);
+    desk.pontoon(&["stats", "a", "--rao"]).refused(2, &["irregular waves", "[[statistic]]", "32 waves"]);
+    // A hundred waves of three periods, to which the buoy rises twice as high.
+    let (mut gauge, mut buoy) = (String::from("t_s,level_m,eta_m\n"), String::from("t_s,heave_m\n"));
+    for i in 0..4000 {
+        let t = 0.05 * f64::from(i);
+        let eta: f64 = [0.4, 0.5, 0.6].iter().map(|f| 0.01 * (std::f64::consts::TAU * f * t).sin()).sum();
+        gauge += &format!("{t:?},{:?},{eta:?}\n", 0.4 + eta);
+        buoy += &format!("{t:?},{:?}\n", 2.0 * eta);
+    }
+    fs::write(desk.path("a/series/gauge.csv"), gauge).unwrap();
+    fs::write(desk.path("a/series/buoy.csv"), buoy).unwrap();
+
+    let all = desk.pontoon(&["stats", "a"]);
+    let tables: Vec<&str> = all.out.split("\n\n").collect();
+    assert!(tables.len() == 3 && tables[1].contains("from (s)"), "series, statistics, answers: {}", all.out);
+    for word in ["statistic", "frequency (Hz)", "period (s)", "rao", "unit", "phase (°)", "coherence", "sea", "m/m"] {
+        assert!(tables[2].contains(word), "\"{word}\" is not in:\n{}", tables[2]);
+    }
+    assert_eq!(desk.pontoon(&["stats", "a", "--rao"]).out, tables[2], "alone");
+    let rows = |words: &[&str]| -> Vec<serde_json::Value> { serde_json::from_str(&desk.pontoon(words).out).unwrap() };
+    let figures = rows(&["stats", "a", "--json"]);
+    assert!(figures.iter().all(|row| row.as_object().is_some_and(|row| row.len() == 7) && row["value"].is_number()));
+    let answers = rows(&["stats", "a", "--rao", "--json"]);
+    assert_eq!(answers.len(), tables[2].lines().count() - 1);
+    for row in answers {
+        assert!(row["name"] == "sea" && row["series"] == "buoy.heave_m" && row["unit"] == "m/m", "{row}");
+        let number = |key: &str| row[key].as_f64().unwrap();
+        assert!((number("frequency_hz") * number("period_s") - 1.0).abs() < 1e-12, "{row}");
+        // A multiple of the wave is that multiple at every frequency, but for round-off.
+        let off = [number("rao") - 2.0, number("phase_deg"), number("coherence") - 1.0];
+        assert!(off.iter().all(|off| off.abs() < 1e-6), "{row}");
+    }
+    let none = desk.pontoon(&["stats", "a", "--rao", "--until", "20"]);
+    none.refused(2, &["irregular waves"]);
 }
 
 #[test]

@@ -292,7 +292,13 @@ fn a_folder_that_is_taken_away_or_a_disk_that_refuses_ends_the_run_and_loses_not
     let mut child = desk.start("a", "2");
     desk.wait_for(&mut child, "a", 30);
     fs::rename(desk.path("a"), desk.path("b")).unwrap();
-    refused(&child.wait_with_output().unwrap(), &["cannot be written", "the folder a", "is gone"]);
+    let output = child.wait_with_output().unwrap();
+    refused(&output, &["cannot be written", "the folder a", "is gone"]);
+    assert!(
+        !said(&output).contains("what could be kept"),
+        "nothing is kept in a folder that is gone: {}",
+        said(&output)
+    );
     assert!(!desk.path("a").exists());
     let output = desk.resume("b");
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));

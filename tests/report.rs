@@ -188,7 +188,8 @@ fn number(text: &str, word: &str) -> f64 {
 #[test]
 fn the_page_plays_and_tells_the_value_under_the_pointer() {
     let desk = desk("plays");
-    let page = ran(&desk, "bay", BAY, &[]).join(report::FILE);
+    let scene = format!("{BAY}\n[[probe]]\nbudget = true\n");
+    let page = ran(&desk, "bay", &scene, &[]).join(report::FILE);
     assert!(page.is_file(), "a run leaves its page");
     if chromium().is_none() {
         return;
@@ -197,11 +198,12 @@ fn the_page_plays_and_tells_the_value_under_the_pointer() {
          deck.button.click(); for (let n = 0; n < 20 && !(deck.t > 0); n++) await wait(500); said.played = deck.t; deck.pause();
          const key = key => canvas.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
          key('End'); said.end = deck.t; key('Home'); said.home = deck.t; key('ArrowRight'); said.next = deck.t; key('Home');
-         key('+'); said.zoom = deck.look.zoom; key('0');
+         key('+'); said.zoom = deck.look.zoom; key('0'); key('d'); key('w'); said.pan = deck.look.pan; key('0');
          const point = ([x, y]) => { const box = canvas.getBoundingClientRect();
            canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + x, clientY: box.top + y, bubbles: true }));
            return view.tip.hidden ? '' : view.tip.textContent; };
          said.water = point(view.pixel([0.21, 0.11])); said.box = point(view.pixel([0.5, 0.3])); said.air = point(view.pixel([0.2, 0.45]));
+         said.titles = charts.all.map(chart => chart.what.title); said.idle = document.querySelector('#charts').textContent;
          said.frames = films[0].times.length; said.charts = document.querySelectorAll('.uplot').length;
          said.moved = films[0].pose(1)[1]; deck.seek(0.1); said.later = films[0].pose(1)[1];
          document.querySelectorAll('details').forEach(fold => fold.open = true); await wait(500);
@@ -213,6 +215,7 @@ fn the_page_plays_and_tells_the_value_under_the_pointer() {
     let next = said["next"].as_f64().unwrap();
     assert!((0.02..0.03).contains(&next), "the second frame is the first step at or past 0.02 s: {said}");
     assert_eq!(said["zoom"], 1.4);
+    assert!([0, 1].iter().all(|i| said["pan"][i].as_f64().unwrap() > 0.0), "to the right and up by keys alone: {said}");
     // Still water: P = ρ g (0.3 − y); that of the lattice is 2 % more at most, and values are rounded to 1/600 of the range.
     let water = said["water"].as_str().unwrap();
     let still = 1000.0 * 9.81 * (0.3 - number(water, "y "));
@@ -221,6 +224,9 @@ fn the_page_plays_and_tells_the_value_under_the_pointer() {
     assert_eq!(said["air"], "");
     assert_eq!(said["frames"], 11);
     assert!(said["charts"].as_u64().unwrap() >= 5, "{said}");
+    let entries = said["titles"].as_array().unwrap().iter().filter(|title| *title == "energy by entry").count();
+    let idle = said["idle"].as_str().unwrap();
+    assert!(entries == 1 && idle.contains("0 throughout: ") && idle.contains("motors, springs, forces"), "{said}");
     assert_ne!(said["moved"], said["later"], "the box moves");
     assert!(said["wide"].as_f64().unwrap() <= 0.0, "nothing sticks out at the right: {said}");
     assert!(said["title"].as_str().unwrap().contains("</script>"), "the title is as it was written: {said}");
@@ -267,6 +273,28 @@ fn a_deep_tank_turns_and_is_cut() {
     assert!(figure("turned") > 100, "{said}");
     assert!(figure("cut") >= 40 && figure("cut") < figure("all") / 3, "two layers of eight: {said}");
     assert!(number(said["tip"].as_str().unwrap(), "pressure ") > 500.0, "{said}");
+}
+
+#[test]
+fn a_contact_skin_in_space_is_dashed_in_the_whole_and_dotted_in_a_cut() {
+    let desk = desk("skin");
+    let run = ran(&desk, "tub", &DEEP.replace("free  = {", "skin  = 0.03\nfree  = {"), &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let said = asked(
+        &run.join(report::FILE),
+        "const view = deck.views[0], on = view.context, stroke = on.stroke.bind(on), { lines, dots } = films[0].solids[1].rim;
+         let dashed = 0; on.stroke = (...what) => { if (on.getLineDash().length) dashed++; stroke(...what); };
+         const drawn = mode => { dashed = 0; deck.look.mode = mode; deck.draw(); return dashed; };
+         said.dashed = ['turn', 'y'].map(drawn); said.dots = dots.length; said.lines = lines.length;
+         said.far = lines.flatMap(line => line.points.map(x => Math.hypot(...x)));",
+    );
+    assert_eq!(said["dashed"], serde_json::json!([1, 0]), "the ball's alone: {said}");
+    assert!(said["lines"] == 3 && said["dots"].as_u64() > Some(10), "three circles: {said}");
+    // Rounded to a thousandth of dp in each coordinate.
+    let off = |x: &Value| (x.as_f64().unwrap() - 0.13).abs();
+    assert!(said["far"].as_array().unwrap().iter().all(|x| off(x) < 1e-4), "0.03 m outside its face: {said}");
 }
 
 #[test]

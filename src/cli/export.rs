@@ -1,6 +1,9 @@
 //! `pontoon export`: a run in forms that other programs read.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 use clap::{ArgGroup, Args};
 use pontoon::{
@@ -8,6 +11,7 @@ use pontoon::{
     record::{Manifest, Readings, arrays},
     run,
 };
+use serde::{Deserialize, de::DeserializeOwned};
 
 /// Which run, what of it, and where to.
 #[derive(Args)]
@@ -16,7 +20,7 @@ pub struct ExportArgs {
     /// Folder of the run
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// All series and their spectra as NumPy arrays in one file [default: DIR/series.npz]
+    /// All series, spectra and RAOs as NumPy arrays in one file [default: DIR/series.npz]
     #[arg(long, value_name = "FILE", num_args = 0..=1, group = "what")]
     npz: Option<Option<PathBuf>>,
     /// The free surface in each frame of a 3-D run as a mesh for ParaView: DIR/surface.pvd
@@ -47,30 +51,75 @@ fn series(folder: &Path, out: PathBuf) -> Result<String> {
         let what = format!("the run in {} has no series", folder.display());
         return Err(Error::new(Kind::Usage, what).help("a [[probe]] in its scene would write some"));
     }
-    let spectra = spectra(folder)?;
+    let (spectra, answers) = (spectra(folder)?, answers(folder)?);
     let all = tables.iter().flat_map(|(name, of)| {
         let columns = of.columns.iter().zip(&of.x).map(move |(column, x)| (format!("{name}.{column}"), &x[..]));
         [(format!("{name}.t_s"), &of.t[..])].into_iter().chain(columns)
     });
-    arrays::write(&out, all.chain(spectra.iter().map(|(name, x)| (name.clone(), &x[..]))))?;
-    Ok(format!("{}: {} tables, {} spectra\n", out.display(), tables.len(), spectra.len() / 2))
+    let told = spectra.iter().chain(&answers).map(|(name, x)| (name.clone(), &x[..]));
+    arrays::write(&out, all.chain(told))?;
+    let counts = (tables.len(), spectra.len() / 2, answers.len() / COLUMNS.len());
+    Ok(format!("{}: {} tables, {} spectra, {} RAOs\n", out.display(), counts.0, counts.1, counts.2))
+}
+
+/// The rows of a table of the run; none if it has not written it.
+fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
+    if !path.exists() {
+        return Ok(vec![]);
+    }
+    let broken = |why: csv::Error| Error::file(path, why);
+    let rows = csv::Reader::from_path(path).map_err(broken)?.into_deserialize();
+    rows.collect::<std::result::Result<_, _>>().map_err(broken)
 }
 
 /// Frequencies (Hz) and densities of every spectrum of the run, if it wrote some.
 fn spectra(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
-    let path = folder.join(run::SPECTRA);
-    if !path.exists() {
-        return Ok(vec![]);
-    }
-    let broken = |why: csv::Error| Error::file(&path, why);
-    let rows = csv::Reader::from_path(&path).map_err(broken)?.into_deserialize::<(String, f64, f64, String)>();
-    let rows = rows.collect::<std::result::Result<Vec<_>, _>>().map_err(broken)?;
+    let rows: Vec<(String, f64, f64, String)> = rows(&folder.join(run::SPECTRA))?;
     let of = |rows: &[(String, f64, f64, String)]| {
         let name = &rows[0].0;
         let (f, s) = rows.iter().map(|row| (row.1, row.2)).unzip();
         [(format!("spectra.{name}.f_Hz"), f), (format!("spectra.{name}.S"), s)]
     };
     Ok(rows.chunk_by(|a, b| a.0 == b.0).flat_map(of).collect())
+}
+
+/// How a motion answers at a frequency, by the columns of `rao.csv`.
+#[derive(Deserialize)]
+struct Answer {
+    name: String,
+    series: String,
+    frequency_hz: f64,
+    period_s: f64,
+    rao: f64,
+    phase_deg: f64,
+    coherence: f64,
+}
+
+/// A column that becomes an array, and its number in a row.
+type Column = (&'static str, fn(&Answer) -> f64);
+
+const COLUMNS: [Column; 5] = [
+    ("frequency_hz", |row| row.frequency_hz),
+    ("period_s", |row| row.period_s),
+    ("rao", |row| row.rao),
+    ("phase_deg", |row| row.phase_deg),
+    ("coherence", |row| row.coherence),
+];
+
+/// The columns of every RAO over frequency of the run, if it wrote some.
+fn answers(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
+    let rows: Vec<Answer> = rows(&folder.join(run::RAO))?;
+    let (mut arrays, mut seen) = (Vec::new(), BTreeSet::new());
+    // Two statistics may have the same name: with the next one frequencies begin anew.
+    let one = |a: &Answer, b: &Answer| (&a.name, &a.series) == (&b.name, &b.series) && a.frequency_hz < b.frequency_hz;
+    for rows in rows.chunk_by(one) {
+        let Answer { name, series, .. } = &rows[0];
+        let numbered = |n: usize| if n == 1 { format!("{name}.{series}") } else { format!("{name}_{n}.{series}") };
+        let own = (1..).map(numbered).find(|own| seen.insert(own.clone())).unwrap_or_default();
+        let array = |(column, of): &Column| (format!("rao.{own}.{column}"), rows.iter().map(of).collect::<Vec<f64>>());
+        arrays.extend(COLUMNS.iter().map(array));
+    }
+    Ok(arrays)
 }
 
 #[cfg(feature = "surface")]

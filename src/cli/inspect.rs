@@ -59,13 +59,34 @@ fn page(report: &Report) -> String {
     text += &meshes(report);
     if !report.series.is_empty() {
         let mut rows = vec![["series", "columns"].map(String::from).to_vec()];
-        rows.extend(report.series.iter().map(|s| vec![s.name.clone(), s.columns.join(" ")]));
+        rows.extend(report.series.iter().flat_map(|s| {
+            let named = |(i, line): (usize, String)| vec![if i == 0 { s.name.clone() } else { String::new() }, line];
+            lines(&s.columns).into_iter().enumerate().map(named).collect::<Vec<_>>()
+        }));
         let _ = write!(text, "\n{}", table(&rows));
     }
     let mut rows = vec![["key", "value", "source"].map(String::from).to_vec()];
     rows.extend(report.values.iter().map(|v| vec![v.key.clone(), v.value.clone(), v.source.clone()]));
     let _ = write!(text, "\n{}", table(&rows));
     text
+}
+
+/// Columns of a line of names.
+const WIDE: usize = 140;
+
+/// Names in lines that can be read: a balance in 3-D has fifty.
+fn lines(names: &[String]) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for name in names {
+        match lines.last_mut() {
+            Some(line) if line.len() + 1 + name.len() <= WIDE => {
+                line.push(' ');
+                line.push_str(name);
+            }
+            _ => lines.push(name.clone()),
+        }
+    }
+    lines
 }
 
 /// Each finding with what mends it.
@@ -214,4 +235,17 @@ fn bodies(bodies: &[Body], dimension: usize) -> String {
     }
     let said = "  heave: without and with an estimate of the water that heaves along; roll: without any\n";
     format!("{}{said}\n{}", table(&rows), table(&grain))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_told_in_lines_and_none_is_lost() {
+        let names: Vec<String> = (0..54).map(|i| format!("pressure_fx_{i}_N")).collect();
+        let lines = lines(&names);
+        assert!(lines.len() > 1 && lines.iter().all(|line| line.len() <= WIDE), "{lines:?}");
+        assert_eq!(lines.join(" "), names.join(" "));
+    }
 }

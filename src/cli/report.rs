@@ -116,6 +116,8 @@ pub fn ended(outcome: &Outcome) -> String {
     }
     if manifest.status == Status::Interrupted {
         let _ = writeln!(text, "\ngo on with: pontoon resume {}", outcome.folder.display());
+    } else if manifest.files.iter().any(|file| file.starts_with("series/")) {
+        let _ = writeln!(text, "means, waves, spectra: pontoon stats {}", outcome.folder.display());
     }
     text
 }

@@ -139,8 +139,14 @@ fn end(outcome: Result<Outcome>, mut follow: Box<dyn Follower>, said: &SaidArgs)
     let (folder, json) = (follow.close(), said.log == Log::Json);
     match &outcome {
         _ if said.quiet => {}
-        Ok(outcome) if json => journal::ended(outcome),
-        Ok(outcome) => say(&report::ended(outcome)),
+        Ok(outcome) if json => {
+            outcome.late.iter().for_each(|text| journal::warn(text));
+            journal::ended(outcome);
+        }
+        Ok(outcome) => {
+            outcome.late.iter().for_each(|text| complain(&format!("warning: {text}\n")));
+            say(&report::ended(outcome));
+        }
         Err(_) => {}
     }
     if let Some(folder) = folder.filter(|_| !said.no_report) {

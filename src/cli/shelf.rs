@@ -111,8 +111,19 @@ pub fn all() -> Vec<Listed> {
 /// The first sentence of `readme` that is no heading, of a line however long.
 fn first_sentence(readme: &str) -> String {
     let paragraph = readme.split("\n\n").map(str::trim).find(|text| !text.is_empty() && !text.starts_with('#'));
-    let text = paragraph.unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = unlinked(&paragraph.unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" "));
     text.split_once(". ").map_or(text.clone(), |(first, _)| format!("{first}."))
+}
+
+/// `text` with the words of its links alone, and names in no back-quotes.
+fn unlinked(text: &str) -> String {
+    let (mut said, mut rest) = (String::new(), text);
+    while let Some((before, after)) = rest.split_once("](") {
+        let (Some(begins), Some((_, behind))) = (before.rfind('['), after.split_once(')')) else { break };
+        said.extend([&before[..begins], &before[begins + 1..]]);
+        rest = behind;
+    }
+    (said + rest).replace('`', "")
 }
 
 #[cfg(test)]
@@ -124,8 +135,11 @@ mod tests {
         let readme = "# A raft\n\nSix bodies, 1.7 m\nlong. More.\n\nSource.\n";
         assert_eq!(first_sentence(readme), "Six bodies, 1.7 m long.");
         assert_eq!(first_sentence("# Only a heading\n"), "");
+        let linked = "# A raft\n\nThe [raft](../raft/README.md) of `raft`, in [1, 2] (twice). More.\n";
+        assert_eq!(first_sentence(linked), "The raft of raft, in [1, 2] (twice).");
         for scene in all() {
             assert!(scene.about.ends_with('.') && !scene.title.is_empty(), "{}: {:?}", scene.name, scene.about);
+            assert!(!scene.about.contains("]("), "{}: {:?}", scene.name, scene.about);
         }
     }
 }

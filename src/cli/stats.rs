@@ -6,8 +6,9 @@ use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
     preflight::three,
-    run::{Asked, Statistic, statistics},
+    run::{Answer, Asked, Statistic, Told, statistics},
 };
+use serde::Serialize;
 
 use super::{complain, report::table};
 
@@ -26,7 +27,10 @@ pub struct StatsArgs {
     /// Last time that counts, s
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Print everything as JSON
+    /// Print only how motions answer irregular waves over frequency, as in rao.csv
+    #[arg(long)]
+    rao: bool,
+    /// Print the figures as JSON, with --rao the answers over frequency
     #[arg(long)]
     json: bool,
 }
@@ -40,16 +44,43 @@ pub fn stats(args: &StatsArgs) -> Result<String> {
     let asked = Asked { series: args.series.clone(), from: args.from, until: args.until };
     let told = statistics(&args.folder, &asked)?;
     told.remarks.iter().for_each(|remark| complain(&format!("warning: {remark}\n")));
-    if args.json {
-        let text = serde_json::to_string_pretty(&told.rows).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
-        return Ok(text + "\n");
+    if args.rao && told.answers.is_empty() {
+        return Err(no_answer(args));
     }
+    match (args.rao, args.json) {
+        (true, true) => json(&told.answers),
+        (true, false) => Ok(table(&answered(&told.answers))),
+        (false, true) => json(&told.rows),
+        (false, false) => Ok(tables(&told)),
+    }
+}
+
+/// That no motion answers irregular waves in what is asked for.
+fn no_answer(args: &StatsArgs) -> Error {
+    let of = args.series.as_ref().map_or(String::new(), |series| format!(" of {series:?}"));
+    let what = format!("there is no answer{of} to irregular waves over frequency in {}", args.folder.display());
+    Error::new(Kind::Usage, what).help(
+        "a [[statistic]] with  rao = { motion = \"box\", wave = \"gauge\" }  and without  period  asks for it, \
+         and 32 waves or more at the gauge tell it",
+    )
+}
+
+fn json<T: Serialize>(rows: &[T]) -> Result<String> {
+    let text = serde_json::to_string_pretty(rows).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
+    Ok(text + "\n")
+}
+
+/// All tables that have rows.
+fn tables(told: &Told) -> String {
     let (plain, declared): (Vec<_>, Vec<_>) = told.rows.iter().partition(|row| row.name.is_empty());
     let mut text = table(&every(&plain));
     if !declared.is_empty() {
         text += &format!("\n{}", table(&named(&declared)));
     }
-    Ok(text)
+    if !told.answers.is_empty() {
+        text += &format!("\n{}", table(&answered(&told.answers)));
+    }
+    text
 }
 
 /// A row for each series; what none of them has is left out.
@@ -76,4 +107,16 @@ fn named(rows: &[&Statistic]) -> Vec<Vec<String>> {
         vec![row.name.clone(), row.series.clone(), row.quantity.into(), three(row.value), row.unit.clone(), from, until]
     }));
     lines
+}
+
+/// A row for each frequency of each motion that answers irregular waves.
+fn answered(answers: &[Answer]) -> Vec<Vec<String>> {
+    let head = ["statistic", "series", "frequency (Hz)", "period (s)", "rao", "unit", "phase (°)", "coherence"];
+    let row = |answer: &Answer| {
+        let Answer { name, series, unit, band } = answer;
+        let (frequency, period) = (format!("{:.4}", band.frequency), format!("{:.3}", 1.0 / band.frequency));
+        let [ratio, phase, coherence] = [band.ratio, answer.degrees(), band.coherence].map(three);
+        vec![name.clone(), series.clone(), frequency, period, ratio, unit.clone(), phase, coherence]
+    };
+    [head.map(String::from).to_vec()].into_iter().chain(answers.iter().map(row)).collect()
 }

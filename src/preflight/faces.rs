@@ -25,12 +25,28 @@ pub fn of<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<Face<D>> {
 
 /// The faces of `shape`, dp (m) apart, but for those at which the parts of a compound join.
 pub fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<Face<D>> {
+    let free = |face: &Face<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
+    shape.skin(dp, 1).into_iter().flat_map(|point| before(shape, &point.r, dp)).filter(free).collect()
+}
+
+/// The face before `r` (m); both, where that is midway between two, as in a plate of a single row.
+fn before<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Vec<Face<D>> {
     let face = |r: Vector<D>| {
         let n = shape.outward(&r, 0.05 * dp);
         Face { x: r - n * shape.signed_distance(&r), n }
     };
-    let free = |face: &Face<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
-    shape.skin(dp, 1).into_iter().map(|point| face(point.r)).filter(free).collect()
+    let own = face(*r);
+    if own.n.norm() > 0.5 {
+        return vec![own];
+    }
+    // Midway neither face is nearer; a little to each side one is.
+    let aside = |axis: usize| {
+        let mut off = Vector::zeros();
+        off[axis] = 0.2 * dp;
+        [face(r + off), face(r - off)]
+    };
+    let both = (0..D).map(aside).find(|[one, other]| one.n.dot(&other.n) < -0.5);
+    both.into_iter().flatten().collect()
 }
 
 /// Every so many-th of `faces`, `most` of them or fewer.

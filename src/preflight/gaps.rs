@@ -1,4 +1,4 @@
-//! Gaps between a solid that moves and another, narrower than the kernel reaches.
+//! Gaps between solids, narrower than the kernel reaches.
 
 use super::{
     Finding, Look,
@@ -28,7 +28,7 @@ struct Gap<const D: usize> {
 }
 
 impl<const D: usize> Look<'_, D> {
-    /// Gaps between every solid that moves and every other.
+    /// Gaps between every solid and every other, seen from the faces of that which moves, or of both.
     pub(super) fn gaps(&self, findings: &mut Vec<Finding>) -> Gaps {
         let n = self.solids().len();
         let mut touching = vec![false; n];
@@ -39,7 +39,7 @@ impl<const D: usize> Look<'_, D> {
                 let mut touch = false;
                 let within = TOUCH * self.dp() + self.skins(i, j);
                 for (gap, (a, b)) in found.iter_mut().zip([(i, j), (j, i)]) {
-                    if moves(a) {
+                    if moves(a) || !moves(b) {
                         let (nearest, facing) = self.between(a, b);
                         (*gap, touch) = (facing, touch || nearest < within);
                     }

@@ -31,9 +31,28 @@ impl<const D: usize> Look<'_, D> {
                     let places = places.iter().filter(|at| at.len() == D - 1);
                     findings.extend(places.filter_map(|at| self.gauge(&probe.name, at, &all, sound)));
                 }
+                ProbeKind::Flow { from, to } if from.len() == D && to.len() == D => {
+                    let ends = [from, to].map(|at| Vector::from_fn(|i, _| at[i]));
+                    findings.extend(self.section(&probe.name, ends, &all));
+                }
                 _ => {}
             }
         }
+    }
+
+    /// A section needs a place on its way, in 3-D on its diagonal, at which there is no solid.
+    fn section(&self, name: &str, [from, to]: [Vector<D>; 2], all: &Bounds<D>) -> Option<Finding> {
+        let steps = ((to - from).norm() / self.dp()).ceil().clamp(1.0, 10_000.0) as usize;
+        let places = || (0..steps).map(|k| from + (to - from) * ((k as f64 + 0.5) / steps as f64));
+        let outside = !places().any(|x| all.contains(&x));
+        if !outside && places().any(|x| self.distance(&x, |_| true) > 0.0) {
+            return None;
+        }
+        let why = if outside { "is outside of everything" } else { "lies inside a solid" };
+        let what =
+            format!("section \"{name}\" from {} to {} m {why}: no water goes through it", place(&from), place(&to));
+        let topic = if outside { "probe_outside" } else { "probe_inside_solid" };
+        Some(Finding::warning(topic, what, self.moved(&((from + to) * 0.5))))
     }
 
     /// The height (m) above which no water is to be expected; none without gravity.

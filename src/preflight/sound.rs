@@ -155,7 +155,10 @@ impl<const D: usize> Look<'_, D> {
         if bound_by == "springs" && slower > 2.0 {
             let what =
                 format!("springs or motors are so stiff that the run takes {} times as many steps", three(slower));
-            let mend = format!("{} of the stiffness is soft enough; a rope costs no steps", down(slower.powi(-2)));
+            // What swings so fast in the water is beyond the sound that particles carry: docs/stability.md.
+            let damped = "a spring as stiff as this wants a damping, a hundredth of 2 √(k m): what swings in water without one gains energy";
+            let soft = down(slower.powi(-2));
+            let mend = format!("{soft} of the stiffness is soft enough; a rope costs no steps; {damped}");
             findings.push(Finding::warning("stiff_spring", what, mend));
         }
         let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1 } else { 2 };

@@ -181,6 +181,9 @@ impl Manifest {
             Error::new(Kind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))
                 .help("name the folder of a run, as in `pontoon resume runs/raft`")
         })?;
-        serde_json::from_str(&text).map_err(|why| Error::new(Kind::Restart, format!("{}: {why}", path.display())))
+        serde_json::from_str(&text).map_err(|why| {
+            Error::new(Kind::Restart, format!("{} is damaged, or of another version: {why}", path.display()))
+                .help("put a whole one in its place, or start the run afresh with `pontoon run`")
+        })
     }
 }

@@ -142,6 +142,9 @@ impl Checkpoint {
         let short = || refused("the checkpoint is cut short", AFRESH);
         let damaged = || refused("the checkpoint is damaged", AFRESH);
         let Some(rest) = bytes.strip_prefix(MAGIC) else {
+            if MAGIC.starts_with(bytes) {
+                return Err(short());
+            }
             return Err(refused(
                 "this is no checkpoint of pontoon",
                 "name the folder of a run, as in `pontoon resume runs/raft`",
@@ -232,7 +235,8 @@ mod tests {
         let good = example().to_bytes()?;
         assert_eq!(Checkpoint::from_bytes(&good)?, example());
         for cut in 0..good.len() {
-            assert_eq!(refusal(&good[..cut]), Some(Kind::Restart), "cut at {cut}");
+            let what = Checkpoint::from_bytes(&good[..cut]).err().map(|e| e.what).unwrap_or_default();
+            assert!(what.contains("cut short"), "cut at {cut}: {what}");
         }
         for place in 0..good.len() {
             for bit in 0..8 {

@@ -28,6 +28,8 @@ pub struct Plotted {
     pub columns: Vec<Column>,
     /// Which columns stand in one chart.
     pub charts: Vec<Chart>,
+    /// Of a budget or a balance the kinds that are 0 throughout: they are not drawn.
+    pub idle: Vec<String>,
     /// Spectra of what swings of the columns that are shown.
     pub spectra: Vec<Spectral>,
 }
@@ -52,6 +54,8 @@ pub struct Chart {
     pub columns: Vec<usize>,
     /// Whether it may wait behind a fold.
     pub folded: bool,
+    /// What stands over it, where that is not the names of its columns.
+    pub title: Option<String>,
 }
 
 /// The spectrum of a column.
@@ -151,13 +155,18 @@ pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
         x: blob.floats(rows.iter().map(|&i| x[i] as f32)),
     });
     let columns = columns.collect();
-    let charts = seen(charts(&table.columns), &table.x);
+    let (charts, idle) = match table.books() {
+        true => books(table),
+        false => (charts(&table.columns), vec![]),
+    };
+    let charts = seen(charts, &table.x);
     Plotted {
         name: table.name.clone(),
         what: table.what,
         rows: [rows.len(), table.t.len()],
         t,
         columns,
+        idle,
         spectra: spectra(table, &charts, blob),
         charts,
     }
@@ -229,14 +238,43 @@ fn charts(columns: &[String]) -> Vec<Chart> {
         // What is never shown otherwise is not folded away.
         let folded = folded && (!charts.is_empty() || !left.is_empty());
         if !own.is_empty() {
-            charts.push(Chart { columns: own, folded });
+            charts.push(Chart { columns: own, folded, title: None });
         }
     }
-    charts.extend(left.into_iter().map(|i| Chart { columns: vec![i], folded: false }));
+    charts.extend(left.into_iter().map(|i| Chart { columns: vec![i], folded: false, title: None }));
     if charts.iter().all(|chart| chart.folded) {
         charts.iter_mut().for_each(|chart| chart.folded = false);
     }
     charts
+}
+
+/// The charts of a budget or a balance, one for each direction with all kinds that are not 0 throughout, and those that are. What
+/// is left over is too small to be seen beside the others, and waits behind a fold.
+fn books(table: &Table) -> (Vec<Chart>, Vec<String>) {
+    let mut charts: Vec<Chart> = Vec::new();
+    let mut kinds: Vec<(String, bool)> = Vec::new();
+    for (i, name) in table.columns.iter().enumerate() {
+        let (label, idle) = (bare(name), table.idle(i));
+        let (kind, way) = label.rsplit_once(' ').unwrap_or((&label, ""));
+        match kinds.iter_mut().find(|known| known.0 == kind) {
+            Some(known) => known.1 &= idle,
+            None => kinds.push((kind.into(), idle)),
+        }
+        if idle {
+            continue;
+        }
+        let folded = kind == "residual";
+        let title = match (way, folded) {
+            ("", false) => "energy by entry".into(),
+            (way, false) => format!("{way} by kind"),
+            (way, true) => format!("residual {way}").trim_end().into(),
+        };
+        match charts.iter_mut().find(|chart| chart.title.as_ref() == Some(&title)) {
+            Some(chart) => chart.columns.push(i),
+            None => charts.push(Chart { columns: vec![i], folded, title: Some(title) }),
+        }
+    }
+    (charts, kinds.into_iter().filter(|kind| kind.1).map(|kind| kind.0).collect())
 }
 
 /// Folds away the charts of columns `x` that have no numbers, as at a gauge that was dry; something stays to be seen.
@@ -317,7 +355,28 @@ mod tests {
         let mut all: Vec<usize> = charts.iter().flat_map(|chart| chart.columns.clone()).collect();
         all.sort_unstable();
         assert_eq!(all, [0, 1, 2, 3, 4, 5, 6]);
-        assert_eq!(charts[0], Chart { columns: vec![2, 3], folded: false });
+        assert_eq!(charts[0], Chart { columns: vec![2, 3], folded: false, title: None });
         assert!(!super::charts(&["x_m".into()])[0].folded, "what stands alone is shown");
+    }
+
+    #[test]
+    fn a_balance_has_a_chart_for_each_direction_with_the_kinds_that_it_has() {
+        let kinds = ["pressure", "viscous", "weight", "residual"];
+        let columns: Vec<String> =
+            kinds.iter().flat_map(|kind| ["fx_N", "fz_N"].map(|f| format!("{kind}_{f}"))).collect();
+        // Nothing is viscous, weight acts downwards alone.
+        let x = [1.0, 2.0, 0.0, 0.0, 0.0, -2.0, 1e-9, 1e-9].map(|x| vec![0.0, x]).to_vec();
+        let t = vec![0.0, 1.0];
+        let table = Table { name: "box_balance".into(), what: "loads by kind", columns, t, x };
+        let (charts, idle) = books(&table);
+        let said: Vec<_> = charts.iter().map(|c| (c.title.as_deref(), &c.columns[..], c.folded)).collect();
+        let expected: [(_, &[usize], _); 4] = [
+            (Some("fx by kind"), &[0], false),
+            (Some("fz by kind"), &[1, 5], false),
+            (Some("residual fx"), &[6], true),
+            (Some("residual fz"), &[7], true),
+        ];
+        assert_eq!(said, expected);
+        assert_eq!(idle, ["viscous"]);
     }
 }

@@ -13,7 +13,8 @@ pub(super) fn series(t: &[f64], x: &[f64]) -> Option<Series> {
     Series::new(t, x).ok()
 }
 
-/// The figures of all columns of `tables`, a row for each; the first row is the head.
+/// The figures of all columns of `tables`, a row for each, but for entries of a budget or a balance that are 0 throughout; the first
+/// row is the head.
 pub fn rows(tables: &[Table]) -> Vec<Vec<String>> {
     let head = ["series", "unit", "least", "at, s", "largest", "at, s", "mean", "std", "last", "waves", "period, s"];
     let mut rows =
@@ -21,7 +22,10 @@ pub fn rows(tables: &[Table]) -> Vec<Vec<String>> {
     let digits = words::digits;
     let time = |t: f64| format!("{t:.3}");
     for table in tables {
-        for (name, x) in table.columns.iter().zip(&table.x) {
+        for (i, (name, x)) in table.columns.iter().zip(&table.x).enumerate() {
+            if table.books() && table.idle(i) {
+                continue;
+            }
             let Some(series) = series(&table.t, x) else { continue };
             let f = moments(&series);
             let mut row = vec![format!("{} · {}", table.name, words::bare(name)), words::unit(name).into()];
@@ -84,8 +88,8 @@ pub fn budget(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
     let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();
     let said = format!(
-        "All entries but {:.2} % of what was turned over add up to what water and bodies have stored.",
-        100.0 * unaccounted(&last).unwrap_or_default()
+        "The entries add up to what water and bodies have stored, but for {} % of all that was turned over.",
+        words::digits(100.0 * unaccounted(&last).unwrap_or_default())
     );
     Some((rows, said))
 }

@@ -222,6 +222,17 @@ impl Set {
 }
 
 impl Table {
+    /// Whether it is a budget or a balance: an entry for each kind, most of which a run does not have.
+    pub fn books(&self) -> bool {
+        matches!(self.what, "energy budget" | "loads by kind")
+    }
+
+    /// Whether a column was measured and is 0 throughout.
+    pub fn idle(&self, column: usize) -> bool {
+        let mut known = self.x[column].iter().filter(|x| x.is_finite()).peekable();
+        known.peek().is_some() && known.all(|x| *x == 0.0)
+    }
+
     fn read(series: &Path, name: &str, plan: Option<&Plan>) -> Result<Self> {
         let Readings { columns, t, x } = Readings::read(&series.join(format!("{name}.csv")))?;
         let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));

@@ -194,7 +194,7 @@ fn single(run: &Kept, told: &Run) -> String {
 }
 
 const WAVES: &str = "<p class=\"quiet\">Waves are counted between crossings of the mean upwards; one counts if it goes a tenth of the \
-    standard deviation to both sides. Means are over time.</p>\n";
+    standard deviation to both sides. Means are over time. Entries of a budget or a balance that are 0 throughout are left out.</p>\n";
 
 fn several(runs: &[Kept], told: &[Run]) -> String {
     let names: Vec<String> = runs.iter().map(|run| escape(&run.name)).collect();

@@ -60,7 +60,7 @@ pub struct Panel<'a> {
     pub points: Vec<([f64; 2], Option<f64>)>,
     /// Lines of solids on the sheet: whether they are closed, and whether their solid moves.
     pub lines: Vec<Drawn>,
-    /// Those of contact skins, in 2-D.
+    /// Those of contact skins.
     pub rims: Vec<Drawn>,
 }
 

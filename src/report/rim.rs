@@ -13,13 +13,19 @@ const STEP: f64 = TAU / 48.0;
 /// Cosine of half the turn of an inner corner, –, beyond which its parallels meet too far off to be looked for.
 const LEAST_COSINE: f64 = 0.25;
 
+/// Most steps from an edge to the outer side: in the sharpest inner corner each leaves three quarters of the way.
+const MOST_STEPS: usize = 32;
+
+/// How near to the outer side the steps end, in thicknesses of the skin, –.
+const NEAR: f64 = 1e-4;
+
 /// What is nearer to other faces than this part of the skin lies in theirs, –.
 const OUTSIDE: f64 = 0.98;
 
 /// The outer side of a contact skin, in the frame of the solid; nothing if it has none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Rim {
-    /// In 2-D its lines.
+    /// In 2-D its lines; in 3-D those of the solid, moved out to it.
     pub lines: Vec<Outline>,
     /// In 3-D places on it, m, about dp apart.
     pub dots: Vec<[f64; 3]>,
@@ -38,8 +44,52 @@ impl Rim {
         let places = faces::of_shape(shape, dp).into_iter().map(|face| face.x + face.n * skin).filter(outside);
         // Rounded to a thousandth of dp: many of them stand on a page.
         let round = |x: f64| (x / (1e-3 * dp)).round() * 1e-3 * dp;
-        Self { lines: Vec::new(), dots: places.map(|x| spread(&x).map(round)).collect() }
+        let mut lines = wires(shape, skin, dp);
+        lines.iter_mut().flat_map(|line| &mut line.points).for_each(|x| *x = x.map(round));
+        Self { lines, dots: places.map(|x| spread(&x).map(round)).collect() }
     }
+}
+
+/// The lines of a contact skin in 3-D: those of the solid, about `step` (m) fine, each point moved outwards by the skin. What lies
+/// within the solid or in a corner between two parts, as lines of a compound's parts may, is left out.
+fn wires<const D: usize>(shape: &Shape<D>, skin: f64, step: f64) -> Vec<Outline> {
+    let moved = |line: Outline| {
+        let found: Vec<Option<[f64; 3]>> = fine(&line, step).iter().map(|x| outside(shape, x, skin, step)).collect();
+        let closed = line.closed && found.iter().all(Option::is_some);
+        let runs = found.split(Option::is_none).filter(|run| run.len() > 1);
+        runs.map(|run| Outline { closed, points: run.iter().flatten().copied().collect() }).collect::<Vec<_>>()
+    };
+    outlines(shape).into_iter().flat_map(moved).collect()
+}
+
+/// Where the outer side of the skin is above the point `x` (m) of the faces, in the direction in which the distance from `shape`
+/// grows: at an edge between the normals of both its faces. None above what is inside, or where that is too far off.
+fn outside<const D: usize>(shape: &Shape<D>, x: &[f64; 3], skin: f64, step: f64) -> Option<[f64; 3]> {
+    let from = Vector::<D>::from_fn(|i, _| x[i]);
+    if shape.signed_distance(&from) < -NEAR * skin {
+        return None;
+    }
+    // By differences, of a mesh too: on one of its edges round-off chooses a facet.
+    let slope = Vector::<D>::from_fn(|i, _| {
+        let mut e = Vector::zeros();
+        e[i] = 0.05 * step;
+        shape.signed_distance(&(from + e)) - shape.signed_distance(&(from - e))
+    });
+    let normal = slope.try_normalize(1e-9 * step)?;
+    let mut far = skin;
+    for _ in 0..MOST_STEPS {
+        let there = from + normal * far;
+        let left = skin - shape.signed_distance(&there);
+        if left < NEAR * skin {
+            return Some(spread(&there));
+        }
+        // No part of the outer side is nearer than what is left, so that none is passed by.
+        far += left;
+        if far > skin / LEAST_COSINE {
+            return None;
+        }
+    }
+    None
 }
 
 /// The lines of a contact skin in 2-D: of a compound those of its parts, where they lie in no other's skin.
@@ -91,9 +141,7 @@ fn parallel(points: &[[f64; 3]], by: f64) -> Vec<[f64; 3]> {
 
 /// The parts of a line that are `kept`, to about `step` (m).
 fn cut(line: Outline, step: f64, kept: impl Fn(&[f64; 3]) -> bool) -> Vec<Outline> {
-    let first = line.points.first().filter(|_| line.closed);
-    let sides = line.points.iter().zip(line.points.iter().skip(1).chain(first));
-    let fine: Vec<[f64; 3]> = sides.flat_map(|(a, b)| divided(a, b, step)).collect();
+    let fine = fine(&line, step);
     let Some(gap) = fine.iter().position(|x| !kept(x)) else { return vec![line] };
     let from = if line.closed { gap } else { 0 };
     let round: Vec<[f64; 3]> = fine[from..].iter().chain(&fine[..from]).copied().collect();
@@ -101,9 +149,17 @@ fn cut(line: Outline, step: f64, kept: impl Fn(&[f64; 3]) -> bool) -> Vec<Outlin
     runs.map(|run| Outline { closed: false, points: run.to_vec() }).collect()
 }
 
+/// The points of a line and others between them, about `step` (m) apart.
+fn fine(line: &Outline, step: f64) -> Vec<[f64; 3]> {
+    let (first, last) = (line.points.first(), line.points.last());
+    let sides = line.points.iter().zip(line.points.iter().skip(1).chain(first.filter(|_| line.closed)));
+    let between = sides.flat_map(|(a, b)| divided(a, b, step));
+    between.chain(last.filter(|_| !line.closed).copied()).collect()
+}
+
 /// Points from `a` to before `b`, about `step` (m) apart, but not more than a thousand.
 fn divided(a: &[f64; 3], b: &[f64; 3], step: f64) -> Vec<[f64; 3]> {
-    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+    let length = (b[0] - a[0]).hypot(b[1] - a[1]).hypot(b[2] - a[2]);
     let count = (length / step).ceil().clamp(1.0, 1000.0);
     (0..count as usize).map(|k| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * k as f64 / count)).collect()
 }
@@ -142,14 +198,17 @@ mod tests {
             // Circles are drawn with 48 corners: 0.04 mm. What is cut may lie in the other's skin by 2 % of it, 0.4 mm.
             assert!(off.len() > 8 && off.iter().all(|x| (-5e-4..1e-9).contains(x)), "{shape:?}: {off:?}");
         }
+        let cube = |at: [f64; 3]| (Pose::at(Vector::from(at)), Shape::Box { size: Vector::from([0.2, 0.2, 0.1]) });
         let deep = [
             Shape::Box { size: Vector::<3>::from([0.4, 0.2, 0.3]) },
             Shape::Ball { radius: 0.2 },
+            Shape::Cylinder { length: 0.3, radius: 0.2, axis: 0 },
             Shape::Tank { size: Vector::from([0.5, 0.5, 0.4]), thickness: 0.1 },
+            Shape::Compound(vec![cube([0.0, 0.0, 0.0]), cube([0.15, 0.0, 0.05])]),
         ];
         for shape in deep {
             let off = off(&shape);
-            // Dots are rounded to a thousandth of dp.
+            // Dots and lines are rounded to a thousandth of dp.
             assert!(off.len() > 50 && off.iter().all(|x| x.abs() < 1e-4), "{shape:?}: {off:?}");
         }
         assert_eq!(Rim::of(&Shape::<2>::Ball { radius: 0.1 }, 0.0, 0.05), Rim::default());
@@ -163,5 +222,43 @@ mod tests {
         assert!(single.len() == 1 && single[0].closed, "{single:?}");
         let pile = lines(&Shape::Compound(vec![block([0.0, 0.0]), block([0.15, 0.1])]));
         assert!(pile.len() == 2 && pile.iter().all(|line| !line.closed), "{pile:?}");
+    }
+
+    #[test]
+    fn in_space_the_rim_of_a_box_lies_between_the_normals_of_its_faces_all_along_its_edges() {
+        let size = Vector::<3>::from([0.4, 0.2, 0.3]);
+        let lines = Rim::of(&Shape::Box { size }, 0.02, 0.05).lines;
+        assert_eq!(lines.len(), 6, "two rings and four uprights, uncut: {lines:?}");
+        for x in lines.iter().flat_map(|line| &line.points) {
+            let beyond = (0..3).filter(|&i| x[i].abs() - 0.5 * size[i] > 0.01).count();
+            // Over two faces by 0.02 m/√2, at corners over three by 0.02 m/√3.
+            assert!(beyond >= 2, "{x:?} is over {beyond} faces");
+        }
+        let corners = lines.iter().flat_map(|line| &line.points).filter(|x| (0..3).all(|i| x[i].abs() > 0.5 * size[i]));
+        assert_eq!(corners.count(), 4 + 4 + 4 * 2, "rings and uprights meet");
+    }
+
+    #[cfg(feature = "dim3")]
+    #[test]
+    fn the_rim_of_a_drawn_box_is_that_of_the_box() -> crate::error::Result<()> {
+        use std::collections::BTreeSet;
+
+        use crate::shape::{Mesh, Touchable};
+
+        let size = Vector::<3>::from([0.4, 0.2, 0.3]);
+        let corner = |i: u32| Vector::from_fn(|axis, _| (f64::from(i >> axis & 1) - 0.5) * size[axis]);
+        let points: Vec<Vector<3>> = (0..8).map(corner).collect();
+        let facets = [
+            0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
+        ];
+        let mesh = std::sync::Arc::new(Mesh::new(&points, facets.as_chunks::<3>().0)?);
+        // Points are rounded to a thousandth of dp.
+        let places = |shape: &Shape<3>| -> BTreeSet<[i64; 3]> {
+            let lines = Rim::of(shape, 0.02, 0.05).lines;
+            lines.iter().flat_map(|line| &line.points).map(|x| x.map(|x| (x / 5e-5).round() as i64)).collect()
+        };
+        let drawn = places(&Shape::Mesh { mesh, contact: Touchable::default() });
+        assert!(drawn.len() > 50 && drawn == places(&Shape::Box { size }), "{drawn:?}");
+        Ok(())
     }
 }

@@ -41,7 +41,7 @@ pub struct Course<const D: usize> {
     resumed: bool,
     /// Whether the last checkpoint in the folder, if there is one, may become the one before.
     good: bool,
-    /// How many removed particles are listed.
+    /// How many removed particles are listed; more than there are if others may be listed than those.
     listed: usize,
     /// When the last checkpoint was written, and how long after it the next is due (s).
     saved: (Instant, f64),
@@ -86,6 +86,8 @@ where
             folder::forget_failure(&folder)?;
         }
         let good = warning.is_none();
+        // The list of a killed run may be ahead of its checkpoint.
+        let listed = if resumed && folder.join(removed::REMOVED).exists() { usize::MAX } else { 0 };
         warnings.extend(warning);
         warnings.extend(sim.rescued().iter().map(ToString::to_string));
         let (name, version) = Dim::<D>::VERSION;
@@ -103,7 +105,7 @@ where
             checkpoint,
             resumed,
             good,
-            listed: 0,
+            listed,
             saved,
             begun,
             begun_cpu,
@@ -121,15 +123,17 @@ impl<const D: usize> Course<D> {
         match self.advance(watch) {
             Ok(status) => {
                 self.manifest.status = status;
+                let mut late = Vec::new();
                 if status == Status::Finished {
                     let series = series_folder(&self.folder);
                     self.manifest.checks = self.checks.iter().map(|check| check.judge(&series)).collect();
-                    self.manifest.warnings.extend(statistics::write(&self.folder, &self.plan)?);
-                    self.manifest.warnings.extend(self.sim.torn());
+                    late = statistics::write(&self.folder, &self.plan)?;
+                    late.extend(self.sim.torn());
+                    self.manifest.warnings.extend(late.iter().cloned());
                 }
                 self.update();
                 self.manifest.write(&self.folder)?;
-                Ok(Outcome { bodies: bodies(&self.sim), folder: self.folder, manifest: self.manifest })
+                Ok(Outcome { bodies: bodies(&self.sim), folder: self.folder, manifest: self.manifest, late })
             }
             Err(error) => Err(self.fail(error)),
         }
@@ -180,6 +184,8 @@ impl<const D: usize> Course<D> {
         for how in &self.sim.rescued()[known..] {
             watch.rescued(how);
             self.manifest.warnings.push(how.to_string());
+            // As many may leave again, and be others.
+            self.listed = if self.listed > 0 { usize::MAX } else { 0 };
         }
     }
 
@@ -220,7 +226,9 @@ impl<const D: usize> Course<D> {
         let kept =
             if reports.iter().all(Result::is_ok) { "everything recorded so far is" } else { "what could be kept is" };
         let mut help = error.help.take().map_or_else(String::new, |help| help + "\n");
-        help += &format!("{kept} in {}", self.folder.display());
+        if self.folder.exists() {
+            help += &format!("{kept} in {}", self.folder.display());
+        }
         if error.kind == Kind::File && kept::any(&self.folder) {
             help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
         }

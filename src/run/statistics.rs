@@ -211,6 +211,18 @@ impl Told {
         self.answers.extend(bands.into_iter().map(answer));
     }
 
+    /// Says of waves too few for an answer over frequency how many are needed.
+    fn too_few(&mut self, name: &str, wave: &Series) {
+        if let Some(waves) = stats::waves(wave).filter(|waves| waves.count < stats::ENOUGH) {
+            self.remarks.push(format!(
+                "statistic {name}: nothing is told over frequency: its time has {} waves, and {} are needed; of regular waves \
+                 name the `period`",
+                waves.count,
+                stats::ENOUGH
+            ));
+        }
+    }
+
     /// What the scene asks for.
     fn declared(&mut self, tables: &Tables, words: &StatisticWords, window: (f64, f64)) {
         let found: Option<Vec<Series>> =
@@ -237,6 +249,9 @@ impl Told {
             }
             StatisticKind::Rao { motions, wave, period } => {
                 let (motion, last) = found.split_at(motions.len());
+                if period.is_none() {
+                    self.too_few(&words.name, &last[0]);
+                }
                 for (of, series) in motions.iter().zip(motion) {
                     let own = format!("{}/{}", unit(of), unit(wave));
                     if period.is_none() {

@@ -25,6 +25,7 @@ pub struct SolidWords {
     pub at: Option<AtWords>,
     /// `true`: nothing moves it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("const" = true))]
     pub fixed: Option<bool>,
     /// A prescribed motion moves it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

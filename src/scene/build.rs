@@ -336,6 +336,8 @@ impl Scene {
             return Ok(());
         }
         let (volume, surface) = measures(water, solids);
+        // Six digits say it: 0.3, not 0.30000000000000004.
+        let volume = format!("{volume:.5e}").parse().unwrap_or(volume);
         let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
         let what = format!(
             "the scene asks for {all:.1e} particles: {volume} {space} of water / dp{} + {surface:.3} {face} of solids × \

@@ -3,11 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Scene, build::Still, geometry::vector};
+use super::{Scene, build::Still, geometry::vector, resolve::Filler};
 use crate::{error::Result, space::Vector, system::Damping};
 
-/// β ℓ/√(gd) where nobody says it: what goes through the zone and back with the speed of long waves has e⁻⁴ = 2 % left.
-const PASSES: f64 = 12.0;
+/// β ℓ/((n + 1) √(gd)) where nobody says β: what goes through the zone and back with the speed of long waves has e⁻⁴ = 2 % left.
+const PASSES: f64 = 4.0;
+
+/// n where nobody says it.
+const POWER: f64 = 2.0;
 
 /// One `[[damping]]`: from one plane to another, and beyond.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -20,12 +23,15 @@ pub struct DampingWords {
     /// What part of its velocity the water loses in a second where it is full, 1/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<f64>,
+    /// How that grows on the way from `from` to `to`, as a power of the way: 1 is even, more is gentler at first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub power: Option<f64>,
 }
 
 impl DampingWords {
     /// The zone that begins at `from` and is full at `to` (m).
     pub fn between(from: impl Into<Vec<f64>>, to: impl Into<Vec<f64>>) -> Self {
-        Self { from: from.into(), to: to.into(), strength: None }
+        Self { from: from.into(), to: to.into(), strength: None, power: None }
     }
 }
 
@@ -42,6 +48,7 @@ impl Scene {
             self.vector(&format!("{key}.from"), &words.from)?;
             self.vector(&format!("{key}.to"), &words.to)?;
             self.positive(&format!("{key}.strength"), words.strength)?;
+            self.positive(&format!("{key}.power"), words.power)?;
             let way: Vec<f64> = words.to.iter().zip(&words.from).map(|(to, from)| to - from).collect();
             if way.iter().all(|x| x.abs() < self.dp) {
                 let help = "the water loses its motion from `from` on, and fully at `to`, a wave length further";
@@ -60,14 +67,42 @@ impl Scene {
         Ok(())
     }
 
+    pub(super) fn fill_damping(&mut self, filler: &mut Filler) {
+        for (i, words) in self.damping.iter_mut().enumerate() {
+            let why = "gentle at first, so that little is thrown back";
+            filler.fill(format!("damping.{i}.power"), &mut words.power, POWER, why);
+        }
+    }
+
     /// The zones; of those without a strength it follows from their length and the depth.
     pub(super) fn zones<const D: usize>(&self, still: &Still) -> Vec<Damping<D>> {
         let g = self.gravity.iter().flatten().map(|g| g * g).sum::<f64>().sqrt();
         let zone = |words: &DampingWords| {
             let (from, to): (Vector<D>, Vector<D>) = (vector(&words.from), vector(&words.to));
-            let usual = PASSES * (g * still.depth).sqrt() / (to - from).norm();
-            Damping { from, to, strength: words.strength.unwrap_or(usual) }
+            let power = words.power.unwrap_or(POWER);
+            let usual = PASSES * (power + 1.0) * (g * still.depth).sqrt() / (to - from).norm();
+            Damping { from, to, strength: words.strength.unwrap_or(usual), power }
         };
         self.damping.iter().map(zone).collect()
     }
+
+    /// The strengths that nobody says: the key of the zone, with its point, and the strength (1/s).
+    ///
+    /// # Errors
+    /// `Scene` if there is no such water; `File` if a file that gives its shape cannot be read.
+    pub(super) fn usual_strengths(&self) -> Result<Vec<(String, f64)>> {
+        if self.damping.iter().all(|words| words.strength.is_some()) {
+            return Ok(vec![]);
+        }
+        let zones: Vec<f64> = match self.dimension {
+            2 => self.zones(&Still::of(&self.bodies_of_water::<2>()?)).iter().map(strength::<2>).collect(),
+            _ => self.zones(&Still::of(&self.bodies_of_water::<3>()?)).iter().map(strength::<3>).collect(),
+        };
+        let unsaid = self.damping.iter().zip(zones).enumerate().filter(|(_, (words, _))| words.strength.is_none());
+        Ok(unsaid.map(|(i, (_, strength))| (format!("damping.{i}."), strength)).collect())
+    }
+}
+
+fn strength<const D: usize>(zone: &Damping<D>) -> f64 {
+    zone.strength
 }

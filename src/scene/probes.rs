@@ -59,9 +59,11 @@ pub struct ProbeEntry {
     pub patch: Option<PatchWords>,
     /// The leading edge of the water along x.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("const" = true))]
     pub front: Option<bool>,
     /// Energies of water and bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("const" = true))]
     pub energy: Option<bool>,
     /// All loads on the free solid of this name, by kind.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,9 +73,11 @@ pub struct ProbeEntry {
     pub contact: Option<[String; 2]>,
     /// How all that touch press on each other, as a list.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("const" = true))]
     pub contacts: Option<bool>,
     /// Where energy came from and went.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("const" = true))]
     pub budget: Option<bool>,
 }
 

@@ -92,6 +92,7 @@ impl Scene {
         filler.fill("gravity", &mut scene.gravity, usual.gravity.clone(), "the earth's, down the last axis");
         scene.fill_laws(&mut filler, &usual);
         scene.fill_guard(&mut filler);
+        scene.fill_damping(&mut filler);
         scene.fill_solids(&mut filler);
         scene.fill_links(&mut filler);
         scene.fill_records(&mut filler);
@@ -246,6 +247,10 @@ impl Scene {
             2 => scene.sound_speed::<2>()?,
             _ => scene.sound_speed::<3>()?,
         };
+        for (zone, strength) in scene.usual_strengths()? {
+            let at = lines.iter().rposition(|line| line.key.starts_with(&zone)).map_or(lines.len(), |at| at + 1);
+            lines.insert(at, derived(&format!("{zone}strength"), strength, "of a long wave e⁻⁴ comes back, 1/s"));
+        }
         let at = lines.iter().position(|line| line.key.starts_with("time.")).unwrap_or(lines.len());
         if scene.model.c0.is_none() {
             lines.insert(at, derived("model.c0", c0, "c0_factor · √(g · depth), m/s"));

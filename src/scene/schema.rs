@@ -1,7 +1,7 @@
 //! The words of a scene as a JSON schema, for editors: made from the types that read them, so that it cannot drift.
 //!
-//! Where exactly one key of several is to be said (`fixed`, `driven`, `free` of a solid), it says so. It is coarser than the
-//! program where words depend on one another otherwise (as many numbers as dimensions).
+//! Where exactly one key of several is to be said (`fixed`, `driven`, `free` of a solid), it says so, and where only `true` can
+//! be meant (`fixed`). It is coarser than the program where words depend on one another otherwise (as many numbers as dimensions).
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};

@@ -7,6 +7,9 @@ use crate::{
     series::Series,
 };
 
+/// Largest table, B.
+const MOST_BYTES: u64 = 256 << 20;
+
 /// The file `name` beside the scene in `folder`.
 ///
 /// # Errors
@@ -22,6 +25,9 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
     if !within(folder, &full) {
         return Err(Error::scene(format!("\"{name}\" is a link that leads out of the scene's folder"))
             .help("copy the file itself there"));
+    }
+    if !full.is_file() && full.exists() {
+        return Err(Error::scene(format!("\"{name}\" beside the scene is no file")).help("it has to be one, no folder"));
     }
     if !full.is_file() {
         let others = neighbours(folder, path);
@@ -55,7 +61,7 @@ fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
 /// The names of the columns of the table at `path`.
 ///
 /// # Errors
-/// `File` if it cannot be read.
+/// `File` if it cannot be read; `Scene` if it is too large.
 pub fn header(path: &Path) -> Result<Vec<String>> {
     let mut reader = reader(path)?;
     let header = reader.headers().map_err(|e| Error::file(path, e))?;
@@ -63,6 +69,10 @@ pub fn header(path: &Path) -> Result<Vec<String>> {
 }
 
 fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
+    if std::fs::metadata(path).is_ok_and(|file| file.len() > MOST_BYTES) {
+        return Err(Error::scene(format!("{} has more than {} MiB", path.display(), MOST_BYTES >> 20))
+            .help("keep the columns and the times that the scene needs"));
+    }
     let mut builder = csv::ReaderBuilder::new();
     builder.comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(|e| Error::file(path, e))
 }
@@ -71,7 +81,7 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
 /// out.
 ///
 /// # Errors
-/// `File` if it cannot be read; `Scene` if a column is missing or a cell is not a finite number: says which.
+/// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number: says which.
 pub fn columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let mut reader = reader(path)?;
     let file = path.display().to_string();

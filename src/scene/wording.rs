@@ -28,6 +28,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("damping.from", "from = [6.0, 0.0]        # m, where the zone begins"),
     ("damping.to", "to = [8.0, 0.0]          # m, where it is full"),
     ("strength", "strength = 5.0        # 1/s"),
+    ("damping.power", "power = 2.0           # even: 1, gentler at first: more"),
     ("solid", "[[solid]]\nname  = \"box\"\nshape = { box = { size = [0.1, 0.05] } }\nfree  = { density = 500.0 }"),
     ("name", "name = \"box\""),
     ("shape", "shape = { box = { size = [0.1, 0.05] } }"),

@@ -1,18 +1,14 @@
-//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, the motor on it, and end stops.
-//!
-//! The locks are the engine's. The motor is ours, a load like any other on both solids:
-//!
-//!   F = F₀ + k (x* − x) + c (v* − ẋ)
-//!
-//! The damping is taken at the rate at the step's end under itself alone, on a pair as easy to move as its locks leave it,
-//! g = J M⁻¹ Jᵀ: c (v* − ẋ)/(1 + Δt c g), so that no c is too stiff for a step. The stiffness bounds the step as a spring's does.
+//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, and end stops. The locks are the
+//! engine's, the motor on the coordinate is ours: see `motor`.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
-use serde::{Deserialize, Serialize};
 
-use super::rows::{Mobility, Row, of, part};
+use super::{
+    motor::{Drive, Going, Motor},
+    rows::{Mobility, Row, of, part},
+};
 use crate::{
-    solid::{Engine, Kinematics, Law},
+    solid::{Engine, Kinematics},
     space::{Matrix, Pose, Vector, Wedge},
 };
 
@@ -116,89 +112,6 @@ impl<const D: usize> JointSpec<D> {
     pub fn motor(mut self, motor: Motor) -> Self {
         self.motor = Some(motor);
         self
-    }
-}
-
-/// A motor, brake or power take-off. Forces are N (N m of a hinge; in 2-D per metre of width), positive if they drive the second
-/// solid the way in which the coordinate grows.
-#[derive(Clone, Debug)]
-pub struct Motor {
-    /// F₀, N or N m.
-    pub force: Law,
-    /// x*, m or rad from the start.
-    pub position: Law,
-    /// v*, m/s or rad/s; by default the rate of `position`.
-    pub velocity: Option<Law>,
-    /// k, N/m or N m/rad.
-    pub stiffness: Law,
-    /// c, N s/m or N m s/rad.
-    pub damping: Law,
-    /// The strongest that it can be, N or N m.
-    pub strongest: f64,
-}
-
-impl Default for Motor {
-    /// None at all.
-    fn default() -> Self {
-        let none = || Law::constant(0.0);
-        Self {
-            force: none(),
-            position: none(),
-            velocity: None,
-            stiffness: none(),
-            damping: none(),
-            strongest: f64::INFINITY,
-        }
-    }
-}
-
-impl Motor {
-    /// A linear power take-off: F = −c ẋ.
-    pub fn damping(c: f64) -> Self {
-        Self { damping: Law::constant(c), ..Self::default() }
-    }
-
-    /// What it does at time `t` (s).
-    pub fn at(&self, t: f64) -> Drive {
-        let (position, rate) = self.position.at(t);
-        Drive {
-            force: self.force.at(t).0,
-            position,
-            velocity: self.velocity.as_ref().map_or(rate, |law| law.at(t).0),
-            stiffness: self.stiffness.at(t).0,
-            damping: self.damping.at(t).0,
-            strongest: self.strongest,
-        }
-    }
-}
-
-/// What a motor does at an instant; the names are those of [`Motor`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drive {
-    /// F₀, N or N m.
-    pub force: f64,
-    /// x*, m or rad.
-    pub position: f64,
-    /// v*, m/s or rad/s.
-    pub velocity: f64,
-    /// k, N/m or N m/rad.
-    pub stiffness: f64,
-    /// c, N s/m or N m s/rad.
-    pub damping: f64,
-    /// The strongest that it can be, N or N m.
-    pub strongest: f64,
-}
-
-impl Drive {
-    /// Its force over a step `dt` (s) from the coordinate `x` and its rate, on a pair that gives way by `g`; a difference of
-    /// angles is counted the short way round.
-    fn force(&self, kind: JointKind, (x, rate): (f64, f64), g: f64, dt: f64) -> f64 {
-        let mut off = self.position - x;
-        if kind == JointKind::Hinge {
-            off -= std::f64::consts::TAU * (off / std::f64::consts::TAU).round();
-        }
-        let damped = self.damping * (self.velocity - rate) / (1.0 + dt * self.damping * g);
-        (self.force + self.stiffness * off + damped).clamp(-self.strongest, self.strongest)
     }
 }
 
@@ -319,9 +232,9 @@ impl<const D: usize> Joint<D> {
         set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.at(t)))
     }
 
-    /// The force of its motor, N or N m, over a step of `dt` (s).
-    pub(super) fn force(&self, drive: &Drive, ends: &[Kinematics<D>; 2], rate: f64, g: f64, dt: f64) -> f64 {
-        drive.force(self.spec.kind, (self.position(ends), rate), g, dt)
+    /// The force of its motor, N or N m, over a step of `dt` (s) in which what is known to act lets its rate gain `gain` (m/s², rad/s²).
+    pub(super) fn force(&self, drive: &Drive, ends: &[Kinematics<D>; 2], [rate, gain, ease]: [f64; 3], dt: f64) -> f64 {
+        drive.force(&Going { angle: self.spec.kind == JointKind::Hinge, x: self.position(ends), rate, gain, ease, dt })
     }
 }
 

@@ -10,6 +10,7 @@ pub mod joint;
 pub mod links;
 mod load;
 pub mod mooring;
+mod motor;
 #[cfg(feature = "dim2")]
 pub mod planar;
 mod pull;
@@ -27,10 +28,11 @@ pub use driven::{Law, Motion};
 pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};
 pub use force::ForceSpec;
 pub use formula::{Field, Formula};
-pub use joint::{Drive, FreeMode, JointKind, JointSpec, Motor};
+pub use joint::{FreeMode, JointKind, JointSpec};
 pub use links::{ContactSpec, Contacts, Hold, Links};
 pub use load::Load;
 pub use mooring::{Elastic, End, RopeSpec, SpringSpec};
+pub use motor::{Drive, Motor};
 pub use rig::{JointReading, LineReading};
 pub use rows::Mobility;
 

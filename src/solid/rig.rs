@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     force::ForceSpec,
-    joint::{Drive, Joint},
+    joint::Joint,
     links::{Hold, Links},
     mooring::{Elastic, Line, RopeSpec, SpringSpec, start_length},
+    motor::Drive,
     pull::{Pull, mend},
     rows::{Mobility, Row},
 };
@@ -150,25 +151,18 @@ impl<const D: usize> Rig<D> {
     }
 
     /// Puts motors, springs and forces on the engine's solids for the step from `t` (s) on, `dt` (s) long, in which they start as
-    /// `solids` says.
-    pub(crate) fn act(&mut self, engine: &mut dyn Engine<D>, solids: &[Kinematics<D>], t: f64, dt: f64) {
+    /// `solids` says; `known` is what else acts on each but pushes, contacts, locks and ropes: water and weight.
+    pub(crate) fn act(
+        &mut self,
+        engine: &mut dyn Engine<D>,
+        solids: &[Kinematics<D>],
+        known: &[Load<D>],
+        [t, dt]: [f64; 2],
+    ) {
         self.tied.fill(Tied::zero());
         for hold in &self.holds {
             self.tied[hold.solid].held = hold.holds(t);
             engine.hold(hold.solid, hold.holds(t));
-        }
-        self.rows.clear();
-        for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
-            let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
-            let ((rows, _), free) = (joint.rows(&ends, &mobility), joint.free(&ends));
-            let drive = joint.drive(*set, t + 0.5 * dt);
-            if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
-                let ease = own.with(own, &mobility);
-                reading.motor = joint.force(&drive, &ends, free.rate(&ends), ease, dt);
-                give(engine, joint.spec.between, &free.loads(reading.motor));
-                note(&mut self.tied, joint.spec.between, &free.loads(reading.motor), |tied| &mut tied.motors);
-            }
-            self.rows.push(rows);
         }
         for (spring, (elastic, reading)) in self.springs.iter().zip(&mut self.state.springs) {
             let (ends, mobility) = (spring.line.ends(solids), spring.line.mobility(engine));
@@ -184,6 +178,21 @@ impl<const D: usize> Rig<D> {
             let load = force.load(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
             engine.burden(force.solid, &load);
             self.tied[force.solid].forces += load;
+        }
+        // Last, so that they know of what the others do.
+        self.rows.clear();
+        for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
+            let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
+            let ((rows, _), free) = (joint.rows(&ends, &mobility), joint.free(&ends));
+            let drive = joint.drive(*set, t + 0.5 * dt);
+            if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
+                let loads = joint.spec.between.map(|end| end.map_or_else(Load::zero, |i| known[i] + engine.pushed(i)));
+                let going = [free.rate(&ends), own.gain(&loads, &mobility), own.with(own, &mobility)];
+                reading.motor = joint.force(&drive, &ends, going, dt);
+                give(engine, joint.spec.between, &free.loads(reading.motor));
+                note(&mut self.tied, joint.spec.between, &free.loads(reading.motor), |tied| &mut tied.motors);
+            }
+            self.rows.push(rows);
         }
     }
 

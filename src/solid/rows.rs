@@ -66,6 +66,15 @@ impl<const D: usize> Row<D> {
             - self.about[0].power(&first.spin)
     }
 
+    /// How its rate changes under a load on the first and one on the second, m/s² or rad/s².
+    pub(super) fn gain(&self, loads: &[Load<D>; 2], mobility: &[Mobility<D>; 2]) -> f64 {
+        let [first, second] = [0, 1].map(|k| {
+            let velocity = mobility[k].linear.component_mul(&loads[k].force);
+            self.along.dot(&velocity) + self.about[k].power(&mobility[k].spin(&loads[k].torque))
+        });
+        second - first
+    }
+
     /// The load of `force` (N or N m) along it on the first and the second, about their centres.
     pub(super) fn loads(&self, force: f64) -> [Load<D>; 2] {
         let load = |k: usize, f: f64| Load { force: self.along * f, torque: self.about[k] * f };

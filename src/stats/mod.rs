@@ -11,6 +11,6 @@ mod waves;
 pub use harmonic::{Harmonic, harmonic};
 pub use moments::{Moments, moments};
 pub use reflection::{Reflection, reflection};
-pub use response::{Band, Response, response, transfer};
+pub use response::{Band, ENOUGH, Response, response, transfer};
 pub use spectrum::{Spectrum, spectra, spectrum, swing};
 pub use waves::{Waves, waves};

@@ -15,7 +15,7 @@ use crate::series::Series;
 const BESIDE: f64 = 0.1;
 
 /// Waves of a record at least of which the answer is told over frequency: eight in each quarter.
-const LEAST: usize = 8 * QUARTERS;
+pub const ENOUGH: usize = 8 * QUARTERS;
 
 /// Least density of the waves at a frequency at which they are answered, over that at their peak, –.
 const FAINT: f64 = 0.02;
@@ -73,7 +73,7 @@ pub struct Band {
 /// by means over seven parts, quarters of the record and those that lie half over two ([@bendat2010], [@welch1967]). Only where
 /// the waves have a fiftieth of the density at their peak or more. None of fewer than 32 waves, or where nothing moves.
 pub fn transfer(motion: &Series, wave: &Series) -> Vec<Band> {
-    let swings = waves(motion).is_some() && waves(wave).is_some_and(|waves| waves.count >= LEAST);
+    let swings = waves(motion).is_some() && waves(wave).is_some_and(|waves| waves.count >= ENOUGH);
     let Some((step, parts)) = swings.then(|| transforms(&[motion, wave], QUARTERS)).flatten() else {
         return Vec::new();
     };

@@ -1,7 +1,7 @@
 //! Zones in which water loses its motion, so that waves do not come back from the end of a tank.
 //!
-//! dv/dt = −β s² v, s from 0 where the zone begins to 1 where it is full: a quadratic ramp, so gentle at first that
-//! little is thrown back. It is taken exactly over a step, v → v exp(−β s² Δt), and bounds none. Still water stays as it is.
+//! dv/dt = −β sⁿ v, s from 0 where the zone begins to 1 where it is full. With n = 2 it is so gentle at first that little
+//! is thrown back. It is taken exactly over a step, v → v exp(−β sⁿ Δt), and bounds none. Still water stays as it is.
 
 use rayon::prelude::*;
 
@@ -21,6 +21,8 @@ pub struct Damping<const D: usize> {
     pub to: Vector<D>,
     /// β, 1/s.
     pub strength: f64,
+    /// n, –.
+    pub power: f64,
 }
 
 impl<const D: usize> Damping<D> {
@@ -29,23 +31,24 @@ impl<const D: usize> Damping<D> {
         (self.to - self.from).norm()
     }
 
-    /// β s² (1/s) at `x` (m).
+    /// β sⁿ (1/s) at `x` (m).
     pub fn rate(&self, x: &Vector<D>) -> f64 {
         let way = self.to - self.from;
         let s = ((x - self.from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
-        self.strength * s * s
+        // The usual one without a power, which costs as much as the exponential.
+        if self.power == 2.0 { self.strength * s * s } else { self.strength * s.powf(self.power) }
     }
 
     /// Whether it can be meant.
     ///
     /// # Errors
-    /// `Scene` if it has no length or no strength.
+    /// `Scene` if it has no length, no strength or no power.
     pub fn check(&self) -> Result<()> {
         let good = |x: f64| x > 0.0 && x.is_finite();
-        match good(self.length()) && good(self.strength) {
+        match good(self.length()) && good(self.strength) && good(self.power) {
             true => Ok(()),
-            false => Err(Error::scene("a damping zone has a length and a strength")
-                .help("its `from` and `to` lie apart, and its strength is a positive number, 1/s")),
+            false => Err(Error::scene("a damping zone has a length, a strength and a power")
+                .help("its `from` and `to` lie apart, its strength (1/s) and its power are positive numbers")),
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     law::Medium,
     model::Model,
     particles::View,
-    solid::{Links, Solid},
+    solid::{Links, Load, Role, Solid},
     space::{Bounds, Vector},
 };
 
@@ -118,6 +118,15 @@ impl<const D: usize> System<D> {
     /// Acceleration of gravity, m/s².
     pub fn gravity(&self) -> Vector<D> {
         self.medium.gravity
+    }
+
+    /// `loads` on all solids (N, N m) with the weight of those that are free.
+    pub(crate) fn weighed(&self, loads: &[Load<D>]) -> Vec<Load<D>> {
+        let with_weight = |(load, solid): (&Load<D>, &Solid<D>)| match &solid.spec.role {
+            Role::Free(body) => Load { force: load.force + self.gravity() * body.mass, ..*load },
+            Role::Fixed | Role::Driven(_) => *load,
+        };
+        loads.iter().zip(&self.solids).map(with_weight).collect()
     }
 
     /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).

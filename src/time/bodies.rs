@@ -74,9 +74,10 @@ impl<const D: usize> Bodies<D> {
         self.light.iter().map(Light::held).collect()
     }
 
-    /// Goes back to what was kept; says whether it is of these bodies.
-    pub(crate) fn restore(&mut self, held: &[Held]) -> bool {
+    /// Goes back to what was kept after so many `steps`; says whether it is of these bodies.
+    pub(crate) fn restore(&mut self, held: &[Held], steps: u64) -> bool {
         self.light.iter_mut().zip(held).for_each(|(light, held)| light.restore(*held));
+        self.steps = steps;
         self.light.len() == held.len()
     }
 
@@ -232,7 +233,7 @@ impl<const D: usize> Handover<'_, D> {
         if let Some(engine) = &mut self.bodies.engine {
             pushes.extend((0..if told { began.len() } else { 0 }).map(|i| engine.pushed(i)));
             if tied {
-                self.bodies.rig.act(&mut **engine, &began, t, dt);
+                self.bodies.rig.act(&mut **engine, &began, &self.system.weighed(&self.loads), [t, dt]);
             }
         }
         self.lighten();

@@ -3,11 +3,14 @@
 use pontoon::{
     error::Kind,
     model::Model,
+    run::{self, Inspection},
+    shape::Shape,
     simulation::{Escape, Limits, Setup, Simulation},
+    solid::Role,
     space::{Bounds, Vector},
 };
 
-use crate::rig;
+use crate::rig::{self, Home};
 
 /// A small dam break, a thousand steps of which take half a second.
 fn dam_break() -> Simulation<2> {
@@ -62,6 +65,23 @@ fn an_alarm_that_returns_ends_the_run_with_its_report() {
     let error = sim.step().expect_err("the alarm returned");
     assert_eq!(error.kind, Kind::Fault);
     assert!(error.fault.is_some_and(|fault| fault.who.starts_with("water particle")));
+}
+
+#[test]
+fn a_run_that_was_rescued_goes_on_with_half_the_step_after_a_restart() {
+    let mut whole = dam_break();
+    steps(&mut whole, 700);
+    plant(&mut whole);
+    steps(&mut whole, 20);
+    let kept = whole.save().unwrap();
+    let mut again = dam_break();
+    again.restore(&kept).unwrap();
+    assert!(whole.time() < whole.rescued()[0].halved_until && again.rescued() == whole.rescued());
+    // Past the time of half steps: 400 of them.
+    steps(&mut whole, 900);
+    steps(&mut again, 900);
+    assert!(whole.time() > whole.rescued()[0].halved_until);
+    assert!(whole.save().unwrap() == again.save().unwrap());
 }
 
 #[test]
@@ -142,4 +162,72 @@ fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
         assert!(error.to_string().contains(word), "{error}");
         usual.step().expect("inside what is usual");
     }
+}
+
+#[test]
+fn what_is_not_finite_is_told_by_the_step_that_sees_it() {
+    for what in ["velocity", "density"] {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut sim = falling(Limits::default());
+            sim.step().expect("a sound start");
+            match what {
+                "velocity" => sim.set_water_velocity(|r| Vector::repeat(if r[0] < 0.02 { bad } else { 0.0 })),
+                _ => sim.set_water_density(|r| if r[0] < 0.02 { bad } else { 1000.0 }),
+            }
+            let fault = sim.step().expect_err(what).fault.expect("a fault");
+            // The step before and this one.
+            assert!(fault.who.starts_with("water particle") && fault.step <= 2, "{what} {bad}: {fault:?}");
+        }
+    }
+}
+
+/// A box beside some water that flies out of the domain, 0.5 m off, at 10 m/s.
+fn thrown() -> Simulation<2> {
+    let dp = 0.02;
+    let water = rig::lattice([0.0, 0.0], [0.2, 0.2], dp);
+    let mut float = rig::float(Shape::Box { size: Vector::from([0.1, 0.1]) }, [0.5, 0.6], 500.0);
+    if let Role::Free(body) = &mut float.role {
+        body.velocity = Vector::from([10.0, 0.0]);
+    }
+    let levels = vec![0.2; water.len()];
+    let solids = vec![rig::tank([0.2, 0.4], dp), float];
+    let mut setup = Setup::new(Model::water(2, dp, 0.2), water, levels, solids);
+    setup.domain = Some(Bounds { min: Vector::from([-1.0, -1.0]), max: Vector::from([1.0, 1.0]) });
+    Simulation::new(setup).expect("a sound setup").without_rescue()
+}
+
+#[test]
+fn a_body_that_leaves_is_named_with_its_step_also_after_a_restart() {
+    let mut whole = thrown();
+    steps(&mut whole, 20);
+    let kept = whole.save().unwrap();
+    let mut again = thrown();
+    again.restore(&kept).unwrap();
+    let [first, second] = [&mut whole, &mut again].map(|sim| {
+        let error = (0..1000).find_map(|_| sim.step().err()).expect("it flies out");
+        assert!(error.to_string().contains("escape from the domain of body \"float\""), "{error}");
+        *error.fault.expect("a fault")
+    });
+    // Half a metre at 10 m/s; the step in which its centre went over the side.
+    assert!((first.time - 0.05).abs() < 1e-3 && first.position[0] > 1.0, "{first:?}");
+    assert_eq!((first.step, first.time), (second.step, second.time));
+    assert_eq!(first.step, whole.steps(), "the step that could not be made, counted from the start of the run");
+}
+
+#[test]
+fn a_timing_stops_at_the_first_alarm_and_tells_it() {
+    // A paddle at up to 30 m/s where sound has 10 m/s.
+    let scene = "dimension = 2\ndp = 0.02\nuntil = 1.0\n\
+        water = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.1] } } }]\n\
+        [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [1.0, 0.3] } }\n\
+        [[solid]]\nname = \"paddle\"\nshape = { box = { size = [0.1, 0.2] } }\nat = { x = 0.3, bottom = 0.0 }\n\
+        driven = { along = [1.0, 0.0], distance = { formula = \"0.1*sin(300*t)\" } }\n";
+    let home = Home::with("timing-alarm", scene);
+    let asked = Inspection { threads: Some(1), timing: true, ..Inspection::default() };
+    let report = run::inspect(&home.0.join("scene.toml"), &asked).unwrap();
+    let told = report.preflight.findings.iter().find(|finding| finding.topic == "breaks_down").expect("it breaks down");
+    let after = |word: &str| told.what.split(word).nth(1).and_then(|rest| rest.split([' ', ',']).next());
+    let count = |word: &str| after(word).and_then(|number| number.parse::<u64>().ok()).unwrap_or_default();
+    // "after 9 steps: ... step 10, t = ...": a run that went back meanwhile would have made more steps than it tells of.
+    assert_eq!(count("after ") + 1, count(", step "), "{}", told.what);
 }

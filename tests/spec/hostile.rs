@@ -162,6 +162,22 @@ fn desk(name: &str) -> PathBuf {
     folder
 }
 
+#[test]
+fn a_table_that_is_no_file_or_far_too_large_is_told_before_it_is_read() {
+    let home = desk("tables");
+    let with = |file: &str| {
+        let law = format!("{{ file = \"{file}\", column = \"x_m\" }}");
+        let error = try_out(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &home).expect_err(file);
+        error.to_string()
+    };
+    std::fs::create_dir_all(home.join("folder.csv")).unwrap();
+    assert!(with("folder.csv").contains("\"folder.csv\" beside the scene is no file"), "{}", with("folder.csv"));
+    // A thousand million zeros, which take no room on the disk.
+    std::fs::File::create(home.join("large.csv")).and_then(|file| file.set_len(1 << 30)).unwrap();
+    assert!(with("large.csv").contains("has more than 256 MiB"), "{}", with("large.csv"));
+    std::fs::remove_dir_all(home).unwrap();
+}
+
 #[cfg(unix)]
 #[test]
 fn a_link_beside_the_scene_does_not_lead_out_of_its_folder() {

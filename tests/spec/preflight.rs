@@ -148,8 +148,18 @@ fn nothing_is_said_of_a_sound_scene() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 22] = [
+const FAULTS: [Fault; 27] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
+    // A plate of a single row of boundary particles pushes water as a thick one does: 0.4 m × 2π/s.
+    (
+        "slow_sound",
+        &[
+            ("solid.paddle.shape.box.size", "[0.01, 0.6]"),
+            ("solid.paddle.driven.distance.formula", "0.4*(1-cos(2*pi*t))"),
+        ],
+        "c0 = 26 ",
+        &[("solid.paddle.shape.box.size", "[0.01, 0.6]")],
+    ),
     // The square half sunk: GM = 0.2²/(12·0.1) + 0.05 − 0.1 = −1/60 m.
     (
         "capsizes",
@@ -181,6 +191,12 @@ const FAULTS: [Fault; 22] = [
         &[("solid.box.shape.box.size", "[0.2, 0.034]")],
     ),
     (
+        "thin_body",
+        &[("solid.box.shape.box.size", "[0.2, 0.01]")],
+        "0.034 m",
+        &[("solid.box.shape.box.size", "[0.2, 0.034]")],
+    ),
+    (
         "slender_body",
         &[("solid.box.shape.box.size", "[0.2, 0.05]")],
         "dp = 0.0073",
@@ -193,11 +209,19 @@ const FAULTS: [Fault; 22] = [
         &[("solid.sill.shape.box.size", "[0.034, 0.2]")],
     ),
     (
+        "thin_wall",
+        &[("solid.sill.shape.box.size", "[0.01, 0.2]")],
+        "0.034 m",
+        &[("solid.sill.shape.box.size", "[0.034, 0.2]")],
+    ),
+    (
         "narrow_gap",
         &[("solid.box.at.x", "1.6"), ("solid.sill.shape.box.size", "[0.1, 0.33]")],
         "0.014 m further",
         &[("solid.box.at.x", "1.6"), ("solid.sill.shape.box.size", "[0.1, 0.315]")],
     ),
+    // Two that stand: the sill over the bed.
+    ("narrow_gap", &[("solid.sill.at.bottom", "0.02")], "0.014 m further", &[("solid.sill.at.bottom", "0.034")]),
     // The body beside the wall of the tank.
     ("narrow_gap", &[("solid.box.at.x", "1.88")], "0.014 m further", &[("solid.box.at.x", "1.865")]),
     (
@@ -207,6 +231,13 @@ const FAULTS: [Fault; 22] = [
         &[("probe.deep.pressure", "[1.54, 0.1]")],
     ),
     ("probe_inside_solid", &[("solid.sill.shape.box.size", "[0.1, 1.3]")], "nearest water", &[]),
+    // A section may begin in a solid, but has to come out of it.
+    (
+        "probe_inside_solid",
+        &[("probe", "[{ flow = { from = [1.57, 0.0], to = [1.57, 0.15] } }]")],
+        "[1.54",
+        &[("probe", "[{ flow = { from = [1.57, 0.0], to = [1.57, 0.3] } }]")],
+    ),
     ("probe_outside", &[("probe.deep.pressure", "[2.5, 0.1]")], "[1.99", &[("probe.deep.pressure", "[1.99, 0.1]")]),
     ("probe_outside", &[("probe.gauge.elevation.x", "-1.0")], "nearest water", &[]),
     ("probe_above", &[("probe.deep.pressure", "[1.3, 2.5]")], "nearest water", &[]),

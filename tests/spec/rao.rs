@@ -76,8 +76,8 @@ fn float(eta: &[f64], dt: f64) -> Vec<f64> {
 }
 
 /// A finished run whose tables are those of the float in the sea; its pitch is 100 degrees a metre of heave.
-fn run_of_a_sea() -> Result<Home> {
-    let home = Home::with("rao", SCENE);
+fn run_of_a_sea(name: &str) -> Result<Home> {
+    let home = Home::with(&format!("rao-{name}"), SCENE);
     let out = home.0.join("run");
     let options = Options { out: Some(out.clone()), threads: Some(1), ..Options::default() };
     run::run(&home.0.join("scene.toml"), &options, &mut |_: &Progress| true)?;
@@ -98,7 +98,7 @@ fn run_of_a_sea() -> Result<Home> {
 
 #[test]
 fn a_float_in_an_irregular_sea_is_told_over_frequency_as_its_equation_says() -> Result<()> {
-    let home = run_of_a_sea()?;
+    let home = run_of_a_sea("all")?;
     let told = run::statistics(&home.0.join("run"), &Asked::default())?;
     let of = |series: &str| -> Vec<Answer> { told.answers.iter().filter(|a| a.series == series).cloned().collect() };
     assert!(told.answers.iter().all(|answer| answer.name == "rao"), "a regular wave is told at its period alone");
@@ -119,5 +119,17 @@ fn a_float_in_an_irregular_sea_is_told_over_frequency_as_its_equation_says() -> 
     // A multiple answers by the same multiple, but for round-off.
     assert!(heave.iter().zip(&pitch).all(|(h, p)| (p.band.ratio / (100.0 * h.band.ratio) - 1.0).abs() < 1e-9));
     assert_eq!(pitch[0].unit, "°/m");
+    Ok(())
+}
+
+#[test]
+fn of_too_few_waves_it_is_told_how_many_are_needed() -> Result<()> {
+    let home = run_of_a_sea("few")?;
+    let late = Asked { from: Some(370.0), ..Asked::default() };
+    let told = run::statistics(&home.0.join("run"), &late)?;
+    assert!(told.answers.is_empty(), "30 s hold some 17 waves of this sea");
+    // That of a `period` asks for nothing over frequency.
+    let [remark] = &told.remarks[..] else { panic!("{:?}", told.remarks) };
+    assert!(remark.starts_with("statistic rao: ") && remark.contains("and 32 are needed"), "{remark}");
     Ok(())
 }

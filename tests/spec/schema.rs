@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use pontoon::scene::schema;
+use pontoon::scene::{Scene, schema};
 use serde_json::{Value, json};
 
 /// Keywords that say nothing of whether a value is right.
@@ -168,8 +168,32 @@ fn a_solid_has_one_role_a_body_one_weight_and_a_probe_looks_at_one_thing() {
     }
 }
 
+#[test]
+fn what_can_only_be_true_is_refused_as_false_by_schema_and_program_alike() {
+    let solid = "[[solid]]\nname = \"a\"\nshape = { ball = { radius = 0.1 } }\nat = { x = 0.5, y = 0.2 }\n";
+    let probe = "[[probe]]\nname = \"b\"\n";
+    for (section, key, at) in [
+        (solid, "fixed", "scene.solid.fixed"),
+        (probe, "front", "scene.probe.front"),
+        (probe, "energy", "scene.probe.energy"),
+        (probe, "budget", "scene.probe.budget"),
+        (probe, "contacts", "scene.probe.contacts"),
+    ] {
+        let scene = |value: bool| format!("{SCENE}{section}{key} = {value}\n");
+        let refused = |text: &str| Scene::parse(text, ".".as_ref(), &[]).and_then(|scene| scene.plan()).err();
+        assert!(
+            of(&scene(true)).is_empty() && refused(&scene(true)).is_none(),
+            "{key} = true: {:?}",
+            refused(&scene(true))
+        );
+        let (wrong, why) = (of(&scene(false)), refused(&scene(false)).map(|e| e.to_string()));
+        assert_eq!(wrong, [format!("{at}: is not true")]);
+        assert!(why.as_ref().is_some_and(|why| why.contains(&format!("{key} = false"))), "{key} = false: {why:?}");
+    }
+}
+
 /// The keys and words that a schema knows, wherever they stand in it.
-fn known(schema: &Value, found: &mut BTreeSet<String>) {
+pub fn known(schema: &Value, found: &mut BTreeSet<String>) {
     if let Some(keys) = schema.get("properties").and_then(Value::as_object) {
         found.extend(keys.keys().cloned());
     }

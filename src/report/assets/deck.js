@@ -35,7 +35,8 @@ class Deck {
     this.views = films.map(film => new View(film, this.look, this.tables));
     this.followers = [];
     this.build(home, deep);
-    new ResizeObserver(() => this.fit()).observe(this.stage);
+    // After the layout that called it: a canvas that changes within would call it again.
+    new ResizeObserver(() => requestAnimationFrame(() => this.fit())).observe(this.stage);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     this.fit();
   }
@@ -51,10 +52,11 @@ class Deck {
     const pace = labelled(make("select", { onchange: e => { this.speed = +e.target.value; } }, ...speeds.map(s => make("option", { value: s, selected: s === this.speed }, `${s < 1 ? "1/" + 1 / s : s} × real time`))), "Speed of playing");
     const colour = labelled(make("select", { onchange: e => this.paint(e.target.value) }, ...this.fields.map(f => make("option", { value: f }, FIELDS[f].title))), "Colour of the particles");
     const zoom = make("span", { className: "group" }, ...[["−", "Zoom out", () => this.zoom(1 / 1.4)], ["+", "Zoom in", () => this.zoom(1.4)], ["Fit", "Show all", () => this.reset()]].map(([word, name, onclick]) => labelled(make("button", { type: "button", onclick }, word), name)));
-    const tools = make("div", { className: "row" }, make("label", { hidden: !this.fields.length }, "Colour", colour), make("label", {}, "Speed", pace), zoom, check("surface", "surface"), check("gauges", "gauges"), check("names", "names"));
+    const tools = make("div", { className: "row" }, make("label", { hidden: !this.fields.length }, "Colour", colour), make("label", {}, "Speed", pace), zoom, this.surface = check("surface", "surface"), check("gauges", "gauges"), check("names", "names"));
     if (deep) tools.append(...this.cutter());
-    const keys = make("p", { className: "quiet keys" }, "Keys: space plays, ← → a frame (with shift ten), Home and End, + − zoom, 0 shows all. Drag moves, " + (deep ? "or turns in 3-D (with shift it moves), " : "") + "Ctrl and the wheel zoom; point at the water to read its values.");
-    this.deck = make("div", { className: "deck", role: "group", onkeydown: e => this.key(e) }, this.stage, make("div", { className: "row scrubber" }, this.button, this.scrub, this.clock), this.legend(), tools, keys);
+    const keys = make("p", { className: "quiet keys" }, "Keys: space plays, ← → a frame (with shift ten), Home and End, + − zoom, a d w s move" + (deep ? ", or turn in 3-D" : "") + ", 0 shows all. Drag moves, " + (deep ? "or turns in 3-D (with shift it moves), " : "") + "Ctrl and the wheel zoom; point at the water to read its values.");
+    const touch = make("p", { className: "quiet touch" }, "Tap the water to read its values; a finger to the side moves" + (deep ? ", or turns in 3-D" : "") + "; two zoom.");
+    this.deck = make("div", { className: "deck", role: "group", onkeydown: e => this.key(e) }, this.stage, make("div", { className: "row scrubber" }, this.button, this.scrub, this.clock), this.legend(), tools, keys, touch);
     labelled(this.deck, "Player of the run");
     home.append(this.deck);
     document.addEventListener("keydown", e => { if (e.target === document.body) this.key(e); });
@@ -71,11 +73,15 @@ class Deck {
   }
 
   cutter() {
-    const slider = labelled(make("input", { type: "range", min: 0, max: 1, step: 0.005, value: 0.5, disabled: true, oninput: e => { this.look.cut = +e.target.value; this.draw(); } }), "Place of the section");
-    const modes = [["turn", "whole, to be turned"], ["y", "section across y"], ["x", "section across x"], ["z", "section across z"]];
-    const select = labelled(make("select", { onchange: e => { this.look.mode = e.target.value; slider.disabled = e.target.value === "turn"; this.reset(); } }, ...modes.map(([value, word]) => make("option", { value }, word))), "View");
+    const slider = labelled(make("input", { type: "range", min: 0, max: 1, step: 0.005, value: 0.5, oninput: e => { this.look.cut = +e.target.value; this.draw(); } }), "Place of the section");
     this.place = make("output");
-    return [make("label", {}, "View", select), make("label", {}, slider, this.place)];
+    const along = make("label", {}, slider, this.place), flat = this.films.some(film => film.dim === 2);
+    // Uncut, a run in 3-D has no section to be moved and no line for a surface.
+    const cut = mode => { along.hidden = mode === "turn"; this.surface.hidden = mode === "turn" && !flat; };
+    cut("turn");
+    const modes = [["turn", "whole, to be turned"], ["y", "section across y"], ["x", "section across x"], ["z", "section across z"]];
+    const select = labelled(make("select", { onchange: e => { this.look.mode = e.target.value; cut(this.look.mode); this.reset(); } }, ...modes.map(([value, word]) => make("option", { value }, word))), "View");
+    return [make("label", {}, "View", select), along];
   }
 
   legend() {
@@ -134,7 +140,7 @@ class Deck {
     if (e.ctrlKey || e.metaKey || e.altKey || ["SELECT"].includes(e.target.tagName) || e.target.className?.includes?.("end")) return;
     const ten = e.shiftKey ? 10 : 1;
     const acts = { " ": () => this.toggle(), ArrowRight: () => this.step(ten), ArrowLeft: () => this.step(-ten), Home: () => { this.pause(); this.seek(this.from); }, End: () => { this.pause(); this.seek(this.until); },
-      "+": () => this.zoom(1.4), "=": () => this.zoom(1.4), "-": () => this.zoom(1 / 1.4), 0: () => this.reset() };
+      a: () => this.nudge(1, 0), d: () => this.nudge(-1, 0), w: () => this.nudge(0, 1), s: () => this.nudge(0, -1), "+": () => this.zoom(1.4), "=": () => this.zoom(1.4), "-": () => this.zoom(1 / 1.4), 0: () => this.reset() };
     if (!acts[e.key] || e.key === " " && ["BUTTON", "INPUT", "SUMMARY"].includes(e.target.tagName) && e.target.type !== "range") return;
     e.preventDefault();
     acts[e.key]();
@@ -174,6 +180,9 @@ class Deck {
     } else look.pan = [look.pan[0] - dx / view.scale, look.pan[1] + dy / view.scale];
     this.draw();
   }
+
+  /** Drags by a key. */
+  nudge(x, y) { this.drag(this.views[0], 40 * x, 40 * y, false); }
 
   /** Shows what is under the pointer. */
   tell(view, at) {

@@ -78,7 +78,8 @@ class Chart {
 /** The columns of `indices` of a table as lines. */
 function lines(table, indices, bytes, label, offset = 0) {
   const t = floats(bytes, table.t, table.rows[0]);
-  return indices.map((c, k) => ({ label: label ?? table.columns[c].label, t, x: floats(bytes, table.columns[c].x, table.rows[0]), tint: k + offset }));
+  const dash = k => k + offset < TINTS ? undefined : [7, 4];
+  return indices.map((c, k) => ({ label: label ?? table.columns[c].label, t, x: floats(bytes, table.columns[c].x, table.rows[0]), tint: k + offset, dash: dash(k) }));
 }
 
 /** A line of a check. */
@@ -92,14 +93,16 @@ function series(home, charts, runs, bytes) {
     const open = make("div", { className: "charts" }), folded = make("div", { className: "charts" });
     if (several) abreast(open, folded, charts, runs, table.name, bytes);
     else for (const chart of table.charts) {
-      const first = table.columns[chart.columns[0]], title = chart.columns.length > 3 ? table.what : chart.columns.map(c => table.columns[c].label).join(", ");
+      const first = table.columns[chart.columns[0]], title = chart.title ?? (chart.columns.length > 3 ? table.what : chart.columns.map(c => table.columns[c].label).join(", "));
       const known = references(runs[0], table, chart.columns, bytes);
       charts.add(chart.folded ? folded : open, { title, unit: first.unit, lines: [...lines(table, chart.columns, bytes), ...known] });
     }
     home.append(open);
+    const own = runs.map(run => run.tables.find(t => t.name === table.name)).filter(Boolean), idle = table.idle.filter(kind => own.every(t => t.idle.includes(kind)));
+    if (idle.length) home.append(make("p", { className: "quiet" }, `0 throughout: ${idle.join(", ")}.`));
     if (table.rows[0] < table.rows[1]) home.append(make("p", { className: "quiet" }, `${table.rows[0]} of ${table.rows[1]} rows are drawn, with every peak.`));
     spectra(home, charts, runs, table, bytes);
-    const more = several ? [...folded.children].map(figure => figure.chart.what.title) : table.charts.filter(c => c.folded).map(c => c.columns.map(k => table.columns[k].label).join(", "));
+    const more = several ? [...folded.children].map(figure => figure.chart.what.title) : table.charts.filter(c => c.folded).map(c => c.title ?? c.columns.map(k => table.columns[k].label).join(", "));
     if (folded.childElementCount) home.append(make("details", {}, make("summary", {}, `More of ${table.name}: ${more.join("; ")}`), folded));
   }
 }

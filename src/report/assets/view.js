@@ -142,8 +142,8 @@ class View {
     else {
       if (look.show.surface) this.surface(on);
       this.solids(on, solid => solid.role !== "fixed");
-      this.rims(on);
     }
+    this.rims(on);
     if (look.show.gauges) this.gauges(on);
     if (look.show.names) this.names(on);
     on.restore();
@@ -216,7 +216,7 @@ class View {
     });
   }
 
-  /** Contact skins: dashed in 2-D, dots where one is cut in 3-D. */
+  /** Contact skins: dashed, but dots where one is cut in 3-D. */
   rims(on) {
     const [u, v] = this.axes(), { film, cut } = this, axis = "xyz".indexOf(this.look.mode);
     on.strokeStyle = on.fillStyle = this.css.line;
@@ -224,7 +224,10 @@ class View {
     on.setLineDash([4, 3]);
     film.solids.forEach((solid, s) => {
       const { lines, dots } = solid.rim, pose = film.pose(s);
-      if (lines.length) on.stroke(this.outline(s, lines));
+      if (cut === null) {
+        if (lines.length) on.stroke(this.outline(s, lines));
+        return;
+      }
       for (const x of dots) {
         const p = moved(pose, x);
         if (Math.abs(p[axis] - cut) > 0.5 * film.dp) continue;

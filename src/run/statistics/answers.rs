@@ -2,12 +2,14 @@
 
 use std::{f64::consts::PI, path::Path};
 
+use serde::{Serialize, Serializer};
+
 use crate::{error::Result, record::write_whole, stats::Band};
 
 /// The file, in the run's folder.
 pub const RAO: &str = "rao.csv";
 
-/// How a motion answers the waves at a frequency.
+/// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO`] for keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// Name of the `[[statistic]]`.
@@ -25,6 +27,39 @@ impl Answer {
     pub fn degrees(&self) -> f64 {
         self.band.phase * 180.0 / PI
     }
+
+    fn row(&self) -> Row<'_> {
+        let Band { frequency, ratio, coherence, .. } = self.band;
+        Row {
+            name: &self.name,
+            series: &self.series,
+            frequency_hz: frequency,
+            period_s: 1.0 / frequency,
+            rao: ratio,
+            unit: &self.unit,
+            phase_deg: self.degrees(),
+            coherence,
+        }
+    }
+}
+
+impl Serialize for Answer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        self.row().serialize(serializer)
+    }
+}
+
+/// An answer by the columns of the file.
+#[derive(Serialize)]
+struct Row<'a> {
+    name: &'a str,
+    series: &'a str,
+    frequency_hz: f64,
+    period_s: f64,
+    rao: f64,
+    unit: &'a str,
+    phase_deg: f64,
+    coherence: f64,
 }
 
 /// Writes `answers` into the run's `folder`; no file if there are none.
@@ -37,9 +72,8 @@ pub fn write(folder: &Path, answers: &[Answer]) -> Result<()> {
     }
     let mut text = String::from("name,series,frequency_hz,period_s,rao,unit,phase_deg,coherence\n");
     for answer in answers {
-        let Answer { name, series, unit, band } = answer;
-        let (f, ratio, phase, coherence) = (band.frequency, band.ratio, answer.degrees(), band.coherence);
-        text += &format!("{name},{series},{f:?},{:?},{ratio:?},{unit},{phase:?},{coherence:?}\n", 1.0 / f);
+        let Row { name, series, frequency_hz, period_s, rao, unit, phase_deg, coherence } = answer.row();
+        text += &format!("{name},{series},{frequency_hz:?},{period_s:?},{rao:?},{unit},{phase_deg:?},{coherence:?}\n");
     }
     write_whole(&folder.join(RAO), text.as_bytes())
 }
@@ -50,7 +84,7 @@ mod tests {
     use crate::error::Error;
 
     #[test]
-    fn each_frequency_of_each_motion_has_a_row_and_no_answer_no_file() -> Result<()> {
+    fn each_frequency_of_each_motion_has_a_row_and_an_object_and_no_answer_no_file() -> Result<()> {
         let folder = std::env::temp_dir().join(format!("pontoon-rao-rows-{}", std::process::id()));
         let failed = |why| Error::file(&folder, why);
         std::fs::create_dir_all(&folder).map_err(failed)?;
@@ -70,6 +104,9 @@ mod tests {
             "rao,buoy.pitch_deg,0.625,1.6,1.5,°/m,-90.0,0.75",
         ];
         assert_eq!(text.lines().collect::<Vec<_>>(), rows);
+        let json = serde_json::to_string(&answer(0.625, -0.5 * PI)).map_err(|why| Error::file(&folder, why))?;
+        let expected = r#"{"name":"rao","series":"buoy.pitch_deg","frequency_hz":0.625,"period_s":1.6,"rao":1.5,"unit":"°/m","phase_deg":-90.0,"coherence":0.75}"#;
+        assert_eq!(json, expected, "programs find the columns of the file");
         std::fs::remove_dir_all(&folder).map_err(failed)
     }
 }

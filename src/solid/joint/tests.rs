@@ -186,6 +186,45 @@ fn a_motor_pushes_holds_and_turns_as_its_laws_say() {
     motors::<3>();
 }
 
+fn brakes<const D: usize>()
+where
+    Dim<D>: HasEngine<D>,
+{
+    // A weight on a rail upright, a step of 1 ms: Δt c/m from 0.05 to 5e6.
+    let weight = bar("weight", 0.2, point::<D>(0.0, 0.0), true);
+    let m = body(&weight).mass;
+    for stiff in [0.05, 0.1, 0.5, 5.0, 500.0, 5e6] {
+        let c = stiff * m / 1e-3;
+        let rail = slider([None, Some(0)], Vector::zeros(), point(0.0, 1.0)).motor(Motor::damping(c));
+        let mut air = Air::new(vec![weight.clone()], joined(rail), G);
+        air.run(1e-3, 0.5);
+        // After 25 and more of its times m/c it yields with m g/c. What a step does not foresee of the weight is at most half of 0.1.
+        let speed = -air.rig.joint(0).rate / (m * G / c);
+        assert!((speed - 1.0).abs() < 0.051, "{D}-D, Δt c/m = {stiff}: {speed} of m g/c");
+        assert!((air.rig.joint(0).motor / (m * G) - 1.0).abs() < 1e-6, "{D}-D, {stiff}: {:?}", air.rig.joint(0));
+    }
+    // Two on one rail: the second knows of the first, and they do not throw the weight to and fro.
+    let along = point(0.0, 1.0);
+    let second = slider([None, Some(0)], point(0.0, 0.05), along).motor(Motor::damping(1e9));
+    let second = JointSpec { name: "second".into(), ..second };
+    let first = slider([None, Some(0)], Vector::zeros(), along).motor(Motor::damping(1e9));
+    let mut air = Air::new(vec![weight.clone()], Links { joints: vec![first, second], ..Links::default() }, G);
+    air.run(1e-3, 0.5);
+    assert!(air.now()[0].velocity.norm() < 1e-6, "{D}-D: {:?}", air.now());
+    // An ordinary power take-off leaves what rests on its end stop to that: a step of weight against it is 5e-5 of m g.
+    let rail = slider([None, Some(0)], Vector::zeros(), along).limits(-0.01, 0.01).motor(Motor::damping(5.0 * m));
+    let mut air = Air::new(vec![weight], joined(rail), G);
+    air.run(1e-4, 1.0);
+    let reading = air.rig.joint(0);
+    assert!(reading.motor.abs() < 1e-3 * m * G && (reading.position + 0.01).abs() < 1e-6, "{D}-D: {reading:?}");
+}
+
+#[test]
+fn a_brake_yields_with_the_load_over_its_damping_however_strong_it_is() {
+    brakes::<2>();
+    brakes::<3>();
+}
+
 fn stops<const D: usize>()
 where
     Dim<D>: HasEngine<D>,

@@ -21,6 +21,7 @@ pub(in crate::solid) struct Air<const D: usize> {
     pub(in crate::solid) engine: Box<dyn Engine<D>>,
     pub(in crate::solid) rig: Rig<D>,
     pub(in crate::solid) t: f64,
+    gravity: f64,
 }
 
 impl<const D: usize> Air<D>
@@ -36,7 +37,7 @@ where
         let mut down = Vector::zeros();
         down[D - 1] = -gravity;
         let engine = Dim::<D>::engine(&solids, &start, &links, &down, 0.01)?;
-        Ok(Self { rig: Rig::new(&links, start), solids, engine, t: 0.0 })
+        Ok(Self { rig: Rig::new(&links, start), solids, engine, t: 0.0, gravity })
     }
 
     pub(in crate::solid) fn now(&self) -> Vec<Kinematics<D>> {
@@ -50,7 +51,12 @@ where
 
     pub(in crate::solid) fn step(&mut self, dt: f64) {
         let before = self.now();
-        self.rig.act(&mut *self.engine, &before, self.t, dt);
+        let weight = |solid: &SolidSpec<D>| match &solid.role {
+            Role::Free(body) => Load { force: point(0.0, -body.mass * self.gravity), torque: Wedge::zero() },
+            _ => Load::zero(),
+        };
+        let known: Vec<_> = self.solids.iter().map(weight).collect();
+        self.rig.act(&mut *self.engine, &before, &known, [self.t, dt]);
         self.t += dt;
         let driven = |solid: &SolidSpec<D>| match &solid.role {
             Role::Driven(motion) => Some(motion.kinematics(&solid.pose, self.t)),

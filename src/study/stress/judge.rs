@@ -2,7 +2,7 @@
 //!
 //! | figure | what | why it must be small |
 //! |---|---|---|
-//! | `energy` | (E(t) − E(0) − W(t)) / scale, the most | nothing makes energy but the work W of driven solids |
+//! | `energy` | (E(t) − E(0) − W(t)) / scale, the most | nothing makes energy but the work W of driven solids, springs, motors and forces |
 //! | `walls` | deepest water inside a solid, dp | what is there is on its way through |
 //! | `bodies` | deepest face of a free body inside another solid, dp | the same |
 //! | `outside` | water beside or below a tank | it went through |
@@ -172,7 +172,7 @@ impl Books {
         Self { start, floor, fallen: 0.0, work: 0.0, worked: 0.0, excess: 0.0 }
     }
 
-    /// Enters the work (J) of driven solids over a step.
+    /// Enters the work (J) of driven solids, springs, motors and forces over a step.
     pub fn work(&mut self, joules: f64) {
         self.work += joules;
         self.worked = self.worked.max(self.work.abs());

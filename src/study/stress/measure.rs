@@ -68,7 +68,8 @@ impl<'a, const D: usize> Measure<'a, D> {
 
     /// Told after each step, of length `dt` (s).
     pub(super) fn step(&mut self, sim: &Simulation<D>, dt: f64) -> Result<()> {
-        self.books.work(self.before.iter().zip(sim.system().solids()).map(|(then, now)| work(then, now, dt)).sum());
+        let driven: f64 = self.before.iter().zip(sim.system().solids()).map(|(then, now)| work(then, now, dt)).sum();
+        self.books.work(driven + tied(sim, &self.before, dt));
         self.remember(sim);
         let until = self.case.scene.until;
         if sim.time() < self.next && sim.time() < until {
@@ -142,6 +143,17 @@ fn work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
     let velocity = (then.velocity + now.kinematics.velocity) * 0.5;
     let spin: Wedge<D> = (then.spin + now.kinematics.spin) * 0.5;
     -dt * (now.load.force.dot(&velocity) + now.load.torque.power(&spin))
+}
+
+/// What springs, motors and forces do to the free bodies in a step (J), each at the mean of its motion before and after; none where no
+/// loads are kept.
+fn tied<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
+    let one = |(i, then): (usize, &Kinematics<D>)| {
+        let (now, shares) = (sim.system().solids()[i].kinematics, sim.shares(i)?);
+        let (velocity, spin) = ((then.velocity + now.velocity) * 0.5, (then.spin + now.spin) * 0.5);
+        Some(dt * (shares.springs + shares.motors + shares.forces).power(&Kinematics { velocity, spin, ..now }))
+    };
+    before.iter().enumerate().filter_map(one).sum()
 }
 
 /// Mass of water and free bodies, kg.
