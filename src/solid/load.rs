@@ -33,6 +33,16 @@ impl<const D: usize> Load<D> {
     }
 }
 
+/// What is around all solids in a step, beside what ties and contacts do.
+pub(crate) struct Around<const D: usize> {
+    /// Load of water and weight on each.
+    pub(crate) loads: Vec<Load<D>>,
+    /// Whether there is water at it.
+    pub(crate) wet: Vec<bool>,
+    /// How long sound takes to cross a smoothing length, h/c₀, s.
+    pub(crate) crossing: f64,
+}
+
 impl<const D: usize> Add for Load<D> {
     type Output = Self;
 

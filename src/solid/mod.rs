@@ -30,6 +30,7 @@ pub use force::ForceSpec;
 pub use formula::{Field, Formula};
 pub use joint::{FreeMode, JointKind, JointSpec};
 pub use links::{ContactSpec, Contacts, Hold, Links};
+pub(crate) use load::Around;
 pub use load::Load;
 pub use mooring::{Elastic, End, RopeSpec, SpringSpec};
 pub use motor::{Drive, Motor};

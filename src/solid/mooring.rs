@@ -3,6 +3,9 @@
 //! A spring of length l pulls with  T = k (l − l₀) + c l̇,  a mooring line (`tension_only`) never pushes. As an explicit force it
 //! bounds the step: a mode of frequency ω is stable while Δt ω < 2 and runs (Δt ω)²/24 too fast. The damping is taken at the rate at
 //! the step's end under itself alone, so that it bounds nothing.
+//!
+//! Real water takes what swings in it as sound, of the critical damping ρ₀ c₀ A/(2 m ω). Particles carry none of ω h/c₀ > 2, and what
+//! they take from a body later than it goes would feed such a swing: while an end is wet it has a hundredth of the critical damping.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +14,12 @@ use crate::{
     solid::{Engine, Kinematics},
     space::Vector,
 };
+
+/// ω h/c₀ from which on particles do not carry a swing away as sound, –.
+const SOUNDLESS: f64 = 2.0;
+
+/// What such a swing has of the critical damping, at least, –.
+const CALMED: f64 = 0.01;
 
 /// Where a line is made fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +103,13 @@ impl<const D: usize> Line<D> {
 }
 
 impl Elastic {
+    /// The same with ends in water that sound takes `crossing` (s) to cross by a smoothing length; they give way by `g` (1/kg).
+    pub(super) fn in_water(&self, crossing: f64, g: f64) -> Self {
+        let swings = (self.stiffness * g).sqrt() * crossing > SOUNDLESS;
+        let calmed = if swings { CALMED * 2.0 * (self.stiffness / g).sqrt() } else { 0.0 };
+        Self { damping: self.damping.max(calmed), ..*self }
+    }
+
     /// The tension (N) at this length (m), which grows at `rate` (m/s), over a step `dt` (s) of ends that give way by `g` (1/kg).
     pub(super) fn tension(&self, length: f64, rate: f64, g: f64, dt: f64, tension_only: bool) -> f64 {
         let stretch = length - self.length;

@@ -12,7 +12,7 @@ use super::{
     rows::{Mobility, Row},
 };
 use crate::{
-    solid::{Engine, Kinematics, Load},
+    solid::{Around, Engine, Kinematics, Load},
     space::{Vector, Wedge},
 };
 
@@ -151,12 +151,12 @@ impl<const D: usize> Rig<D> {
     }
 
     /// Puts motors, springs and forces on the engine's solids for the step from `t` (s) on, `dt` (s) long, in which they start as
-    /// `solids` says; `known` is what else acts on each but pushes, contacts, locks and ropes: water and weight.
+    /// `solids` says, with what is `around` them.
     pub(crate) fn act(
         &mut self,
         engine: &mut dyn Engine<D>,
         solids: &[Kinematics<D>],
-        known: &[Load<D>],
+        around: &Around<D>,
         [t, dt]: [f64; 2],
     ) {
         self.tied.fill(Tied::zero());
@@ -169,6 +169,8 @@ impl<const D: usize> Rig<D> {
             let (length, row) = spring.line.along(&ends);
             if let Some(row) = row {
                 let ease = row.with(&row, &mobility);
+                let wet = spring.line.solids().into_iter().flatten().any(|i| around.wet[i]);
+                let elastic = if wet { elastic.in_water(around.crossing, ease) } else { *elastic };
                 reading.tension = elastic.tension(length, row.rate(&ends), ease, dt, spring.tension_only);
                 give(engine, spring.line.solids(), &row.loads(-reading.tension));
                 note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
@@ -186,7 +188,8 @@ impl<const D: usize> Rig<D> {
             let ((rows, _), free) = (joint.rows(&ends, &mobility), joint.free(&ends));
             let drive = joint.drive(*set, t + 0.5 * dt);
             if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
-                let loads = joint.spec.between.map(|end| end.map_or_else(Load::zero, |i| known[i] + engine.pushed(i)));
+                let loads =
+                    joint.spec.between.map(|end| end.map_or_else(Load::zero, |i| around.loads[i] + engine.pushed(i)));
                 let going = [free.rate(&ends), own.gain(&loads, &mobility), own.with(own, &mobility)];
                 reading.motor = joint.force(&drive, &ends, going, dt);
                 give(engine, joint.spec.between, &free.loads(reading.motor));

@@ -7,7 +7,7 @@ use crate::{
     law::Medium,
     model::Model,
     particles::View,
-    solid::{Links, Load, Role, Solid},
+    solid::{Around, Links, Load, Role, Solid},
     space::{Bounds, Vector},
 };
 
@@ -120,13 +120,15 @@ impl<const D: usize> System<D> {
         self.medium.gravity
     }
 
-    /// `loads` on all solids (N, N m) with the weight of those that are free.
-    pub(crate) fn weighed(&self, loads: &[Load<D>]) -> Vec<Load<D>> {
+    /// What is around the solids that feel `loads` (N, N m) of the water.
+    pub(crate) fn around(&self, loads: &[Load<D>]) -> Around<D> {
         let with_weight = |(load, solid): (&Load<D>, &Solid<D>)| match &solid.spec.role {
             Role::Free(body) => Load { force: load.force + self.gravity() * body.mass, ..*load },
             Role::Fixed | Role::Driven(_) => *load,
         };
-        loads.iter().zip(&self.solids).map(with_weight).collect()
+        let loads = loads.iter().zip(&self.solids).map(with_weight).collect();
+        let wet = self.solids.iter().map(|solid| solid.load != Load::zero()).collect();
+        Around { loads, wet, crossing: self.medium.h / self.medium.c0 }
     }
 
     /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).

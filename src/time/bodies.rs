@@ -233,7 +233,7 @@ impl<const D: usize> Handover<'_, D> {
         if let Some(engine) = &mut self.bodies.engine {
             pushes.extend((0..if told { began.len() } else { 0 }).map(|i| engine.pushed(i)));
             if tied {
-                self.bodies.rig.act(&mut **engine, &began, &self.system.weighed(&self.loads), [t, dt]);
+                self.bodies.rig.act(&mut **engine, &began, &self.system.around(&self.loads), [t, dt]);
             }
         }
         self.lighten();

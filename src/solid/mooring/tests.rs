@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::{
     solid::{
-        Dim, End, HasEngine, Links, RopeSpec, SpringSpec,
+        Dim, Elastic, End, HasEngine, Links, RopeSpec, SpringSpec,
         rig::tests::{Air, G, bar, body, point},
     },
     space::{Vector, Wedge},
@@ -118,4 +118,16 @@ fn a_rope_at_rest_carries_the_weight() {
     let mut air = Air::new(solids, Links { ropes: vec![rope], ..Links::default() }, G);
     air.run(1e-3, 1.0);
     assert!((air.rig.rope(0).tension / weight - 1.0).abs() < 1e-6, "{:?}", air.rig.rope(0));
+}
+
+#[test]
+fn what_swings_faster_in_water_than_particles_carry_sound_has_a_hundredth_of_the_critical_damping() {
+    let (crossing, mass) = (1e-3, 4.0);
+    let of = |omega: f64, damping: f64| {
+        let elastic = Elastic { stiffness: omega * omega * mass, damping, length: 1.0 };
+        elastic.in_water(crossing, 1.0 / mass).damping / (2.0 * omega * mass)
+    };
+    assert_eq!(of(1999.0, 0.0), 0.0, "a slower one is left as it is");
+    assert!((of(2001.0, 0.0) - 0.01).abs() < 1e-12 && (of(1e6, 0.0) - 0.01).abs() < 1e-12);
+    assert!((of(1e4, 8e5) - 10.0).abs() < 1e-12, "what it has of its own stays");
 }

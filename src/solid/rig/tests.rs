@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{JointReading, Rig};
+use super::{Around, JointReading, Rig};
 use crate::{
     error::Result,
     shape::Shape,
@@ -55,8 +55,9 @@ where
             Role::Free(body) => Load { force: point(0.0, -body.mass * self.gravity), torque: Wedge::zero() },
             _ => Load::zero(),
         };
-        let known: Vec<_> = self.solids.iter().map(weight).collect();
-        self.rig.act(&mut *self.engine, &before, &known, [self.t, dt]);
+        let loads: Vec<_> = self.solids.iter().map(weight).collect();
+        let around = Around { wet: vec![false; loads.len()], loads, crossing: 0.0 };
+        self.rig.act(&mut *self.engine, &before, &around, [self.t, dt]);
         self.t += dt;
         let driven = |solid: &SolidSpec<D>| match &solid.role {
             Role::Driven(motion) => Some(motion.kinematics(&solid.pose, self.t)),
