@@ -156,7 +156,8 @@ impl<const D: usize> Look<'_, D> {
             let what =
                 format!("springs or motors are so stiff that the run takes {} times as many steps", three(slower));
             // What swings so fast in the water is beyond the sound that particles carry: docs/stability.md.
-            let damped = "in water a spring whose body swings as fast has a hundredth of the critical damping, 2 √(k m)";
+            let damped =
+                "in water a spring whose body swings as fast has a hundredth of the critical damping, 2 √(k m)";
             let soft = down(slower.powi(-2));
             let mend = format!("{soft} of the stiffness is soft enough; a rope costs no steps; {damped}");
             findings.push(Finding::warning("stiff_spring", what, mend));

@@ -45,7 +45,8 @@ class Chart {
     const gaps = x => Array.from(x, v => Number.isNaN(v) ? null : v);
     const data = uPlot.join(lines.map(line => [Array.from(line.t), gaps(line.x)]));
     const axis = { stroke: style("--quiet"), font: "11px system-ui, sans-serif", grid: { stroke: style("--rule"), width: 1 }, ticks: { stroke: style("--rule"), width: 1, size: 5 } };
-    const words = (_, all) => all.map(v => v === null ? "" : `${+v.toPrecision(6)}`.replace("-", "−"));
+    const short = v => Math.abs(v) < 1e-3 || Math.abs(v) >= 1e6 ? (+v.toPrecision(6)).toExponential().replace("e+", "e") : `${+v.toPrecision(6)}`;
+    const words = (_, all) => all.map(v => v === null ? "" : v === 0 ? "0" : short(v).replaceAll("-", "−"));
     const series = lines.map((line, i) => {
       const stroke = tint(line.tint ?? i), value = (_, v) => v == null ? "–" : `${said(v)} ${unit}`;
       const dots = { paths: () => null, points: { show: true, size: 4.5, width: 1, stroke, fill: stroke } };
