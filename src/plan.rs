@@ -271,6 +271,8 @@ pub enum Reference {
 pub enum Align {
     /// So that |x| of both first passes this threshold at one time. In the unit of the series.
     Crossing(f64),
+    /// The reference has a clock of its own, which starts as |x| of the run first passes this threshold. In the unit of the series.
+    Start(f64),
     /// By the delay of least N.
     Best,
 }

@@ -33,7 +33,7 @@ pub struct Aligned {
 pub struct Arrival {
     /// The run.
     pub run: Option<f64>,
-    /// Its reference.
+    /// Its reference; 0 where its clock starts then.
     pub reference: Option<f64>,
 }
 
@@ -46,6 +46,7 @@ pub fn align(sim: &Series, reference: &Series, align: Align, window: (f64, f64))
             let arrival = Arrival { run, reference: reference.crossing(threshold) };
             (arrival.run.zip(arrival.reference).map(|(run, reference)| run - reference), Some(arrival))
         }
+        Align::Start(threshold) => (None, Some(Arrival { run: sim.crossing(threshold), reference: Some(0.0) })),
         Align::Best => (best_delay(sim, reference), None),
     };
     let aligned = delay.and_then(|delay| {

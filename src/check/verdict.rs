@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    plan::{CheckWords, Reference, Score},
+    plan::{Align, CheckWords, Reference, Score},
     series::Series,
     solid::Formula,
 };
@@ -109,7 +109,7 @@ impl Check {
             Reference::Formula(text) => Known::Formula(Formula::parse(text)?),
             Reference::Table { file, time, column, delay } => {
                 let path = folder.join(file);
-                let (from, until) = window(words);
+                let (from, until) = window(words, 0.0);
                 let whole = table::read(&path, time, column, *delay)?;
                 Known::Table(
                     whole.within(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
@@ -131,7 +131,7 @@ impl Check {
     /// reference have no time in common.
     pub fn curves(&self, folder: &Path) -> Result<Curves> {
         let (sim, meaned) = self.run(folder)?;
-        let (reference, covered) = self.common(&sim)?;
+        let (reference, covered, _) = self.common(&sim)?;
         let exact = matches!(self.reference, Known::Formula(_));
         Ok(Curves { sim, meaned, reference, exact, covered })
     }
@@ -147,11 +147,11 @@ impl Check {
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
-        let (reference, covered) = match self.common(&sim) {
+        let (reference, covered, start) = match self.common(&sim) {
             Ok(common) => common,
             Err(why) => {
                 // A run that ends before its reference begins, or before it is set to zero, is too short, no failure.
-                let (from, until) = window(&self.words);
+                let (from, until) = window(&self.words, 0.0);
                 let set = self.words.zero.is_none_or(|at| at <= sim.span().1);
                 let reaches = set && matches!(self.reference, Known::Formula(_)) && sim.within(from, until).is_ok();
                 verdict.passed = self.words.bound.filter(|_| reaches).map(|_| false);
@@ -160,15 +160,15 @@ impl Check {
         };
         verdict.covered = covered;
         verdict.note = deviation(&sim, &reference).err().map(|why| why.to_string());
-        verdict.figures = self.figures(&sim, &reference);
+        verdict.figures = self.figures(&sim, &reference, start);
         verdict.meaned = self
             .words
             .mean
             .zip(meaned.as_ref())
-            .map(|(seconds, meaned)| Meaned { seconds, figures: self.figures(meaned, &reference) });
+            .map(|(seconds, meaned)| Meaned { seconds, figures: self.figures(meaned, &reference, start) });
         if let Some(how) = self.words.align {
             let shown = meaned.as_ref().unwrap_or(&sim);
-            (verdict.aligned, verdict.arrival) = align(shown, &reference, how, window(&self.words));
+            (verdict.aligned, verdict.arrival) = align(shown, &reference, how, window(&self.words, start));
         }
         match self.words.bound {
             Some(_) if covered < 0.5 => {
@@ -206,15 +206,25 @@ impl Check {
         Ok((sim, meaned))
     }
 
-    /// The reference where the run covers it, and which share of it that is.
-    fn common(&self, sim: &Series) -> Result<(Series, f64)> {
+    /// When the reference's clock starts, s of the run's: 0 unless it has one of its own.
+    fn start(&self, sim: &Series) -> Result<f64> {
+        let Some(Align::Start(threshold)) = self.words.align else { return Ok(0.0) };
+        sim.crossing(threshold).ok_or_else(|| {
+            Error::scene(format!("the run never passes {threshold}, with which the clock of its reference starts"))
+        })
+    }
+
+    /// The reference where the run covers it, which share of it that is, and when its clock starts.
+    fn common(&self, sim: &Series) -> Result<(Series, f64, f64)> {
         let (first, last) = sim.span();
         if let Some(at) = self.words.zero.filter(|at| *at > last) {
             return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
         }
-        let (from, until) = window(&self.words);
+        let start = self.start(sim)?;
+        let (from, until) = window(&self.words, start);
         match &self.reference {
             Known::Table(whole) => {
+                let whole = whole.moved(start);
                 let common = whole.within(first, last).map_err(|_| {
                     let (from, to) = whole.span();
                     Error::scene(format!(
@@ -222,11 +232,11 @@ impl Check {
                     ))
                 })?;
                 let covered = common.times().len() as f64 / whole.times().len() as f64;
-                Ok((common, covered))
+                Ok((common, covered, start))
             }
             Known::Formula(formula) => {
                 let times = sim.within(from, until)?.times().to_vec();
-                let values: Vec<f64> = times.iter().map(|&t| formula.at(t).0).collect();
+                let values: Vec<f64> = times.iter().map(|&t| formula.at(t - start).0).collect();
                 if let Some(i) = values.iter().position(|x| !x.is_finite()) {
                     return Err(Error::scene(format!("the formula gives {} at t = {} s", values[i], times[i])));
                 }
@@ -236,13 +246,13 @@ impl Check {
                 } else {
                     1.0
                 };
-                Ok((Series::new(times, values)?, covered))
+                Ok((Series::new(times, values)?, covered, start))
             }
         }
     }
 
-    fn figures(&self, sim: &Series, reference: &Series) -> Figures {
-        let (from, until) = window(&self.words);
+    fn figures(&self, sim: &Series, reference: &Series, start: f64) -> Figures {
+        let (from, until) = window(&self.words, start);
         Figures {
             n: deviation(sim, reference).ok(),
             m: amplitude(sim, reference).ok(),
@@ -266,7 +276,11 @@ impl Verdict {
     }
 }
 
-/// First and last time of the run that count, s.
-fn window(words: &CheckWords) -> (f64, f64) {
-    (words.from.unwrap_or(f64::NEG_INFINITY), words.until.unwrap_or(f64::INFINITY))
+/// First and last time of the run that count, s, where the reference's clock starts at `start` (s).
+fn window(words: &CheckWords, start: f64) -> (f64, f64) {
+    let from = match words.align {
+        Some(Align::Start(_)) => 0.0,
+        _ => f64::NEG_INFINITY,
+    };
+    (words.from.unwrap_or(from) + start, words.until.unwrap_or(f64::INFINITY) + start)
 }

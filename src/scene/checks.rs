@@ -67,8 +67,10 @@ impl Scene {
         if let Some(zero) = check.zero.filter(|zero| !(*zero >= 0.0 && zero.is_finite())) {
             return Err(self.wrong(&format!("{key}.zero"), format!("zero is a time of the run, and {zero} s is none")));
         }
-        if let Some(Align::Crossing(threshold)) = check.align {
-            self.positive(&format!("{key}.align.crossing"), Some(threshold))?;
+        match check.align {
+            Some(Align::Crossing(threshold)) => self.positive(&format!("{key}.align.crossing"), Some(threshold))?,
+            Some(Align::Start(threshold)) => self.positive(&format!("{key}.align.start"), Some(threshold))?,
+            Some(Align::Best) | None => {}
         }
         match (check.from, check.until) {
             (Some(from), Some(until)) if from >= until => {
@@ -94,7 +96,7 @@ impl Scene {
             let what = format!("{word} is the largest that passes, and {} is below 0", figure.unwrap_or_default());
             return Err(self.wrong(&format!("{key}.bound.{word}"), what));
         }
-        if check.align.is_none()
+        if matches!(check.align, None | Some(Align::Start(_)))
             && let Some((word, _)) = figures[4..].iter().find(|(_, figure)| figure.is_some())
         {
             let what = format!("the bound names {word}, but nothing is aligned");

@@ -158,6 +158,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("check.mean", "mean = 0.005       # s"),
     ("align", "align = \"best\", or  align = { crossing = 5.0 }"),
     ("align.crossing", "align = { crossing = 5.0 }        # in the unit of the series"),
+    ("align.start", "align = { start = 5.0 }        # in the unit of the series"),
     ("bound", "bound = { N = 0.3, M = 0.2, peak = 0.2, off = 0.01, aligned_N = 0.2, delay = 0.05 }"),
     ("paper", "paper = { N = 0.355, M = 1.115 }"),
 ];

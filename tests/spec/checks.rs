@@ -238,6 +238,34 @@ fn a_late_run_is_told_by_how_much_by_its_crossing_and_by_the_best_delay() -> std
 }
 
 #[test]
+fn a_reference_with_a_clock_of_its_own_starts_when_the_run_says() -> std::io::Result<()> {
+    // The run is at rest for a second, then rises with 2 m/s; the record begins as it passes 1 m.
+    let folder = folder("clock", &table(|t| (2.0 * (t - 1.0)).max(0.0)), &table(|t| 1.0 + 2.0 * t))?;
+    let words = CheckWords {
+        align: Some(Align::Start(1.0)),
+        until: Some(0.8),
+        bound: bound(0.01),
+        ..by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None)
+    };
+    let verdict = judge(&words, &folder);
+    // All is linear: round-off.
+    assert!(verdict.figures.n.is_some_and(|n| n < 1e-12), "{verdict:?}");
+    let arrival = verdict.arrival.expect("it passes 1 m");
+    assert!(arrival.run.is_some_and(|t| (t - 1.5).abs() < 1e-12) && arrival.reference == Some(0.0), "{arrival:?}");
+    assert!(verdict.aligned.is_none() && verdict.covered == 1.0);
+
+    let formula = CheckWords {
+        align: Some(Align::Start(1.0)),
+        from: Some(0.1),
+        ..by_formula("box.heave_m", "1 + 2*t", bound(1e-9))
+    };
+    assert_eq!(judge(&CheckWords { until: Some(0.8), ..formula }, &folder).passed, Some(true));
+    let never = judge(&CheckWords { align: Some(Align::Start(9.0)), ..words }, &folder);
+    assert!(never.passed.is_none() && never.note.is_some_and(|note| note.contains("never passes 9")));
+    fs::remove_dir_all(folder)
+}
+
+#[test]
 fn the_table_of_checks_has_only_columns_that_one_of_them_uses() -> std::io::Result<()> {
     let folder = folder("table", &table(|t| t), "")?;
     let plain = judge(&by_formula("box.heave_m", "t", bound(0.1)), &folder);
@@ -273,6 +301,7 @@ fn words_of_a_check_that_cannot_be_meant_are_refused_with_advice() {
         ("formula = \"0\"\nmean = 0.0", ["mean must be a positive number", "write  mean = 0.005"]),
         ("formula = \"0\"\nalign = \"bset\"", ["unknown align \"bset\"; did you mean \"best\"?", "crossing"]),
         ("formula = \"0\"\nalign = { crossing = -5.0 }", ["crossing must be a positive number", "align = {"]),
+        ("formula = \"0\"\nalign = { start = 0.0 }", ["start must be a positive number", "align = {"]),
         ("formula = \"0\"\nbound = { aligned_N = 0.1 }", ["nothing is aligned", "align = \"best\""]),
         ("formula = \"0\"\nbound = { of = 0.1 }", ["unknown key \"of\"; did you mean \"off\"?", "bound = {"]),
         ("formula = \"0\"\nbound = { off = -0.1 }", ["the largest that passes", "check.0.bound.off"]),
