@@ -46,7 +46,7 @@ pub fn align(sim: &Series, reference: &Series, align: Align, window: (f64, f64))
             let arrival = Arrival { run, reference: reference.crossing(threshold) };
             (arrival.run.zip(arrival.reference).map(|(run, reference)| run - reference), Some(arrival))
         }
-        Align::Start(threshold) => (None, Some(Arrival { run: sim.crossing(threshold), reference: Some(0.0) })),
+        Align::Start(_) => (None, None),
         Align::Best => (best_delay(sim, reference), None),
     };
     let aligned = delay.and_then(|delay| {

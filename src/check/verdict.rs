@@ -168,7 +168,10 @@ impl Check {
             .map(|(seconds, meaned)| Meaned { seconds, figures: self.figures(meaned, &reference, start) });
         if let Some(how) = self.words.align {
             let shown = meaned.as_ref().unwrap_or(&sim);
-            (verdict.aligned, verdict.arrival) = align(shown, &reference, how, window(&self.words, start));
+            (verdict.aligned, verdict.arrival) = match how {
+                Align::Start(_) => (None, Some(Arrival { run: Some(start), reference: Some(0.0) })),
+                how => align(shown, &reference, how, window(&self.words, start)),
+            };
         }
         match self.words.bound {
             Some(_) if covered < 0.5 => {
