@@ -1,7 +1,7 @@
 //! Verdicts in words: a row for each, and only columns that one of them uses. For terminals and pages alike.
 
 use super::Verdict;
-use crate::plan::Score;
+use crate::{plan::Score, words};
 
 /// A figure with three decimals, or a dash.
 pub fn figure(x: Option<f64>) -> String {
@@ -48,7 +48,7 @@ pub fn remark(verdict: &Verdict) -> String {
 type Column = (&'static str, fn(&Verdict) -> String);
 
 /// Columns before the bound. Those after the first three stand only if some check has something to say there.
-const COLUMNS: [Column; 12] = [
+const COLUMNS: [Column; 13] = [
     ("check", |v| v.series.clone()),
     ("N", |v| figure(v.figures.n)),
     ("M", |v| figure(v.figures.m)),
@@ -58,10 +58,16 @@ const COLUMNS: [Column; 12] = [
     ("aligned N", |v| v.aligned.map_or(String::new(), |a| figure(Some(a.n)))),
     ("aligned M", |v| v.aligned.map_or(String::new(), |a| figure(Some(a.m)))),
     ("delay", |v| v.aligned.map_or(String::new(), |a| delay(a.delay))),
-    ("peak", |v| if names(v, |s| s.peak) { figure(v.figures.peak) } else { String::new() }),
+    ("peak", |v| if strikes(v) || names(v, |s| s.peak) { figure(v.figures.peak) } else { String::new() }),
+    ("mean peak", |v| v.meaned.filter(|_| strikes(v)).map_or(String::new(), |m| figure(m.figures.peak))),
     ("off", |v| if names(v, |s| s.off) { digits(v.figures.off) } else { String::new() }),
     ("paper N, M", |v| v.paper.map_or(String::new(), |p| format!("{}, {}", figure(p.n), figure(p.m)))),
 ];
+
+/// Whether the series is a load as an instrument takes it: its first peak is the first impact.
+fn strikes(verdict: &Verdict) -> bool {
+    verdict.meaned.is_some() && ["N", "N/m", "Pa"].contains(&words::unit(&verdict.series))
+}
 
 /// Whether the bound or the paper names a figure.
 fn names(verdict: &Verdict, which: fn(&Score) -> Option<f64>) -> bool {
