@@ -11,16 +11,16 @@
 //!
 //! Where a face rises from the water, continuity takes what slides past it for water that comes on, and a wall that forgets
 //! within τ holds fast what moves up and down along it. So where water is scanty *and* slow a particle settles to less
-//! pressure sooner, within 0.15 h/c₀: [`Goal::down`].
+//! pressure sooner, within 0.3 h/c₀: [`Goal::down`].
 
 use crate::{law::Num, space::Vector};
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
 const TIME: f64 = 10.0;
 
-/// The same where water is scanty and slow, –: at 0 a struck body on a stiff spring gains energy, at 0.3 half as much again of
-/// a standing wave's delay is left.
-const SOON: f64 = 0.15;
+/// The same where water is scanty and slow, –: at 0 a struck body on a stiff spring gains energy, at 0.15 a sheet of foam hops
+/// on, at 1 a rolling box is held.
+const SOON: f64 = 0.3;
 
 /// The speed past the wall over c₀, –, at which half of that is left: a film that runs over a bed is faster, and stays as it was.
 const SLOW: f64 = 0.01;
