@@ -32,11 +32,7 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    law::{
-        Extra, Medium, gradient,
-        state::State,
-        wall::{Cover, Goal},
-    },
+    law::{Extra, Medium, gradient, state::State, wall::Cover},
     model::{Dimension, Gradient, Model, Viscosity},
     near::{CHUNK, Near},
     particles::{PER_TASK, Particles},
@@ -58,8 +54,8 @@ pub struct System<const D: usize> {
     pub(crate) skin: Particles<D>,
     /// Places of the boundary particles in their solids' frames, m.
     local: Vec<Vector<D>>,
-    /// What they settle to; empty unless they do.
-    goals: Vec<Goal>,
+    /// To which densities (kg/m³) they settle, and with which part to more; empty unless they do.
+    goals: Vec<(f64, f64)>,
     /// What tells how far water fills what they see of it.
     cover: Cover,
     /// Whether somebody asks how deep in the water they are.

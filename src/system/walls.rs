@@ -8,7 +8,7 @@ use super::System;
 use crate::{
     law::{
         Medium,
-        wall::{Dbc, Fit, Goal, Slip, Way, sticking},
+        wall::{Dbc, Fit, Slip, settled, sticking},
     },
     model::{Model, Shifting, Walls},
     particles::PER_TASK,
@@ -44,13 +44,16 @@ impl<const D: usize> System<D> {
     /// index and its density over `dt` (s), never below what the wall law allows, and settle. The dry ones stay at ρ₀.
     pub(crate) fn set_skin_density(&mut self, dt: f64, mut rho: impl FnMut(usize, usize, f64) -> f64) {
         let Medium { rho0, h, c0, .. } = self.medium;
-        let way = Way::new(dt, h, c0);
+        let settled = settled(dt, h, c0);
         for (k, &i) in self.near.wet().iter().enumerate() {
             let i = i as usize;
             let bare = rho(k, i, self.skin.rho[i]);
             self.skin.rho[i] = match self.goals.get(i) {
                 None => Dbc.close(bare, rho0),
-                Some(goal) => goal.settle(Dbc.close(bare, goal.rho.min(rho0)), &way),
+                Some(&(goal, cover)) => {
+                    let own = Dbc.close(bare, goal.min(rho0));
+                    own + (goal - own) * if goal > own { settled * cover } else { settled }
+                }
             };
         }
     }
@@ -65,7 +68,7 @@ impl<const D: usize> System<D> {
         let Self { sweep, near, fluid, skin, stress, forms, marks, medium, state, .. } = self;
         let input = Input { near, water: fluid, skin, shown: &skin.v, stress, forms, marks, medium, state };
         let mut fits = vec![Fit::all(0.0); input.near.wet().len()];
-        sweep.fits(&input, settling || sticks, &mut fits);
+        sweep.fits(&input, sticks, &mut fits);
         if self.feels {
             self.immersed = fits.iter().map(|fit| fit.weight).collect();
         }
@@ -79,18 +82,17 @@ impl<const D: usize> System<D> {
 
     /// Makes goals of the pressures of `fits`, one for each wet boundary particle.
     fn aim_at(&mut self, fits: &[Fit<f64, D>]) {
-        let Medium { rho0, c0, gravity, .. } = self.medium;
         let goal = |(&i, fit): (&u32, &Fit<f64, D>)| {
             let i = i as usize;
             let owner = self.owner(i);
-            let pull = gravity - owner.acceleration_at(&self.skin.r[i]);
+            let pull = self.medium.gravity - owner.acceleration_at(&self.skin.r[i]);
             let depth = self.depths[i];
-            let rho = rho0 * (1.0 + self.state.excess(fit.close(&pull, &gravity, depth)));
-            Goal::new(rho, self.cover.part(fit.weight, depth), fit.speed(&self.skin.v[i]), c0)
+            let density = self.medium.rho0 * (1.0 + self.state.excess(fit.close(&pull, &self.medium.gravity, depth)));
+            (density, self.cover.part(fit.weight, depth))
         };
         let wet = self.near.wet();
-        let goals: Vec<Goal> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(goal).collect();
-        self.goals.resize(self.skin.len(), Goal::new(rho0, 0.0, 0.0, c0));
+        let goals: Vec<(f64, f64)> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(goal).collect();
+        self.goals.resize(self.skin.len(), (self.medium.rho0, 0.0));
         for (&i, goal) in wet.iter().zip(goals) {
             self.goals[i as usize] = goal;
         }

@@ -11,7 +11,7 @@ use pontoon::{
         pressure::{Pressure, Tensile},
         shifting::{HeldTerm, Shift, ShiftTerm},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
-        wall::{Barrier, Cover, Fit, Goal, Way, sticking},
+        wall::{Barrier, Cover, Fit, settled, sticking},
     },
     model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
     space::Vector,
@@ -316,48 +316,10 @@ fn a_shear_along_a_face_is_continued_behind_it_exactly() {
     assert_eq!(sticking(&Fit::<f64, 3>::all(0.0), wall, &normal, depth), wall, "no water, no continuation");
 }
 
-/// How much (kg/m³) of 1 kg/m³ too much or too little is left after `steps` steps of `dt` (s), where h/c₀ = 1 ms.
-fn left(excess: f64, goal: &Goal, dt: f64, steps: usize) -> f64 {
-    let way = Way::new(dt, 0.02, 20.0);
-    (0..steps).fold(goal.rho + excess, |rho, _| goal.settle(rho, &way)) - goal.rho
-}
-
 #[test]
 fn a_wall_settles_as_fast_in_one_step_as_in_many() {
-    for (cover, excess) in [(1.0, 1.0), (1.0, -1.0), (0.0, 1.0), (0.3, 1.0)] {
-        let goal = Goal::new(1000.0, cover, 20.0, 20.0);
-        assert!((left(excess, &goal, 1e-4, 10) - left(excess, &goal, 1e-3, 1)).abs() < 1e-7);
-        // Ten h/c₀ leave 1/e of the way, in water as fast as sound.
-        assert!((left(excess, &goal, 0.01, 1) - excess * (-1.0f64).exp()).abs() < 1e-5);
-    }
-}
-
-#[test]
-fn a_wall_lets_go_soon_only_downwards_and_where_water_is_scanty_and_slow() {
-    let after = |excess: f64, cover: f64, speed: f64| left(excess, &Goal::new(1000.0, cover, speed, 20.0), 0.0003, 1);
-    // In 0.3 h/c₀ what goes soon has 1/e left, all else exp(−0.03).
-    let (soon, steady) = ((-1.0f64).exp(), (-0.03f64).exp());
-    for (excess, cover, speed, expected) in [
-        (1.0, 0.0, 0.0, soon),
-        (1.0, 1.0, 0.0, steady),
-        (-1.0, 1.0, 0.0, -steady),
-        (-1.0, 0.0, 0.0, -1.0),
-        // Half of the way at a hundredth of the speed of sound; a film that runs at a tenth of it hardly feels it.
-        (1.0, 0.0, 0.2, 0.5 * (soon + steady)),
-        (1.0, 0.0, 2.0, steady - 1e-4 * (steady - soon)),
-    ] {
-        let found = after(excess, cover, speed);
-        assert!((found - expected).abs() < 1e-6, "{excess}, {cover}, {speed}: {found}, not {expected}");
-    }
-}
-
-#[test]
-fn the_speed_past_a_wall_is_that_of_the_water_near_it_less_its_own() {
-    let (mut fit, wall) = (Fit::all(0.0), Vector::from([0.3, 0.1, 0.2]));
-    assert_eq!(fit.speed(&wall), 0.0, "no water, no speed");
-    for (w, v) in [(0.1, [1.0, 0.0, 0.0]), (0.3, [0.0, 2.0, 0.0])] {
-        fit.add(w, 0.0, 1.0, [0.0, 0.0, 0.006]);
-        fit.add_flow(w, 1.0, v);
-    }
-    assert!((fit.speed(&wall) - (Vector::from([0.25, 1.5, 0.0]) - wall).norm()).abs() < 1e-15);
+    let many = (0..10).fold(1.0, |left, _| left * (1.0 - settled(1e-4, 0.02, 20.0)));
+    assert!((many - (1.0 - settled(1e-3, 0.02, 20.0))).abs() < 1e-15);
+    // Ten h/c₀ leave 1/e of the way.
+    assert!((settled(0.01, 0.02, 20.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
 }

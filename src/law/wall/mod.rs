@@ -7,5 +7,5 @@ mod slip;
 
 pub use barrier::Barrier;
 pub use dbc::Dbc;
-pub use settling::{Cover, Fit, Goal, Way};
+pub use settling::{Cover, Fit, settled};
 pub use slip::{Slip, sticking};

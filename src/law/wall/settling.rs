@@ -8,22 +8,11 @@
 //! is remembered. P_w is never so low that the face itself would be sucked at, P_w ≥ min(0, ρ₀ g·n' d), d deep along n' from
 //! the water: a face that bears nothing has 0 there, and less behind it if it looks down. To more pressure a particle settles only with
 //! the part of its [`Cover`]: a particle of spray would leave with more energy than it brought, and so would a film.
-//!
-//! Where a face rises from the water, continuity takes what slides past it for water that comes on, and a wall that forgets
-//! within τ holds fast what moves up and down along it. So where water is scanty *and* slow a particle settles to less
-//! pressure sooner, within 0.3 h/c₀: [`Goal::down`].
 
 use crate::{law::Num, space::Vector};
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
 const TIME: f64 = 10.0;
-
-/// The same where water is scanty and slow, –: at 0 a struck body on a stiff spring gains energy, at 0.15 a sheet of foam hops
-/// on, at 1 a rolling box is held.
-const SOON: f64 = 0.3;
-
-/// The speed past the wall over c₀, –, at which half of that is left: a film that runs over a bed is faster, and stays as it was.
-const SLOW: f64 = 0.01;
 
 /// Depths at which [`Cover`] is tabled, less one.
 const DEPTHS: usize = 64;
@@ -32,44 +21,9 @@ const DEPTHS: usize = 64;
 const SCANTY: f64 = 0.8;
 const AMPLE: f64 = 1.0;
 
-/// Where a boundary particle settles to, and how fast.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Goal {
-    /// The density that the water near it would have at its place, kg/m³.
-    pub rho: f64,
-    /// The part of its way to more pressure that it goes, –: its [`Cover`].
-    pub up: f64,
-    /// The part of its way to less that it goes soon, –.
-    pub down: f64,
-}
-
-impl Goal {
-    /// Of a boundary particle whose water would have the density `rho` (kg/m³), covers it by `cover` and moves past it with
-    /// `speed` (m/s), where sound has `c0` (m/s).
-    pub fn new(rho: f64, cover: f64, speed: f64, c0: f64) -> Self {
-        Self { rho, up: cover, down: (1.0 - cover) / (1.0 + (speed / (SLOW * c0)).powi(4)) }
-    }
-
-    /// The density (kg/m³) to which `own` (kg/m³) has settled after `way`.
-    pub fn settle(&self, own: f64, way: &Way) -> f64 {
-        let part = if self.rho > own { way.steady * self.up } else { way.steady + (way.soon - way.steady) * self.down };
-        own + (self.rho - own) * part
-    }
-}
-
-/// The parts of the way (–) to its goal that a boundary particle goes in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
-    steady: f64,
-    soon: f64,
-}
-
-impl Way {
-    /// In `dt` (s), with h (m) and c₀ (m/s).
-    pub fn new(dt: f64, h: f64, c0: f64) -> Self {
-        let part = |time: f64| 1.0 - (-dt * c0 / (time * h)).exp();
-        Self { steady: part(TIME), soon: part(SOON) }
-    }
+/// The part of the way (–) to its goal that a boundary particle goes in `dt` (s), with h (m) and c₀ (m/s).
+pub fn settled(dt: f64, h: f64, c0: f64) -> f64 {
+    1.0 - (-dt * c0 / (TIME * h)).exp()
 }
 
 /// The sums of a boundary particle over the water near it [@adami2012].
@@ -81,7 +35,7 @@ pub struct Fit<N, const D: usize> {
     pub head: N,
     /// Σ V₀ W_wf r_wf, m.
     pub arm: [N; D],
-    /// Σ V_f W_wf v_f, m/s; summed for walls that settle and for those that water sticks to.
+    /// Σ V_f W_wf v_f, m/s; summed where the wall's [`Slip`](super::Slip) asks for it.
     pub flow: [N; D],
 }
 
@@ -126,11 +80,6 @@ impl<const D: usize> Fit<f64, D> {
         // The face is where the water is: a thin plate has two.
         let least = arm.try_normalize(0.0).map_or(0.0, |away| (g.dot(&away) * depth).min(0.0));
         ((self.head + pull.dot(&arm)) / self.weight).max(least)
-    }
-
-    /// How fast (m/s) the water moves, on the mean, past a wall that moves with `v` (m/s).
-    pub fn speed(&self, v: &Vector<D>) -> f64 {
-        if self.weight < 1e-9 { 0.0 } else { (Vector::from(self.flow) / self.weight - v).norm() }
     }
 }
 
