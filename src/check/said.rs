@@ -66,7 +66,9 @@ const COLUMNS: [Column; 13] = [
 
 /// Whether the series is a load as an instrument takes it: its first peak is the first impact.
 fn strikes(verdict: &Verdict) -> bool {
-    verdict.meaned.is_some() && ["N", "N/m", "Pa"].contains(&words::unit(&verdict.series))
+    // A second check of a series is told as "force.fx_N (2)".
+    let column = verdict.series.split(" (").next().unwrap_or_default();
+    verdict.meaned.is_some() && ["N", "N/m", "Pa"].contains(&words::unit(column))
 }
 
 /// Whether the bound or the paper names a figure.

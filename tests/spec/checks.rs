@@ -279,7 +279,7 @@ fn the_table_of_checks_has_only_columns_that_one_of_them_uses() -> std::io::Resu
     let rich = judge(&rich, &folder);
     assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean over|mean N|mean M|aligned N|aligned M|delay|off|bound|");
     // A load as an instrument takes it strikes: its first peak is told.
-    let load = Verdict { series: "wall.fx_N".into(), bound: None, aligned: None, ..rich };
+    let load = Verdict { series: "wall.fx_N (2)".into(), bound: None, aligned: None, ..rich };
     assert_eq!(heads(&[&load]), "check|N|M|mean over|mean N|mean M|peak|mean peak|bound|");
     fs::remove_dir_all(folder)
 }
