@@ -5,6 +5,7 @@
 //! and pages say what came out. [`stress`] makes and judges many short runs in memory.
 
 mod cases;
+mod cost;
 mod estimate;
 mod grid;
 mod job;

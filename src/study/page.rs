@@ -10,6 +10,7 @@ const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em au
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\
 table{border-collapse:collapse;margin:.6em 0;font-size:.87em}td,th{padding:.2em .7em;text-align:left;\
 border-bottom:1px solid #ddd;font-variant-numeric:tabular-nums}th{border-bottom:2px solid #888}\
+td:first-child{white-space:nowrap}\
 code{font-size:.92em}.key{display:inline-block;width:1.6em;height:.5em;margin-right:.5em;vertical-align:middle}\
 .missed{color:#b00020;font-weight:bold}figure{margin:.5em 0}figcaption{font-size:.9em;color:#444}";
 

@@ -106,6 +106,7 @@ fn draw(titles: [&str; 2], lines: &[Line], x: Axis, y: Axis) -> Result<String> {
         area.fill(&WHITE).map_err(|e| failed(e.to_string()))?;
         let mut chart = ChartBuilder::on(&area)
             .margin(24)
+            .margin_right(48)
             .x_label_area_size(92)
             .y_label_area_size(140)
             .build_cartesian_2d(x, y)

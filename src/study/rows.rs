@@ -46,6 +46,12 @@ pub struct Row {
     pub reason: Option<String>,
 }
 
+/// An error that is plotted: its name, and how a row tells it.
+pub type Metric = (&'static str, fn(&Row) -> Option<f64>);
+
+/// The errors relative to the reference: N, and N with the delay taken out.
+pub const RELATIVE: [Metric; 2] = [("N", |r| r.figures.n), ("aligned N", |r| r.aligned_n)];
+
 impl Row {
     /// The error that is plotted: N, or else the largest distance.
     pub fn error(&self) -> Option<f64> {

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::{
     Grid, Job, Line, Ran, Row, Style, convergence, csv, least_squares, log_log,
     page::{self, unit},
-    rows::{labels, rows},
+    rows::{Metric, RELATIVE, labels, rows},
 };
 use crate::{
     check::said,
@@ -41,9 +41,6 @@ struct Order {
     /// Grid-convergence index of the finest, –.
     index: Option<f64>,
 }
-
-/// An error that is plotted: its name, and how a row tells it.
-type Metric = (&'static str, fn(&Row) -> Option<f64>);
 
 #[derive(Serialize)]
 struct Whole<'a> {
@@ -112,12 +109,13 @@ impl Sheet {
     /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
     /// where there is no N.
     fn metrics(rows: &[Row], check: &str) -> Vec<Metric> {
-        let known: [Metric; 3] =
-            [("N", |r| r.figures.n), ("aligned N", |r| r.aligned_n), ("largest distance", |r| r.figures.off)];
         let has = |metric: &Metric| rows.iter().any(|r| r.check == check && metric.1(r).is_some());
-        let found: Vec<Metric> = known.into_iter().filter(has).collect();
-        let relative = found.iter().any(|m| m.0 == "N");
-        found.into_iter().filter(|m| !(relative && m.0 == "largest distance")).collect()
+        let found: Vec<Metric> = RELATIVE.into_iter().filter(has).collect();
+        let distance: Metric = ("largest distance", |r| r.figures.off);
+        match found.is_empty() {
+            true => std::iter::once(distance).filter(has).collect(),
+            false => found,
+        }
     }
 
     /// The combinations, in words.

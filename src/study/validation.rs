@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    Case, Job, Line, Ran, State, Style, csv, curves,
+    Case, Job, Line, Ran, State, Style, cost, csv, curves,
     page::{self, unit},
     rows::{labels, rows},
 };
@@ -68,12 +68,14 @@ impl Validation {
         let (machine, threads) = (first.map_or_else(Machine::this, |m| m.machine.clone()), first.map(|m| m.threads));
         let mut body = page::origin(&self.command, &machine, threads);
         body += &page::table(&self.table(ran));
+        let rows = rows(&self.jobs[..ran.len()], ran, &[]);
+        body += &cost::figures(&self.jobs, &rows)?;
         for ((case, job), ran) in self.cases.iter().zip(&self.jobs).zip(ran) {
             body += &section(case, job, ran)?;
         }
         let [html, table] = self.files();
         write_whole(&html, &page::page("Validation", &body))?;
-        write_whole(&table, &csv(&rows(&self.jobs[..ran.len()], ran, &[]), &[])?)
+        write_whole(&table, &csv(&rows, &[])?)
     }
 }
 
