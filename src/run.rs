@@ -149,12 +149,18 @@ pub fn run(path: &Path, options: &Options, watch: &mut dyn Watch) -> Result<Outc
 }
 
 /// Goes on with the interrupted run in `folder`, to the same bits as if it had not been interrupted: from its last
-/// checkpoint, or the one before where that is missing or damaged; a warning in the manifest says so.
+/// checkpoint, or the one before where that is missing or damaged; a warning in the manifest says so. `guards` are
+/// keys of the scene's `[guard]` and their new values: a run that a guard stopped may go on with another.
 ///
 /// # Errors
 /// `Restart` if it has finished or still goes on, holds no whole checkpoint, or its scene has changed since;
-/// else as [`run`].
-pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> Result<Outcome> {
+/// `Usage` if `guards` names any other key; else as [`run`].
+pub fn resume(
+    folder: &Path,
+    guards: &[(String, String)],
+    threads: Option<usize>,
+    watch: &mut dyn Watch,
+) -> Result<Outcome> {
     Manifest::read(folder)?;
     let lock = Lock::take(folder)?;
     // Read again under the lock: a run that was still going on may have finished since.
@@ -162,7 +168,7 @@ pub fn resume(folder: &Path, threads: Option<usize>, watch: &mut dyn Watch) -> R
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
     }
-    let Kept { checkpoint, scene, warning } = kept::newest(folder)?;
+    let Kept { checkpoint, scene, warning } = kept::newest(folder)?.guard(folder, guards)?;
     let origin = Origin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
     with_threads(threads, || by_dimension(&scene, origin, watch))
 }

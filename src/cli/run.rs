@@ -60,6 +60,9 @@ pub struct ResumeArgs {
     /// Folder of the run
     #[arg(value_name = "DIR")]
     folder: PathBuf,
+    /// Change a key of [guard] from here on; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = super::pair)]
+    set: Vec<Pair>,
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -111,7 +114,7 @@ pub fn run(args: &RunArgs) -> Result<u8> {
 /// As [`run::resume`].
 pub fn resume(args: &ResumeArgs) -> Result<u8> {
     let mut follow = follower(&args.said)?;
-    let outcome = run::resume(&args.folder, args.threads, &mut *follow);
+    let outcome = run::resume(&args.folder, &args.set, args.threads, &mut *follow);
     told(end(outcome, follow, &args.said), &args.said)
 }
 

@@ -1,5 +1,5 @@
 //! Which of the checkpoints in a run's folder the run goes on from: the last one, or the one before where the last
-//! is of no use. Writes nothing.
+//! is of no use, and what of its scene may change then. Writes nothing.
 
 use std::{fs, path::Path};
 
@@ -17,10 +17,34 @@ use crate::{
 pub struct Kept {
     /// The checkpoint.
     pub checkpoint: Checkpoint,
-    /// The scene, as it was at the start.
+    /// The scene, as it was at the start; its guards may have been set since.
     pub scene: Scene,
     /// Why it is not the last checkpoint, if it is the one before.
     pub warning: Option<String>,
+}
+
+impl Kept {
+    /// The run in `folder` goes on with other guards: they tell when it stops, and no law that moves it hangs on them.
+    ///
+    /// # Errors
+    /// `Usage` for a key of anything else; `Scene` for guards that no scene may have.
+    pub fn guard(mut self, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
+        if sets.is_empty() {
+            return Ok(self);
+        }
+        if let Some((key, _)) = sets.iter().find(|(key, _)| key.split('.').next() != Some("guard")) {
+            let what = format!("{key} cannot be changed in a run that has begun: only [guard] can");
+            let help =
+                format!("--set guard.escape=remove is such a change; `pontoon run` with --set {key}=… starts afresh");
+            return Err(Error::new(Kind::Usage, what).help(help));
+        }
+        let known = &mut self.checkpoint;
+        known.sets.retain(|(key, _)| sets.iter().all(|(set, _)| set != key));
+        known.sets.extend_from_slice(sets);
+        self.scene = Scene::read(&folder.join(folder::SCENE), &known.sets)?;
+        known.scene = restart::hash(self.scene.to_toml()?.as_bytes());
+        Ok(self)
+    }
 }
 
 /// The newest checkpoint of use in `folder`.

@@ -125,7 +125,7 @@ impl Job {
             State::Finished => return Ok(before),
             // The same start breaks down at the same step.
             State::Failed(_) if broke_down => return Ok(before),
-            State::Interrupted => run::resume(&self.folder, threads, watch),
+            State::Interrupted => run::resume(&self.folder, &[], threads, watch),
             State::Planned | State::Failed(_) => self.fresh(threads, watch),
         };
         match outcome {

@@ -204,4 +204,5 @@ const NON_FINITE: &str = "Usual cause: two particles or bodies pressed into one 
 const TOO_FAST: &str = "Usual cause: a speed of sound too low for this flow, or a body that starts inside water. Raise \
     model.c0 (or model.c0_factor), or lower time.cfl; or allow more in [guard].";
 const ESCAPED: &str = "Usual cause: splash over a wall, or a wall thinner than the kernel's support. Make the walls \
-    higher or thicker, or set domain.min and domain.max wider; or let such particles go:  [guard] escape = \"remove\".";
+    higher or thicker, or set domain.min and domain.max wider; or let such particles go:  [guard] escape = \"remove\", \
+    or, to go on with this run:  pontoon resume DIR --set guard.escape=remove";

@@ -132,12 +132,13 @@ fn a_resumed_list_is_the_unbroken_one_byte_for_byte() -> Result<()> {
     // From the checkpoint of 0.2 s: the list is longer, and is cut back first.
     fs::rename(broken.join("checkpoint.previous.bin"), broken.join("checkpoint.bin")).unwrap();
     let before = list(&broken).len();
-    run::resume(&broken, Some(1), &mut |_: &Progress| true)?;
+    run::resume(&broken, &[], Some(1), &mut |_: &Progress| true)?;
     assert!(before < list(&whole).len() && list(&broken) == list(&whole));
     // A list that lost what the checkpoint counts on is told of by name.
     let cut = home.ran("cut", 0.25)?;
     fs::write(cut.join("lists/contacts.csv"), "t_s\n").unwrap();
-    let error = run::resume(&cut, Some(1), &mut |_: &Progress| true).err().map(|e| e.to_string()).unwrap_or_default();
+    let error =
+        run::resume(&cut, &[], Some(1), &mut |_: &Progress| true).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(error.contains("contacts.csv has 4 bytes, fewer than the"), "{error}");
     Ok(())
 }

@@ -172,8 +172,8 @@ fn means_and_volumes_of_an_interrupted_run_end_as_those_of_an_unbroken_one() -> 
     run::run(&file, &home.options("whole"), &mut go_on)?;
     run::run(&file, &home.options("broken"), &mut |now: &Progress| now.steps < 7)?;
     let broken = home.0.join("broken");
-    run::resume(&broken, Some(1), &mut |now: &Progress| now.steps < 23)?;
-    run::resume(&broken, Some(1), &mut go_on)?;
+    run::resume(&broken, &[], Some(1), &mut |now: &Progress| now.steps < 23)?;
+    run::resume(&broken, &[], Some(1), &mut go_on)?;
     let bytes = |run: &Path, name: &str| std::fs::read(run.join(format!("series/{name}.csv"))).unwrap();
     for name in ["mean", "all", "flow"] {
         assert_eq!(bytes(&broken, name), bytes(&home.0.join("whole"), name), "{name}");

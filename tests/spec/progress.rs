@@ -93,7 +93,7 @@ fn a_resumed_run_tells_the_change_since_its_start() -> Result<()> {
     let options = Options { out: Some(home.0.join("run")), threads: Some(1), ..Options::default() };
     run::run(&home.0.join("scene.toml"), &options, &mut |now: &Progress| now.time < 0.05)?;
     let mut first = None;
-    run::resume(&home.0.join("run"), Some(1), &mut |now: &Progress| {
+    run::resume(&home.0.join("run"), &[], Some(1), &mut |now: &Progress| {
         first.get_or_insert((now.time, now.energy));
         true
     })?;

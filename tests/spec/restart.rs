@@ -48,8 +48,8 @@ where
     run::run(&scene, &options("whole"), &mut |_: &Progress| true)?;
     let (whole, broken) = (home.0.join("whole"), home.0.join("broken"));
     run::run(&scene, &options("broken"), &mut |now: &Progress| now.time < first)?;
-    run::resume(&broken, Some(2), &mut |now: &Progress| now.time < second)?;
-    run::resume(&broken, Some(3), &mut |_: &Progress| true)?;
+    run::resume(&broken, &[], Some(2), &mut |now: &Progress| now.time < second)?;
+    run::resume(&broken, &[], Some(3), &mut |_: &Progress| true)?;
     let (unbroken, mended) = (files(&whole), files(&broken));
     assert!(unbroken.keys().eq(mended.keys()), "{:?}\n{:?}", unbroken.keys(), mended.keys());
     for (file, bytes) in &unbroken {
@@ -125,5 +125,39 @@ fn who_was_taken_out_is_known_after_a_restart() -> Result<()> {
     let (then, all) = (sim.lost().len(), text(&home, "removed.csv").lines().count() - 1);
     assert!(then > 0 && all > then, "{then} before the second moment, {all} in all");
     assert!(sim.ledger().is_some_and(|ledger| ledger.removed != 0.0), "they took energy along");
+    Ok(())
+}
+
+#[test]
+fn a_run_that_a_guard_stopped_goes_on_with_another() -> Result<()> {
+    let home = Home::new("restart-guard");
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/restart/spill.toml");
+    let set = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+    let run = |out: &str, escape: &str| {
+        let sets = vec![set("guard.escape", escape), set("checkpoint.every", "0.05")];
+        let options = Options { out: Some(home.0.join(out)), sets, threads: Some(1) };
+        run::run(&scene, &options, &mut |_: &Progress| true)
+    };
+    run("whole", "remove")?;
+    let stopped = run("broken", "stop").expect_err("the water leaves the domain");
+    assert!(stopped.to_string().contains("--set guard.escape=remove"), "{stopped}");
+    let broken = home.0.join("broken");
+    let resume = |key: &str, value: &str| run::resume(&broken, &[set(key, value)], Some(1), &mut |_: &Progress| true);
+    // No law may change on the way, a misspelt key is told, and a refusal leaves all as it was.
+    for (key, value, said) in [
+        ("time.cfl", "0.1", "time.cfl cannot be changed in a run that has begun"),
+        ("guard.escpae", "remove", "did you mean \"escape\"?"),
+        ("guard.speed", "2.0", "a largest speed of 2 c0"),
+    ] {
+        let refused = resume(key, value).expect_err("no such change").to_string();
+        assert!(refused.contains(said), "{refused}");
+    }
+    resume("guard.escape", "remove")?;
+    let (unbroken, mended) = (files(&home.0.join("whole")), files(&broken));
+    assert!(unbroken.keys().eq(mended.keys()), "{:?}\n{:?}", unbroken.keys(), mended.keys());
+    // The checkpoint was made before the first alarm, so the two runs are one.
+    for (file, bytes) in unbroken.iter().filter(|(file, _)| *file != "/report.html") {
+        assert!(*bytes == mended[file], "{file} differs");
+    }
     Ok(())
 }
