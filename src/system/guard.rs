@@ -61,9 +61,9 @@ pub struct Lost<const D: usize> {
 pub enum Way {
     /// By the top: thrown up.
     Up,
-    /// By a side, higher than the water stood at the start: over a wall.
+    /// By a side, higher than the water stood at the start, or falling from higher: over a wall.
     Over,
-    /// By the bottom, or by a side lower than that: through a gap or a wall that is too thin.
+    /// By the bottom or a side, from lower than that: through a gap or a wall that is too thin.
     Through,
 }
 
@@ -177,7 +177,7 @@ impl<const D: usize> System<D> {
                 let i = i as usize;
                 let inside = self.domain.contains(&r[i]);
                 if !inside {
-                    let way = self.way(&r[i]);
+                    let way = self.way(&r[i], &v[i]);
                     lost.push(Lost { id: id[i], r: r[i], v: v[i], rho: rho[i], way });
                 }
                 inside
@@ -186,12 +186,16 @@ impl<const D: usize> System<D> {
         lost
     }
 
-    /// How a particle at `x` (m), outside the domain, is likely to have come there.
-    fn way(&self, x: &Vector<D>) -> Way {
+    /// How a particle at `x` (m) with velocity `v` (m/s), outside the domain, is likely to have come there.
+    fn way(&self, x: &Vector<D>, v: &Vector<D>) -> Way {
         let up = D - 1;
+        // Nothing but gravity acts out there: it fell from where it would rise to if time ran back. What goes through a
+        // wall comes from no higher than the water stood, give or take what pairs push it.
+        let (g, falls) = (-self.medium.gravity[up], v[up] < 0.0);
+        let summit = if g > 0.0 && falls { x[up] + v[up].powi(2) / (2.0 * g) } else { x[up] };
         if x[up] > self.domain.max[up] {
             Way::Up
-        } else if x[up] > self.top {
+        } else if x[up] > self.top || summit > self.top + 2.0 * self.medium.h {
             Way::Over
         } else {
             Way::Through

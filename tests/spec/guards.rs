@@ -127,6 +127,19 @@ fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
 }
 
 #[test]
+fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
+    // Thrown up by v²/2g = 0.32 m, three supports and more above where it stood, it leaves below, as splash does beside a tank.
+    let mut thrown = falling(Limits { escape: Escape::Remove, ..Limits::default() });
+    thrown.set_water_velocity(|_| Vector::from([0.0, 2.5]));
+    while thrown.lost().is_empty() {
+        thrown.step().expect("those that leave are taken out");
+    }
+    for (_, lost) in thrown.lost() {
+        assert!(lost.r[1] < -0.05 && lost.way.to_string().contains("over a wall"), "{lost:?}");
+    }
+}
+
+#[test]
 fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
     let limits = Limits { escape: Escape::Remove, ..Limits::default() };
     let mut whole = falling(limits);
