@@ -44,9 +44,6 @@ impl fmt::Display for Source {
 /// Reasons of the defaults that were filled in, by key.
 pub(super) type Reasons = BTreeMap<String, String>;
 
-/// Courant number of the symplectic scheme where nobody says it and no solid is free, –.
-const CFL_WATER: f64 = 0.6;
-
 /// Wall time from one checkpoint to the next where nobody says it, s.
 pub(super) const CHECKPOINT_WALL: f64 = 600.0;
 
@@ -104,7 +101,6 @@ impl Scene {
 
     fn fill_laws(&mut self, filler: &mut Filler, usual: &Model) {
         let (ratio, why) = self.default_h_over_dp();
-        let floats = self.solid.iter().any(|solid| solid.free.is_some());
         let (model, time) = (&mut self.model, &mut self.time);
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
         filler.fill("model.kernel", &mut model.kernel, usual.kernel, wendland);
@@ -143,8 +139,7 @@ impl Scene {
         filler.fill("time.scheme", &mut time.scheme, usual.scheme, why);
         let (cfl, why) = match time.scheme {
             Some(Scheme::Verlet { .. }) => (0.2, "the method's, for Verlet"),
-            _ if floats => (usual.cfl, "contacts and ropes of free bodies go with the step; water alone takes 0.6"),
-            _ => (CFL_WATER, "no errors of water grow with the step up to here; free bodies want 0.4"),
+            _ => (usual.cfl, "impacts, contacts and ropes are worse above; waves and still water take 0.6"),
         };
         filler.fill("time.cfl", &mut time.cfl, cfl, why);
     }
