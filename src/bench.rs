@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    run::{outputs, pool},
+    run::{looks, outputs, pool},
     scene::{Built, Scene},
     simulation::{Simulation, Spent},
     solid::Dim,
@@ -226,7 +226,7 @@ where
             let name = work.name.replace([' ', ','], "-");
             let name = format!("pontoon-bench-{}-{D}d-{name}", std::process::id());
             let folder = Folder(std::env::temp_dir().join(name));
-            Some((outputs::Outputs::new(&plan, outputs::probes(&plan, &mut sim)?, &folder.0, None)?, folder))
+            Some((outputs::Outputs::new(&plan, looks::probes(&plan, &mut sim)?, &folder.0, None)?, folder))
         };
         let system = sim.system();
         let mut pairs = 0usize;

@@ -16,6 +16,7 @@ mod folder;
 mod inspect;
 mod kept;
 mod lock;
+pub(crate) mod looks;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 

@@ -141,7 +141,7 @@ impl<const D: usize> Simulation<D> {
     /// Goes one step on, with `between` at the moment when the water hands over to the bodies.
     fn stride(&mut self, end: f64, between: &mut dyn FnMut(&mut Handover<D>) -> Result<()>) -> Result<()> {
         let start = Instant::now();
-        if self.rescue.due(self.clock.steps) {
+        if self.keeps() {
             self.rescue.make_room();
             self.rescue.keep(self.clock.steps, self.clock.time, self.save()?);
         }
@@ -170,6 +170,11 @@ impl<const D: usize> Simulation<D> {
     pub fn without_rescue(mut self) -> Self {
         self.rescue = Rescue::off();
         self
+    }
+
+    /// Whether the next step first keeps the state of now, to go back to after an alarm.
+    pub(crate) fn keeps(&self) -> bool {
+        self.rescue.due(self.clock.steps)
     }
 
     /// When and why the run went back to a good state and took half the step for a while.

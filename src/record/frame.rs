@@ -70,9 +70,40 @@ impl Frames {
         }
         let pictures = folder.join("frames");
         std::fs::create_dir_all(&pictures).map_err(|e| cannot_write(&pictures, &e))?;
-        let there = (0..times.len()).flat_map(names).filter_map(|name| std::fs::metadata(pictures.join(name)).ok());
-        let bytes = there.map(|file| file.len()).sum();
-        Ok(Self { folder: folder.to_owned(), fields, crop, settled: times.len(), times, bytes })
+        let mut frames = Self { folder: folder.to_owned(), fields, crop, settled: times.len(), times, bytes: 0 };
+        frames.measure();
+        Ok(frames)
+    }
+
+    /// Takes back all frames but the first `kept`.
+    ///
+    /// # Errors
+    /// `File` if the disk refuses.
+    pub fn cut(&mut self, kept: usize) -> Result<()> {
+        if kept >= self.times.len() {
+            return Ok(());
+        }
+        let gone = kept..self.times.len();
+        self.times.truncate(kept);
+        self.settled = self.settled.min(kept);
+        self.list()?;
+        for path in gone.flat_map(names).map(|name| self.folder.join("frames").join(name)) {
+            std::fs::remove_file(&path).map_err(|e| cannot_write(&path, &e))?;
+        }
+        self.measure();
+        Ok(())
+    }
+
+    /// Sums up what the frames take.
+    fn measure(&mut self) {
+        let pictures = self.folder.join("frames");
+        let there = (0..self.times.len()).flat_map(names);
+        self.bytes = there.filter_map(|name| Some(std::fs::metadata(pictures.join(name)).ok()?.len())).sum();
+    }
+
+    /// Writes the list of all frames.
+    fn list(&self) -> Result<()> {
+        write_whole(&self.folder.join("frames.pvd"), film(&self.times, "frames", &PARTS).as_bytes())
     }
 
     /// Times of the frames so far, s.
@@ -106,7 +137,7 @@ impl Frames {
         bytes += self.picture(&dry, system, system.skin(), Some(owner))?;
         self.bytes += bytes;
         self.times.push(t);
-        write_whole(&self.folder.join("frames.pvd"), film(&self.times, "frames", &PARTS).as_bytes())
+        self.list()
     }
 
     /// Waits until all frames are on the disk itself.

@@ -15,7 +15,7 @@ pub use film::{Cloud, Film};
 pub use frame::Frames;
 pub use manifest::Manifest;
 pub use mean::Mean;
-pub use restart::Checkpoint;
+pub use restart::{Checkpoint, Extent};
 pub use table::{Readings, Table};
 
 use std::{

@@ -33,6 +33,19 @@ const FORMAT: u32 = 5;
 /// true checkpoint below 200.
 const MOST_UNFOLDED: u64 = 1000;
 
+/// How far the outputs of a run are.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Extent {
+    /// Length of each table, bytes, in the order of the probes, then of the lists.
+    pub tables: Vec<u64>,
+    /// Means in the making, of the probes that take some.
+    pub means: Vec<Option<Mean>>,
+    /// Times of the frames written, s.
+    pub frames: Vec<f64>,
+    /// Numbers of the next looks, frame and checkpoint that are due, then of the lists' looks.
+    pub due: Vec<u64>,
+}
+
 /// What a checkpoint holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
@@ -44,14 +57,8 @@ pub struct Checkpoint {
     pub sets: Vec<(String, String)>,
     /// Simulated time, s.
     pub time: f64,
-    /// Length of each table, bytes, in the order of the probes, then of the lists.
-    pub tables: Vec<u64>,
-    /// Means in the making, of the probes that take some.
-    pub means: Vec<Option<Mean>>,
-    /// Times of the frames written, s.
-    pub frames: Vec<f64>,
-    /// Numbers of the next looks, frame and checkpoint that are due, then of the lists' looks.
-    pub due: Vec<u64>,
+    /// How far the outputs were.
+    pub outputs: Extent,
     /// Wall time of the run so far, s.
     pub wall: f64,
     /// Processor time of the run so far, s.
@@ -208,10 +215,12 @@ mod tests {
             scene: hash(b"scene"),
             sets: vec![("dp".into(), "0.02".into())],
             time: 0.25,
-            tables: vec![12, 40],
-            means: vec![None, Some(Mean::default())],
-            frames: vec![0.0, 0.1],
-            due: vec![3, 1],
+            outputs: Extent {
+                tables: vec![12, 40],
+                means: vec![None, Some(Mean::default())],
+                frames: vec![0.0, 0.1],
+                due: vec![3, 1],
+            },
             wall: 1.5,
             cpu: 2.5,
             particle_steps: 1200,

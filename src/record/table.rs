@@ -47,21 +47,31 @@ impl Table {
         let text = std::fs::read(path).map_err(|e| Error::file(path, e))?;
         let header = format!("t_s,{}\n", columns.join(","));
         let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
-        let Some(kept) = kept.filter(|k| k.starts_with(header.as_bytes()) && k.ends_with(b"\n")) else {
+        if kept.is_none_or(|k| !k.starts_with(header.as_bytes()) || !k.ends_with(b"\n")) {
             let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
             return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
-        };
-        let rows = String::from_utf8_lossy(&kept[header.len()..]);
-        let (first, last) = (rows.lines().next().and_then(read_row).map(|(_, row)| row), rows.lines().next_back());
-        let last = last.and_then(read_row);
-        let open = || -> std::io::Result<File> {
-            let mut file = OpenOptions::new().write(true).open(path)?;
-            file.set_len(bytes)?;
-            file.seek(SeekFrom::End(0))?;
-            Ok(file)
-        };
-        let file = open().map_err(|e| cannot_write(path, &e))?;
-        Ok(Self { path: path.to_owned(), file, bytes, columns: columns.len(), first, last })
+        }
+        let file = OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?;
+        let mut table = Self { path: path.to_owned(), file, bytes, columns: columns.len(), first: None, last: None };
+        table.cut(bytes)?;
+        Ok(table)
+    }
+
+    /// Takes back all but the first `bytes` bytes, the header and whole rows.
+    ///
+    /// # Errors
+    /// `File` if it cannot be read or cut.
+    pub fn cut(&mut self, bytes: u64) -> Result<()> {
+        let text = std::fs::read(&self.path).map_err(|e| Error::file(&self.path, e))?;
+        let kept = usize::try_from(bytes).map_or(&text[..], |n| &text[..n.min(text.len())]);
+        let kept = String::from_utf8_lossy(kept);
+        let rows = kept.split_once('\n').map_or("", |(_, rows)| rows);
+        self.first = rows.lines().next().and_then(read_row).map(|(_, row)| row);
+        self.last = rows.lines().next_back().and_then(read_row);
+        let cut = self.file.set_len(bytes).and_then(|()| self.file.seek(SeekFrom::Start(bytes)));
+        cut.map_err(|e| cannot_write(&self.path, &e))?;
+        self.bytes = bytes;
+        Ok(())
     }
 
     /// Adds the row of time `t` (s).
@@ -216,6 +226,9 @@ mod tests {
         let (t, row) = again.last().map(|(t, row)| (t, row.to_vec())).unwrap_or_default();
         assert!(t == 0.0 && row[0] == 1.0 / 3.0 && row[1].is_nan(), "the same bits; got {t} {row:?}");
         again.row(0.1, &[-1e-9, 2.0])?;
+        again.row(0.2, &[0.0, 0.0])?;
+        again.cut(whole.len() as u64)?;
+        assert_eq!(again.last(), Some((0.1, &[-1e-9, 2.0][..])), "the row that is the last again");
         assert!(again.first().is_some_and(|row| row[0] == 1.0 / 3.0), "the first row stays: {:?}", again.first());
         assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
         assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");

@@ -9,7 +9,8 @@ use super::{
     drift::Teller,
     folder, kept,
     lock::Lock,
-    outputs::{self, Outputs, series_folder},
+    looks,
+    outputs::{Outputs, series_folder},
     statistics,
 };
 use crate::{
@@ -18,7 +19,7 @@ use crate::{
     model::Dimension,
     preflight,
     record::{
-        Checkpoint, Manifest,
+        Checkpoint, Extent, Manifest,
         manifest::{Count, InForce, Machine, Pictures, Status},
         removed, restart, write_whole,
     },
@@ -38,6 +39,8 @@ pub struct Course<const D: usize> {
     folder: PathBuf,
     /// What the next checkpoint says, but for what changes.
     checkpoint: Checkpoint,
+    /// How far the outputs were at each time (s) to which the simulation may go back, the older first.
+    marks: Vec<(f64, Extent)>,
     resumed: bool,
     /// Whether the last checkpoint in the folder, if there is one, may become the one before.
     good: bool,
@@ -60,8 +63,8 @@ where
         let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
         let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?;
-        let probes = outputs::probes(&plan, &mut sim)?;
-        let checks = outputs::checks(&plan, &probes)?;
+        let probes = looks::probes(&plan, &mut sim)?;
+        let checks = looks::checks(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
         let mut warnings = preflight::look(&sim, &plan, still, overlapped, &columns).warnings();
         let text = scene.to_toml()?;
@@ -81,7 +84,7 @@ where
             // Before any table is cut back: a state of no use leaves all as it was.
             sim.restore(&std::mem::take(&mut checkpoint.state))?;
         }
-        let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint))?;
+        let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
         if resumed {
             folder::forget_failure(&folder)?;
         }
@@ -103,6 +106,7 @@ where
             manifest,
             folder,
             checkpoint,
+            marks: Vec::new(),
             resumed,
             good,
             listed,
@@ -147,6 +151,9 @@ impl<const D: usize> Course<D> {
         let until = self.manifest.until_s;
         let mut going = watch.step(&self.progress());
         while going && self.sim.time() < until {
+            if self.sim.keeps() {
+                self.mark();
+            }
             let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rescued().len());
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping += clock.elapsed().as_secs_f64();
@@ -155,7 +162,7 @@ impl<const D: usize> Course<D> {
             // A run that went back has made fewer passes than before.
             self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
             stepped?;
-            self.tell(rescued, watch);
+            self.follow(rescued, watch)?;
             let mut written = self.outputs.look(&self.sim)?;
             // The clock on the wall decides when the state is kept, never what it is.
             written.checkpoint |= self.saved.0.elapsed().as_secs_f64() >= self.saved.1;
@@ -179,14 +186,35 @@ impl<const D: usize> Course<D> {
         Ok(Status::Finished)
     }
 
-    /// Tells whoever watches, and the manifest, of each rescue but the first `known`.
-    fn tell(&mut self, known: usize, watch: &mut dyn Watch) {
-        for how in &self.sim.rescued()[known..] {
-            watch.rescued(how);
-            self.manifest.warnings.push(how.to_string());
-            // As many may leave again, and be others.
-            self.listed = if self.listed > 0 { usize::MAX } else { 0 };
+    /// Marks how far the outputs are, as the simulation keeps its state: of both the last two.
+    fn mark(&mut self) {
+        if self.marks.len() == 2 {
+            self.marks.remove(0);
         }
+        self.marks.push((self.sim.time(), self.outputs.extent()));
+    }
+
+    /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
+    /// manifest, and takes back what was written of the course that ended in the alarm.
+    fn follow(&mut self, known: usize, watch: &mut dyn Watch) -> Result<()> {
+        let Some(how) = self.sim.rescued().get(known).cloned() else {
+            return Ok(());
+        };
+        watch.rescued(&how);
+        self.manifest.warnings.push(how.to_string());
+        // As many may leave again, and be others.
+        self.listed = if self.listed > 0 { usize::MAX } else { 0 };
+        let Some(at) = self.marks.iter().rposition(|(time, _)| *time == how.back_to) else {
+            return Ok(());
+        };
+        let (_, extent) = self.marks.swap_remove(at);
+        self.marks.truncate(at);
+        // Both checkpoints first: those there may be of the course that ended, and ask for rows that are about to go.
+        self.good = false;
+        self.outputs.sync()?;
+        self.keep(extent.clone())?;
+        self.keep(extent.clone())?;
+        self.outputs.cut(&extent)
     }
 
     /// Lists the particles that were removed, if that is news.
@@ -199,12 +227,17 @@ impl<const D: usize> Course<D> {
         Ok(())
     }
 
-    /// Writes the checkpoint.
+    /// Writes the checkpoint, of outputs that are on the disk.
     fn save(&mut self) -> Result<()> {
+        self.outputs.sync()?;
+        self.keep(self.outputs.extent())
+    }
+
+    /// Writes the checkpoint of the simulation as it is and of `outputs`.
+    fn keep(&mut self, outputs: Extent) -> Result<()> {
         let state = self.sim.save()?;
         let (time, wall, cpu) = (self.sim.time(), self.wall(), self.cpu());
-        let mut now = Checkpoint { state, time, wall, cpu, ..self.checkpoint.clone() };
-        self.outputs.note(&mut now)?;
+        let now = Checkpoint { state, time, wall, cpu, outputs, ..self.checkpoint.clone() };
         now.write(&self.folder, self.good)?;
         (self.good, self.saved.0) = (true, Instant::now());
         Ok(())
@@ -299,10 +332,7 @@ fn first_checkpoint(scene: &str, sets: &[(String, String)]) -> Checkpoint {
         scene: restart::hash(scene.as_bytes()),
         sets: sets.to_vec(),
         time: 0.0,
-        tables: vec![],
-        means: vec![],
-        frames: vec![],
-        due: vec![],
+        outputs: Extent::default(),
         wall: 0.0,
         cpu: 0.0,
         particle_steps: 0,
@@ -359,3 +389,6 @@ fn bodies<const D: usize>(sim: &Simulation<D>) -> Vec<Body> {
     })
     .collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@ use std::{path::Path, time::Instant};
 
 use serde::Serialize;
 
-use super::{folder, not_built, outputs, with_threads};
+use super::{folder, looks, not_built, with_threads};
 use crate::{
     error::Result,
     model::Dimension,
@@ -138,8 +138,8 @@ where
     let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
     // The timing tells the first alarm, which a run would answer by going back.
     let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?.without_rescue();
-    let probes = outputs::probes(&plan, &mut sim)?;
-    outputs::checks(&plan, &probes)?;
+    let probes = looks::probes(&plan, &mut sim)?;
+    looks::checks(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
     let mut preflight = preflight::look(&sim, &plan, still, overlapped, &columns);
     let solids = sim.system().solids().iter().map(|s| SolidCount {

@@ -91,7 +91,7 @@ fn usable(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
     let plan = scene.plan()?;
     let series = plan.probes.iter().map(|probe| series_folder(folder).join(format!("{}.csv", probe.name)));
     let lists = plan.contacts.iter().map(|list| list_of(folder, &list.name));
-    for (table, &bytes) in series.chain(lists).zip(&checkpoint.tables) {
+    for (table, &bytes) in series.chain(lists).zip(&checkpoint.outputs.tables) {
         let there = fs::metadata(&table).map_or(0, |file| file.len());
         if there < bytes {
             let what = format!("{} has {there} bytes, fewer than the {bytes} of {name}", table.display());

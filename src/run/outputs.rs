@@ -9,15 +9,11 @@ use std::{
 };
 
 use crate::{
-    check::Check,
-    error::{Error, Kind, Result, nearest},
-    model::Dimension,
+    error::{Error, Kind, Result},
     probe::{self, Probe},
-    record::{Checkpoint, Frames, Mean, Table, manifest::Pictures},
-    scene::{CheckWords, Plan, ProbeKind, ProbeWords},
+    record::{Extent, Frames, Mean, Table, manifest::Pictures},
+    scene::Plan,
     simulation::Simulation,
-    solid::Dim,
-    system::System,
 };
 
 /// The multiples of an interval; an interval of zero means every step.
@@ -53,7 +49,7 @@ impl<const D: usize> Watched<D> {
     /// Reads if it must, and writes a row if one is `due`.
     fn look(&mut self, sim: &Simulation<D>, due: bool) -> Result<()> {
         let t = sim.time();
-        // A run that went back after an alarm makes again what is written already.
+        // The end may be an instant at which a row was due.
         let due = due && self.table.last().is_none_or(|(last, _)| last < t);
         let before = match &self.mean {
             Some(mean) => mean.last(),
@@ -117,12 +113,12 @@ pub struct Outputs<const D: usize> {
 }
 
 impl<const D: usize> Outputs<D> {
-    /// The outputs that `plan` asks for, in the run's `folder`; `from` the checkpoint, if there is one.
-    /// `probes` are those of [`probes`], in the plan's order.
+    /// The outputs that `plan` asks for, in the run's `folder`; `from` where they were at the checkpoint, if there is one.
+    /// `probes` are those of [`looks::probes`](super::looks::probes), in the plan's order.
     ///
     /// # Errors
     /// `File` if a file cannot be written; `Restart` if what is there does not fit the checkpoint.
-    pub fn new(plan: &Plan, probes: Vec<Box<dyn Probe<D>>>, folder: &Path, from: Option<&Checkpoint>) -> Result<Self> {
+    pub fn new(plan: &Plan, probes: Vec<Box<dyn Probe<D>>>, folder: &Path, from: Option<&Extent>) -> Result<Self> {
         let lists = plan.contacts.len();
         let all = probes.len() + lists;
         if from.is_some_and(|c| c.tables.len() != all || c.due.len() != all + 2) {
@@ -138,11 +134,11 @@ impl<const D: usize> Outputs<D> {
         for (i, (probe, words)) in probes.into_iter().zip(&plan.probes).enumerate() {
             let path = series.join(format!("{}.csv", words.name));
             let table = match from {
-                Some(checkpoint) => Table::resume(&path, &probe.columns(), checkpoint.tables[i])?,
+                Some(extent) => Table::resume(&path, &probe.columns(), extent.tables[i])?,
                 None => Table::create(&path, &probe.columns())?,
             };
             let due = Due { every: words.every, next: next(i, 0) };
-            let kept = from.and_then(|checkpoint| checkpoint.means.get(i).cloned().flatten());
+            let kept = from.and_then(|extent| extent.means.get(i).cloned().flatten());
             watched.push(Watched { probe, table, due, mean: words.average.then(|| kept.unwrap_or_default()) });
         }
         let count = watched.len();
@@ -150,7 +146,7 @@ impl<const D: usize> Outputs<D> {
         for (i, words) in plan.contacts.iter().enumerate() {
             let (path, columns) = (list_of(folder, &words.name), probe::Contacts::columns::<D>());
             let table = match from {
-                Some(checkpoint) => Table::resume(&path, &columns, checkpoint.tables[count + i])?,
+                Some(extent) => Table::resume(&path, &columns, extent.tables[count + i])?,
                 None => Table::create(&path, &columns)?,
             };
             contacts.push(Listed { table, due: Due { every: words.every, next: next(count + 2 + i, 0) } });
@@ -243,24 +239,57 @@ impl<const D: usize> Outputs<D> {
         series.chain(lists).filter_map(name)
     }
 
-    /// Notes in `checkpoint` how far the outputs are, once they are on the disk.
+    /// How far the outputs are.
+    pub fn extent(&self) -> Extent {
+        let mut due: Vec<u64> = self.watched.iter().map(|w| w.due.next).collect();
+        due.push(self.frames.as_ref().map_or(0, |(_, due)| due.next));
+        due.push(self.checkpoint.map_or(0, |due| due.next));
+        due.extend(self.contacts.iter().map(|list| list.due.next));
+        Extent {
+            tables: self.files().map(Table::bytes).collect(),
+            means: self.watched.iter().map(|w| w.mean.clone()).collect(),
+            frames: self.frames.as_ref().map_or_else(Vec::new, |(frames, _)| frames.times().to_vec()),
+            due,
+        }
+    }
+
+    /// Takes back what was written since the outputs were as `extent` says.
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub fn note(&mut self, checkpoint: &mut Checkpoint) -> Result<()> {
-        let tables = || self.watched.iter().map(|w| &w.table).chain(self.contacts.iter().map(|list| &list.table));
-        tables().try_for_each(Table::sync)?;
-        checkpoint.tables = tables().map(Table::bytes).collect();
-        if let Some((frames, _)) = &mut self.frames {
-            frames.sync()?;
+    pub fn cut(&mut self, extent: &Extent) -> Result<()> {
+        let count = self.watched.len();
+        for (i, watched) in self.watched.iter_mut().enumerate() {
+            watched.table.cut(extent.tables[i])?;
+            watched.mean.clone_from(&extent.means[i]);
+            watched.due.next = extent.due[i];
         }
-        checkpoint.means = self.watched.iter().map(|w| w.mean.clone()).collect();
-        checkpoint.frames = self.frames.as_ref().map_or_else(Vec::new, |(frames, _)| frames.times().to_vec());
-        checkpoint.due = self.watched.iter().map(|w| w.due.next).collect();
-        checkpoint.due.push(self.frames.as_ref().map_or(0, |(_, due)| due.next));
-        checkpoint.due.push(self.checkpoint.map_or(0, |due| due.next));
-        checkpoint.due.extend(self.contacts.iter().map(|list| list.due.next));
+        if let Some((frames, due)) = &mut self.frames {
+            frames.cut(extent.frames.len())?;
+            due.next = extent.due[count];
+        }
+        if let Some(due) = &mut self.checkpoint {
+            due.next = extent.due[count + 1];
+        }
+        for (i, list) in self.contacts.iter_mut().enumerate() {
+            list.table.cut(extent.tables[count + i])?;
+            list.due.next = extent.due[count + 2 + i];
+        }
         Ok(())
+    }
+
+    /// Waits until all that is written is on the disk itself.
+    ///
+    /// # Errors
+    /// `File` if the disk refuses.
+    pub fn sync(&mut self) -> Result<()> {
+        self.files().try_for_each(Table::sync)?;
+        self.frames.as_mut().map_or(Ok(()), |(frames, _)| frames.sync())
+    }
+
+    /// The tables of the probes, then of the lists.
+    fn files(&self) -> impl Iterator<Item = &Table> {
+        self.watched.iter().map(|w| &w.table).chain(self.contacts.iter().map(|list| &list.table))
     }
 }
 
@@ -275,94 +304,6 @@ const LISTS: &str = "lists";
 /// The file of the list called `name` in the run's `folder`.
 pub fn list_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(LISTS).join(format!("{name}.csv"))
-}
-
-/// The probes that `plan` asks for, made from the simulation at its start, which keeps the books that they read.
-///
-/// # Errors
-/// `Scene` or `Usage` if one names no solid or a place with the wrong number of coordinates.
-pub fn probes<const D: usize>(plan: &Plan, sim: &mut Simulation<D>) -> Result<Vec<Box<dyn Probe<D>>>>
-where
-    Dim<D>: Dimension<D>,
-{
-    if plan.probes.iter().any(|words| words.what == ProbeKind::Budget) {
-        sim.keep_energy();
-    }
-    if plan.probes.iter().any(|words| matches!(words.what, ProbeKind::Balance { .. })) {
-        sim.keep_loads();
-    }
-    let system = sim.system();
-    plan.probes.iter().map(|words| made(words, system)).collect()
-}
-
-fn made<const D: usize>(words: &ProbeWords, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
-    if words.name.is_empty() || words.name.starts_with('.') || words.name.contains(['/', '\\', ':', '\0']) {
-        return Err(Error::scene(format!("{:?} cannot name a file, so no probe either", words.name)));
-    }
-    Ok(match &words.what {
-        ProbeKind::Motion { solid } => Box::new(probe::Motion::new(system, solid)?),
-        ProbeKind::Force { solid } => Box::new(probe::Force::new(system, solid)?),
-        ProbeKind::Joint { joint } => Box::new(probe::Joint::new(system, joint)?),
-        ProbeKind::Spring { spring } => Box::new(probe::Line::spring(system, spring)?),
-        ProbeKind::Rope { rope } => Box::new(probe::Line::rope(system, rope)?),
-        ProbeKind::Elevation { places, surface } => {
-            row(places, |at| Ok(Box::new(probe::Elevation::of(system, at, *surface)?)))?
-        }
-        ProbeKind::Velocity { places } => row(places, |at| Ok(Box::new(probe::Velocity::new(at)?)))?,
-        ProbeKind::Pressure { places } => row(places, |at| Ok(Box::new(probe::Pressure::new(at)?)))?,
-        ProbeKind::Flow { from, to } => Box::new(probe::Flow::new(from, to)?),
-        ProbeKind::Runup { solid } => Box::new(probe::Runup::new(system, solid)?),
-        ProbeKind::Patch { solid, min, max } => Box::new(probe::Patch::new(system, solid, min, max)?),
-        ProbeKind::Front => Box::new(probe::Front),
-        ProbeKind::Energy => Box::new(probe::Energy::new(system)),
-        ProbeKind::Balance { solid } => Box::new(probe::Balance::new(system, solid)?),
-        ProbeKind::Contact { between: [a, b] } => Box::new(probe::Press::new(system, [a, b])?),
-        ProbeKind::Budget => Box::new(probe::Budget::new(system)),
-    })
-}
-
-/// A probe at each of `places`; of a single place the probe itself.
-fn row<const D: usize>(
-    places: &[Vec<f64>],
-    make: impl Fn(&[f64]) -> Result<Box<dyn Probe<D>>>,
-) -> Result<Box<dyn Probe<D>>> {
-    match places {
-        [at] => make(at),
-        _ => {
-            let members: Result<Vec<_>> = places.iter().map(|at| Ok((at.clone(), make(at)?))).collect();
-            Ok(Box::new(probe::Row::new(members?)))
-        }
-    }
-}
-
-/// That `series`, which a check or a statistic names, is none of `known`.
-fn unknown(series: &str, known: &[String]) -> Error {
-    let help = match nearest(series, known.iter().map(String::as_str)) {
-        Some(near) => format!("did you mean {near:?}?"),
-        None => format!("the series are: {}", known.join(", ")),
-    };
-    Error::scene(format!("no probe writes the series {series:?}")).help(help)
-}
-
-/// The checks that `plan` asks for, their references read.
-///
-/// # Errors
-/// `Scene` if one, or a statistic, names no series of `probes`; else as [`Check::new`].
-pub fn checks<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Result<Vec<Check>> {
-    let columns = plan.probes.iter().zip(probes);
-    let known: Vec<String> =
-        columns.flat_map(|(words, p)| p.columns().into_iter().map(move |c| format!("{}.{c}", words.name))).collect();
-    let told = plan.statistics.iter().flat_map(|words| words.what.series());
-    if let Some(series) = told.into_iter().find(|series| !known.iter().any(|known| known == series)) {
-        return Err(unknown(series, &known));
-    }
-    let check = |words: &CheckWords| {
-        if !known.contains(&words.series) {
-            return Err(unknown(&words.series, &known));
-        }
-        Check::new(words, &plan.folder)
-    };
-    plan.checks.iter().map(check).collect()
 }
 
 #[cfg(test)]
