@@ -73,6 +73,22 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
+    /// What there is to say before the first step of the `scene`, with `sets` changed.
+    pub fn first(scene: &str, sets: &[(String, String)]) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene: hash(scene.as_bytes()),
+            sets: sets.to_vec(),
+            time: 0.0,
+            outputs: Extent::default(),
+            wall: 0.0,
+            cpu: 0.0,
+            particle_steps: 0,
+            stepping: 0.0,
+            state: vec![],
+        }
+    }
+
     /// Writes it to `folder` as [`LAST`]. What was the last becomes [`PREVIOUS`], if it is `good`; one that is not
     /// must not take the place of one that is, and is replaced.
     ///

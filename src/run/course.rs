@@ -14,7 +14,7 @@ use super::{
     statistics,
 };
 use crate::{
-    check::Check,
+    check::{Check, Verdict},
     error::{Error, Kind, Result},
     model::Dimension,
     preflight,
@@ -74,7 +74,7 @@ where
                 let folder = folder::create(file, out)?;
                 let lock = Lock::take(&folder)?;
                 folder::keep_scene(file, &text, &folder)?;
-                (folder, first_checkpoint(&text, sets), false, None, lock)
+                (folder, Checkpoint::first(&text, sets), false, None, lock)
             }
             Origin::Resumed { folder, checkpoint, warning, lock } => {
                 (folder.to_owned(), *checkpoint, true, warning, lock)
@@ -128,9 +128,8 @@ impl<const D: usize> Course<D> {
             Ok(status) => {
                 self.manifest.status = status;
                 let mut late = Vec::new();
+                self.judge();
                 if status == Status::Finished {
-                    let series = series_folder(&self.folder);
-                    self.manifest.checks = self.checks.iter().map(|check| check.judge(&series)).collect();
                     late = statistics::write(&self.folder, &self.plan)?;
                     late.extend(self.sim.torn());
                     self.manifest.warnings.extend(late.iter().cloned());
@@ -255,6 +254,7 @@ impl<const D: usize> Course<D> {
         }
         self.update();
         self.manifest.fail(&error);
+        self.judge();
         reports.push(self.manifest.write(&self.folder));
         let kept =
             if reports.iter().all(Result::is_ok) { "everything recorded so far is" } else { "what could be kept is" };
@@ -266,6 +266,17 @@ impl<const D: usize> Course<D> {
             help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
         }
         error.help(help)
+    }
+
+    /// Holds the series against their references. A run that has not come to its end keeps and misses no bound.
+    fn judge(&mut self) {
+        let series = series_folder(&self.folder);
+        let whole = self.manifest.status == Status::Finished;
+        let judge = |check: &Check| match check.judge(&series) {
+            verdict if whole || verdict.passed.is_none() => verdict,
+            part => Verdict { passed: None, note: Some("the run has not finished: not judged".into()), ..part },
+        };
+        self.manifest.checks = self.checks.iter().map(judge).collect();
     }
 
     /// Brings the manifest's figures up to date.
@@ -322,22 +333,6 @@ impl<const D: usize> Course<D> {
             rate: if stepping > 0.0 { work / stepping } else { 0.0 },
             energy: self.teller.and_then(|teller| teller.told(self.outputs.table(teller.probe))),
         }
-    }
-}
-
-/// What a checkpoint says before the first step.
-fn first_checkpoint(scene: &str, sets: &[(String, String)]) -> Checkpoint {
-    Checkpoint {
-        version: env!("CARGO_PKG_VERSION").into(),
-        scene: restart::hash(scene.as_bytes()),
-        sets: sets.to_vec(),
-        time: 0.0,
-        outputs: Extent::default(),
-        wall: 0.0,
-        cpu: 0.0,
-        particle_steps: 0,
-        stepping: 0.0,
-        state: vec![],
     }
 }
 

@@ -8,9 +8,12 @@ use std::{
 use pontoon::{
     check::{Align, Check, CheckWords, Reference, Score, Verdict, amplitude, deviation, off, peak, said},
     error::{Kind, Result},
+    run::{self, Options, Progress},
     scene::Scene,
     series::Series,
 };
+
+use crate::rig::Home;
 
 /// A folder with a run's table and a reference.
 fn folder(name: &str, sim: &str, reference: &str) -> std::io::Result<PathBuf> {
@@ -324,5 +327,24 @@ fn a_check_that_is_printed_reads_the_same() -> Result<()> {
     assert_eq!(Scene::parse(&scene.to_toml()?, Path::new("."), &[])?, scene);
     let lines: Vec<String> = scene.resolve()?.iter().map(|v| v.to_string()).collect();
     assert!(lines.contains(&"check.0.align.crossing = 5.0  (scene line 12)".into()), "{}", lines.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn a_run_that_was_interrupted_tells_the_figures_of_its_part_and_only_its_end_is_judged() -> Result<()> {
+    let home = Home::new("checks-part");
+    let (scene, out) = (home.0.join("scene.toml"), home.0.join("run"));
+    let text = "dimension = 2\ndp = 0.05\nuntil = 0.2\nwater = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]\n\
+        solid = [{ name = \"tank\", fixed = true, shape = { tank = { size = [1.0, 1.0] } } }]\n\
+        probe = [{ name = \"tank\", force = \"tank\", every = 0.001 }]\n[[check]]\nseries = \"tank.fy_N_per_m\"\n\
+        formula = \"-4905\"\nbound = { N = 0.1 }\n";
+    fs::write(&scene, text).unwrap();
+    let options = Options { out: Some(out.clone()), threads: Some(1), ..Options::default() };
+    let part = run::run(&scene, &options, &mut |now: &Progress| now.time < 0.1)?;
+    let verdict = &part.manifest.checks[0];
+    assert!(verdict.figures.n.is_some_and(|n| n < 0.1) && verdict.passed.is_none(), "{verdict:?}");
+    assert!(verdict.note.as_ref().is_some_and(|note| note.contains("has not finished")), "{verdict:?}");
+    let whole = run::resume(&out, &[], Some(1), &mut |_: &Progress| true)?;
+    assert_eq!((whole.manifest.checks[0].passed, &whole.manifest.checks[0].note), (Some(true), &None));
     Ok(())
 }
