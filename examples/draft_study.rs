@@ -1,7 +1,8 @@
 //! How deep do bodies float? Boxes, upright and tilted, and balls of several densities and resolutions at rest in a
 //! closed tank, against Archimedes: `cargo run --release --example draft_study -- dbc 2d-10 3d-10`. The words
-//! are the walls (`settling` or `dbc`) and the grids (2d-10, 2d-20, 2d-40, 3d-10, 3d-20: dimension and dp a height);
-//! unsaid they are `settling 2d-10 2d-20`. Prints a table in markdown.
+//! are the walls (`settling` or `dbc`), the grids (2d-10, 2d-20, 2d-40, 3d-10, 3d-20, 3d-40: dimension and dp a height)
+//! and, if not all are wanted, densities over the water's (`0.5`) and bodies (`on` and `off` the lattice, `tilted`,
+//! `ball`); unsaid they are `settling 2d-10 2d-20`. Prints a table in markdown.
 //!
 //! Each body starts at its draft of equilibrium, is left alone for a few heave periods, and the error of its
 //! draft is averaged over the last of them. The water level is sounded by volume: (particles × dpᴰ + displaced
@@ -30,6 +31,8 @@ const TILT: f64 = 20.0 * TAU / 360.0;
 /// Errors of draft that must and should be kept, dp.
 const MUST: f64 = 0.25;
 const GOAL: f64 = 0.1;
+/// The bodies, each by a word of its name.
+const BODIES: [&str; 4] = ["on", "off", "tilted", "ball"];
 /// Readings in the last period.
 const READINGS: usize = 50;
 
@@ -142,11 +145,28 @@ where
     }
 }
 
+/// What is asked for.
+struct Asked {
+    walls: Walls,
+    /// Densities over the water's, –.
+    ratios: Vec<f64>,
+    bodies: Vec<String>,
+}
+
+impl Asked {
+    fn wants(&self, name: &str) -> bool {
+        name.split(' ').any(|word| self.bodies.iter().any(|body| body == word))
+    }
+}
+
 /// Bodies of one density in 2-D, `n` particles high. A box off the lattice lies 0.3 dp aside and draws 0.3 dp more.
-fn flat(n: f64, ratio: f64, walls: Walls) -> Result<()> {
+fn flat(n: f64, ratio: f64, asked: &Asked) -> Result<()> {
     let block = Shape::Box { size: Vector::from([1.5, 1.0]) * HEIGHT };
     let case = |name, shape: &Shape<2>, ratio, (shift, tilt), pool: [f64; 2]| {
-        let (shape, pool) = (shape.clone(), Vector::from(pool) * HEIGHT);
+        if !asked.wants(name) {
+            return Ok(());
+        }
+        let (walls, shape, pool) = (asked.walls, shape.clone(), Vector::from(pool) * HEIGHT);
         Case { name, shape, ratio, shift, tilt, n, walls, pool, periods: 3.0 }.row()
     };
     case("2-D box on the lattice", &block, ratio, (0.0, 0.0), [4.5, 1.5])?;
@@ -156,10 +176,13 @@ fn flat(n: f64, ratio: f64, walls: Walls) -> Result<()> {
 }
 
 /// Bodies of one density in 3-D, `n` particles high.
-fn spatial(n: f64, ratio: f64, walls: Walls) -> Result<()> {
+fn spatial(n: f64, ratio: f64, asked: &Asked) -> Result<()> {
     let cube = Shape::Box { size: Vector::repeat(HEIGHT) };
     let case = |name, shape: &Shape<3>, ratio, (shift, tilt), deep| {
-        let (shape, pool) = (shape.clone(), Vector::from([2.2, 2.2, deep]) * HEIGHT);
+        if !asked.wants(name) {
+            return Ok(());
+        }
+        let (walls, shape, pool) = (asked.walls, shape.clone(), Vector::from([2.2, 2.2, deep]) * HEIGHT);
         Case { name, shape, ratio, shift, tilt, n, walls, pool, periods: 1.3 }.row()
     };
     case("3-D cube on the lattice", &cube, ratio, (0.0, 0.0), 1.3)?;
@@ -170,31 +193,40 @@ fn spatial(n: f64, ratio: f64, walls: Walls) -> Result<()> {
 
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let (mut walls, mut grids) = (Walls::Settling, Vec::new());
+    let (mut asked, mut grids) = (Asked { walls: Walls::Settling, ratios: vec![], bodies: vec![] }, Vec::new());
     for word in &words {
-        match word.as_str() {
-            "dbc" => walls = Walls::Dbc,
-            "settling" => walls = Walls::Settling,
-            grid => grids.push(grid),
+        match (word.as_str(), word.parse()) {
+            ("dbc", _) => asked.walls = Walls::Dbc,
+            ("settling", _) => asked.walls = Walls::Settling,
+            (_, Ok(ratio)) => asked.ratios.push(ratio),
+            (body, _) if BODIES.contains(&body) => asked.bodies.push(body.into()),
+            (grid, _) => grids.push(grid),
         }
     }
     if grids.is_empty() {
         grids = vec!["2d-10", "2d-20"];
     }
-    println!("Walls: {walls:?}. A draft must be right to {MUST} dp and should be to {GOAL} dp.\n");
+    if asked.ratios.is_empty() {
+        asked.ratios = RATIOS.into();
+    }
+    if asked.bodies.is_empty() {
+        asked.bodies = BODIES.map(String::from).into();
+    }
+    println!("Walls: {:?}. A draft must be right to {MUST} dp and should be to {GOAL} dp.\n", asked.walls);
     println!("| body | ratio | dp a height | draft, dp | error, dp | error, % of the draft | by a gauge, dp | kept |");
     println!("|---|---|---|---|---|---|---|---|");
     for grid in grids {
-        for ratio in RATIOS {
+        for &ratio in &asked.ratios {
             match grid {
-                "2d-10" => flat(10.0, ratio, walls)?,
-                "2d-20" => flat(20.0, ratio, walls)?,
-                "2d-40" => flat(40.0, ratio, walls)?,
-                "3d-10" => spatial(10.0, ratio, walls)?,
-                "3d-20" => spatial(20.0, ratio, walls)?,
+                "2d-10" => flat(10.0, ratio, &asked)?,
+                "2d-20" => flat(20.0, ratio, &asked)?,
+                "2d-40" => flat(40.0, ratio, &asked)?,
+                "3d-10" => spatial(10.0, ratio, &asked)?,
+                "3d-20" => spatial(20.0, ratio, &asked)?,
+                "3d-40" => spatial(40.0, ratio, &asked)?,
                 _ => {
-                    let help = "write dbc or settling, and 2d-10, 2d-20, 2d-40, 3d-10, 3d-20";
-                    return Err(Error::scene(format!("no grid is called {grid:?}")).help(help));
+                    let help = "write dbc or settling, 2d-10, 2d-20, 2d-40, 3d-10, 3d-20, 3d-40, a density ratio, on, off, tilted, ball";
+                    return Err(Error::scene(format!("nothing is called {grid:?}")).help(help));
                 }
             }
         }
