@@ -145,6 +145,9 @@ where
     }
 }
 
+/// All bodies, so many particles high, of one density.
+type Study = fn(f64, f64, &Asked) -> Result<()>;
+
 /// What is asked for.
 struct Asked {
     walls: Walls,
@@ -193,18 +196,28 @@ fn spatial(n: f64, ratio: f64, asked: &Asked) -> Result<()> {
 
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let (mut asked, mut grids) = (Asked { walls: Walls::Settling, ratios: vec![], bodies: vec![] }, Vec::new());
+    let (mut asked, mut grids) =
+        (Asked { walls: Walls::Settling, ratios: vec![], bodies: vec![] }, Vec::<(Study, f64)>::new());
     for word in &words {
         match (word.as_str(), word.parse()) {
             ("dbc", _) => asked.walls = Walls::Dbc,
             ("settling", _) => asked.walls = Walls::Settling,
             (_, Ok(ratio)) => asked.ratios.push(ratio),
             (body, _) if BODIES.contains(&body) => asked.bodies.push(body.into()),
-            (grid, _) => grids.push(grid),
+            ("2d-10", _) => grids.push((flat, 10.0)),
+            ("2d-20", _) => grids.push((flat, 20.0)),
+            ("2d-40", _) => grids.push((flat, 40.0)),
+            ("3d-10", _) => grids.push((spatial, 10.0)),
+            ("3d-20", _) => grids.push((spatial, 20.0)),
+            ("3d-40", _) => grids.push((spatial, 40.0)),
+            (other, _) => {
+                let help = "write dbc or settling, 2d-10, 2d-20, 2d-40, 3d-10, 3d-20, 3d-40, a density over the water's, on, off, tilted, ball";
+                return Err(Error::scene(format!("nothing is called {other:?}")).help(help));
+            }
         }
     }
     if grids.is_empty() {
-        grids = vec!["2d-10", "2d-20"];
+        grids = vec![(flat, 10.0), (flat, 20.0)];
     }
     if asked.ratios.is_empty() {
         asked.ratios = RATIOS.into();
@@ -215,20 +228,9 @@ fn main() -> Result<()> {
     println!("Walls: {:?}. A draft must be right to {MUST} dp and should be to {GOAL} dp.\n", asked.walls);
     println!("| body | ratio | dp a height | draft, dp | error, dp | error, % of the draft | by a gauge, dp | kept |");
     println!("|---|---|---|---|---|---|---|---|");
-    for grid in grids {
+    for (study, n) in grids {
         for &ratio in &asked.ratios {
-            match grid {
-                "2d-10" => flat(10.0, ratio, &asked)?,
-                "2d-20" => flat(20.0, ratio, &asked)?,
-                "2d-40" => flat(40.0, ratio, &asked)?,
-                "3d-10" => spatial(10.0, ratio, &asked)?,
-                "3d-20" => spatial(20.0, ratio, &asked)?,
-                "3d-40" => spatial(40.0, ratio, &asked)?,
-                _ => {
-                    let help = "write dbc or settling, 2d-10, 2d-20, 2d-40, 3d-10, 3d-20, 3d-40, a density ratio, on, off, tilted, ball";
-                    return Err(Error::scene(format!("nothing is called {grid:?}")).help(help));
-                }
-            }
+            study(n, ratio, &asked)?;
         }
     }
     Ok(())
