@@ -328,9 +328,14 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
+        self.save_rescued(self.rescue.log.len())
+    }
+
+    /// As [`Simulation::save`], of a run that has been rescued the first `times` times only.
+    pub(crate) fn save_rescued(&self, times: usize) -> Result<Vec<u8>> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
-        let rescued = self.rescue.log.clone();
+        let rescued = self.rescue.log[..times].to_vec();
         let (light, rig, lost) = (self.bodies.held(), self.bodies.rig().save(), self.lost.clone());
         let (books, gone) = (self.bodies.books.clone(), self.gone());
         let kept = Kept { system, stepper, clock, engine, light, rig, rescued, lost, books, gone };

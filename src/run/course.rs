@@ -208,11 +208,13 @@ impl<const D: usize> Course<D> {
         };
         let (_, extent) = self.marks.swap_remove(at);
         self.marks.truncate(at);
-        // Both checkpoints first: those there may be of the course that ended, and ask for rows that are about to go.
+        // Both checkpoints first: those there may be of the course that ended, and ask for rows that are about to go. The state
+        // knows of no alarm yet: it is met again, or another guard is set.
         self.good = false;
         self.outputs.sync()?;
-        self.keep(extent.clone())?;
-        self.keep(extent.clone())?;
+        for _ in [restart::PREVIOUS, restart::LAST] {
+            self.keep(self.sim.save_rescued(known)?, extent.clone())?;
+        }
         self.outputs.cut(&extent)
     }
 
@@ -229,12 +231,11 @@ impl<const D: usize> Course<D> {
     /// Writes the checkpoint, of outputs that are on the disk.
     fn save(&mut self) -> Result<()> {
         self.outputs.sync()?;
-        self.keep(self.outputs.extent())
+        self.keep(self.sim.save()?, self.outputs.extent())
     }
 
-    /// Writes the checkpoint of the simulation as it is and of `outputs`.
-    fn keep(&mut self, outputs: Extent) -> Result<()> {
-        let state = self.sim.save()?;
+    /// Writes the checkpoint of the simulation's `state` of now and of `outputs`.
+    fn keep(&mut self, state: Vec<u8>, outputs: Extent) -> Result<()> {
         let (time, wall, cpu) = (self.sim.time(), self.wall(), self.cpu());
         let now = Checkpoint { state, time, wall, cpu, outputs, ..self.checkpoint.clone() };
         now.write(&self.folder, self.good)?;

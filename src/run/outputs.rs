@@ -253,7 +253,8 @@ impl<const D: usize> Outputs<D> {
         }
     }
 
-    /// Takes back what was written since the outputs were as `extent` says.
+    /// Takes back what was written since the outputs were as `extent` says. The next checkpoint is due when it was: not before
+    /// what ended the course is past.
     ///
     /// # Errors
     /// `File` if the disk refuses.
@@ -267,9 +268,6 @@ impl<const D: usize> Outputs<D> {
         if let Some((frames, due)) = &mut self.frames {
             frames.cut(extent.frames.len())?;
             due.next = extent.due[count];
-        }
-        if let Some(due) = &mut self.checkpoint {
-            due.next = extent.due[count + 1];
         }
         for (i, list) in self.contacts.iter_mut().enumerate() {
             list.table.cut(extent.tables[count + i])?;
