@@ -177,6 +177,11 @@ impl<const D: usize> Simulation<D> {
         self.rescue.due(self.clock.steps)
     }
 
+    /// Whether a state of `time` (s) is kept.
+    pub(crate) fn holds(&self, time: f64) -> bool {
+        self.rescue.holds(time)
+    }
+
     /// When and why the run went back to a good state and took half the step for a while.
     pub fn rescued(&self) -> &[Rescued] {
         &self.rescue.log

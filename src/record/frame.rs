@@ -88,7 +88,10 @@ impl Frames {
         self.settled = self.settled.min(kept);
         self.list()?;
         for path in gone.flat_map(names).map(|name| self.folder.join("frames").join(name)) {
-            std::fs::remove_file(&path).map_err(|e| cannot_write(&path, &e))?;
+            match std::fs::remove_file(&path) {
+                Err(why) if why.kind() != std::io::ErrorKind::NotFound => return Err(cannot_write(&path, &why)),
+                _ => {}
+            }
         }
         self.measure();
         Ok(())

@@ -151,7 +151,8 @@ impl<const D: usize> Course<D> {
         let mut going = watch.step(&self.progress());
         while going && self.sim.time() < until {
             if self.sim.keeps() {
-                self.mark();
+                self.marks.retain(|(time, _)| self.sim.holds(*time));
+                self.marks.push((self.sim.time(), self.outputs.extent()));
             }
             let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rescued().len());
             let stepped = self.sim.step_to(until);
@@ -185,14 +186,6 @@ impl<const D: usize> Course<D> {
         Ok(Status::Finished)
     }
 
-    /// Marks how far the outputs are, as the simulation keeps its state: of both the last two.
-    fn mark(&mut self) {
-        if self.marks.len() == 2 {
-            self.marks.remove(0);
-        }
-        self.marks.push((self.sim.time(), self.outputs.extent()));
-    }
-
     /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
     /// manifest, and takes back what was written of the course that ended in the alarm.
     fn follow(&mut self, known: usize, watch: &mut dyn Watch) -> Result<()> {
@@ -203,18 +196,16 @@ impl<const D: usize> Course<D> {
         self.manifest.warnings.push(how.to_string());
         // As many may leave again, and be others.
         self.listed = if self.listed > 0 { usize::MAX } else { 0 };
-        let Some(at) = self.marks.iter().rposition(|(time, _)| *time == how.back_to) else {
+        let Some((_, extent)) = self.marks.iter().rfind(|(time, _)| *time == how.back_to).cloned() else {
             return Ok(());
         };
-        let (_, extent) = self.marks.swap_remove(at);
-        self.marks.truncate(at);
         // Both checkpoints first: those there may be of the course that ended, and ask for rows that are about to go. The state
         // knows of no alarm yet: it is met again, or another guard is set.
         self.good = false;
         self.outputs.sync()?;
-        for _ in [restart::PREVIOUS, restart::LAST] {
-            self.keep(self.sim.save_rescued(known)?, extent.clone())?;
-        }
+        let state = self.sim.save_rescued(known)?;
+        self.keep(state.clone(), extent.clone())?;
+        self.keep(state, extent.clone())?;
         self.outputs.cut(&extent)
     }
 
@@ -303,7 +294,7 @@ impl<const D: usize> Course<D> {
             folder::FAILURE,
             folder::SCENE,
         ];
-        let mut files: Vec<String> = self.outputs.tables().collect();
+        let mut files: Vec<String> = self.outputs.paths().collect();
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
         files.push("manifest.json".into());
         self.manifest.files = files;

@@ -231,7 +231,7 @@ impl<const D: usize> Outputs<D> {
     }
 
     /// Paths of the tables, from the run's folder.
-    pub fn tables(&self) -> impl Iterator<Item = String> + '_ {
+    pub fn paths(&self) -> impl Iterator<Item = String> + '_ {
         let series = self.watched.iter().map(|watched| ("series", &watched.table));
         let lists = self.contacts.iter().map(|list| (LISTS, &list.table));
         let name =
@@ -246,7 +246,7 @@ impl<const D: usize> Outputs<D> {
         due.push(self.checkpoint.map_or(0, |due| due.next));
         due.extend(self.contacts.iter().map(|list| list.due.next));
         Extent {
-            tables: self.files().map(Table::bytes).collect(),
+            tables: self.tables().map(Table::bytes).collect(),
             means: self.watched.iter().map(|w| w.mean.clone()).collect(),
             frames: self.frames.as_ref().map_or_else(Vec::new, |(frames, _)| frames.times().to_vec()),
             due,
@@ -281,12 +281,12 @@ impl<const D: usize> Outputs<D> {
     /// # Errors
     /// `File` if the disk refuses.
     pub fn sync(&mut self) -> Result<()> {
-        self.files().try_for_each(Table::sync)?;
+        self.tables().try_for_each(Table::sync)?;
         self.frames.as_mut().map_or(Ok(()), |(frames, _)| frames.sync())
     }
 
     /// The tables of the probes, then of the lists.
-    fn files(&self) -> impl Iterator<Item = &Table> {
+    fn tables(&self) -> impl Iterator<Item = &Table> {
         self.watched.iter().map(|w| &w.table).chain(self.contacts.iter().map(|list| &list.table))
     }
 }

@@ -57,6 +57,11 @@ impl Rescue {
         !self.off && (self.kept.is_empty() || steps.is_multiple_of(EVERY))
     }
 
+    /// Whether a state of `time` (s) is kept.
+    pub(super) fn holds(&self, time: f64) -> bool {
+        self.kept.iter().any(|(_, at, _)| *at == time)
+    }
+
     /// Forgets the states kept, of another course of the run; `log` is what happened before.
     pub(super) fn begin_again(&mut self, log: Vec<Rescued>) {
         (self.kept, self.log) = (Vec::new(), log);
