@@ -84,9 +84,12 @@ Examples:
   pontoon study column --dp 0.03,0.02 --vary model.kernel=wendland,cubic --until 1
   pontoon study flume-box --vary \"model.viscosity={ artificial = { alpha = 0.02 } },none\"
   pontoon study dam-break --vary model.diffusion=none,fourtakas --png fields.png --time 0.3,0.5
+  pontoon study flume-box --vary model.viscosity=laminar,none --repeat 5
 Every spacing is run with every combination of values, one run after the other, each with all
 threads, without frames. Results are in DIR/study.html, .csv and .json, whole after every run; the
 runs in DIR/runs. A run that has finished is not run again; after Ctrl-C the same command goes on.
+With --repeat each run is made several times from starts that differ by a millionth of dp; mean,
+standard deviation, least and greatest error say what of a difference between laws is chance.
 With --png the runs keep frames at the times of --time, and are drawn at the end: a column for each
 run, a row for each time, equal colours.
 Exit codes: 0 all well; 1 a run failed; 2 something in the command, the scene or a file is wrong;
@@ -99,6 +102,8 @@ Examples:
   pontoon validate --list             what there is
   pontoon validate column-3 column-9  two of them, coarse
   pontoon validate column --full      as fine as the paper: about an hour
+  pontoon validate flume-box flume-box-b --repeat 5
+                                      which is better, and what of it is chance
 Results are in DIR/validation.html and .csv, whole after every run; the runs in DIR/runs. A run that
 has finished is not run again; after Ctrl-C the same command goes on.
 Exit codes: 0 all bounds are kept; 1 a run failed; 2 something in the command or a file is wrong;

@@ -200,7 +200,7 @@ fn help_and_lists_teach() {
         &["--dp", "--until", "--out", "--frames", "--threads", "--set", "Examples:", "Ctrl-C", "Exit codes"],
     );
     shows(&["resume", "--help"], &["pontoon resume runs/raft"]);
-    shows(&["study", "--help"], &["--dp", "--vary", "--dry-run", "Examples:", "study.html"]);
+    shows(&["study", "--help"], &["--dp", "--vary", "--repeat", "--dry-run", "Examples:", "study.html"]);
     shows(&["validate", "--help"], &["--quick", "--full", "--list", "Examples:", "validation.html"]);
     shows(&["stress", "--help"], &["--quick", "--list", "--maps", "Examples:", "stress.json"]);
     shows(&["stress", "--list"], &["float", "courant", "impact-water", "cases"]);
@@ -430,6 +430,41 @@ fn a_study_runs_every_spacing_with_every_value_and_nothing_twice() {
 }
 
 #[test]
+fn repeats_tell_what_of_an_error_is_chance() {
+    let desk = Desk::new("repeats");
+    let words = ["study", "still-tank", "--dp", "0.1,0.05", "--until", "0.06", "--out", "s", "--quiet"];
+    let asked = |more: &[&str]| desk.pontoon(&[&words[..], &["--set", "check.4.bound={}"], more].concat());
+    let once = asked(&[]);
+    assert_eq!(once.code, Some(0), "{}", once.err);
+    assert!(!once.out.contains('±') && !desk.read("s/study.html").contains("Repeats"), "{}", once.out);
+    let first = desk.manifest("s/runs/dp-0.05");
+    let said = asked(&["--repeat", "3"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert_eq!(desk.manifest("s/runs/dp-0.05"), first, "the first repeat is what has been run");
+    // A millionth of dp moves the level by far less than dp: the repeats agree in three digits, and the table says so.
+    let told =
+        said.out.lines().find(|line| line.contains("elevation.level_m") && line.contains('±')).unwrap_or_default();
+    assert!(told.contains(" 3 ") && said.out.contains("chance"), "{}", said.out);
+    // Five checks of six runs, and the head; each run has a folder and a row of its own.
+    let table = desk.read("s/study.csv");
+    assert!(table.starts_with("run,repeat,dp_m,check,N,") && table.lines().count() == 31, "{table}");
+    assert_eq!(table.lines().filter(|line| line.starts_with("dp-0.05,3,0.05,")).count(), 5, "{table}");
+    let scene = desk.manifest("s/runs/dp-0.05_repeat-3")["scene"].to_string();
+    assert!(scene.contains("scatter = 0.000002"), "{scene}");
+    let json: serde_json::Value = serde_json::from_str(&desk.read("s/study.json")).unwrap();
+    let spreads = json["spreads"].as_array().unwrap();
+    let level = |of: &&serde_json::Value| of["run"] == "dp-0.05" && of["check"] == "elevation.level_m";
+    let level: Vec<_> = spreads.iter().filter(level).filter(|of| of["figure"] == "largest distance").collect();
+    let [level] = level[..] else { panic!("{spreads:?}") };
+    let figure = |key: &str| level[key].as_f64().unwrap();
+    assert!(level["runs"] == 3 && figure("least") <= figure("mean") && figure("mean") <= figure("greatest"));
+    assert!(figure("deviation") < 0.01 * 0.05, "a hundredth of dp: {level}");
+    assert!(desk.read("s/study.html").contains("<h2>Repeats</h2>"));
+    asked(&["--repeat", "0"]).refused(2, &["0 repeats run nothing"]);
+    asked(&["--repeat", "2", "--vary", "scatter=1e-7,1e-6"]).refused(2, &["scatter tells repeats apart"]);
+}
+
+#[test]
 fn a_study_runs_anew_when_a_table_that_drives_a_body_changes_but_not_for_a_reference() {
     let desk = Desk::new("study-tables");
     fs::create_dir(desk.path("bay")).unwrap();
@@ -498,6 +533,11 @@ fn validate_judges_cases_and_keeps_a_page() {
     assert_eq!(said.code == Some(3), said.out.contains("MISSED"), "{}", said.out);
     let page = desk.read("validation/validation.html");
     assert_eq!(page.matches("<svg").count(), 2, "a plot for each check");
+    // Its repeats are drawn together, and judged one by one.
+    let twice = desk.pontoon(&["validate", "dam-break", "--quiet", "--repeat", "2"]);
+    let page = desk.read("validation/validation.html");
+    assert!(page.matches("<svg").count() == 2 && page.contains("2 runs"), "a plot for each check");
+    assert!(twice.out.contains("dam-break, repeat 2") && twice.out.contains(" ± "), "{}", twice.out);
     let list = desk.pontoon(&["validate", "--list"]);
     assert!(list.out.contains("column-18") && list.out.contains("flume-box-c"), "{}", list.out);
     desk.pontoon(&["validate", "colum-18"]).refused(2, &["did you mean \"column-18\"?", "--list"]);

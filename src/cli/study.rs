@@ -11,7 +11,7 @@ use pontoon::{
     record::has_folder,
     report::Shot,
     scene::Scene,
-    study::{Grid, Job, Planned, Ran, Sheet, State, USUAL, Vary, heads, interval, plan, split},
+    study::{CHANCE, Grid, Job, Planned, Ran, Row, Sheet, State, USUAL, Vary, heads, interval, plan, split, spreads},
 };
 
 use super::{
@@ -38,6 +38,9 @@ pub struct StudyArgs {
     /// Change a key of the scene in all runs; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
     set: Vec<(String, String)>,
+    /// Run each N times, with its water moved by a millionth of dp more each time: what differs is chance
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    repeat: usize,
     /// Simulated time at the end, s
     #[arg(long, value_name = "SECONDS")]
     until: Option<f64>,
@@ -99,14 +102,14 @@ impl List<'_> {
                 continue;
             }
             if !self.quiet {
-                complain(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.name));
+                complain(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.said()));
             }
             let mut follow = Box::new(Follow::new(self.quiet, stop.clone()));
             let outcome = job.attempt(self.threads, &mut *follow);
             follow.close();
             let outcome = outcome?;
             if let State::Failed(why) = &outcome.state {
-                complain(&format!("{} failed: {why}\n", job.name));
+                complain(&format!("{} failed: {why}\n", job.said()));
             }
             let interrupted = outcome.state == State::Interrupted;
             ran.push(outcome);
@@ -137,7 +140,7 @@ fn announced(jobs: &[Job], ran: &[Ran], planned: &[Planned]) -> String {
             State::Planned => "at the usual speed",
         };
         rows.push(vec![
-            job.name.clone(),
+            job.said(),
             short(planned.size.fluid),
             short(planned.size.boundary),
             short(planned.size.steps),
@@ -175,6 +178,7 @@ pub fn study(args: StudyArgs) -> Result<u8> {
         sets,
         name: name.clone(),
         frames: shot.as_ref().map(|shot| interval(&shot.times, scene.until)),
+        repeat: args.repeat,
     };
     let sheet = found.named(Sheet::new(&grid, out, super::command_line()))?;
     let list = List { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
@@ -183,7 +187,9 @@ pub fn study(args: StudyArgs) -> Result<u8> {
         return Ok(0);
     }
     let done = list.work(&stopper()?, |ran| sheet.write(ran))?;
-    say(&format!("\n{}", table(&sheet.run_rows(&sheet.rows(&done.ran)))));
+    let rows = sheet.rows(&done.ran);
+    say(&format!("\n{}", table(&sheet.run_rows(&rows))));
+    say(&chance(&rows));
     for file in sheet.files() {
         say(&format!("{}\n", file.display()));
     }
@@ -191,6 +197,12 @@ pub fn study(args: StudyArgs) -> Result<u8> {
         picture(&sheet.jobs, &done.ran, shot, png)?;
     }
     Ok(code(&done))
+}
+
+/// How far repeats lie apart; nothing if no run is repeated.
+pub fn chance(rows: &[Row]) -> String {
+    let told = spreads(rows);
+    if told.is_empty() { String::new() } else { format!("\n{}{CHANCE}\n\n", table(&told)) }
 }
 
 /// The picture that is to be drawn to `png` of runs that end at `until` (s), the folder `out` being made by them: what is wrong
@@ -215,7 +227,7 @@ fn picture(jobs: &[Job], ran: &[Ran], mut shot: Shot, png: &Path) -> Result<()> 
             folders.push(job.folder.clone());
             shot.heads.push(head);
         } else {
-            complain(&format!("warning: {} has no frames: it is not in the picture\n", job.name));
+            complain(&format!("warning: {} has no frames: it is not in the picture\n", job.said()));
         }
     }
     if folders.is_empty() {

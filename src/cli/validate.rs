@@ -12,7 +12,7 @@ use super::{
     complain,
     report::table,
     say, shelf, stopper,
-    study::{List, code},
+    study::{List, chance, code},
 };
 
 /// Cases and how they are run.
@@ -27,6 +27,9 @@ pub struct ValidateArgs {
     /// As fine and as long as the paper: hours to days
     #[arg(long)]
     full: bool,
+    /// Run each N times, with its water moved by a millionth of dp more each time: what differs is chance
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    repeat: usize,
     /// Threads of each run [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -56,7 +59,7 @@ pub fn validate(args: ValidateArgs) -> Result<u8> {
     let cases = find(&args.names, args.full)?;
     let scenes = cases.iter().map(|case| shelf::find(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
     let placed = cases.into_iter().zip(scenes.iter().map(shelf::Found::path)).collect();
-    let validation = Validation::new(placed, args.full, args.out.clone(), super::command_line())?;
+    let validation = Validation::new(placed, args.full, args.repeat, args.out.clone(), super::command_line())?;
     let list = List { jobs: &validation.jobs, threads: args.threads, quiet: args.quiet };
     list.announce(args.dry_run)?;
     if args.dry_run {
@@ -64,6 +67,7 @@ pub fn validate(args: ValidateArgs) -> Result<u8> {
     }
     let done = list.work(&stopper()?, |ran| validation.write(ran))?;
     say(&format!("\n{}", table(&validation.table(&done.ran))));
+    say(&chance(&validation.rows(&done.ran)));
     for file in validation.files() {
         say(&format!("{}\n", file.display()));
     }

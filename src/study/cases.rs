@@ -142,6 +142,7 @@ impl Case {
         Ok(Job {
             folder: out.join("runs").join(&name),
             name: self.name.clone(),
+            repeat: 1,
             scene: scene.to_owned(),
             sets,
             group: self.scene.clone(),

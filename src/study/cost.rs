@@ -4,6 +4,7 @@ use super::{
     Job, Line, Row, Style, log_log,
     page::{self, escape},
     rows::RELATIVE,
+    spread::{self, Point, together},
 };
 use crate::error::Result;
 
@@ -19,19 +20,21 @@ pub fn figures(jobs: &[Job], rows: &[Row]) -> Result<String> {
     let mut text = String::new();
     for scene in unique(jobs.iter().map(|job| job.group.as_str())) {
         let own: Vec<&Job> = jobs.iter().filter(|job| job.group == scene).collect();
-        let known: Vec<(&Job, &Row)> =
-            rows.iter().filter_map(|r| Some((*own.iter().find(|job| job.name == r.run)?, r))).collect();
+        let known: Vec<(&Job, Vec<&Row>)> = together(rows)
+            .into_iter()
+            .filter_map(|of| Some((*own.iter().find(|job| job.name == of[0].run)?, of)))
+            .collect();
         let mut drawn = Vec::new();
-        for check in unique(known.iter().map(|(_, r)| r.check.as_str())) {
+        for check in unique(known.iter().map(|(_, of)| of[0].check.as_str())) {
             for (error, figure) in RELATIVE {
-                let points: Vec<(&Job, f64, f64)> = known
+                let points: Vec<(&Job, Point)> = known
                     .iter()
-                    .filter(|(_, r)| r.check == check && r.status == "finished")
-                    .filter_map(|(job, r)| Some((*job, r.cpu_s?, figure(r)?)))
+                    .filter(|(_, of)| of[0].check == check)
+                    .filter_map(|(job, of)| Some((*job, Point::new(of, figure)?)))
                     .collect();
                 // Two checks of one series differ in their means alone.
                 if points.len() > 1 && !drawn.contains(&points) {
-                    text += &plot(scene, check, error, &points)?;
+                    text += &plot(scene, check, error, &points, spread::bars(rows))?;
                     drawn.push(points);
                 }
             }
@@ -43,19 +46,21 @@ pub fn figures(jobs: &[Job], rows: &[Row]) -> Result<String> {
     })
 }
 
-/// One point for each case, in the colour of its viscosity.
-fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, f64, f64)]) -> Result<String> {
-    let laws = unique(points.iter().map(|(job, ..)| law(job)));
+/// One point for each case, in the colour of its viscosity; `bars` says what its bar is.
+fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, Point)], bars: &str) -> Result<String> {
+    let laws = unique(points.iter().map(|(job, _)| law(job)));
     let line = |(i, law_of_line): (usize, &&str)| {
-        let own: Vec<_> = points.iter().filter(|(job, ..)| law(job) == *law_of_line).collect();
-        let labels = own.iter().map(|(job, ..)| short(&job.name, scene).to_string()).collect();
-        Line { labels, ..Line::new(i, Style::Dots, own.iter().map(|(_, cost, error)| (*cost, *error)).collect()) }
+        let own: Vec<_> = points.iter().filter(|(job, _)| law(job) == *law_of_line).collect();
+        let labels = own.iter().map(|(job, _)| short(&job.name, scene).to_string()).collect();
+        let spans = own.iter().map(|(_, point)| point.span).collect();
+        Line { labels, spans, ..Line::new(i, Style::Dots, own.iter().map(|(_, point)| point.place).collect()) }
     };
     let lines: Vec<Line> = laws.iter().enumerate().map(line).collect();
     let svg = log_log(["processor time, s", &format!("{error} of {check}, –")], &lines)?;
     let keys: Vec<(usize, String)> = laws.iter().enumerate().map(|(i, law)| (i, format!("{LAW} = {law}"))).collect();
     let title = format!("<h3>{}: {error} of {}</h3>\n", escape(scene), escape(check));
-    Ok(title + &page::figure(&svg, &keys, "A point for each case, with its name. Left and low is good."))
+    let caption = format!("A point for each case, with its name. Left and low is good.{bars}");
+    Ok(title + &page::figure(&svg, &keys, &caption))
 }
 
 /// The viscosity of a case.
@@ -87,6 +92,7 @@ mod tests {
     fn job(name: &str, scene: &str, law: &str) -> Job {
         Job {
             name: name.into(),
+            repeat: 1,
             scene: scene.into(),
             sets: vec![(LAW.into(), law.into())],
             folder: name.into(),

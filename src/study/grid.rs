@@ -38,6 +38,8 @@ pub struct Grid {
     pub sets: Vec<(String, String)>,
     /// Simulated time between the frames that each run keeps for a picture, s; without it none are kept.
     pub frames: Option<f64>,
+    /// How often each run is made, each time from a start that is a hair's breadth another ([`Job::repeated`]).
+    pub repeat: usize,
 }
 
 impl Grid {
@@ -45,7 +47,7 @@ impl Grid {
     /// early.
     ///
     /// # Errors
-    /// `Usage` if a spacing or a list of values is empty or given twice.
+    /// `Usage` if a spacing or a list of values is empty or given twice; those of [`Job::repeated`].
     pub fn jobs(&self, out: &Path) -> Result<Vec<Job>> {
         let mut dp = self.dp.clone();
         dp.sort_by(|a, b| b.total_cmp(a));
@@ -70,13 +72,13 @@ impl Grid {
                 let name = slug(dp, &varied);
                 let group = label(&varied);
                 let (folder, scene) = (out.join("runs").join(&name), self.scene.clone());
-                jobs.push(Job { folder, name, scene, sets, group, dp, varied });
+                jobs.push(Job { folder, name, repeat: 1, scene, sets, group, dp, varied });
             }
         }
         match (0..jobs.len()).find(|&i| jobs[..i].iter().any(|job| job.name == jobs[i].name)) {
             Some(i) => Err(Error::new(Kind::Usage, format!("two runs would be called {:?}", jobs[i].name))
                 .help("give each spacing and each value once")),
-            None => Ok(jobs),
+            None => Ok(jobs.into_iter().map(|job| job.repeated(self.repeat)).collect::<Result<Vec<_>>>()?.concat()),
         }
     }
 
@@ -118,7 +120,8 @@ pub fn heads(jobs: &[Job]) -> Vec<String> {
     let head = |job: &Job| {
         let spacing = spacings.then(|| format!("dp = {} m", job.dp));
         let short = |(key, value): &(String, String)| format!("{} = {value}", key.rsplit('.').next().unwrap_or(key));
-        let words: Vec<String> = spacing.into_iter().chain(job.varied.iter().map(short)).collect();
+        let repeat = jobs.iter().any(|job| job.repeat > 1).then(|| format!("repeat {}", job.repeat));
+        let words: Vec<String> = spacing.into_iter().chain(job.varied.iter().map(short)).chain(repeat).collect();
         if words.is_empty() { job.name.clone() } else { words.join(", ") }
     };
     jobs.iter().map(head).collect()
@@ -183,7 +186,15 @@ mod tests {
         let vary = vary
             .iter()
             .map(|(key, values)| Vary { key: key.to_string(), values: values.iter().map(|v| v.to_string()).collect() });
-        Grid { name: "x".into(), scene: "x".into(), dp: dp.into(), vary: vary.collect(), sets: vec![], frames: None }
+        Grid {
+            name: "x".into(),
+            scene: "x".into(),
+            dp: dp.into(),
+            vary: vary.collect(),
+            sets: vec![],
+            frames: None,
+            repeat: 1,
+        }
     }
 
     #[test]
@@ -213,6 +224,29 @@ mod tests {
             [interval(&[0.0], 2.0), interval(&[0.5, 1.25], 2.0), interval(&[0.333, 1.0], 2.0)],
             [2.0, 0.25, 0.01]
         );
+        Ok(())
+    }
+
+    #[test]
+    fn repeats_share_a_name_and_start_a_millionth_of_dp_apart() -> Result<()> {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/still-tank");
+        let thrice = |sets: &[(&str, &str)]| {
+            let sets = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+            Grid { scene: scene.clone(), sets, repeat: 3, ..grid(&[0.05], &[]) }.jobs(Path::new("out"))
+        };
+        let jobs = thrice(&[])?;
+        assert!(jobs.iter().all(|job| job.name == "dp-0.05" && job.group.is_empty()));
+        let folders = ["out/runs/dp-0.05", "out/runs/dp-0.05_repeat-2", "out/runs/dp-0.05_repeat-3"];
+        assert_eq!(jobs.iter().map(|job| job.folder.as_path()).collect::<Vec<_>>(), folders.map(Path::new));
+        assert_eq!(heads(&jobs), ["repeat 1", "repeat 2", "repeat 3"]);
+        let starts = |jobs: &[Job]| jobs.iter().map(|job| Ok(job.read()?.scatter)).collect::<Result<Vec<_>>>();
+        // The first is what it would be without repeats, so that a study that has been run can be repeated.
+        assert_eq!(starts(&jobs)?, [None, Some(1e-6), Some(2e-6)]);
+        assert_eq!(starts(&thrice(&[("scatter", "1e-3")])?)?, [1e-3, 1e-3 + 1e-6, 1e-3 + 2e-6].map(Some));
+        let refused = |grid: Grid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
+        assert_eq!(refused(Grid { repeat: 0, ..grid(&[0.05], &[]) }), Some(Kind::Usage));
+        let varied = grid(&[0.05], &[("scatter", &["1e-7", "1e-6"])]);
+        assert_eq!(refused(Grid { repeat: 2, ..varied }), Some(Kind::Usage));
         Ok(())
     }
 

@@ -7,11 +7,17 @@ use std::{
 
 use crate::{
     check::{Check, Curves, Verdict},
-    error::{Error, Result},
+    error::{Error, Kind, Result},
     record::{Manifest, manifest::Status},
     run::{self, Options, Watch},
     scene::{Frames, FramesWords, Scene, Size},
 };
+
+/// How far further off its place the water of each repeat starts than that of the one before, dp.
+const APART: f64 = 1e-6;
+
+/// The key that tells repeats apart.
+const SCATTER: &str = "scatter";
 
 /// Keys of a scene that change what is kept or judged of a run, never the run.
 const BESIDE: [&str; 4] = ["title", "frames", "checkpoint", "check"];
@@ -19,8 +25,10 @@ const BESIDE: [&str; 4] = ["title", "frames", "checkpoint", "check"];
 /// One run of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// Its name in the list, and that of its folder.
+    /// Its name in the list; repeats share it.
     pub name: String,
+    /// Which of the runs of this name it is: 1, or more where runs are repeated.
+    pub repeat: usize,
     /// The scene, a folder or a file.
     pub scene: PathBuf,
     /// Keys of the scene that are changed, and their values.
@@ -66,6 +74,39 @@ impl Ran {
 }
 
 impl Job {
+    /// This job `times` times over. Each repeat starts with its water moved by a millionth of dp more than the one before,
+    /// the first as the scene says: what then differs between them is chance.
+    ///
+    /// # Errors
+    /// `Usage` for no time, or if the job varies `scatter` itself; those of the scene's words.
+    pub fn repeated(self, times: usize) -> Result<Vec<Self>> {
+        if times == 0 {
+            return Err(Error::new(Kind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
+        }
+        if times > 1 && self.varied.iter().any(|(key, _)| key == SCATTER) {
+            return Err(Error::new(Kind::Usage, "scatter tells repeats apart: it cannot be varied too")
+                .help("leave out  --vary scatter  or  --repeat"));
+        }
+        let own = if times > 1 { self.read()?.scatter.unwrap_or(0.0) } else { 0.0 };
+        let nth = |repeat: usize| {
+            let mut job = Self { repeat, ..self.clone() };
+            if repeat > 1 {
+                job.sets.push((SCATTER.into(), format!("{:?}", own + APART * (repeat - 1) as f64)));
+                job.folder.as_mut_os_string().push(format!("_repeat-{repeat}"));
+            }
+            job
+        };
+        Ok((1..=times).map(nth).collect())
+    }
+
+    /// Its name, with the number of the repeat from the second on.
+    pub fn said(&self) -> String {
+        match self.repeat {
+            1 => self.name.clone(),
+            n => format!("{}, repeat {n}", self.name),
+        }
+    }
+
     /// The scene with the job's changes.
     ///
     /// # Errors

@@ -14,6 +14,7 @@ mod page;
 mod plot;
 mod rows;
 mod sheet;
+mod spread;
 pub mod stress;
 mod validation;
 
@@ -25,4 +26,5 @@ pub use order::{Convergence, convergence, least_squares};
 pub use plot::{Line, Style, curves, log_log};
 pub use rows::{Row, csv, rows};
 pub use sheet::Sheet;
+pub use spread::{CHANCE, Spread, spreads};
 pub use validation::Validation;

@@ -2,7 +2,7 @@
 
 use std::time::SystemTime;
 
-use super::plot;
+use super::{CHANCE, Row, plot, spreads};
 use crate::record::manifest::Machine;
 pub use crate::report::words::{escape, table, unit};
 
@@ -31,6 +31,15 @@ pub fn figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
     };
     let keys: String = keys.iter().map(key).collect();
     format!("<figure>{svg}\n<figcaption>{keys}{}</figcaption></figure>\n", escape(caption))
+}
+
+/// How far repeats lie apart, as a part of a page; nothing if no run is repeated.
+pub fn repeats(rows: &[Row]) -> String {
+    let told = spreads(rows);
+    match told.is_empty() {
+        true => String::new(),
+        false => format!("<h2>Repeats</h2>\n<p>{}</p>\n{}", CHANCE, table(&told)),
+    }
 }
 
 /// What ran when and where, as a table.

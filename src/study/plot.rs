@@ -46,12 +46,14 @@ pub struct Line {
     pub points: Vec<(f64, f64)>,
     /// What stands beside each point; may be empty.
     pub labels: Vec<String>,
+    /// From where to where each point is known, upright; may be empty.
+    pub spans: Vec<(f64, f64)>,
 }
 
 impl Line {
-    /// A line without labels.
+    /// A line without labels and spans.
     pub fn new(colour: usize, style: Style, points: Vec<(f64, f64)>) -> Self {
-        Self { colour, style, points, labels: vec![] }
+        Self { colour, style, points, labels: vec![], spans: vec![] }
     }
 }
 
@@ -66,7 +68,7 @@ pub fn colour(i: usize) -> String {
 /// # Errors
 /// `File` if the drawing fails.
 pub fn curves(titles: [&str; 2], lines: &[Line]) -> Result<String> {
-    let (x, y) = (span(lines, |p| p.0), span(lines, |p| p.1));
+    let (x, y) = (across(lines), upright(lines));
     let room = 0.05 * (y.end - y.start);
     draw(titles, lines, Axis::Linear(x), Axis::Linear(y.start - room..y.end + room))
 }
@@ -80,17 +82,30 @@ pub fn log_log(titles: [&str; 2], lines: &[Line]) -> Result<String> {
         let keep: Vec<usize> =
             (0..line.points.len()).filter(|&i| line.points[i].0 > 0.0 && line.points[i].1 > 0.0).collect();
         let labels = keep.iter().filter_map(|&i| line.labels.get(i).cloned()).collect();
-        Line { points: keep.iter().map(|&i| line.points[i]).collect(), labels, ..line.clone() }
+        let above = |(i, &(low, high)): (usize, &(f64, f64))| (if low > 0.0 { low } else { line.points[i].1 }, high);
+        let all: Vec<(f64, f64)> = line.spans.iter().enumerate().map(above).collect();
+        let spans = keep.iter().filter_map(|&i| all.get(i).copied()).collect();
+        Line { points: keep.iter().map(|&i| line.points[i]).collect(), labels, spans, ..line.clone() }
     };
     let lines: Vec<Line> = lines.iter().map(positive).collect();
-    let (x, y) = (span(&lines, |p| p.0), span(&lines, |p| p.1));
+    let (x, y) = (across(&lines), upright(&lines));
     draw(titles, &lines, Axis::Log(x.start / 1.5..x.end * 2.0), Axis::Log(y.start / 1.3..y.end * 1.3))
 }
 
-/// The least range that holds a coordinate of all points; not empty.
-fn span(lines: &[Line], of: impl Fn(&(f64, f64)) -> f64) -> Range<f64> {
-    let all = || lines.iter().flat_map(|line| line.points.iter().map(&of));
-    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+/// The range of all points along the first axis.
+fn across(lines: &[Line]) -> Range<f64> {
+    range(lines.iter().flat_map(|line| &line.points).map(|p| p.0))
+}
+
+/// The range of all points and spans along the second axis.
+fn upright(lines: &[Line]) -> Range<f64> {
+    let points = lines.iter().flat_map(|line| &line.points).map(|p| p.1);
+    range(points.chain(lines.iter().flat_map(|line| &line.spans).flat_map(|&(low, high)| [low, high])))
+}
+
+/// The least range that holds all of `values`; not empty.
+fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     match low < high {
         true => low..high,
         false if low.is_finite() && low != 0.0 => low - 0.5 * low.abs()..low + 0.5 * low.abs(),
@@ -128,6 +143,9 @@ fn draw(titles: [&str; 2], lines: &[Line], x: Axis, y: Axis) -> Result<String> {
                 let path = LineSeries::new(line.points.iter().copied(), colour.stroke_width(3));
                 chart.draw_series(path).map_err(|e| failed(e.to_string()))?;
             }
+            let bars = line.points.iter().zip(&line.spans).filter(|(_, (low, high))| low < high);
+            let bars = bars.map(|(p, s)| PathElement::new(vec![(p.0, s.0), (p.0, s.1)], colour.stroke_width(3)));
+            chart.draw_series(bars).map_err(|e| failed(e.to_string()))?;
             if line.style != Style::Plain {
                 let dots = line.points.iter().map(|&p| Circle::new(p, 8, colour.filled()));
                 chart.draw_series(dots).map_err(|e| failed(e.to_string()))?;
@@ -221,6 +239,19 @@ mod tests {
         for word in ["<svg", "processor time, s", "N, –", "20 mm", "0.2", "100"] {
             assert!(svg.contains(word), "\"{word}\" is not there");
         }
+        Ok(())
+    }
+
+    #[test]
+    fn a_span_is_drawn_upright_and_the_axis_reaches_it() -> Result<()> {
+        let bare = Line::new(0, Style::Dots, vec![(2.0, 0.4), (30.0, 0.2)]);
+        let spanned = Line { spans: vec![(0.05, 0.9), (0.2, 0.2)], ..bare.clone() };
+        let drawn = |line: Line| log_log(["x", "y"], &[line]);
+        let (bare, spanned) = (drawn(bare)?, drawn(spanned)?);
+        // One bar: the second point is known exactly.
+        let bars = |svg: &str| svg.matches("stroke=\"#0072B2\" stroke-width=\"3\"").count();
+        assert_eq!((bars(&bare), bars(&spanned)), (0, 1), "{spanned}");
+        assert!(!bare.contains("\n0.05\n") && spanned.contains("\n0.05\n"), "{spanned}");
         Ok(())
     }
 

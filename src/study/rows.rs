@@ -11,8 +11,10 @@ use crate::{
 /// A run under one of its checks; a figure is none where it is not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Row {
-    /// Name of the run.
+    /// Name of the run; repeats share it.
     pub run: String,
+    /// Which repeat of it, from 1.
+    pub repeat: usize,
     /// Particle spacing, m.
     pub dp: f64,
     /// Keys and values that make this run another than the rest.
@@ -52,6 +54,9 @@ pub type Metric = (&'static str, fn(&Row) -> Option<f64>);
 /// The errors relative to the reference: N, and N with the delay taken out.
 pub const RELATIVE: [Metric; 2] = [("N", |r| r.figures.n), ("aligned N", |r| r.aligned_n)];
 
+/// The largest distance from the reference, in the unit of its series.
+pub const DISTANCE: Metric = ("largest distance", |r| r.figures.off);
+
 impl Row {
     /// The error that is plotted: N, or else the largest distance.
     pub fn error(&self) -> Option<f64> {
@@ -63,8 +68,14 @@ impl Row {
 /// `checks` too.
 pub fn rows(jobs: &[Job], ran: &[Ran], checks: &[String]) -> Vec<Row> {
     let of = |(i, job): (usize, &Job)| {
-        let first =
-            Row { run: job.name.clone(), dp: job.dp, varied: job.varied.clone(), status: "planned", ..Row::default() };
+        let first = Row {
+            run: job.name.clone(),
+            repeat: job.repeat,
+            dp: job.dp,
+            varied: job.varied.clone(),
+            status: "planned",
+            ..Row::default()
+        };
         let ran = ran.get(i);
         let first = ran.map_or(first.clone(), |ran| costs(first, ran));
         let verdicts = ran.map_or(&[][..], |ran| &ran.verdicts[..]);
@@ -128,7 +139,7 @@ fn judged(row: Row, verdict: &Verdict) -> Row {
 pub fn csv(rows: &[Row], keys: &[String]) -> Result<Vec<u8>> {
     let broken = |why: csv::Error| Error::new(Kind::File, format!("the table cannot be made: {why}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut head = vec!["run".to_string(), "dp_m".into()];
+    let mut head = ["run", "repeat", "dp_m"].map(String::from).to_vec();
     head.extend(keys.iter().cloned());
     let rest = [
         "check",
@@ -151,7 +162,7 @@ pub fn csv(rows: &[Row], keys: &[String]) -> Result<Vec<u8>> {
     writer.write_record(&head).map_err(broken)?;
     for row in rows {
         let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
-        let mut cells = vec![row.run.clone(), format!("{:?}", row.dp)];
+        let mut cells = vec![row.run.clone(), row.repeat.to_string(), format!("{:?}", row.dp)];
         let value = |key: &String| row.varied.iter().find(|(k, _)| k == key).map_or(String::new(), |(_, v)| v.clone());
         cells.extend(keys.iter().map(value));
         cells.push(row.check.clone());
@@ -190,8 +201,8 @@ mod tests {
         let text = csv(&[row], &["gravity".into()])?;
         let mut reader = csv::Reader::from_reader(text.as_slice());
         let record = reader.records().next().and_then(|r| r.ok()).unwrap_or_default();
-        assert_eq!((&record[2], &record[4], record.len()), ("[0.0, -9.81]", "0.25", 18));
-        assert_eq!(&record[17], "too fast   usual cause");
+        assert_eq!((&record[3], &record[5], record.len()), ("[0.0, -9.81]", "0.25", 19));
+        assert_eq!(&record[18], "too fast   usual cause");
         Ok(())
     }
 }

@@ -7,7 +7,8 @@ use serde::Serialize;
 use super::{
     Grid, Job, Line, Ran, Row, Style, convergence, csv, least_squares, log_log,
     page::{self, unit},
-    rows::{Metric, RELATIVE, labels, rows},
+    rows::{DISTANCE, Metric, RELATIVE, labels, rows},
+    spread::{self, Apart, Point, Spread, together},
 };
 use crate::{
     check::said,
@@ -52,6 +53,8 @@ struct Whole<'a> {
     threads: Option<usize>,
     rows: &'a [Row],
     orders: &'a [Order],
+    /// How far repeats lie apart; empty if nothing is repeated.
+    spreads: Vec<Apart>,
 }
 
 impl Sheet {
@@ -98,6 +101,7 @@ impl Sheet {
             threads,
             rows: &rows,
             orders: &orders,
+            spreads: spread::apart(&rows),
         };
         let [table, json, html] = self.files();
         write_whole(&table, &csv(&rows, &self.keys)?)?;
@@ -111,9 +115,8 @@ impl Sheet {
     fn metrics(rows: &[Row], check: &str) -> Vec<Metric> {
         let has = |metric: &Metric| rows.iter().any(|r| r.check == check && metric.1(r).is_some());
         let found: Vec<Metric> = RELATIVE.into_iter().filter(has).collect();
-        let distance: Metric = ("largest distance", |r| r.figures.off);
         match found.is_empty() {
-            true => std::iter::once(distance).filter(has).collect(),
+            true => std::iter::once(DISTANCE).filter(has).collect(),
             false => found,
         }
     }
@@ -129,10 +132,10 @@ impl Sheet {
         groups
     }
 
-    /// The finished rows of a check and combination.
-    fn of<'a>(&self, rows: &'a [Row], check: &str, group: &str) -> Vec<&'a Row> {
-        let own = |r: &&Row| self.jobs.iter().any(|job| job.name == r.run && job.group == group);
-        rows.iter().filter(|r| r.check == check && r.status == "finished").filter(own).collect()
+    /// The finished rows of a check and combination, one list for each spacing: its repeats.
+    fn of<'a>(&self, rows: &'a [Row], check: &str, group: &str) -> Vec<Vec<&'a Row>> {
+        let own = |r: &Row| self.jobs.iter().any(|job| job.name == r.run && job.group == group);
+        together(rows).into_iter().filter(|of| of[0].check == check && own(of[0])).collect()
     }
 
     fn orders(&self, rows: &[Row]) -> Vec<Order> {
@@ -141,7 +144,8 @@ impl Sheet {
             for (error, figure) in Self::metrics(rows, check) {
                 for group in self.groups() {
                     let of = self.of(rows, check, &group);
-                    let points: Vec<(f64, f64)> = of.iter().filter_map(|r| Some((r.dp, figure(r)?))).collect();
+                    let mean = |of: &Vec<&Row>| Spread::of(of.iter().filter_map(|r| figure(r))).map(|s| s.mean);
+                    let points: Vec<(f64, f64)> = of.iter().filter_map(|of| Some((of[0].dp, mean(of)?))).collect();
                     let fine = convergence(&points);
                     orders.push(Order {
                         check: check.clone(),
@@ -170,7 +174,9 @@ impl Sheet {
         body += "<p>Order: q of error ∝ dp^q. By least squares over all spacings it is of the error itself; from the three finest, of \
                  the differences between them, and the index (Roache 1994, factor 1.25) is what the finest may still change \
                  by, relative to itself. Neither can be said (–) with fewer spacings or where the figure does not converge \
-                 monotonically.</p>\n<h2>Runs</h2>\n";
+                 monotonically. Of repeats it is the mean.</p>\n";
+        body += &page::repeats(rows);
+        body += "<h2>Runs</h2>\n";
         body += &page::table(&self.run_rows(rows));
         Ok(body)
     }
@@ -179,23 +185,22 @@ impl Sheet {
     fn plot(&self, rows: &[Row], check: &str, error: &str, figure: fn(&Row) -> Option<f64>) -> Result<String> {
         let groups = self.groups();
         let line = |(i, group): (usize, &String)| {
-            let known: Vec<(f64, f64, f64)> = self
-                .of(rows, check, group)
-                .iter()
-                .filter_map(|r| Some((r.cpu_s.filter(|s| *s > 0.0)?, figure(r).filter(|e| *e > 0.0)?, r.dp)))
-                .collect();
-            let labels = known.iter().map(|p| format!("{} mm", millimetres(p.2))).collect();
-            Line { labels, ..Line::new(i, Style::Dotted, known.iter().map(|p| (p.0, p.1)).collect()) }
+            let mut points: Vec<Point> =
+                self.of(rows, check, group).iter().filter_map(|of| Point::new(of, figure)).collect();
+            points.retain(|p| p.place.0 > 0.0 && p.place.1 > 0.0);
+            let labels = points.iter().map(|p| format!("{} mm", millimetres(p.dp))).collect();
+            let spans = points.iter().map(|p| p.span).collect();
+            Line { labels, spans, ..Line::new(i, Style::Dotted, points.iter().map(|p| p.place).collect()) }
         };
         let lines: Vec<Line> = groups.iter().enumerate().map(line).collect();
-        let unit = if error == "largest distance" { unit(check) } else { "–" };
+        let unit = if error == DISTANCE.0 { unit(check) } else { "–" };
         let svg = log_log(["processor time, s", &format!("{error} of {check}, {unit}")], &lines)?;
         let keys: Vec<(usize, String)> =
             groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()).collect();
         Ok(page::figure(
             &svg,
             &keys,
-            &format!("{error} over processor time; at each point its dp. Left and low is good."),
+            &format!("{error} over processor time; at each point its dp. Left and low is good.{}", spread::bars(rows)),
         ))
     }
 
@@ -212,8 +217,10 @@ impl Sheet {
 
     /// The rows as a table in words, for a page or a terminal.
     pub fn run_rows(&self, rows: &[Row]) -> Vec<Vec<String>> {
+        let repeated = rows.iter().any(|row| row.repeat > 1);
         let mut head = vec!["dp, mm".to_string()];
         head.extend(self.keys.iter().cloned());
+        head.extend(repeated.then(|| "repeat".to_string()));
         let rest = [
             "check",
             "N",
@@ -231,6 +238,7 @@ impl Sheet {
         let row = |r: &Row| {
             let mut cells = vec![millimetres(r.dp)];
             cells.extend(r.varied.iter().map(|(_, value)| value.clone()));
+            cells.extend(repeated.then(|| r.repeat.to_string()));
             cells.push(r.check.clone());
             cells.extend([r.figures.n, r.figures.m, r.figures.peak].map(said::figure));
             cells.push(said::digits(r.figures.off));

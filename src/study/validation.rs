@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    Case, Job, Line, Ran, State, Style, cost, csv, curves,
+    Case, Job, Line, Ran, Row, State, Style, cost, csv, curves,
     page::{self, unit},
     rows::{labels, rows},
 };
@@ -14,6 +14,7 @@ use crate::{
     check::{Curves, Verdict, said},
     error::{Error, Result},
     record::{manifest::Machine, write_whole},
+    series::Series,
 };
 
 /// Cases that are run, quick or full.
@@ -21,18 +22,20 @@ pub struct Validation {
     command: String,
     out: PathBuf,
     cases: Vec<Case>,
-    /// The runs, one for each case.
+    repeat: usize,
+    /// The runs: the repeats of each case, one case after the other.
     pub jobs: Vec<Job>,
 }
 
 impl Validation {
-    /// The validation of `cases`, each with the place of its scene, in the folder `out`.
+    /// The validation of `cases`, each with the place of its scene, in the folder `out`; each is run `repeat` times.
     ///
     /// # Errors
-    /// Those of the scenes' words.
-    pub fn new(cases: Vec<(Case, &Path)>, full: bool, out: PathBuf, command: String) -> Result<Self> {
-        let jobs = cases.iter().map(|(case, scene)| case.job(full, scene, &out)).collect::<Result<_>>()?;
-        Ok(Self { command, out, cases: cases.into_iter().map(|(case, _)| case).collect(), jobs })
+    /// Those of the scenes' words and of [`Job::repeated`].
+    pub fn new(cases: Vec<(Case, &Path)>, full: bool, repeat: usize, out: PathBuf, command: String) -> Result<Self> {
+        let jobs = cases.iter().map(|(case, scene)| case.job(full, scene, &out)?.repeated(repeat));
+        let jobs = jobs.collect::<Result<Vec<_>>>()?.concat();
+        Ok(Self { command, out, cases: cases.into_iter().map(|(case, _)| case).collect(), repeat, jobs })
     }
 
     /// Files that [`Validation::write`] writes.
@@ -40,9 +43,9 @@ impl Validation {
         ["validation.html", "validation.csv"].map(|name| self.out.join(name))
     }
 
-    /// The table of the first cases, of which `ran` is known; its first row is its head.
+    /// The table of the first runs, of which `ran` is known; its first row is its head.
     pub fn table(&self, ran: &[Ran]) -> Vec<Vec<String>> {
-        let names: Vec<[String; 1]> = self.cases.iter().map(|case| [case.name.clone()]).collect();
+        let names: Vec<[String; 1]> = self.jobs.iter().map(|job| [job.said()]).collect();
         let named: Vec<Vec<Verdict>> = ran.iter().map(named).collect();
         let pairs: Vec<(&[String], &Verdict)> =
             names.iter().zip(&named).flat_map(|(name, all)| all.iter().map(move |v| (&name[..], v))).collect();
@@ -58,7 +61,12 @@ impl Validation {
         table
     }
 
-    /// Writes page and table; `ran` are the first cases.
+    /// A row for each check of the first runs, of which `ran` is known.
+    pub fn rows(&self, ran: &[Ran]) -> Vec<Row> {
+        rows(&self.jobs[..ran.len()], ran, &[])
+    }
+
+    /// Writes page and table; `ran` are the first runs.
     ///
     /// # Errors
     /// `File` if one cannot be written; each is replaced as a whole.
@@ -68,10 +76,11 @@ impl Validation {
         let (machine, threads) = (first.map_or_else(Machine::this, |m| m.machine.clone()), first.map(|m| m.threads));
         let mut body = page::origin(&self.command, &machine, threads);
         body += &page::table(&self.table(ran));
-        let rows = rows(&self.jobs[..ran.len()], ran, &[]);
+        let rows = self.rows(ran);
+        body += &page::repeats(&rows);
         body += &cost::figures(&self.jobs, &rows)?;
-        for ((case, job), ran) in self.cases.iter().zip(&self.jobs).zip(ran) {
-            body += &section(case, job, ran)?;
+        for ((case, jobs), ran) in self.cases.iter().zip(self.jobs.chunks(self.repeat)).zip(ran.chunks(self.repeat)) {
+            body += &section(case, jobs, ran)?;
         }
         let [html, table] = self.files();
         write_whole(&html, &page::page("Validation", &body))?;
@@ -93,52 +102,59 @@ fn costs(ran: &Ran) -> [String; 3] {
     )
 }
 
-/// What a case is, and the curves of its checks.
-fn section(case: &Case, job: &Job, ran: &Ran) -> Result<String> {
+/// What a case is, and the curves of its checks, of all of its repeats that have been run.
+fn section(case: &Case, jobs: &[Job], ran: &[Ran]) -> Result<String> {
     let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", page::escape(&case.name), page::escape(&case.about));
     if !case.note.is_empty() {
         text += &format!("<p>{}</p>\n", page::escape(&case.note));
     }
-    let water = ran.manifest.as_ref().map_or(String::new(), |m| format!(", {} water particles", m.particles.fluid));
-    text += &format!("<p>Scene <code>{}</code>, dp = {} m{water}.</p>\n", page::escape(&case.scene), job.dp);
-    if ran.state != State::Finished {
-        return Ok(text);
-    }
-    for ((curves, verdict), named) in job.curves()?.iter().zip(&ran.verdicts).zip(named(ran)) {
-        text += &match curves {
-            Some(curves) => plot(curves, &named, unit(&verdict.series))?,
-            None => format!("<p>{}: {}</p>\n", page::escape(&named.series), page::escape(&said::remark(verdict))),
+    let water = ran[0].manifest.as_ref().map_or(String::new(), |m| format!(", {} water particles", m.particles.fluid));
+    text += &format!("<p>Scene <code>{}</code>, dp = {} m{water}.</p>\n", page::escape(&case.scene), jobs[0].dp);
+    let finished = || jobs.iter().zip(ran).filter(|(_, ran)| ran.state == State::Finished);
+    let curves = finished().map(|(job, _)| job.curves()).collect::<Result<Vec<_>>>()?;
+    let verdicts: Vec<Vec<Verdict>> = finished().map(|(_, ran)| named(ran)).collect();
+    for check in 0..verdicts.first().map_or(0, Vec::len) {
+        let known: Vec<&Curves> = curves.iter().filter_map(|all| all.get(check)?.as_ref()).collect();
+        let verdicts: Vec<&Verdict> = verdicts.iter().filter_map(|all| all.get(check)).collect();
+        text += &match known.is_empty() {
+            false => plot(&known, &verdicts)?,
+            true => {
+                format!("<p>{}: {}</p>\n", page::escape(&verdicts[0].series), page::escape(&said::remark(verdicts[0])))
+            }
         };
     }
     Ok(text)
 }
 
-/// The run over its reference, in `unit`.
-fn plot(known: &Curves, verdict: &Verdict, unit: &str) -> Result<String> {
-    let (first, last) = known.reference.span();
+/// The runs `known`, the repeats of one case, over their reference; the figures below are of `verdicts`.
+fn plot(known: &[&Curves], verdicts: &[&Verdict]) -> Result<String> {
+    let (reference, verdict) = (&known[0].reference, verdicts[0]);
+    let (first, last) = reference.span();
     let room = 0.1 * (last - first);
-    let points = |series: &crate::series::Series| -> Vec<(f64, f64)> {
+    let points = |series: &Series| -> Vec<(f64, f64)> {
         let all = series.times().iter().copied().zip(series.values().iter().copied());
         all.filter(|(t, _)| (first - room..=last + room).contains(t)).collect()
     };
     // A formula is a line, a measurement its samples.
-    let style = if known.exact { Style::Plain } else { Style::Dots };
-    let mut lines = vec![Line::new(0, Style::Plain, points(&known.sim))];
-    let mut keys = vec![(0, "run".to_string())];
-    if let (Some(series), Some(meaned)) = (&known.meaned, verdict.meaned) {
-        lines.push(Line::new(2, Style::Plain, points(series)));
-        keys.push((2, format!("run, mean over {} ms", 1e3 * meaned.seconds)));
+    let style = if known[0].exact { Style::Plain } else { Style::Dots };
+    let mut lines: Vec<Line> = known.iter().map(|of| Line::new(0, Style::Plain, points(&of.sim))).collect();
+    let mut keys = vec![(0, if known.len() > 1 { format!("{} runs", known.len()) } else { "run".into() })];
+    if let Some(meaned) = verdict.meaned {
+        let means = known.iter().filter_map(|of| of.meaned.as_ref());
+        lines.extend(means.map(|series| Line::new(2, Style::Plain, points(series))));
+        keys.push((2, format!("the same, mean over {} ms", 1e3 * meaned.seconds)));
     }
-    lines.push(Line::new(1, style, points(&known.reference)));
+    lines.push(Line::new(1, style, points(reference)));
     keys.push((1, "reference".to_string()));
+    let unit = unit(verdict.series.split(" (").next().unwrap_or_default());
     let svg = curves(["time, s", &format!("{}, {unit}", verdict.series)], &lines)?;
+    let figures: Vec<String> = verdicts.iter().map(|verdict| figures(verdict)).collect();
+    Ok(page::figure(&svg, &keys, &figures.join(". ")))
+}
+
+/// The figures of a check in a line.
+fn figures(verdict: &Verdict) -> String {
     let head_and_row = said::rows(&[(&[], verdict)], &[]);
-    let figures: Vec<String> = head_and_row[0]
-        .iter()
-        .zip(&head_and_row[1])
-        .skip(1)
-        .filter(|(_, figure)| !figure.is_empty())
-        .map(|(head, figure)| format!("{head} {figure}").trim().to_string())
-        .collect();
-    Ok(page::figure(&svg, &keys, &figures.join("; ")))
+    let pairs = head_and_row[0].iter().zip(&head_and_row[1]).skip(1).filter(|(_, figure)| !figure.is_empty());
+    pairs.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect::<Vec<_>>().join("; ")
 }
