@@ -24,9 +24,9 @@ const UNITS: [(&str, &str); 20] = [
     ("_s", "s"),
 ];
 
-/// The unit of a column by the end of its name, as in `fx_N_per_m`; what follows a comma is no part of it.
+/// The unit of a column by the end of its name, as in `fx_N_per_m`; what follows a comma or a space is no part of it.
 pub fn unit(column: &str) -> &'static str {
-    let column = column.split(',').next().unwrap_or(column);
+    let column = column.split([',', ' ']).next().unwrap_or(column);
     UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("–", |(_, unit)| unit)
 }
 
@@ -68,6 +68,7 @@ mod tests {
     #[test]
     fn columns_tell_their_units_and_their_names() {
         assert_eq!(["fx_N_per_m", "fx_N", "heave_m, 0 at 2 s", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
+        assert_eq!(unit("front_m (2)"), "m", "the second check of a series");
         assert_eq!(["power_W_per_m", "flow_m2ps", "eta_at_1.5_m"].map(unit), ["W/m", "m²/s", "m"]);
         assert_eq!(["fx_N_per_m", "water_kinetic_J", "x"].map(bare), ["fx", "water kinetic", "x"]);
         let row = ["eta_at_1.5_m", "below_1_at_-0.5_0.3_m", "vx_at_1_0.2_mps", "p_at_0_0_Pa"];

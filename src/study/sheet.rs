@@ -8,7 +8,7 @@ use super::{
     Grid, Job, Line, Ran, Row, Style, convergence, csv, least_squares, log_log,
     page::{self, unit},
     rows::{DISTANCE, Metric, RELATIVE, labels, rows},
-    spread::{self, Apart, Point, Spread, together},
+    spread::{self, Apart, Point, across, together},
 };
 use crate::{
     check::said,
@@ -144,8 +144,8 @@ impl Sheet {
             for (error, figure) in Self::metrics(rows, check) {
                 for group in self.groups() {
                     let of = self.of(rows, check, &group);
-                    let mean = |of: &Vec<&Row>| Spread::of(of.iter().filter_map(|r| figure(r))).map(|s| s.mean);
-                    let points: Vec<(f64, f64)> = of.iter().filter_map(|of| Some((of[0].dp, mean(of)?))).collect();
+                    let points: Vec<(f64, f64)> =
+                        of.iter().filter_map(|of| Some((of[0].dp, across(of, figure)?.mean))).collect();
                     let fine = convergence(&points);
                     orders.push(Order {
                         check: check.clone(),
@@ -217,7 +217,7 @@ impl Sheet {
 
     /// The rows as a table in words, for a page or a terminal.
     pub fn run_rows(&self, rows: &[Row]) -> Vec<Vec<String>> {
-        let repeated = rows.iter().any(|row| row.repeat > 1);
+        let repeated = spread::repeated(rows);
         let mut head = vec!["dp, mm".to_string()];
         head.extend(self.keys.iter().cloned());
         head.extend(repeated.then(|| "repeat".to_string()));

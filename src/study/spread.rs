@@ -95,14 +95,23 @@ pub fn together(rows: &[Row]) -> Vec<Vec<&Row>> {
     all
 }
 
+/// How far the rows `of` one run and check lie apart in a figure; none where no row knows it.
+pub fn across(of: &[&Row], figure: fn(&Row) -> Option<f64>) -> Option<Spread> {
+    Spread::of(of.iter().filter_map(|row| figure(row)))
+}
+
 /// How far the repeats of each run lie apart in each figure; nothing if no run is repeated.
 pub fn apart(rows: &[Row]) -> Vec<Apart> {
     let figure = |of: &[&Row], (figure, value): Metric| {
-        let spread = Spread::of(of.iter().filter_map(|row| value(row)))?;
-        Some(Apart { run: of[0].run.clone(), check: of[0].check.clone(), figure, spread })
+        Some(Apart { run: of[0].run.clone(), check: of[0].check.clone(), figure, spread: across(of, value)? })
     };
     let repeated = together(rows).into_iter().filter(|of| of.len() > 1);
     repeated.flat_map(|of| FIGURES.into_iter().filter_map(move |metric| figure(&of, metric))).collect()
+}
+
+/// Whether any run is repeated.
+pub fn repeated(rows: &[Row]) -> bool {
+    rows.iter().any(|row| row.repeat > 1)
 }
 
 /// Runs that share a name as one point of a plot of error over processor time.
@@ -119,15 +128,14 @@ pub struct Point {
 impl Point {
     /// Of the rows `of` one run and check; none where no error is known, or no processor time.
     pub fn new(of: &[&Row], error: fn(&Row) -> Option<f64>) -> Option<Self> {
-        let cost = Spread::of(of.iter().filter_map(|row| row.cpu_s))?.mean;
-        let error = Spread::of(of.iter().filter_map(|row| error(row)))?;
+        let (cost, error) = (across(of, |row| row.cpu_s)?.mean, across(of, error)?);
         Some(Self { place: (cost, error.mean), span: (error.least, error.greatest), dp: of[0].dp })
     }
 }
 
 /// What must be said of the bars of a plot; nothing if no run is repeated.
 pub fn bars(rows: &[Row]) -> &'static str {
-    match rows.iter().any(|row| row.repeat > 1) {
+    match repeated(rows) {
         true => " A point is the mean of its repeats, its bar goes from the least to the greatest.",
         false => "",
     }
@@ -135,34 +143,27 @@ pub fn bars(rows: &[Row]) -> &'static str {
 
 /// The spreads as a table in words, a row for each run and check, the first row its head; empty if no run is repeated.
 pub fn spreads(rows: &[Row]) -> Vec<Vec<String>> {
-    let all = apart(rows);
-    let used: Vec<&str> =
-        FIGURES.iter().map(|(name, _)| *name).filter(|name| all.iter().any(|a| a.figure == *name)).collect();
-    let mut table: Vec<Vec<String>> = Vec::new();
-    for of in together(rows).iter().filter(|of| of.len() > 1) {
-        let own = |name: &&str| {
-            let found = all.iter().find(|a| a.run == of[0].run && a.check == of[0].check && a.figure == *name);
+    let all: Vec<Vec<&Row>> = together(rows).into_iter().filter(|of| of.len() > 1).collect();
+    let known = |(_, figure): &Metric| all.iter().any(|of| across(of, *figure).is_some());
+    let used: Vec<Metric> = FIGURES.into_iter().filter(known).collect();
+    let row = |of: &Vec<&Row>| {
+        let told = |(name, figure): &Metric| {
             let number = if *name == DISTANCE.0 { said::digits } else { said::figure };
-            found.map_or("–".into(), |a| a.spread.said(number))
+            across(of, *figure).map_or("–".into(), |spread| spread.said(number))
         };
-        let cost = Spread::of(of.iter().filter_map(|row| row.cpu_s)).map_or("–".into(), |s| format!("{:.1}", s.mean));
-        let mut row = vec![of[0].run.clone(), of[0].check.clone(), of.len().to_string()];
-        row.extend(used.iter().map(own));
-        row.push(cost);
-        table.push(row);
-    }
-    if !table.is_empty() {
-        let mut head = ["run", "check", "runs"].map(String::from).to_vec();
-        head.extend(used.iter().map(|name| name.to_string()));
-        head.push("processors, s".into());
-        table.insert(0, head);
-    }
-    table
+        let mut cells = vec![of[0].run.clone(), of[0].check.clone(), of.len().to_string()];
+        cells.extend(used.iter().map(told));
+        cells.push(across(of, |row| row.cpu_s).map_or("–".into(), |spread| format!("{:.1}", spread.mean)));
+        cells
+    };
+    let head = ["run", "check", "runs"].into_iter().chain(used.iter().map(|(name, _)| *name)).chain(["processors, s"]);
+    let head = (!all.is_empty()).then(|| head.map(String::from).collect());
+    head.into_iter().chain(all.iter().map(row)).collect()
 }
 
 /// What their table says.
 pub const CHANCE: &str = "Repeats start with their water moved by a millionth of dp more each time: what differs between them is chance. \
-    Mean ± standard deviation of one run (least to greatest). Two laws whose means are nearer than that are not told apart.";
+    Mean ± standard deviation of one run (least to greatest). Two laws whose means are nearer than that are not told apart by one run of each.";
 
 #[cfg(test)]
 mod tests {

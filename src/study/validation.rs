@@ -146,8 +146,7 @@ fn plot(known: &[&Curves], verdicts: &[&Verdict]) -> Result<String> {
     }
     lines.push(Line::new(1, style, points(reference)));
     keys.push((1, "reference".to_string()));
-    let unit = unit(verdict.series.split(" (").next().unwrap_or_default());
-    let svg = curves(["time, s", &format!("{}, {unit}", verdict.series)], &lines)?;
+    let svg = curves(["time, s", &format!("{}, {}", verdict.series, unit(&verdict.series))], &lines)?;
     let figures: Vec<String> = verdicts.iter().map(|verdict| figures(verdict)).collect();
     Ok(page::figure(&svg, &keys, &figures.join(". ")))
 }
