@@ -56,7 +56,7 @@ pub struct Fault {
 }
 
 /// An error that says what, where, and what to do.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Error {
     /// Sort of trouble.
     pub kind: Kind,
@@ -132,6 +132,13 @@ impl fmt::Display for Error {
             }
         }
         Ok(())
+    }
+}
+
+/// The same words: a program whose `main` returns an error prints them so.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -287,3 +287,10 @@ proptest! {
         }
     }
 }
+
+/// What a program prints whose `main` returns the error, as those in `examples/` do.
+#[test]
+fn a_main_that_fails_says_so_in_words() {
+    let error = Error::scene("nothing is called \"narow\"").help("write narrow");
+    assert_eq!(format!("{error:?}"), "nothing is called \"narow\"\n  write narrow");
+}
