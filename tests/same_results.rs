@@ -1,0 +1,119 @@
+//! The results of every shipped scene after 50 steps have the bits that are recorded in `tests/golden/results.txt`.
+//!
+//! The redesign of the code may not change a result. The state is hashed through the public view of a simulation, so
+//! that the record does not depend on how a checkpoint arranges it; the series are hashed as files. On a mismatch the
+//! test prints the table of now, which replaces the record where a change is meant.
+
+use std::{fmt::Write as _, path::Path};
+
+use pontoon::{
+    model::Dimension,
+    run::{self, Options, Progress},
+    scene::{Built, Scene},
+    simulation::Simulation,
+    solid::Dim,
+};
+
+/// Steps of each run.
+const STEPS: u64 = 50;
+
+/// Scenes that are run coarser here: their own spacing takes minutes.
+const COARSER: [(&str, &str); 6] = [
+    ("added-mass-3d", "0.04"),
+    ("buoyancy-3d", "0.04"),
+    ("column", "0.04"),
+    ("column-gate", "0.04"),
+    ("flume-box", "0.02"),
+    ("wigley", "0.045"),
+];
+
+/// Most water particles of a scene that is run with the reference too: it takes ten times as long.
+const REFERENCE: usize = 8_000;
+
+/// FNV-1a, 64 bits.
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn number(&mut self, x: f64) {
+        self.bytes(&x.to_bits().to_le_bytes());
+    }
+}
+
+/// Water, boundary particles, bodies and their loads after the steps.
+fn state<const D: usize>(scene: &Scene) -> u64
+where
+    Dim<D>: Dimension<D>,
+{
+    let Built { setup, .. } = scene.build::<D>().unwrap();
+    let mut sim = Simulation::new(setup).unwrap();
+    for _ in 0..STEPS {
+        sim.step().unwrap();
+    }
+    let (mut hash, system) = (Hash::new(), sim.system());
+    for particles in [system.fluid(), system.skin()] {
+        particles.r.iter().chain(particles.v).flat_map(|x| x.iter()).for_each(|&x| hash.number(x));
+        particles.rho.iter().for_each(|&x| hash.number(x));
+        particles.id.iter().for_each(|id| hash.bytes(&id.to_le_bytes()));
+    }
+    for solid in system.solids() {
+        let now = &solid.kinematics;
+        let vectors = [&now.centre, &now.velocity, &now.pose.position, &solid.load.force];
+        vectors.into_iter().flat_map(|x| x.iter()).for_each(|&x| hash.number(x));
+        let turning = [&now.pose.rotation, &now.spin.0, &solid.load.torque.0];
+        turning.into_iter().flat_map(|m| m.iter()).for_each(|&x| hash.number(x));
+    }
+    hash.number(sim.time());
+    hash.0
+}
+
+/// The series that the run writes over the steps, file by file.
+fn series(path: &Path, sets: &[(String, String)], out: &Path) -> u64 {
+    let options = Options { out: Some(out.into()), sets: sets.to_vec(), threads: None };
+    run::run(path, &options, &mut |now: &Progress| now.steps < STEPS).unwrap();
+    let mut hash = Hash::new();
+    let mut files: Vec<_> = std::fs::read_dir(out.join("series")).into_iter().flatten().flatten().collect();
+    files.sort_by_key(|file| file.file_name());
+    for file in files {
+        hash.bytes(&std::fs::read(file.path()).unwrap());
+    }
+    std::fs::remove_dir_all(out).unwrap();
+    hash.0
+}
+
+#[test]
+fn every_shipped_scene_has_the_recorded_bits_after_fifty_steps() {
+    let home = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = std::fs::read_dir(home.join("scenes")).unwrap().flatten().filter(|entry| entry.path().is_dir());
+    let mut names: Vec<String> = folders.map(|entry| entry.file_name().into_string().unwrap()).collect();
+    names.sort();
+    let desk = std::env::temp_dir().join(format!("pontoon-results-{}", std::process::id()));
+    let mut table = String::from("# scene sweep state series\n");
+    for name in &names {
+        let path = home.join("scenes").join(name);
+        for sweep in ["fast", "reference"] {
+            let dp = COARSER.iter().find(|(of, _)| of == name).map(|(_, dp)| ("dp".to_string(), dp.to_string()));
+            let sets: Vec<_> = dp.into_iter().chain([("model.sweep".to_string(), sweep.to_string())]).collect();
+            let scene = Scene::read(&path, &sets).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let few = scene.size().unwrap().fluid < REFERENCE as f64;
+            if sweep == "reference" && !few {
+                continue;
+            }
+            let state = if scene.dimension == 2 { state::<2>(&scene) } else { state::<3>(&scene) };
+            let series = series(&path, &sets, &desk.join(format!("{name}-{sweep}")));
+            writeln!(table, "{name} {sweep} {state:016x} {series:016x}").unwrap();
+        }
+    }
+    let _ = std::fs::remove_dir_all(&desk);
+    let recorded = std::fs::read_to_string(home.join("tests/golden/results.txt")).unwrap_or_default();
+    assert!(table == recorded, "other results than recorded; now:\n{table}");
+}
