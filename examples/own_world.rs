@@ -32,11 +32,11 @@ fn main() -> Result<()> {
         if water.time() > 0.8 && !world.bodies[load].is_enabled() {
             world.bodies[load].set_enabled(true);
         }
-        water.step_with(until, |handover| {
-            planar::give(&mut world.bodies[raft], &handover.loads()[1]);
-            world.integration_parameters.dt = handover.dt();
+        water.step_with(until, |step| {
+            planar::give(&mut world.bodies[raft], &step.loads()[1]);
+            world.integration_parameters.dt = step.dt();
             world.step();
-            handover.solids[1] = planar::kinematics(&world.bodies[raft]);
+            step.solids[1] = planar::kinematics(&world.bodies[raft]);
             Ok(())
         })?;
         // Means over the half second before the crate falls, and over the last second.
@@ -83,7 +83,7 @@ fn water(world: &PhysicsWorld, raft: RigidBodyHandle) -> Result<Simulation<2>> {
         .water_box([0.0, 0.0], [1.0, DEPTH])
         .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 0.4])));
     scene.model.c0_factor = Some(12.0);
-    let mut water = Simulation::hosted(scene.build::<2>()?.setup)?;
+    let mut water = Simulation::with_external_bodies(scene.build::<2>()?.setup)?;
     // The raft gets number 1, after the tank; the water in its place goes.
     water.add_solid(planar::solid("raft", raft, &world.bodies, &world.colliders)?)?;
     Ok(water)

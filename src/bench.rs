@@ -75,7 +75,7 @@ pub struct Timing {
     pub pairs: f64,
     /// Time of the pair sweep (all threads) per such pair, ns.
     pub pair_ns: f64,
-    /// Shares of the step, %: lists and sorting, pairs, bodies; the rest moves and packs particles.
+    /// LoadBreakdown of the step, %: lists and sorting, pairs, bodies; the rest moves and packs particles.
     pub lists_percent: f64,
     /// See above.
     pub pairs_percent: f64,

@@ -22,7 +22,8 @@ pub mod solid;
 pub mod sweep;
 pub mod model;
 pub mod system;
-pub mod time;
+pub mod coupling;
+pub mod time_integration;
 pub mod simulation;
 // results
 pub mod plan;

@@ -9,8 +9,8 @@ mod tied;
 use std::time::{Duration, Instant};
 
 pub use crate::{
+    coupling::BodyStep,
     system::{Escape, Limits, Lost, Setup},
-    time::Handover,
 };
 pub use change::Added;
 pub use rescue::Rescued;
@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 use rescue::Rescue;
 
 use crate::{
+    coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
     error::{Error, Fault, Kind, Result},
     model::Dimension,
     solid::{
@@ -30,7 +31,7 @@ use crate::{
     },
     space::{Vector, Wedge},
     system::{System, SystemState},
-    time::{Bodies, Books, Held, Interval, Light, Stepper, limit},
+    time_integration::{Stepper, step_size},
 };
 
 /// Water and solids moving through time.
@@ -72,11 +73,11 @@ struct Kept<const D: usize> {
     stepper: Stepper<D>,
     clock: Clock,
     engine: Option<Vec<u8>>,
-    light: Vec<Held>,
+    added_masses: Vec<AddedMassState>,
     rig: RigState<D>,
     rescued: Vec<Rescued>,
     lost: Vec<(f64, Lost<D>)>,
-    books: Option<Books<D>>,
+    accounting: Option<Accounting<D>>,
     /// Numbers of the solids that have been removed.
     gone: Vec<u32>,
 }
@@ -90,11 +91,11 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        Self::made(setup, false)
+        Self::with_bodies(setup, false)
     }
 
     /// Sets up a simulation whose free solids it moves itself, or lets be `hosted` by somebody else.
-    fn made(setup: Setup<D>, hosted: bool) -> Result<Self>
+    fn with_bodies(setup: Setup<D>, external: bool) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
@@ -105,7 +106,7 @@ impl<const D: usize> Simulation<D> {
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
         let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-        let engine = if !hosted && solids.iter().any(|s| free(&s)) {
+        let engine = if !external && solids.iter().any(|s| free(&s)) {
             Some(Dim::<D>::engine(solids, &start, &setup.links, &medium.gravity, dp)?)
         } else {
             None
@@ -113,7 +114,7 @@ impl<const D: usize> Simulation<D> {
         let rig = Rig::new(&setup.links, start);
         let stepper = Stepper::new(&setup.model);
         let mut system = System::new(setup)?;
-        let bodies = Bodies::new(engine, Light::find(&mut system), rig, hosted);
+        let bodies = Bodies::new(engine, AcousticAddedMass::find(&mut system), rig, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (Rescue::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rescue, lost, stepping };
@@ -138,14 +139,14 @@ impl<const D: usize> Simulation<D> {
         self.stride(end, &mut |_| Ok(()))
     }
 
-    /// Goes one step on, with `between` at the moment when the water hands over to the bodies.
-    fn stride(&mut self, end: f64, between: &mut dyn FnMut(&mut Handover<D>) -> Result<()>) -> Result<()> {
+    /// Goes one step on, calling `hook` when the water has moved and the bodies have not.
+    fn stride(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         let start = Instant::now();
         if self.keeps() {
             self.rescue.make_room();
             self.rescue.keep(self.clock.steps, self.clock.time, self.save()?);
         }
-        let outcome = self.advance(end, between).or_else(|error| self.go_back(error));
+        let outcome = self.advance(end, hook).or_else(|error| self.go_back(error));
         self.stepping += start.elapsed();
         outcome
     }
@@ -192,15 +193,15 @@ impl<const D: usize> Simulation<D> {
         &self.lost
     }
 
-    fn advance(&mut self, end: f64, between: &mut dyn FnMut(&mut Handover<D>) -> Result<()>) -> Result<()> {
-        if let Some(renewal) = self.system.renew() {
-            self.stepper.follow(&renewal, self.system.medium().rho0);
-            if let Some(books) = &mut self.bodies.books {
-                books.removed(&self.system, &renewal.lost);
+    fn advance(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
+        if let Some(reordering) = self.system.rebuild_neighbours() {
+            self.stepper.reorder(&reordering, self.system.medium().rho0);
+            if let Some(accounting) = &mut self.bodies.accounting {
+                accounting.add_removed(&self.system, &reordering.lost);
             }
-            self.lost.extend(renewal.lost.into_iter().map(|lost| (self.clock.time, lost)));
+            self.lost.extend(reordering.lost.into_iter().map(|lost| (self.clock.time, lost)));
         }
-        self.system.rates();
+        self.system.update_rates();
         let allowed = self.limit();
         let left = end - self.clock.time;
         // The last two steps share what is left, so that none is far shorter than the others.
@@ -209,11 +210,10 @@ impl<const D: usize> Simulation<D> {
             return Err(self.fault("time step of no length", NO_STEP, 0));
         }
         let over = Interval { t: self.clock.time, dt };
-        self.system.steer(over.t);
-        let weight = self.stepper.step(&mut self.system, over, self.bodies.books.as_mut());
-        self.system.gifts.clear();
-        self.bodies.advance(&mut self.system, over, weight, between)?;
-        self.stepper.given(&self.system.gifts);
+        self.system.update_absorption(over.t);
+        let weight = self.stepper.step(&mut self.system, over, self.bodies.accounting.as_mut());
+        let transfers = self.bodies.advance(&mut self.system, over, weight, hook)?;
+        self.stepper.add_transfers(&transfers);
         self.clock.dt = dt;
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
@@ -223,9 +223,9 @@ impl<const D: usize> Simulation<D> {
     /// The longest step (s) that the present rates, the springs and the model allow.
     pub fn limit(&self) -> f64 {
         let model = self.system.model();
-        let water = limit::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        let ties = self.spring_limit().min(self.bodies.rig().let_go(self.clock.time));
-        water.min(limit::viscous(model)).min(model.dt_max).min(ties) * self.rescue.share(self.clock.time)
+        let water = step_size::water(&self.system.peaks(), self.system.medium(), model.cfl);
+        let ties = self.spring_limit().min(self.bodies.constraints().let_go(self.clock.time));
+        water.min(step_size::viscous(model)).min(model.dt_max).min(ties) * self.rescue.share(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -253,7 +253,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Makes the rates anew after the state was changed by hand.
     pub fn refresh(&mut self) {
-        self.system.rates();
+        self.system.update_rates();
     }
 
     /// Water and solids now.
@@ -297,8 +297,8 @@ impl<const D: usize> Simulation<D> {
 
     /// Impulse (N s; N s/m in 2-D) that the water has given to free solid number `solid` and that it has yet to get: none but
     /// of a body lighter than the water that sound sets moving while it crosses a kernel.
-    pub fn withheld(&self, solid: usize) -> Vector<D> {
-        self.bodies.withheld(solid)
+    pub fn pending_impulse(&self, solid: usize) -> Vector<D> {
+        self.bodies.pending_impulse(solid)
     }
 
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
@@ -307,19 +307,19 @@ impl<const D: usize> Simulation<D> {
             engine.set_velocity(solid, velocity, spin);
             let kinematics = &mut self.system.solids[solid].kinematics;
             (kinematics.velocity, kinematics.spin) = (*velocity, *spin);
-            self.system.place(solid);
+            self.system.place_boundary(solid);
         }
     }
 
     /// Gives each water particle the velocity (m/s) that `field` says for its place (m).
     pub fn set_water_velocity(&mut self, field: impl Fn(&Vector<D>) -> Vector<D> + Sync) {
-        let fluid = &mut self.system.fluid;
+        let fluid = &mut self.system.fluid.particles;
         fluid.v.par_iter_mut().zip(&fluid.r).for_each(|(v, r)| *v = field(r));
     }
 
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
     pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) {
-        let fluid = &mut self.system.fluid;
+        let fluid = &mut self.system.fluid.particles;
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
     }
 
@@ -341,9 +341,10 @@ impl<const D: usize> Simulation<D> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
         let rescued = self.rescue.log[..times].to_vec();
-        let (light, rig, lost) = (self.bodies.held(), self.bodies.rig().save(), self.lost.clone());
-        let (books, gone) = (self.bodies.books.clone(), self.gone());
-        let kept = Kept { system, stepper, clock, engine, light, rig, rescued, lost, books, gone };
+        let (added_masses, rig) = (self.bodies.added_mass_state(), self.bodies.constraints().save());
+        let lost = self.lost.clone();
+        let (accounting, gone) = (self.bodies.accounting.as_ref().map(Accounting::state), self.gone());
+        let kept = Kept { system, stepper, clock, engine, added_masses, rig, rescued, lost, accounting, gone };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
@@ -373,16 +374,20 @@ impl<const D: usize> Simulation<D> {
             (None, None) => {}
             _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
         }
-        if !self.bodies.restore(&kept.light, kept.clock.steps) || !self.bodies.rig_mut().restore(kept.rig) {
+        if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
+            || !self.bodies.constraints_mut().restore(kept.rig)
+        {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
-        match (&self.bodies.books, &kept.books) {
-            (Some(own), Some(books)) if own.like(books) => {}
+        match (&self.bodies.accounting, &kept.accounting) {
+            (Some(own), Some(state)) if own.matches(state) => {}
             (None, None) => {}
-            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other books of loads and energy")),
+            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds another load breakdown or energy budget")),
         }
         self.system.restore(kept.system)?;
-        self.bodies.books = kept.books;
+        if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {
+            accounting.restore(state);
+        }
         (self.stepper, self.clock, self.lost) = (kept.stepper, kept.clock, kept.lost);
         self.rescue.begin_again(kept.rescued);
         Ok(())

@@ -5,7 +5,7 @@ use std::{path::PathBuf, sync::atomic::Ordering};
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    study::stress::{Entry, Ledger, Map, Outcome, choose, maps, said},
+    study::stress::{EnergyBudget, Entry, Map, Outcome, choose, maps, said},
 };
 
 use super::{
@@ -53,7 +53,7 @@ pub fn stress(args: StressArgs) -> Result<u8> {
     if args.threads == Some(0) {
         return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
     }
-    let mut ledger = Ledger::open(choose(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
+    let mut ledger = EnergyBudget::open(choose(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
     let due = ledger.entries.iter().filter(|entry| entry.trial.is_none()).count();
     if args.dry_run {
         ledger.entries.iter().for_each(|entry| say(&line(entry)));

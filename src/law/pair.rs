@@ -183,12 +183,12 @@ pub trait Term<const D: usize>: Copy + Send + Sync {
     fn vector<N: Num>(&self, _ab: &Pair<N, D>, sum: [N; D]) -> [N; D] {
         sum
     }
-    /// Shares of the rates of x_a and x_b, m²/s.
+    /// LoadBreakdown of the rates of x_a and x_b, m²/s.
     #[inline(always)]
     fn rate<N: Num>(&self, _ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
         sum
     }
-    /// Shares of the extra sums of a and b, without the factor V₀ ∂W.
+    /// LoadBreakdown of the extra sums of a and b, without the factor V₀ ∂W.
     #[inline(always)]
     fn extra<N: Num>(&self, _ab: &Pair<N, D>, _factor: N, _a: &mut Extra<N, D>, _b: &mut Extra<N, D>) {}
 }

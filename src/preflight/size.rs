@@ -15,7 +15,7 @@ use crate::{
 /// Disk that frames may take without a word, B.
 const BUDGET: f64 = 10e9;
 
-/// Shares of the water's lattice that solids may take: without a word, and without a warning.
+/// LoadBreakdown of the water's lattice that solids may take: without a word, and without a warning.
 const TAKEN: [f64; 2] = [0.25, 0.5];
 
 /// Length of a number in a table with its comma, B: seventeen digits as a rule.

@@ -9,7 +9,7 @@ use crate::{
     scene::world_bounds,
     solid::Solid,
     space::{Bounds, Vector},
-    system::Damping,
+    system::SpongeLayer,
 };
 
 /// The least part of a face's normal that looks at the waves: gentler slopes than 1:20 are beaches, on which the water
@@ -48,7 +48,7 @@ impl<const D: usize> Stand<D> {
     }
 
     /// Where (m before the face) a zone begins into which the waves run.
-    fn zone(&self, zone: &Damping<D>) -> Option<f64> {
+    fn zone(&self, zone: &SpongeLayer<D>) -> Option<f64> {
         let way = zone.to - zone.from;
         let along = way.dot(&self.way);
         (along > 0.0).then(|| ((zone.from - self.face).dot(&way) / along).max(0.0))
@@ -97,7 +97,7 @@ impl<const D: usize> Look<'_, D> {
 
     /// Where (m before the face) the first damping zone begins that lies in the way.
     pub(super) fn damped(&self, stand: &Stand<D>) -> Option<f64> {
-        self.system.damping().iter().filter_map(|zone| stand.zone(zone)).min_by(f64::total_cmp)
+        self.system.sponge_layers().iter().filter_map(|zone| stand.zone(zone)).min_by(f64::total_cmp)
     }
 
     /// Depth (m) of the water before a paddle; none if it is dry there. A step of the bed below one dp is none.
@@ -113,8 +113,8 @@ impl<const D: usize> Look<'_, D> {
     /// Damping zones in which there is no water.
     pub(super) fn idle(&self, findings: &mut Vec<Finding>) {
         let water = self.system.fluid().r;
-        let idle = |zone: &&Damping<D>| water.iter().all(|r| zone.rate(r) == 0.0);
-        for zone in self.system.damping().iter().filter(idle) {
+        let idle = |zone: &&SpongeLayer<D>| water.iter().all(|r| zone.rate(r) == 0.0);
+        for zone in self.system.sponge_layers().iter().filter(idle) {
             let what = format!("{} lies outside of the water: it takes no waves", between(zone));
             let all = Bounds::around(water);
             let mend = format!("the water is between {} and {}", place(&all.min), place(&all.max));
@@ -124,7 +124,7 @@ impl<const D: usize> Look<'_, D> {
 
     /// Damping zones that are over before a wave is, or that begin beyond the paddle.
     pub(super) fn zones(&self, wave: &Wave, stand: &Stand<D>, findings: &mut Vec<Finding>) {
-        let (zones, least) = (self.system.damping(), 0.5 * wave.length_m);
+        let (zones, least) = (self.system.sponge_layers(), 0.5 * wave.length_m);
         if let Some(zone) = zones.iter().find(|zone| zone.length() < least * (1.0 - 1e-9)) {
             let what = format!(
                 "a damping zone is {} m long, and the waves of \"{}\" are {} m: much of them will come back",
@@ -144,6 +144,6 @@ impl<const D: usize> Look<'_, D> {
     }
 }
 
-fn between<const D: usize>(zone: &Damping<D>) -> String {
+fn between<const D: usize>(zone: &SpongeLayer<D>) -> String {
     format!("the damping zone from {} to {}", place(&zone.from), place(&zone.to))
 }

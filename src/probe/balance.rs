@@ -2,11 +2,11 @@
 
 use super::{Probe, axes, find_solid};
 use crate::{
+    coupling::LoadBreakdown,
     error::{Error, Result},
     simulation::Simulation,
     solid::{Load, Role},
     system::System,
-    time::Shares,
 };
 
 /// Watches the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity, weight, contacts
@@ -39,7 +39,7 @@ impl Balance {
             ("forces", links.forces.is_empty()),
             ("locks", !(held || locked)),
         ];
-        let all = Shares::<D>::zero().kinds().map(|(kind, _)| kind);
+        let all = LoadBreakdown::<D>::zero().kinds().map(|(kind, _)| kind);
         let kinds = all.into_iter().filter(|kind| !absent.contains(&(kind, true))).collect();
         Ok(Self { solid: index, kinds })
     }
@@ -64,7 +64,7 @@ impl<const D: usize> Probe<D> for Balance {
     }
 
     fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let Some(shares) = sim.shares(self.solid) else {
+        let Some(shares) = sim.load_breakdown(self.solid) else {
             return vec![f64::NAN; Probe::<D>::columns(self).len()];
         };
         let kinds = shares.kinds().into_iter().filter(|(kind, _)| self.kinds.contains(kind)).map(|(_, load)| load);

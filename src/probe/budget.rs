@@ -1,10 +1,10 @@
 //! Where energy came from and went since the start, and what of it is not accounted for.
 
 use super::{Energy, Probe};
-use crate::{simulation::Simulation, system::System, time::Ledger};
+use crate::{coupling::EnergyBudget, simulation::Simulation, system::System};
 
 /// Watches what water and bodies have stored since the start (J; J/m in 2-D): energy of motion, height and compression; every entry
-/// of the [`Ledger`]; and what is stored beyond their sum. Nothing but NaN unless energy is booked
+/// of the [`EnergyBudget`]; and what is stored beyond their sum. Nothing but NaN unless energy is booked
 /// ([`Simulation::keep_energy`]).
 pub struct Budget {
     energy: Energy,
@@ -30,7 +30,7 @@ impl Budget {
 impl<const D: usize> Probe<D> for Budget {
     fn columns(&self) -> Vec<String> {
         let unit = if D == 2 { "J_per_m" } else { "J" };
-        let entries = Ledger::default().entries().map(|(name, _)| name);
+        let entries = EnergyBudget::default().entries().map(|(name, _)| name);
         ["stored"].into_iter().chain(entries).chain(["residual"]).map(|name| format!("{name}_{unit}")).collect()
     }
 
@@ -39,7 +39,7 @@ impl<const D: usize> Probe<D> for Budget {
     }
 
     fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let Some(ledger) = sim.ledger() else { return vec![f64::NAN; Probe::<D>::columns(self).len()] };
+        let Some(ledger) = sim.energy_budget() else { return vec![f64::NAN; Probe::<D>::columns(self).len()] };
         let stored = self.energy.total(sim.system()) - self.start;
         let entries = ledger.entries().map(|(_, energy)| energy);
         let residual = stored - entries.iter().sum::<f64>();

@@ -20,10 +20,10 @@ where
     Dim<D>: Dimension<D>,
 {
     if plan.probes.iter().any(|words| words.what == ProbeKind::Budget) {
-        sim.keep_energy();
+        sim.enable_energy_budget();
     }
     if plan.probes.iter().any(|words| matches!(words.what, ProbeKind::Balance { .. })) {
-        sim.keep_loads();
+        sim.enable_load_breakdown();
     }
     let system = sim.system();
     plan.probes.iter().map(|words| made(words, system)).collect()

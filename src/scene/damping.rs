@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, build::Still, geometry::vector, resolve::Filler};
-use crate::{error::Result, space::Vector, system::Damping};
+use crate::{error::Result, space::Vector, system::SpongeLayer};
 
 /// β ℓ/((n + 1) √(gd)) where nobody says β: what goes through the zone and back with the speed of long waves has e⁻⁴ = 2 % left.
 const PASSES: f64 = 4.0;
@@ -75,13 +75,13 @@ impl Scene {
     }
 
     /// The zones; of those without a strength it follows from their length and the depth.
-    pub(super) fn zones<const D: usize>(&self, still: &Still) -> Vec<Damping<D>> {
+    pub(super) fn zones<const D: usize>(&self, still: &Still) -> Vec<SpongeLayer<D>> {
         let g = self.gravity.iter().flatten().map(|g| g * g).sum::<f64>().sqrt();
         let zone = |words: &DampingWords| {
             let (from, to): (Vector<D>, Vector<D>) = (vector(&words.from), vector(&words.to));
             let power = words.power.unwrap_or(POWER);
             let usual = PASSES * (power + 1.0) * (g * still.depth).sqrt() / (to - from).norm();
-            Damping { from, to, strength: words.strength.unwrap_or(usual), power }
+            SpongeLayer { from, to, strength: words.strength.unwrap_or(usual), power }
         };
         self.damping.iter().map(zone).collect()
     }
@@ -103,6 +103,6 @@ impl Scene {
     }
 }
 
-fn strength<const D: usize>(zone: &Damping<D>) -> f64 {
+fn strength<const D: usize>(zone: &SpongeLayer<D>) -> f64 {
     zone.strength
 }

@@ -1,60 +1,58 @@
-//! The books of a running simulation: loads by kind, and where energy goes. Nobody who does not ask for them pays.
+//! The load breakdown and the energy budget of a running simulation. Disabled by default; no cost when disabled.
 
 use super::Simulation;
 use crate::{
+    coupling::{Accounting, EnergyBudget, LoadBreakdown},
     law::wall::Slip,
     model::{Dimension, Viscosity},
     solid::Dim,
-    time::{Books, Ledger, Shares},
 };
 
-/// Steps from one telling apart of the water's laws to the next, where only energy is asked for: one pass in sixteen more.
-const TOLD_EVERY: u32 = 8;
+/// Steps from one power breakdown to the next, where only the energy budget is kept: one force pass in sixteen more.
+const INTERVAL: u32 = 8;
 
 impl<const D: usize> Simulation<D> {
-    /// Keeps books of the loads on free bodies by their kind from now on: [`Simulation::shares`]. Where water sticks to solids
-    /// every step takes another force pass, which tells the viscous load; else they cost nothing.
-    pub fn keep_loads(&mut self)
+    /// Enables the load breakdown of free bodies: [`Simulation::load_breakdown`]. Where the viscosity acts between water and
+    /// solids, every step takes another force pass for the viscous load; otherwise the breakdown costs nothing.
+    pub fn enable_load_breakdown(&mut self)
     where
         Dim<D>: Dimension<D>,
     {
         let model = self.system.model();
         let drags = model.viscosity != Viscosity::None && model.slip != Slip::Free;
-        let (energy, now) = self.kept();
-        self.keep(energy, if drags { Some(1) } else { now });
+        let (energy, interval) = self.accounted();
+        self.account(energy, if drags { Some(1) } else { interval });
     }
 
-    /// Keeps books of energy from now on: [`Simulation::ledger`]. Every eighth step takes another force pass.
-    pub fn keep_energy(&mut self)
+    /// Enables the energy budget: [`Simulation::energy_budget`]. Every eighth step takes another force pass.
+    pub fn enable_energy_budget(&mut self)
     where
         Dim<D>: Dimension<D>,
     {
-        let (_, now) = self.kept();
-        self.keep(true, Some(now.unwrap_or(TOLD_EVERY)));
+        let (_, interval) = self.accounted();
+        self.account(true, Some(interval.unwrap_or(INTERVAL)));
     }
 
-    /// Whether energy is booked already, and how often laws are told apart.
-    fn kept(&self) -> (bool, Option<u32>) {
-        self.bodies.books.as_ref().map_or((false, None), |books| (books.energy, books.every))
+    /// Whether the energy budget is kept already, and the interval of power breakdowns.
+    fn accounted(&self) -> (bool, Option<u32>) {
+        let accounting = self.bodies.accounting.as_ref();
+        accounting.map_or((false, None), |accounting| (accounting.has_energy(), accounting.interval()))
     }
 
-    fn keep(&mut self, energy: bool, every: Option<u32>)
+    fn account(&mut self, energy: bool, interval: Option<u32>)
     where
         Dim<D>: Dimension<D>,
     {
-        if every.is_some() {
-            self.system.meter();
-        }
-        self.bodies.books = Some(Books::new(self.system.solids().len(), energy, every));
+        self.bodies.accounting = Some(Accounting::new(&self.system, energy, interval));
     }
 
-    /// The loads on free solid number `solid` in the last step by their kind, if books are kept.
-    pub fn shares(&self, solid: usize) -> Option<&Shares<D>> {
-        self.bodies.books.as_ref().map(|books| &books.shares[solid])
+    /// The loads on free solid number `solid` in the last step by their origin, if they are kept.
+    pub fn load_breakdown(&self, solid: usize) -> Option<&LoadBreakdown<D>> {
+        self.bodies.accounting.as_ref().map(|accounting| accounting.breakdown(solid))
     }
 
-    /// Where energy went since books are kept, if they are.
-    pub fn ledger(&self) -> Option<&Ledger> {
-        self.bodies.books.as_ref().filter(|books| books.energy).map(|books| &books.ledger)
+    /// The energy budget since it was enabled, if it is kept.
+    pub fn energy_budget(&self) -> Option<&EnergyBudget> {
+        self.bodies.accounting.as_ref().and_then(Accounting::budget)
     }
 }

@@ -2,10 +2,11 @@
 
 use super::Simulation;
 use crate::{
+    coupling::AcousticAddedMass,
     error::{Error, Kind, Result},
     model::Dimension,
     solid::{Dim, HasEngine as _, Kinematics, Links, Role, Solid, SolidSpec, within::swallowed},
-    time::Light,
+    system::Reordering,
 };
 
 /// Deepest overlap of a solid that comes, in dp.
@@ -49,13 +50,13 @@ where
         };
         self.refuse_overlap(&spec, &start)?;
         self.join(spec, start)?;
-        let (renewal, displaced, energy) = self.system.displace();
+        let (reordering, displaced, energy) = self.system.displace();
         let solid = self.system.solids().len() - 1;
-        if let Some(books) = &mut self.bodies.books {
-            books.displaced(energy);
-            books.came(self.system.solids()[solid].energy(&self.system.gravity()));
+        if let Some(accounting) = &mut self.bodies.accounting {
+            accounting.add_displaced(energy);
+            accounting.add_solid_energy(self.system.solids()[solid].energy(&self.system.gravity()));
         }
-        self.renewed(renewal);
+        self.finish_change(reordering);
         Ok(Added { solid, displaced })
     }
 
@@ -78,15 +79,15 @@ where
         if there.skin.is_empty() {
             return Ok(());
         }
-        let withheld = self.bodies.withheld(solid);
-        let energy = self.system.give_back(solid, &withheld);
-        if let Some(books) = &mut self.bodies.books {
-            books.gave_back(energy);
-            books.came(-self.system.solids()[solid].energy(&self.system.gravity()));
+        let pending = self.bodies.pending_impulse(solid);
+        let energy = self.system.return_impulse(solid, &pending).map_or(0.0, |transfer| transfer.energy);
+        if let Some(accounting) = &mut self.bodies.accounting {
+            accounting.add_returned(energy);
+            accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.gravity()));
         }
         self.leave(solid);
-        let renewal = self.system.renew();
-        self.renewed(renewal);
+        let reordering = self.system.rebuild_neighbours();
+        self.finish_change(reordering);
         Ok(())
     }
 
@@ -143,7 +144,7 @@ where
     /// Lets a solid come into water and world, unchecked and without making room for it.
     fn join(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
         let free = matches!(spec.role, Role::Free(_));
-        let founding = free && !self.bodies.hosted();
+        let founding = free && !self.bodies.external();
         match self.bodies.engine_mut() {
             Some(engine) => engine.admit(&spec, &start)?,
             None if founding => {
@@ -151,32 +152,33 @@ where
                     self.system.solids().iter().map(|s| s.spec.clone()).chain([spec.clone()]).collect();
                 let starts: Vec<_> = self.system.solids().iter().map(|s| s.kinematics).chain([start]).collect();
                 let (gravity, dp) = (self.system.gravity(), self.system.model().dp);
-                self.bodies.found(Dim::<D>::engine(&solids, &starts, &Links::default(), &gravity, dp)?);
+                self.bodies.set_engine(Dim::<D>::engine(&solids, &starts, &Links::default(), &gravity, dp)?);
             }
             None => {}
         }
-        self.system.admit(spec, start)?;
+        self.system.add_body(spec, start)?;
         let last = self.system.solids().len() - 1;
-        self.bodies.admit(Light::of(&mut self.system, last), start);
+        self.bodies.add_body(AcousticAddedMass::of(&mut self.system, last), start);
         Ok(())
     }
 
     /// Takes a solid out of water and world.
     fn leave(&mut self, solid: usize) {
         let skin = self.system.solids()[solid].skin.clone();
-        self.bodies.oust(solid, skin.len() as u32);
-        self.system.oust(solid);
+        self.bodies.remove_body(solid, skin.len() as u32);
+        self.system.remove_body(solid);
     }
 
-    /// Takes up new lists and makes the rates for them.
-    fn renewed(&mut self, renewal: Option<crate::system::Renewal<D>>) {
-        self.stepper.forget();
-        if let (Some(books), Some(renewal)) = (&mut self.bodies.books, &renewal) {
-            books.removed(&self.system, &renewal.lost);
+    /// Completes a change of the solids: the stepper starts anew, removed particles are listed, and the rates computed.
+    fn finish_change(&mut self, reordering: Option<Reordering<D>>) {
+        self.stepper.reset();
+        if let (Some(accounting), Some(reordering)) = (&mut self.bodies.accounting, &reordering) {
+            accounting.add_removed(&self.system, &reordering.lost);
         }
-        self.lost.extend(renewal.into_iter().flat_map(|renewal| renewal.lost).map(|lost| (self.clock.time, lost)));
+        self.lost
+            .extend(reordering.into_iter().flat_map(|reordering| reordering.lost).map(|lost| (self.clock.time, lost)));
         let log = std::mem::take(&mut self.rescue.log);
         self.rescue.begin_again(log);
-        self.system.rates();
+        self.system.update_rates();
     }
 }

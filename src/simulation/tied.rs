@@ -25,19 +25,19 @@ impl<const D: usize> Simulation<D> {
 
     /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
     pub fn spring_limit(&self) -> f64 {
-        self.bodies.limit(&self.system, self.clock.time)
+        self.bodies.step_limit(&self.system, self.clock.time)
     }
 
     /// What joint number `joint` felt in the last step.
     pub fn joint(&self, joint: usize) -> JointReading<D> {
-        self.bodies.rig().joint(joint)
+        self.bodies.constraints().joint(joint)
     }
 
     /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
     pub fn torn(&self) -> Vec<String> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
         let said = |(i, joint): (usize, &JointSpec<D>)| {
-            let [apart, turned] = self.bodies.rig().gap(i, &solids);
+            let [apart, turned] = self.bodies.constraints().gap(i, &solids);
             (apart > 0.1 * self.system.model().dp || turned.to_degrees() > 1.0).then(|| {
                 format!(
                     "joint \"{}\" is torn by {apart:.4} m and {:.2} degrees: what else holds its solids (another joint, \
@@ -53,28 +53,28 @@ impl<const D: usize> Simulation<D> {
     /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.
     pub fn coordinates(&self, joint: usize) -> Vec<f64> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
-        self.bodies.rig().coordinates(joint, &solids)
+        self.bodies.constraints().coordinates(joint, &solids)
     }
 
     /// What spring number `spring` felt in the last step.
     pub fn spring(&self, spring: usize) -> LineReading {
-        self.bodies.rig().spring(spring)
+        self.bodies.constraints().spring(spring)
     }
 
     /// What rope number `rope` felt in the last step.
     pub fn rope(&self, rope: usize) -> LineReading {
-        self.bodies.rig().rope(rope)
+        self.bodies.constraints().rope(rope)
     }
 
     /// Drives joint number `joint`, a hinge or a slider, from now on, in place of the motor that it was made with; `None` gives
     /// it back to that. A checkpoint keeps it.
     pub fn drive(&mut self, joint: usize, drive: Option<Drive>) {
-        self.bodies.rig_mut().drive(joint, drive);
+        self.bodies.constraints_mut().drive(joint, drive);
     }
 
     /// Stiffness, damping and rest length of spring number `spring`, to be read or changed from now on. A checkpoint keeps them.
     pub fn elastic(&mut self, spring: usize) -> &mut Elastic {
-        self.bodies.rig_mut().elastic(spring)
+        self.bodies.constraints_mut().elastic(spring)
     }
 }
 

@@ -50,7 +50,7 @@ pub fn solid(
         RigidBodyType::Fixed => Role::Fixed,
         RigidBodyType::Dynamic => Role::Free(free(body)),
         _ => {
-            let help = "let a law of pontoon's drive it, Role::Driven, and take its pose from handover.solids";
+            let help = "let a law of pontoon's drive it, Role::Driven, and take its pose from step.solids";
             return refuse("is kinematic", help);
         }
     };
@@ -71,7 +71,7 @@ pub fn give(body: &mut RigidBody, load: &Load<D>) {
     body.add_torque(to_angular(&load.torque), true);
 }
 
-/// Where a body is and how it moves, for `handover.solids`.
+/// Where a body is and how it moves, for `step.solids`.
 pub fn kinematics(body: &RigidBody) -> Kinematics<D> {
     Kinematics {
         pose: world::from_frame(body.position()),

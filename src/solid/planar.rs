@@ -3,11 +3,11 @@
 //! ```no_run
 //! # use pontoon::{solid::planar::{self, rapier::prelude::*}, simulation::Simulation};
 //! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<2>) -> pontoon::Result<()> {
-//! water.step_with(1.0, |handover| {
-//!     planar::give(&mut world.bodies[hull], &handover.loads()[1]);
-//!     world.integration_parameters.dt = handover.dt();
+//! water.step_with(1.0, |step| {
+//!     planar::give(&mut world.bodies[hull], &step.loads()[1]);
+//!     world.integration_parameters.dt = step.dt();
 //!     world.step();
-//!     handover.solids[1] = planar::kinematics(&world.bodies[hull]);
+//!     step.solids[1] = planar::kinematics(&world.bodies[hull]);
 //!     Ok(())
 //! })
 //! # }

@@ -3,11 +3,11 @@
 //! ```no_run
 //! # use pontoon::{solid::spatial::{self, rapier::prelude::*}, simulation::Simulation};
 //! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<3>) -> pontoon::Result<()> {
-//! water.step_with(1.0, |handover| {
-//!     spatial::give(&mut world.bodies[hull], &handover.loads()[1]);
-//!     world.integration_parameters.dt = handover.dt();
+//! water.step_with(1.0, |step| {
+//!     spatial::give(&mut world.bodies[hull], &step.loads()[1]);
+//!     world.integration_parameters.dt = step.dt();
 //!     world.step();
-//!     handover.solids[1] = spatial::kinematics(&world.bodies[hull]);
+//!     step.solids[1] = spatial::kinematics(&world.bodies[hull]);
 //!     Ok(())
 //! })
 //! # }

@@ -4,7 +4,7 @@
 //! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
 //! counts the water leaves images out. Solids have none: they reach beyond the sides as far as the images do.
 
-use super::{Lost, System, permute};
+use super::{Fluid, Lost, Rates, System};
 use crate::{
     error::{Error, Result},
     model::Model,
@@ -85,55 +85,49 @@ impl<const D: usize> Images<D> {
 }
 
 impl<const D: usize> System<D> {
-    /// Number of water particles, images not counted.
-    pub(super) fn real(&self) -> usize {
-        self.fluid.len() - self.images.of.len()
-    }
-
-    /// Wraps the water round the periodic sides, takes out what is to be, sorts it along the columns and puts new images at its
-    /// end; returns the order, `order[new] = old`, for an image that of what it mirrors, and what was taken out.
-    pub(super) fn reorder(&mut self) -> (Vec<u32>, Vec<Lost<D>>) {
-        let real = self.real();
-        self.images.wrap(&mut self.fluid.r[..real]);
-        let mut order = self.near.order(&self.fluid.r[..real]);
-        let lost = self.dismiss(&mut order);
-        if !self.ousted.is_empty() {
-            order.retain(|&i| !self.ousted[i as usize]);
+    /// Wraps the water round the periodic sides, removes what left the domain or is displaced, sorts it along the columns and
+    /// puts new images at its end. Returns the order, `order[new] = old` (for an image that of its original), and what was removed.
+    pub(super) fn sort_water(&mut self) -> (Vec<u32>, Vec<Lost<D>>) {
+        let real = self.real_count();
+        let Fluid { particles, images, displaced, .. } = &mut self.fluid;
+        images.wrap(&mut particles.r[..real]);
+        let mut order = self.neighbours.order(&particles.r[..real]);
+        let displaced = displaced.take();
+        let lost = self.remove_outside(&mut order);
+        if let Some(displaced) = displaced {
+            order.retain(|&i| !displaced[i as usize]);
         }
         let real = order.len();
-        let mut images = Vec::new();
-        if self.images.any() {
-            let sorted: Vec<Vector<D>> = order.iter().map(|&i| self.fluid.r[i as usize]).collect();
-            images = self.images.make(&sorted);
-            order.extend(images.iter().map(|(of, _)| order[*of as usize]).collect::<Vec<_>>());
+        let Fluid { particles, images, .. } = &mut self.fluid;
+        let mut copies = Vec::new();
+        if images.any() {
+            let sorted: Vec<Vector<D>> = order.iter().map(|&i| particles.r[i as usize]).collect();
+            copies = images.make(&sorted);
+            order.extend(copies.iter().map(|(of, _)| order[*of as usize]).collect::<Vec<_>>());
         }
-        permute(&mut self.fluid.r, &order);
-        permute(&mut self.fluid.v, &order);
-        permute(&mut self.fluid.rho, &order);
-        permute(&mut self.fluid.id, &order);
-        permute(&mut self.stress, &order);
-        permute(&mut self.forms, &order);
-        for (r, (_, away)) in self.fluid.r[real..].iter_mut().zip(&images) {
+        self.fluid.permute(&order);
+        let Fluid { particles, images, .. } = &mut self.fluid;
+        for (r, (_, away)) in particles.r[real..].iter_mut().zip(&copies) {
             *r += away;
         }
-        self.images.of = images.into_iter().map(|(of, _)| of).collect();
-        self.sums.resize(self.fluid.len(), Sums::zero());
+        images.of = copies.into_iter().map(|(of, _)| of).collect();
+        self.rates.fluid.resize(particles.len(), Sums::zero());
         (order, lost)
     }
 
-    /// Gives the images the rates of what they mirror.
-    pub(super) fn reflect(&mut self) {
-        let real = self.real();
-        for (k, &i) in self.images.of.iter().enumerate() {
-            self.sums[real + k] = self.sums[i as usize];
-            if !self.extra.is_empty() {
-                self.extra[real + k] = self.extra[i as usize];
+    /// Gives the images the rates of their originals.
+    pub(super) fn copy_to_images(&mut self) {
+        let (real, images, Rates { fluid, auxiliary, .. }) = (self.real_count(), &self.fluid.images, &mut self.rates);
+        for (k, &i) in images.of.iter().enumerate() {
+            fluid[real + k] = fluid[i as usize];
+            if !auxiliary.is_empty() {
+                auxiliary[real + k] = auxiliary[i as usize];
             }
         }
-        if self.images.any() {
-            // The outermost images see half their neighbours: what pulls at them says nothing of the water.
-            let largest = self.sums[..real].iter().map(|s| s.dv.norm_squared()).fold(0.0, f64::max);
-            self.peaks = Peaks { acceleration: largest.sqrt(), ..self.peaks };
+        if images.any() {
+            // The outermost images lack half their neighbours: their acceleration says nothing of the water.
+            let largest = fluid[..real].iter().map(|s| s.dv.norm_squared()).fold(0.0, f64::max);
+            self.status.peaks = Peaks { acceleration: largest.sqrt(), ..self.status.peaks };
         }
     }
 }

@@ -1,9 +1,9 @@
 //! What a simulation starts from.
 
 use super::{
-    Damping,
-    guard::Limits,
+    SpongeLayer,
     periodic::{self, Periodic},
+    step_check::Limits,
 };
 use crate::{
     error::{Error, Result},
@@ -36,7 +36,7 @@ pub struct Setup<const D: usize> {
     /// The valid range of a water particle.
     pub limits: Limits,
     /// Where water loses its motion.
-    pub damping: Vec<Damping<D>>,
+    pub damping: Vec<SpongeLayer<D>>,
 }
 
 impl<const D: usize> Setup<D> {
@@ -81,7 +81,7 @@ impl<const D: usize> Setup<D> {
         if let Some(i) = self.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
             return Err(Error::scene(format!("water particle {i} has no finite place")));
         }
-        self.damping.iter().try_for_each(Damping::check)?;
+        self.damping.iter().try_for_each(SpongeLayer::check)?;
         self.links.check(&self.solids)?;
         periodic::check(&self.periodic, m, &self.solids)
     }

@@ -19,17 +19,17 @@ impl<const D: usize> System<D> {
 
     /// The constants that the laws share.
     pub fn medium(&self) -> &Medium<D> {
-        &self.medium
+        &self.properties
     }
 
     /// The water.
     pub fn fluid(&self) -> View<'_, D> {
-        self.fluid.first(self.real())
+        self.fluid.particles.first(self.real_count())
     }
 
     /// The boundary particles of all solids.
     pub fn skin(&self) -> View<'_, D> {
-        self.skin.first(self.skin.len())
+        self.boundary.particles.first(self.boundary.particles.len())
     }
 
     /// The solids.
@@ -39,7 +39,7 @@ impl<const D: usize> System<D> {
 
     /// What ties the solids, as it was made.
     pub fn links(&self) -> &Links<D> {
-        &self.links
+        &self.constraints
     }
 
     /// Number of the solid of that name.
@@ -49,33 +49,33 @@ impl<const D: usize> System<D> {
 
     /// Where particles may be.
     pub fn domain(&self) -> &Bounds<D> {
-        &self.domain
+        &self.region.domain
     }
 
     /// Which sides are periodic.
     pub fn periodic(&self) -> &Periodic<D> {
-        &self.images.periodic
+        &self.fluid.images.periodic
     }
 
     /// Mass of every particle, ρ₀ dpᴰ (kg; kg/m in 2-D).
     pub fn particle_mass(&self) -> f64 {
-        self.medium.rho0 * self.medium.volume0()
+        self.properties.rho0 * self.properties.volume0()
     }
 
     /// Pressure (Pa) at density `rho` (kg/m³).
     pub fn pressure(&self, rho: f64) -> f64 {
-        self.medium.rho0 * self.state.pressure(rho / self.medium.rho0 - 1.0)
+        self.properties.rho0 * self.equation_of_state.pressure(rho / self.properties.rho0 - 1.0)
     }
 
     /// Pressure (Pa) with which water of density `rho` (kg/m³) acts where its particles lie dp apart: a little less than
     /// [`System::pressure`].
     pub fn acting_pressure(&self, rho: f64) -> f64 {
-        self.medium.rho0 * self.state.acting(rho / self.medium.rho0 - 1.0)
+        self.properties.rho0 * self.equation_of_state.acting(rho / self.properties.rho0 - 1.0)
     }
 
     /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
     pub fn compression(&self, rho: f64) -> f64 {
-        self.state.energy(rho / self.medium.rho0 - 1.0)
+        self.equation_of_state.energy(rho / self.properties.rho0 - 1.0)
     }
 
     /// Energy (J; J/m in 2-D) of a water particle of density `rho` (kg/m³) that moves at `v` (m/s) at `r` (m): motion, height,
@@ -87,37 +87,37 @@ impl<const D: usize> System<D> {
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
     pub fn fluid_dv(&self, i: usize) -> Vector<D> {
-        self.sums[i].dv
+        self.rates.fluid[i].dv
     }
 
     /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
     pub fn fluid_drho(&self, i: usize) -> f64 {
-        self.sums[i].dx * self.medium.rho0
+        self.rates.fluid[i].dx * self.properties.rho0
     }
 
     /// Number of boundary particles that have water near them; the others cost nothing.
     pub fn wet(&self) -> usize {
-        self.near.wet().len()
+        self.neighbours.wet().len()
     }
 
     /// Memory of the neighbour lists, B.
     pub fn list_bytes(&self) -> usize {
-        self.near.bytes()
+        self.neighbours.bytes()
     }
 
     /// Time spent so far on lists and sorting, and on pairs.
     pub fn spent(&self) -> (Duration, Duration) {
-        (self.listing, self.sweep.spent())
+        (self.status.neighbour_time, self.pair_loop.spent())
     }
 
     /// Force passes so far.
     pub fn passes(&self) -> u64 {
-        self.passes
+        self.status.passes
     }
 
     /// Acceleration of gravity, m/s².
     pub fn gravity(&self) -> Vector<D> {
-        self.medium.gravity
+        self.properties.gravity
     }
 
     /// What is around the solids that feel `loads` (N, N m) of the water.
@@ -128,7 +128,7 @@ impl<const D: usize> System<D> {
         };
         let loads = loads.iter().zip(&self.solids).map(with_weight).collect();
         let wet = self.solids.iter().map(|solid| solid.load != Load::zero()).collect();
-        Around { loads, wet, crossing: self.medium.h / self.medium.c0 }
+        Around { loads, wet, crossing: self.properties.h / self.properties.c0 }
     }
 
     /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).
@@ -138,12 +138,12 @@ impl<const D: usize> System<D> {
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
     pub fn height_gravity(&self) -> Vector<D> {
-        Vector::from_fn(|i, _| if self.images.periodic[i].is_some() { 0.0 } else { self.medium.gravity[i] })
+        Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { self.properties.gravity[i] })
     }
 
     /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).
     pub fn periodic_power(&self) -> f64 {
-        let along = self.medium.gravity - self.height_gravity();
+        let along = self.properties.gravity - self.height_gravity();
         if along.norm_squared() == 0.0 {
             return 0.0;
         }
@@ -153,24 +153,24 @@ impl<const D: usize> System<D> {
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
     pub fn water_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        let real = self.real();
-        self.near.water_around(x, &mut |i| {
-            let own = i.checked_sub(real).map_or(i, |k| self.images.of[k] as usize);
-            self.weigh(&self.fluid.r[i], x, own, visit);
+        let real = self.real_count();
+        self.neighbours.water_around(x, &mut |i| {
+            let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.of[k] as usize);
+            self.weigh(&self.fluid.particles.r[i], x, own, visit);
         });
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
     pub fn solid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        self.near.skin_around(x, &mut |i| self.weigh(&self.skin.r[i], x, i, visit));
+        self.neighbours.skin_around(x, &mut |i| self.weigh(&self.boundary.particles.r[i], x, i, visit));
     }
 
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
     pub fn forces_on(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
         let (mass, skin) = (self.particle_mass(), &self.solids[solid].skin);
-        for (&i, sums) in self.near.wet().iter().zip(&self.skin_sums) {
-            if skin.contains(&(i as usize)) && self.images.between(&self.skin.r[i as usize]) {
+        for (&i, sums) in self.neighbours.wet().iter().zip(&self.rates.boundary) {
+            if skin.contains(&(i as usize)) && self.fluid.images.between(&self.boundary.particles.r[i as usize]) {
                 visit(i as usize, sums.dv * mass);
             }
         }

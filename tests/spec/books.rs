@@ -82,7 +82,7 @@ fn crowd(model: &str) -> Simulation<2> {
 
 /// The part of the largest kind of load by which those on solid number `i` miss what it did in the last step, forces and torques.
 fn missed(sim: &Simulation<2>, i: usize) -> f64 {
-    let shares = sim.shares(i).unwrap();
+    let shares = sim.load_breakdown(i).unwrap();
     let force = shares.kinds().iter().fold(0.0f64, |most, (_, load)| most.max(load.force.norm()));
     // Bodies 0.1 m large: torques far below a hundredth of a metre times the force are round-off of it.
     let turning = shares.kinds().iter().fold(0.01 * force, |most, (_, load)| most.max(torque(load)));
@@ -97,13 +97,13 @@ fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
         ["", "slip = \"partial\"", "walls = \"dbc\"\nviscosity = { laminar = { nu0 = 1e-4 } }\nslip = \"none\""]
     {
         let mut sim = crowd(model);
-        sim.keep_loads();
+        sim.enable_load_breakdown();
         let mut seen = [false; 12];
         for step in 0..400 {
             sim.step().unwrap();
             // What the rows of the hinge and the rope tell is all of it but for their turning in a step of several iterations, as bodies of
             // unlike mass touch: 1e-3 as the rope comes taut.
-            let (hinged, hung) = (sim.shares(5).unwrap(), sim.shares(1).unwrap());
+            let (hinged, hung) = (sim.load_breakdown(5).unwrap(), sim.load_breakdown(1).unwrap());
             for (ties, told, weight) in [
                 (hinged.joints, sim.joint(0).force.norm(), hinged.weight),
                 (hung.ropes, sim.rope(0).tension, hung.weight),
@@ -114,12 +114,12 @@ fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
             for i in 1..6 {
                 let off = missed(&sim, i);
                 assert!(off < 1e-9, "{model}, step {step}, solid {i}: {off:e}");
-                for (seen, (_, load)) in seen.iter_mut().zip(sim.shares(i).unwrap().kinds()) {
+                for (seen, (_, load)) in seen.iter_mut().zip(sim.load_breakdown(i).unwrap().kinds()) {
                     *seen |= load.force.norm() + torque(&load) > 0.0;
                 }
             }
         }
-        let kinds = sim.shares(1).unwrap().kinds().map(|(kind, _)| kind);
+        let kinds = sim.load_breakdown(1).unwrap().kinds().map(|(kind, _)| kind);
         let absent: Vec<_> = kinds.into_iter().zip(seen).filter(|(_, seen)| !seen).map(|(kind, _)| kind).collect();
         let expected = if model.is_empty() { vec!["viscous", "pushes"] } else { vec!["pushes"] };
         assert!(absent.iter().all(|kind| expected.contains(kind) || *kind == "delayed"), "{model}: {absent:?}");
@@ -136,7 +136,7 @@ fn joints_and_ropes_add_up_to_the_last_digits_where_nothing_touches() {
     }
     let scene = Scene::parse(&text, Path::new(""), &[]).expect("a sound scene");
     let mut sim = Simulation::new(scene.build::<2>().expect("a sound scene").setup).expect("a sound setup");
-    sim.keep_loads();
+    sim.enable_load_breakdown();
     for step in 0..1500 {
         sim.step().unwrap();
         for i in 1..4 {
@@ -156,13 +156,13 @@ fn residual<const D: usize>(mut sim: Simulation<D>, steps: usize) -> (f64, f64)
 where
     Dim<D>: Dimension<D>,
 {
-    sim.keep_energy();
+    sim.enable_energy_budget();
     let probe = Budget::new(sim.system());
     for _ in 0..steps {
         sim.step().unwrap();
     }
     let row = probe.look(&sim);
-    let turned = sim.ledger().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
+    let turned = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
     (row[row.len() - 1].abs(), turned)
 }
 
@@ -179,7 +179,7 @@ fn the_energy_budget_closes() {
 #[test]
 fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
     let mut sim = crowd("");
-    sim.keep_energy();
+    sim.enable_energy_budget();
     let probe = Budget::new(sim.system());
     let missing = |sim: &Simulation<2>| probe.look(sim).last().copied().unwrap_or(f64::NAN);
     for _ in 0..300 {
@@ -195,7 +195,7 @@ fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
     let brought = 7.0 * (0.5 * 0.13 + 9.81 * 0.3) + 0.5 * (7.0 * 0.02 / 12.0) * 16.0;
     let added = sim.add_solid(late).unwrap();
     assert!(added.displaced > 0);
-    let ledger = *sim.ledger().unwrap();
+    let ledger = *sim.energy_budget().unwrap();
     assert!((ledger.solids / brought - 1.0).abs() < 1e-12, "{} J/m of {brought}", ledger.solids);
     // Some 12 particles of 0.4 kg/m 0.27 m above the bottom.
     assert!(ledger.removed < -0.3 * 9.81 * 0.24 * added.displaced as f64 * 0.4, "{} J/m", ledger.removed);
@@ -210,7 +210,7 @@ fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
     for _ in 0..300 {
         sim.step().unwrap();
     }
-    let turned = sim.ledger().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
+    let turned = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
     // As for a run into which nothing comes.
     assert!(missing(&sim).abs() < 0.01 * turned, "{} J of {turned} J", missing(&sim));
 }
@@ -218,8 +218,8 @@ fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
 #[test]
 fn books_change_no_bit_and_outlive_a_restart() {
     let (mut plain, mut booked) = (crowd(""), crowd(""));
-    booked.keep_energy();
-    booked.keep_loads();
+    booked.enable_energy_budget();
+    booked.enable_load_breakdown();
     for _ in 0..100 {
         plain.step().unwrap();
         booked.step().unwrap();
@@ -227,14 +227,14 @@ fn books_change_no_bit_and_outlive_a_restart() {
     assert_eq!(plain.system().fluid().r, booked.system().fluid().r);
     assert_eq!(plain.system().solids()[1].kinematics, booked.system().solids()[1].kinematics);
     let mut again = crowd("");
-    again.keep_energy();
-    again.keep_loads();
+    again.enable_energy_budget();
+    again.enable_load_breakdown();
     again.restore(&booked.save().unwrap()).unwrap();
     for _ in 0..37 {
         booked.step().unwrap();
         again.step().unwrap();
     }
-    assert_eq!(booked.ledger(), again.ledger());
-    assert_eq!(booked.shares(2), again.shares(2));
+    assert_eq!(booked.energy_budget(), again.energy_budget());
+    assert_eq!(booked.load_breakdown(2), again.load_breakdown(2));
     assert!(plain.restore(&booked.save().unwrap()).is_err(), "books of a checkpoint are not dropped unseen");
 }

@@ -98,12 +98,12 @@ fn largest(loads: &[Load<3>]) -> (f64, f64) {
 #[test]
 fn the_torques_on_tied_bodies_that_spin_in_space_add_up_in_every_step() -> Result<()> {
     let mut sim = Simulation::new(Scene::parse(MOBILE, Path::new(""), &[])?.build::<3>()?.setup)?;
-    sim.keep_loads();
+    sim.enable_load_breakdown();
     let mut turned = 0.0f64;
     for step in 0..250 {
         sim.step()?;
         for i in 1..6 {
-            let (shares, name) = (sim.shares(i).unwrap(), &sim.system().solids()[i].spec.name);
+            let (shares, name) = (sim.load_breakdown(i).unwrap(), &sim.system().solids()[i].spec.name);
             let (force, torque) = largest(&shares.kinds().map(|(_, load)| load));
             let off = largest(&[shares.residual()]);
             // Round-off of I Ω/Δt and of sums that the pulls of the ties are found from: 1e-9 of the largest kind, and of a torque
@@ -112,7 +112,7 @@ fn the_torques_on_tied_bodies_that_spin_in_space_add_up_in_every_step() -> Resul
             let scale = torque.max(0.01 * force);
             assert!(off.1 < 1e-9 * scale, "step {step}, {name}: {:e} N m of {scale} N m", off.1);
         }
-        turned = turned.max(largest(&[sim.shares(2).unwrap().change]).1);
+        turned = turned.max(largest(&[sim.load_breakdown(2).unwrap().change]).1);
     }
     assert!(turned > 0.1, "the lower bar is turned by up to {turned} N m");
     assert!(sim.rope(0).tension > 0.0 && sim.joint(3).motor != 0.0, "what is tied carries");
@@ -125,7 +125,7 @@ fn the_change_of_a_tied_body_is_that_of_its_angular_momentum_to_first_order_in_t
     let off = |dt_max: &str| -> Result<(f64, f64)> {
         let sets = [("time.dt_max".to_string(), dt_max.to_string())];
         let mut sim = Simulation::new(Scene::parse(MOBILE, Path::new(""), &sets)?.build::<3>()?.setup)?;
-        sim.keep_loads();
+        sim.enable_load_breakdown();
         let momentum = |sim: &Simulation<3>| {
             let solid = &sim.system().solids()[2];
             let pontoon::solid::Role::Free(body) = &solid.spec.role else { panic!("it is free") };
@@ -137,7 +137,7 @@ fn the_change_of_a_tied_body_is_that_of_its_angular_momentum_to_first_order_in_t
         let mut sum = pontoon::space::Vector::<3>::zeros();
         while sim.time() < 0.05 {
             sim.step_to(0.05)?;
-            let change = sim.shares(2).unwrap().change.torque.axial();
+            let change = sim.load_breakdown(2).unwrap().change.torque.axial();
             sum += pontoon::space::Vector::<3>::from_iterator(change) * sim.dt();
         }
         let gained = momentum(&sim) - before;

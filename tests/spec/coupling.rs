@@ -46,7 +46,7 @@ fn drop_under(model: Model, density: f64) -> Simulation<2> {
 fn body_momentum(sim: &Simulation<2>) -> Vector<2> {
     let solid = &sim.system().solids()[0];
     let Role::Free(body) = &solid.spec.role else { panic!("a free body") };
-    solid.kinematics.velocity * body.mass + sim.withheld(0)
+    solid.kinematics.velocity * body.mass + sim.pending_impulse(0)
 }
 
 /// Sum of the sizes of what is added up, the scale of rounding.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pontoon::{Error, scene::Scene, space::Vector, system::Damping};
+use pontoon::{Error, scene::Scene, space::Vector, system::SpongeLayer};
 
 const TANK: &str = r#"
 dimension = 2
@@ -23,7 +23,7 @@ fn scene(words: &str) -> Result<Scene, Error> {
     Scene::parse(&format!("{TANK}{words}\n"), Path::new(""), &[])
 }
 
-fn zone(words: &str) -> Result<Damping<2>, Error> {
+fn zone(words: &str) -> Result<SpongeLayer<2>, Error> {
     Ok(scene(words)?.build::<2>()?.setup.damping[0])
 }
 

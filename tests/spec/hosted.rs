@@ -67,11 +67,11 @@ fn looking_on_between_water_and_bodies_changes_no_bit() -> Result<()> {
     let mut lift = 0.0;
     for i in 0..60 {
         plain.step()?;
-        watched.step_with(f64::INFINITY, |handover| {
-            lift += handover.loads()[1].force[1] * handover.dt();
+        watched.step_with(f64::INFINITY, |step| {
+            lift += step.loads()[1].force[1] * step.dt();
             if i % 2 == 0 {
-                handover.go()?;
-                assert!(handover.solids[1].velocity.norm() < 1.0 && handover.time() >= 0.0);
+                step.advance_bodies()?;
+                assert!(step.solids[1].velocity.norm() < 1.0 && step.time() >= 0.0);
             }
             Ok(())
         })?;
@@ -89,8 +89,8 @@ fn a_push_at_the_handover_is_a_push() -> Result<()> {
         let at = early.system().solids()[2].kinematics.centre;
         early.push(2, &force, &at);
         early.step()?;
-        late.step_with(f64::INFINITY, |handover| {
-            handover.push(2, &Load { force, torque: Wedge::zero() });
+        late.step_with(f64::INFINITY, |step| {
+            step.push(2, &Load { force, torque: Wedge::zero() });
             Ok(())
         })?;
     }
@@ -123,7 +123,7 @@ fn world(sim: &Simulation<2>) -> (rapier::PhysicsWorld, Vec<rapier::RigidBodyHan
 #[test]
 fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
     let setup = || -> Result<_> { Ok(Scene::parse(POOL, Path::new(""), &[])?.build::<2>()?.setup) };
-    let (mut inside, mut hosted) = (Simulation::new(setup()?)?, Simulation::hosted(setup()?)?);
+    let (mut inside, mut hosted) = (Simulation::new(setup()?)?, Simulation::with_external_bodies(setup()?)?);
     let (mut world, bodies) = world(&hosted);
     for (body, name) in bodies.iter().zip(["float", "foam"]) {
         let spec = planar::solid(name, *body, &world.bodies, &world.colliders)?;
@@ -134,14 +134,14 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
     }
     for _ in 0..200 {
         inside.step()?;
-        hosted.step_with(f64::INFINITY, |handover| {
+        hosted.step_with(f64::INFINITY, |step| {
             for (i, &body) in bodies.iter().enumerate() {
-                planar::give(&mut world.bodies[body], &handover.loads()[i + 1]);
+                planar::give(&mut world.bodies[body], &step.loads()[i + 1]);
             }
-            world.integration_parameters.dt = handover.dt();
+            world.integration_parameters.dt = step.dt();
             world.step();
             for (i, &body) in bodies.iter().enumerate() {
-                handover.solids[i + 1] = planar::kinematics(&world.bodies[body]);
+                step.solids[i + 1] = planar::kinematics(&world.bodies[body]);
             }
             Ok(())
         })?;
@@ -158,11 +158,11 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
 
 #[test]
 fn a_hosted_body_that_nobody_places_is_told_by_name() -> Result<()> {
-    let mut sim = Simulation::hosted(Scene::parse(POOL, Path::new(""), &[])?.build::<2>()?.setup)?;
+    let mut sim = Simulation::with_external_bodies(Scene::parse(POOL, Path::new(""), &[])?.build::<2>()?.setup)?;
     let error = sim.step().expect_err("nobody moved them");
     assert!(error.kind == Kind::Usage && error.what.contains("\"float\""), "{error}");
-    let error = sim.step_with(1.0, |handover| handover.go()).expect_err("it has no bodies of its own");
-    assert!(error.help.is_some_and(|help| help.contains("handover.solids")));
+    let error = sim.step_with(1.0, |step| step.advance_bodies()).expect_err("it has no bodies of its own");
+    assert!(error.help.is_some_and(|help| help.contains("step.solids")));
     Ok(())
 }
 

@@ -190,14 +190,14 @@ at      = [0.5, 0.34]
 #[test]
 fn a_flap_pinned_to_a_moving_paddle_goes_with_it_and_its_loads_add_up() -> Result<()> {
     let mut sim = Simulation::new(pool(0.02, PINNED)?.build::<2>()?.setup)?;
-    sim.keep_loads();
+    sim.enable_load_breakdown();
     let (mut torn, mut swung): (f64, f64) = (0.0, 0.0);
     while sim.time() < 1.0 {
         sim.step_to(1.0)?;
         let [paddle, flap] = [1, 2].map(|i| sim.system().solids()[i].kinematics.pose);
         let apart = paddle.point(&[0.0, -0.08].into()) - flap.point(&[0.0, 0.12].into());
         (torn, swung) = (torn.max(apart.norm()), swung.max(sim.joint(0).position.abs()));
-        let shares = sim.shares(2).unwrap();
+        let shares = sim.load_breakdown(2).unwrap();
         let largest = shares.kinds().iter().map(|(_, load)| load.force.norm()).fold(0.0, f64::max);
         let off = shares.residual().force.norm();
         assert!(off < 1e-9 * largest, "{off} N/m of {largest} at {} s", sim.time());

@@ -58,7 +58,7 @@ fn a_body_heavier_than_a_kernel_of_water_is_left_as_it_is() {
         let mut most = 0.0_f64;
         for _ in 0..20 {
             sim.step().unwrap();
-            most = most.max(sim.withheld(1).norm());
+            most = most.max(sim.pending_impulse(1).norm());
         }
         most
     };
@@ -103,13 +103,13 @@ fn what_the_water_loses_a_light_body_has_or_will_have() {
         let whole = |sim: &Simulation<2>| {
             let solid = &sim.system().solids()[0];
             let Role::Free(body) = &solid.spec.role else { panic!("a free body") };
-            rig::water_momentum(sim) + solid.kinematics.velocity * body.mass + sim.withheld(0)
+            rig::water_momentum(sim) + solid.kinematics.velocity * body.mass + sim.pending_impulse(0)
         };
         let (start, scale) = (whole(&sim), 1000.0 * 0.15 * 0.5);
         let mut most = 0.0_f64;
         for _ in 0..500 {
             sim.step().unwrap();
-            most = most.max(sim.withheld(0).norm());
+            most = most.max(sim.pending_impulse(0).norm());
         }
         // Rounding, as for heavy bodies; and what is withheld is not nothing.
         assert!((whole(&sim) - start).norm() < rounding * scale, "{:e}", (whole(&sim) - start).norm() / scale);

@@ -71,8 +71,8 @@ fn text(home: &Home, name: &str) -> String {
 
 #[test]
 fn a_sea_its_absorption_its_damping_means_statistics_and_a_light_body_outlive_a_restart() -> Result<()> {
-    let (home, sim) = outlives("sea", [0.15, 0.3], Simulation::<2>::keep_energy)?;
-    assert!(sim.withheld(2).norm() > 0.0, "the foam has yet to get some of its impulse");
+    let (home, sim) = outlives("sea", [0.15, 0.3], Simulation::<2>::enable_energy_budget)?;
+    assert!(sim.pending_impulse(2).norm() > 0.0, "the foam has yet to get some of its impulse");
     assert!(text(&home, "statistics.csv").contains("reflection"), "gauges were read as reflection");
     Ok(())
 }
@@ -80,8 +80,8 @@ fn a_sea_its_absorption_its_damping_means_statistics_and_a_light_body_outlive_a_
 #[test]
 fn ties_motors_stops_a_hold_bounces_and_their_books_outlive_a_restart() -> Result<()> {
     let keep = |sim: &mut Simulation<2>| {
-        sim.keep_energy();
-        sim.keep_loads();
+        sim.enable_energy_budget();
+        sim.enable_load_breakdown();
     };
     let (home, sim) = outlives("ties", [0.15, 0.4], keep)?;
     let axle = sim.joint(sim.find_joint("axle")?);
@@ -103,11 +103,11 @@ fn ties_motors_stops_a_hold_bounces_and_their_books_outlive_a_restart() -> Resul
 #[test]
 fn a_run_in_three_dimensions_with_corrected_gradients_outlives_a_restart() -> Result<()> {
     let keep = |sim: &mut Simulation<3>| {
-        sim.keep_energy();
-        sim.keep_loads();
+        sim.enable_energy_budget();
+        sim.enable_load_breakdown();
     };
     let (home, sim) = outlives("three", [0.1, 0.18], keep)?;
-    assert!(sim.withheld(2).norm() > 0.0, "the foam has yet to get some of its impulse");
+    assert!(sim.pending_impulse(2).norm() > 0.0, "the foam has yet to get some of its impulse");
     assert!(text(&home, "lists/contacts.csv").contains("foam,bob"), "the bob struck the foam");
     Ok(())
 }
@@ -121,10 +121,10 @@ fn water_between_periodic_sides_that_is_shifted_outlives_a_restart() -> Result<(
 
 #[test]
 fn who_was_taken_out_is_known_after_a_restart() -> Result<()> {
-    let (home, sim) = outlives("spill", [0.2, 0.4], Simulation::<2>::keep_energy)?;
+    let (home, sim) = outlives("spill", [0.2, 0.4], Simulation::<2>::enable_energy_budget)?;
     let (then, all) = (sim.lost().len(), text(&home, "removed.csv").lines().count() - 1);
     assert!(then > 0 && all > then, "{then} before the second moment, {all} in all");
-    assert!(sim.ledger().is_some_and(|ledger| ledger.removed != 0.0), "they took energy along");
+    assert!(sim.energy_budget().is_some_and(|ledger| ledger.removed != 0.0), "they took energy along");
     Ok(())
 }
 

@@ -1,11 +1,12 @@
 //! Steppers: their order on motions whose solution is known or refines itself, and the length of a step.
 
 use pontoon::{
+    coupling::stiffest_frequency,
     law::viscosity::Laminar,
     model::{Diffusion, Model, Scheme, Viscosity},
     simulation::Simulation,
     space::Vector,
-    time::limit,
+    time_integration::step_size,
 };
 
 use crate::rig;
@@ -74,13 +75,13 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
     // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀.
     assert_eq!(sim.dt(), model.cfl * (model.h / model.c0));
     // Morris' limit; artificial viscosity is in the other two.
-    assert_eq!(limit::viscous(&model), f64::INFINITY);
+    assert_eq!(step_size::viscous(&model), f64::INFINITY);
     let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
-    assert_eq!(limit::viscous(&thick), model.h * model.h / 4.0);
+    assert_eq!(step_size::viscous(&thick), model.h * model.h / 4.0);
     let peaks = pontoon::system::Peaks { acceleration: 1e7, closing: 0.0 };
-    assert_eq!(limit::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / 1e7).sqrt());
+    assert_eq!(step_size::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / 1e7).sqrt());
     let peaks = pontoon::system::Peaks { acceleration: 0.0, closing: 100.0 };
-    assert_eq!(limit::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / (model.c0 + model.h * 100.0)));
+    assert_eq!(step_size::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / (model.c0 + model.h * 100.0)));
 }
 
 #[test]
@@ -89,7 +90,7 @@ fn a_body_on_water_swings_faster_by_the_root_of_its_mass() {
     let dp = 0.01;
     let medium = Model::water(2, dp, 1.0).medium::<2>();
     let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };
-    let of = |density| limit::stiffest(&shape, &FreeBody::from_density(&shape, density), &medium);
+    let of = |density| stiffest_frequency(&shape, &FreeBody::from_density(&shape, density), &medium);
     assert!((of(10.0) / of(1000.0) - 10.0).abs() < 1e-9);
     // Ten dp across: 36 springs ρ₀ c₀² in the outer layer, nine a side, a corner's along its diagonal. Along an axis
     // they add up to 18 on the mass 100 ρ dp²; about the centre to 4 Σ (i + ½)² over a side of nine, 4·60 dp², on

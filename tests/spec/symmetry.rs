@@ -228,7 +228,7 @@ where
         [0, 1].map(|i| {
             let solid = &sim.system().solids()[i];
             let Role::Free(body) = &solid.spec.role else { panic!("a free body") };
-            solid.kinematics.velocity * body.mass + sim.withheld(i)
+            solid.kinematics.velocity * body.mass + sim.pending_impulse(i)
         })
     };
     let whole = |sim: &Simulation<D>| rig::water_momentum(sim) + parts(sim).iter().sum::<Vector<D>>();

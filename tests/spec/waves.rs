@@ -10,7 +10,7 @@ use pontoon::{
     simulation::{Setup, Simulation},
     solid::{Dim, wave::Region},
     space::Vector,
-    system::Damping,
+    system::SpongeLayer,
 };
 
 use crate::rig;
@@ -362,7 +362,7 @@ fn a_damping_zone_slows_water_by_its_law_whatever_the_scheme() {
         (model.c0, model.gravity, model.viscosity, model.scheme) = (20.0, vec![0.0, 0.0], Viscosity::None, scheme);
         let levels = vec![0.0; water.len()];
         // It begins far to the left: s = 1 where the water is.
-        let zone = Damping { from: [-9.0, 0.0].into(), to: [-8.0, 0.0].into(), strength: 3.0, power: 2.0 };
+        let zone = SpongeLayer { from: [-9.0, 0.0].into(), to: [-8.0, 0.0].into(), strength: 3.0, power: 2.0 };
         let velocity = vec![Vector::from([0.2, 0.1]); water.len()];
         let setup = Setup { velocity, damping: vec![zone], ..Setup::new(model, water.clone(), levels, vec![]) };
         let mut sim = Simulation::new(setup).unwrap();

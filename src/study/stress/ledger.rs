@@ -28,7 +28,7 @@ pub struct Entry {
 }
 
 /// Many maps, and where their results go.
-pub struct Ledger {
+pub struct EnergyBudget {
     out: PathBuf,
     maps: Vec<Map>,
     /// All cases, map by map.
@@ -61,7 +61,7 @@ impl Entry {
     }
 }
 
-impl Ledger {
+impl EnergyBudget {
     /// The cases of `maps`, with the runs that the folder `out` holds already.
     ///
     /// # Errors

@@ -149,7 +149,7 @@ fn work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
 /// loads are kept.
 fn tied<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
     let one = |(i, then): (usize, &Kinematics<D>)| {
-        let (now, shares) = (sim.system().solids()[i].kinematics, sim.shares(i)?);
+        let (now, shares) = (sim.system().solids()[i].kinematics, sim.load_breakdown(i)?);
         let (velocity, spin) = ((then.velocity + now.velocity) * 0.5, (then.spin + now.spin) * 0.5);
         Some(dt * (shares.springs + shares.motors + shares.forces).power(&Kinematics { velocity, spin, ..now }))
     };
@@ -166,7 +166,7 @@ fn masses<const D: usize>(system: &System<D>) -> f64 {
 fn momentum<const D: usize>(sim: &Simulation<D>) -> Vector<D> {
     let system = sim.system();
     let water = system.fluid().v.iter().sum::<Vector<D>>() * system.particle_mass();
-    let on_the_way = (0..system.solids().len()).fold(water, |sum, i| sum + sim.withheld(i));
+    let on_the_way = (0..system.solids().len()).fold(water, |sum, i| sum + sim.pending_impulse(i));
     free(system).fold(on_the_way, |sum, (solid, mass)| sum + solid.kinematics.velocity * mass)
 }
 

@@ -1,7 +1,7 @@
 //! `pontoon stress`: many short runs over maps of hard cases, each judged by physics.
 //!
 //! [`maps`] are scenes with holes that axes fill; [`Trial`] runs a case in memory and measures it; [`Judge`] holds the
-//! figures against bounds; [`Ledger`] works the list off and keeps what came out. A case is right, stopped with a
+//! figures against bounds; [`EnergyBudget`] works the list off and keeps what came out. A case is right, stopped with a
 //! reason, wrong, or cut by its budget: unfinished.
 
 mod chart;
@@ -12,7 +12,7 @@ mod measure;
 mod trial;
 
 pub use judge::{Bound, Course, Figures, Judge, Of, Outcome};
-pub use ledger::{Entry, Ledger};
+pub use ledger::{EnergyBudget, Entry};
 pub use maps::{Axis, Case, Map, choose, maps};
 pub use trial::{BUDGET, End, Trial};
 

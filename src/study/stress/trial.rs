@@ -123,7 +123,7 @@ impl Trial {
         let mut sim = Simulation::new(built.setup)?.without_rescue();
         if tied {
             // What springs and motors do is no energy made.
-            sim.keep_loads();
+            sim.enable_load_breakdown();
         }
         self.water = sim.system().fluid().len();
         let mut measure = Measure::new(case, &sim, level)?;

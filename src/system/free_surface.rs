@@ -20,14 +20,14 @@ impl<const D: usize> System<D> {
             let mut x = at;
             x[up] = z;
             let mut sum = 0.0;
-            self.water_near(&x, &mut |b, _, w| sum += self.particle_mass() / self.fluid.rho[b] * w);
+            self.water_near(&x, &mut |b, _, w| sum += self.particle_mass() / self.fluid.particles.rho[b] * w);
             sum
         };
-        falls(filled, low, high + 2.0 * h, 0.5 * dp, 1e-3 * dp)
+        half_crossings(filled, low, high + 2.0 * h, 0.5 * dp, 1e-3 * dp)
     }
 
     /// Lets the paddles that absorb see the water before them at time `t` (s), the start of a step; the lists must hold.
-    pub(crate) fn steer(&mut self, t: f64) {
+    pub(crate) fn update_absorption(&mut self, t: f64) {
         for i in 0..self.solids.len() {
             let solid = &self.solids[i];
             let Role::Driven(motion) = &solid.spec.role else { continue };
@@ -40,7 +40,13 @@ impl<const D: usize> System<D> {
 
 /// The heights between `low` and `high` at which `filled` falls through ½ on the way up, from the highest down: found by
 /// steps of `step` downwards and bisection to `tolerance`.
-fn falls(filled: impl Fn(f64) -> f64, low: f64, high: f64, step: f64, tolerance: f64) -> impl Iterator<Item = f64> {
+fn half_crossings(
+    filled: impl Fn(f64) -> f64,
+    low: f64,
+    high: f64,
+    step: f64,
+    tolerance: f64,
+) -> impl Iterator<Item = f64> {
     // Where the water of the surface before was met.
     let mut met: Option<f64> = None;
     std::iter::from_fn(move || {
@@ -71,17 +77,17 @@ fn falls(filled: impl Fn(f64) -> f64, low: f64, high: f64, step: f64, tolerance:
 
 #[cfg(test)]
 mod tests {
-    use super::falls;
+    use super::half_crossings;
 
     #[test]
     fn surfaces_are_the_falls_through_a_half_from_the_highest_down() {
         let two_layers = |z: f64| if (0.1..0.2).contains(&z) || (0.0..0.05).contains(&z) { 1.0 } else { 0.1 };
-        let found: Vec<f64> = falls(two_layers, 0.0, 0.4, 0.01, 1e-5).collect();
+        let found: Vec<f64> = half_crossings(two_layers, 0.0, 0.4, 0.01, 1e-5).collect();
         assert_eq!(found.len(), 2);
         for (found, expected) in found.iter().zip([0.2, 0.05]) {
             assert!((found - expected).abs() <= 1e-5, "within the tolerance asked for; got {found}");
         }
-        assert_eq!(falls(|_| 0.4, 0.0, 1.0, 0.01, 1e-5).next(), None);
-        assert_eq!(falls(|_| 0.0, f64::INFINITY, f64::NEG_INFINITY, 0.01, 1e-5).next(), None);
+        assert_eq!(half_crossings(|_| 0.4, 0.0, 1.0, 0.01, 1e-5).next(), None);
+        assert_eq!(half_crossings(|_| 0.0, f64::INFINITY, f64::NEG_INFINITY, 0.01, 1e-5).next(), None);
     }
 }

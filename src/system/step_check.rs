@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::System;
 use crate::{
-    particles::{PER_TASK, Particles as Fluid},
+    particles::{PER_TASK, Particles},
     space::{Bounds, Vector},
 };
 
@@ -53,12 +53,12 @@ pub struct Lost<const D: usize> {
     /// Its last density, kg/m³.
     pub rho: f64,
     /// The side by which it left, and so its likely way: "over a wall".
-    pub way: Way,
+    pub way: ExitPath,
 }
 
 /// How a particle is likely to have left the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Way {
+pub enum ExitPath {
     /// By the top: thrown up.
     Up,
     /// By a side, higher than the water stood at the start, or falling from higher: over a wall.
@@ -67,7 +67,7 @@ pub enum Way {
     Through,
 }
 
-impl fmt::Display for Way {
+impl fmt::Display for ExitPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Up => "thrown up out of the domain",
@@ -88,21 +88,21 @@ pub(crate) struct Guard<const D: usize> {
 
 /// What it saw of all particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Seen {
+pub(crate) struct StepCheck {
     /// Square of the furthest way since the lists were made, m²; NaN if one is.
     pub(crate) moved2: f64,
     /// Whether all are in the valid range.
     pub(crate) valid: bool,
 }
 
-impl Seen {
+impl StepCheck {
     /// Nothing yet.
     pub(crate) const NOTHING: Self = Self { moved2: 0.0, valid: true };
 
     /// A particle in the middle of a step, that was at `then` when the lists were made: the end of the step will say whether it is
     /// valid.
     #[inline(always)]
-    pub(crate) fn on_its_way<const D: usize>(then: &Vector<D>, r: &Vector<D>) -> Self {
+    pub(crate) fn displacement<const D: usize>(then: &Vector<D>, r: &Vector<D>) -> Self {
         Self { moved2: (r - then).norm_squared(), valid: true }
     }
 
@@ -117,40 +117,42 @@ impl Seen {
 impl<const D: usize> Guard<D> {
     /// Looks at a particle that was at `then` when the lists were made.
     #[inline(always)]
-    pub(crate) fn see(&self, then: &Vector<D>, r: &Vector<D>, v: &Vector<D>, rho: f64) -> Seen {
+    pub(crate) fn check(&self, then: &Vector<D>, r: &Vector<D>, v: &Vector<D>, rho: f64) -> StepCheck {
         // Whatever is not finite fails one of these comparisons.
         let [least, most] = self.rho;
         let valid = v.norm_squared() <= self.speed2 && rho >= least && rho <= most && self.domain.contains(r);
-        Seen { moved2: (r - then).norm_squared(), valid }
+        StepCheck { moved2: (r - then).norm_squared(), valid }
     }
 }
 
 impl<const D: usize> System<D> {
     /// What looks at the water while it is moved.
     pub(crate) fn guard(&self) -> Guard<D> {
-        let Limits { speed, density, escape } = self.limits;
+        let Limits { speed, density, escape } = self.region.limits;
         let domain = match escape {
-            Escape::Stop => self.domain,
+            Escape::Stop => self.region.domain,
             Escape::Remove => Bounds { min: Vector::repeat(f64::MIN), max: Vector::repeat(f64::MAX) },
         };
-        Guard { speed2: (speed * self.medium.c0).powi(2), rho: density.map(|x| x * self.medium.rho0), domain }
+        Guard { speed2: (speed * self.properties.c0).powi(2), rho: density.map(|x| x * self.properties.rho0), domain }
     }
 
     /// Looks at all water now.
-    pub(crate) fn look(&mut self) {
-        let (guard, fluid) = (self.guard(), &self.fluid);
-        let all = fluid.r.par_iter().zip(&fluid.v).zip(&fluid.rho).zip(self.near.built()).with_min_len(PER_TASK);
-        self.seen = all.map(|(((r, v), rho), then)| guard.see(then, r, v, *rho)).reduce(|| Seen::NOTHING, Seen::and);
+    pub(crate) fn check_water(&mut self) {
+        let (guard, fluid) = (self.guard(), &self.fluid.particles);
+        let all = fluid.r.par_iter().zip(&fluid.v).zip(&fluid.rho).zip(self.neighbours.built()).with_min_len(PER_TASK);
+        self.status.check = all
+            .map(|(((r, v), rho), then)| guard.check(then, r, v, *rho))
+            .reduce(|| StepCheck::NOTHING, StepCheck::and);
     }
 
     /// The first water particle that has left the valid range, with what is wrong and its usual cause.
     pub(crate) fn first_fault(&self) -> Option<(usize, &'static str, &'static str)> {
-        if self.seen.valid {
+        if self.status.check.valid {
             return None;
         }
         let Guard { speed2, rho: [least, most], domain } = self.guard();
         let bad = |i: usize| {
-            let (r, v, rho) = (&self.fluid.r[i], &self.fluid.v[i], self.fluid.rho[i]);
+            let (r, v, rho) = (&self.fluid.particles.r[i], &self.fluid.particles.v[i], self.fluid.particles.rho[i]);
             let finite = r.iter().chain(v.iter()).all(|x| x.is_finite()) && rho.is_finite();
             if !finite {
                 Some(("non-finite state", NON_FINITE))
@@ -164,20 +166,21 @@ impl<const D: usize> System<D> {
                 None
             }
         };
-        let i = (0..self.fluid.len()).into_par_iter().with_min_len(PER_TASK).find_first(|&i| bad(i).is_some())?;
+        let i =
+            (0..self.fluid.particles.len()).into_par_iter().with_min_len(PER_TASK).find_first(|&i| bad(i).is_some())?;
         bad(i).map(|(what, cause)| (i, what, cause))
     }
 
     /// Takes those water particles out of `order` that have left the domain, if that is what becomes of them.
-    pub(super) fn dismiss(&self, order: &mut Vec<u32>) -> Vec<Lost<D>> {
-        let Fluid { r, v, rho, id } = &self.fluid;
+    pub(super) fn remove_outside(&self, order: &mut Vec<u32>) -> Vec<Lost<D>> {
+        let Particles { r, v, rho, id } = &self.fluid.particles;
         let mut lost = Vec::new();
-        if self.limits.escape == Escape::Remove {
+        if self.region.limits.escape == Escape::Remove {
             order.retain(|&i| {
                 let i = i as usize;
-                let inside = self.domain.contains(&r[i]);
+                let inside = self.region.domain.contains(&r[i]);
                 if !inside {
-                    let way = self.way(&r[i], &v[i]);
+                    let way = self.exit_path(&r[i], &v[i]);
                     lost.push(Lost { id: id[i], r: r[i], v: v[i], rho: rho[i], way });
                 }
                 inside
@@ -187,18 +190,18 @@ impl<const D: usize> System<D> {
     }
 
     /// How a particle at `x` (m) with velocity `v` (m/s), outside the domain, is likely to have come there.
-    fn way(&self, x: &Vector<D>, v: &Vector<D>) -> Way {
+    fn exit_path(&self, x: &Vector<D>, v: &Vector<D>) -> ExitPath {
         let up = D - 1;
         // Nothing but gravity acts out there: it fell from where it would rise to if time ran back. What goes through a
         // wall comes from no higher than the water stood, give or take what pairs push it.
-        let (g, falls) = (-self.medium.gravity[up], v[up] < 0.0);
+        let (g, falls) = (-self.properties.gravity[up], v[up] < 0.0);
         let summit = if g > 0.0 && falls { x[up] + v[up].powi(2) / (2.0 * g) } else { x[up] };
-        if x[up] > self.domain.max[up] {
-            Way::Up
-        } else if x[up] > self.top || summit > self.top + 2.0 * self.medium.h {
-            Way::Over
+        if x[up] > self.region.domain.max[up] {
+            ExitPath::Up
+        } else if x[up] > self.region.initial_top || summit > self.region.initial_top + 2.0 * self.properties.h {
+            ExitPath::Over
         } else {
-            Way::Through
+            ExitPath::Through
         }
     }
 }

@@ -1,7 +1,7 @@
-//! Hems: a driven solid that slides along the face of a fixed one is carried on into it, as a paddle into its bed.
+//! Boundary extensions: a driven solid that slides along the face of a fixed one, as a paddle on its bed, gets extra rows of
+//! boundary particles inside the fixed one.
 //!
-//! Between the last row of boundary particles of the one and the first of the other is a seam, a dp wide, that slides. What a stroke
-//! presses into the corner finds the way through it in the long run; rows of the paddle's own below the face leave none.
+//! Without them fluid can leak through the sliding joint, which is one dp wide.
 
 use crate::{
     model::Model,
@@ -16,24 +16,24 @@ const TOUCH: f64 = 0.1;
 /// gate, opens.
 const ALONG: f64 = 0.5;
 
-/// A boundary particle of a hem, in the frame of its solid.
+/// A boundary particle of an extension, in the frame of its solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stitch<const D: usize> {
-    /// Where it is, m.
+pub(super) struct ExtensionParticle<const D: usize> {
+    /// Its position, m.
     pub(super) r: Vector<D>,
-    /// A place as deep behind the face that it carries on, m.
-    pub(super) of: Vector<D>,
+    /// A position as deep behind the face that it continues, m.
+    pub(super) behind_face: Vector<D>,
 }
 
-/// The hem of solid number `i` of `specs`; most have none.
-pub(super) fn hem<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Model) -> Vec<Stitch<D>> {
+/// The extension of solid number `i` of `specs`; most have none.
+pub(super) fn of_solid<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Model) -> Vec<ExtensionParticle<D>> {
     let (spec, pose) = (&specs[i], specs[i].start().pose);
     let Role::Driven(motion) = &spec.role else { return Vec::new() };
     let fixed: Vec<&SolidSpec<D>> = specs.iter().filter(|other| matches!(other.role, Role::Fixed)).collect();
     let (dp, outside) = (model.dp, |r: &Vector<D>| spec.shape.signed_distance(r));
-    let mut stitches = Vec::new();
+    let mut extension = Vec::new();
     if fixed.is_empty() {
-        return stitches;
+        return extension;
     }
     for point in spec.shape.skin(dp, model.layers()) {
         let x = pose.point(&point.r);
@@ -49,13 +49,13 @@ pub(super) fn hem<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Mode
                 continue;
             }
             let high = pose.local(&(x + out * (model.layers() as f64 * dp)));
-            let of = if outside(&high) < 0.0 { high } else { point.r };
+            let behind_face = if outside(&high) < 0.0 { high } else { point.r };
             let rows = (0..model.layers()).map(|k| x - out * (2.0 * apart + k as f64 * dp));
             let rows = rows.filter(|r| other.shape.signed_distance(&at.local(r)) < 0.0).map(|r| pose.local(&r));
-            stitches.extend(rows.filter(|r| outside(r) > 0.0).map(|r| Stitch { r, of }));
+            extension.extend(rows.filter(|r| outside(r) > 0.0).map(|r| ExtensionParticle { r, behind_face }));
         }
     }
-    stitches
+    extension
 }
 
 #[cfg(test)]
@@ -68,7 +68,7 @@ mod tests {
     };
 
     /// A bed, its face at y = 0, and on it at dp = 0.1 a paddle 0.4 m thick, its foot at `foot` (m), that moves so.
-    fn paddle(foot: f64, motion: Motion<2>) -> Vec<Stitch<2>> {
+    fn paddle(foot: f64, motion: Motion<2>) -> Vec<ExtensionParticle<2>> {
         let solid = |name: &str, size: [f64; 2], y: f64, role| SolidSpec {
             name: name.into(),
             shape: Shape::Box { size: Vector::from(size) },
@@ -83,8 +83,8 @@ mod tests {
             solid("paddle", [0.4, 2.0], foot + 1.0, Role::Driven(motion)),
         ];
         let model = Model::water(2, 0.1, 1.0);
-        assert!(hem(0, &specs, &model).is_empty(), "a bed has none");
-        hem(1, &specs, &model)
+        assert!(of_solid(0, &specs, &model).is_empty(), "a bed has none");
+        of_solid(1, &specs, &model)
     }
 
     fn along(direction: [f64; 2]) -> Motion<2> {
@@ -93,14 +93,14 @@ mod tests {
 
     #[test]
     fn a_piston_on_its_bed_is_carried_on_into_it_as_far_as_the_kernel_reaches() {
-        let hem = paddle(0.0, along([1.0, 0.0]));
+        let extension = paddle(0.0, along([1.0, 0.0]));
         let layers = Model::water(2, 0.1, 1.0).layers();
         // Four columns of a paddle four dp thick, in the lattice that its own rows have.
-        assert_eq!(hem.len(), 4 * layers);
-        for stitch in &hem {
-            let row = (stitch.r[1] + 1.0) / -0.1 - 0.5;
-            assert!((row - row.round()).abs() < 1e-9 && row > -0.1 && row < layers as f64, "{stitch:?}");
-            assert!((stitch.of[0] - stitch.r[0]).abs() < 1e-12, "as deep behind the face: {stitch:?}");
+        assert_eq!(extension.len(), 4 * layers);
+        for particle in &extension {
+            let row = (particle.r[1] + 1.0) / -0.1 - 0.5;
+            assert!((row - row.round()).abs() < 1e-9 && row > -0.1 && row < layers as f64, "{particle:?}");
+            assert!((particle.behind_face[0] - particle.r[0]).abs() < 1e-12, "as deep behind the face: {particle:?}");
         }
     }
 

@@ -15,12 +15,13 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Books, Interval};
+use super::{apply_shifts, shifts, step_boundary_density};
 use crate::{
+    coupling::{Accounting, Interval},
     model::{Diffusion, Model, Viscosity},
     particles::PER_TASK,
     space::Vector,
-    system::{Renewal, Seen, System, permute},
+    system::{Reordering, StepCheck, System, permute},
 };
 
 /// How many e-foldings of the difference of even and odd steps are let grow. A still tank (2-D, 10 dp deep, h = √3 dp)
@@ -69,23 +70,28 @@ impl<const D: usize> Verlet<D> {
     }
 
     /// Follows the water into a new order; the dried boundary particles are at `rho0` (kg/m³).
-    pub(crate) fn follow(&mut self, renewal: &Renewal<D>, rho0: f64) {
-        permute(&mut self.v_before, &renewal.order);
-        permute(&mut self.rho_before, &renewal.order);
+    pub(crate) fn reorder(&mut self, reordering: &Reordering<D>, rho0: f64) {
+        permute(&mut self.v_before, &reordering.order);
+        permute(&mut self.rho_before, &reordering.order);
         if !self.skin_rho_before.is_empty() {
-            renewal.dried.iter().for_each(|&i| self.skin_rho_before[i as usize] = rho0);
+            reordering.dried.iter().for_each(|&i| self.skin_rho_before[i as usize] = rho0);
         }
     }
 
     /// Forgets the step before: the next step is Euler's.
-    pub(crate) fn forget(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.v_before.clear();
         self.rho_before.clear();
         self.skin_rho_before.clear();
     }
 
-    /// Moves the water, whose rates at the start are known, over an interval; returns the weight of the loads on bodies.
-    pub(super) fn step(&mut self, system: &mut System<D>, over: Interval, mut books: Option<&mut Books<D>>) -> f64 {
+    /// Advances the water, whose rates at the start are known, over an interval; returns the factor of the loads on bodies.
+    pub(super) fn step(
+        &mut self,
+        system: &mut System<D>,
+        over: Interval,
+        mut accounting: Option<&mut Accounting<D>>,
+    ) -> f64 {
         let dt = over.dt;
         let rho0 = system.medium().rho0;
         let first = self.v_before.is_empty() && self.skin_rho_before.is_empty();
@@ -93,38 +99,34 @@ impl<const D: usize> Verlet<D> {
         // An Euler step is a Verlet step whose step before had no length and ended here.
         if euler {
             (self.steps, self.foldings) = (0, 0.0);
-            self.v_before.clone_from(&system.fluid.v);
-            self.rho_before.clone_from(&system.fluid.rho);
-            self.skin_rho_before.clone_from(&system.skin.rho);
+            self.v_before.clone_from(&system.fluid.particles.v);
+            self.rho_before.clone_from(&system.fluid.particles.rho);
+            self.skin_rho_before.clone_from(&system.boundary.particles.rho);
         }
         let span = if euler { dt } else { self.dt_before + dt };
-        books.iter_mut().for_each(|books| books.water(system, dt));
-        let shifts = system.shifts(dt);
+        accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
+        let shifts = shifts(system, dt);
 
         let guard = system.guard();
-        let (sums, fluid) = (&system.sums, &mut system.fluid);
+        let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
         let before = self.v_before.par_iter_mut().zip(&mut self.rho_before);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
-        system.seen = now
+        system.status.check = now
             .zip(before)
-            .zip(system.near.built())
+            .zip(system.neighbours.built())
             .with_min_len(PER_TASK)
             .map(|(((((r, v), rho), s), (v_before, rho_before)), then)| {
                 *r += *v * dt + s.dv * (0.5 * dt * dt);
                 (*v_before, *v) = (*v, *v_before + s.dv * span);
                 (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.dx * span);
-                guard.see(then, r, v, *rho)
+                guard.check(then, r, v, *rho)
             })
-            .reduce(|| Seen::NOTHING, Seen::and);
+            .reduce(|| StepCheck::NOTHING, StepCheck::and);
         if let Some(shifts) = shifts {
-            books.iter_mut().for_each(|books| books.shifted(system, &shifts));
-            let fluid = &mut system.fluid;
-            fluid.r.par_iter_mut().zip(&shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
-            system.look();
+            apply_shifts(system, &shifts, &mut accounting);
         }
-        let (rates, before) = (std::mem::take(&mut system.skin_sums), &mut self.skin_rho_before);
-        system.set_skin_density(span, |k, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * rates[k].dx * span);
-        system.skin_sums = rates;
+        let before = &mut self.skin_rho_before;
+        step_boundary_density(system, span, |dx, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * dx * span);
 
         self.dt_before = dt;
         self.steps += 1;

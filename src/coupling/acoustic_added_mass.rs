@@ -1,0 +1,302 @@
+//! Acoustic added mass: the inertia of the water that sound sets in motion with a light body.
+//!
+//! A boundary particle of the outer layer near water acts as a spring of stiffness k = ρ₀ c₀² dpᴰ⁻² along its normal n: a column
+//! of water dp long on a face dpᴰ⁻¹. All of them give the stiffness K = Σ k J Jᵀ with J = (n, arm ∧ n). A body of mass matrix M
+//! oscillates on it with ω_b² = max eig(M⁻¹K) and radiates sound. Particles carry no sound above 1.14 c₀/h (Wendland kernel), so
+//! a body with a higher ω_b cannot radiate: a time step adds the share λ/4 of the energy of that mode, λ = Δt² ω_b², and the
+//! oscillation never decays or grows. Such a body gets the inertia of the water that sound reaches in T = h/c₀, Z = θ T² K,
+//! θ = 1/Λ − 1/(T ω_b)², Λ = 1.3:
+//!
+//!   (M + Z) Δv = Δt (W + C) + s S,      S ← S + Δt (W + C) − M Δv,      s = 1 − exp(−Δt/τ),  τ = 10 h/c₀
+//!
+//! W is the load of water, weight and pushes; C that of contacts and joints, a mean over τ; S the pending impulse, which is
+//! applied within τ. Z therefore has no effect on slow motions, M Δv = Δt (W + C); at a frequency ω the error is ω τ Z/M, which
+//! falls with h². Momentum is conserved: the body has received, or will receive, what the water gave. A body with (T ω_b)² < Λ is
+//! unchanged.
+//!
+//! When Z grows by ΔZ, the newly reached water moves with v_w before and with the body after. This inelastic collision gives the
+//! body M Δv = −M (M + Z)⁻¹ ΔZ (v − v_w) at once, and the water next to it the opposite impulse. Without it a light body that
+//! strikes water would meet it with all of Z, and would leave with energy from nowhere.
+
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    law::Medium,
+    shape::Shape,
+    solid::{FreeBody, Kinematics, Load, Role, Solid},
+    space::{Matrix, Vector, Wedge},
+    system::System,
+};
+
+/// Λ, the largest (ω_b h/c₀)² of a body without added mass, –: that of the fastest sound that particles carry.
+const STIFFEST: f64 = 1.3;
+
+/// τ over h/c₀, –.
+const TIME: f64 = 10.0;
+
+/// Σ V_f W from which a boundary particle counts as fully wet, –: a submerged face has more.
+const FULL: f64 = 0.25;
+
+/// Translations along the axes, then turns about them; the last three stay 0 in 2-D.
+type Six = SVector<f64, 6>;
+type Square = SMatrix<f64, 6, 6>;
+
+/// The acoustic added mass of a free body.
+pub struct AcousticAddedMass<const D: usize> {
+    /// Its number among the solids.
+    pub(super) solid: usize,
+    /// Its outer boundary particles, in order, and their normals in its frame.
+    outer: Vec<(u32, Vector<D>)>,
+    state: AddedMassState,
+    /// Load (N, N m) of the present step but for contacts and joints.
+    given: Six,
+}
+
+/// Its state in a checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AddedMassState {
+    /// Pending impulse, S (N s, N m s).
+    pending: Six,
+    /// Load of contacts and joints, C (N, N m).
+    contacts: Six,
+    /// Trace of the translational part of K, N/m.
+    stiffness_sum: f64,
+}
+
+impl<const D: usize> AcousticAddedMass<D> {
+    /// Those of the free solids that need one when they are submerged.
+    pub(crate) fn find(system: &mut System<D>) -> Vec<Self> {
+        (0..system.solids().len()).filter_map(|i| Self::of(system, i)).collect()
+    }
+
+    /// That of free solid number `i`, if it needs one when it is submerged.
+    pub(crate) fn of(system: &mut System<D>, i: usize) -> Option<Self> {
+        let found = Self::if_light(system, i);
+        if found.is_some() {
+            system.boundary.wetness.get_or_insert_default();
+        }
+        found
+    }
+
+    fn if_light(system: &System<D>, i: usize) -> Option<Self> {
+        let (medium, solid) = (system.medium(), &system.solids()[i]);
+        let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
+        let Role::Free(body) = &solid.spec.role else { return None };
+        if (stiffest_frequency(shape, body, medium) * medium.h / medium.c0).powi(2) <= STIFFEST {
+            return None;
+        }
+        let of = |i: usize| (i as u32, pose.local(&system.skin().r[i]));
+        let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
+        let all = solid.skin.clone().map(of).filter(near_face);
+        let outer = all.map(|(i, r)| (i, shape.outward(&r, 0.05 * medium.dp))).collect();
+        let state = AddedMassState { pending: Six::zeros(), contacts: Six::zeros(), stiffness_sum: 0.0 };
+        Some(Self { solid: i, outer, state, given: Six::zeros() })
+    }
+
+    /// Renumbers the boundary particles after `gone` of them, of solid number `solid`, were removed.
+    pub(super) fn renumber(&mut self, solid: usize, gone: u32) {
+        if self.solid > solid {
+            self.outer.iter_mut().for_each(|(i, _)| *i -= gone);
+        }
+    }
+
+    /// The state in a checkpoint.
+    pub(crate) fn state(&self) -> AddedMassState {
+        self.state
+    }
+
+    /// Impulse not yet applied, N s.
+    pub(super) fn pending_impulse(&self) -> Vector<D> {
+        linear(&self.state.pending)
+    }
+
+    /// Returns to a saved state.
+    pub(crate) fn restore(&mut self, state: AddedMassState) {
+        self.state = state;
+    }
+
+    /// Removes the share of the pending impulse that belongs to water that the body has left; returns it, N s.
+    fn release(&mut self, stiffness_sum: f64) -> Vector<D> {
+        let stays =
+            if stiffness_sum < self.state.stiffness_sum { stiffness_sum / self.state.stiffness_sum } else { 1.0 };
+        let left = self.state.pending * (1.0 - stays);
+        self.state.stiffness_sum = stiffness_sum;
+        self.state.pending -= left;
+        linear(&left)
+    }
+
+    /// Replaces the `load` of the water in a step `dt` (s) by the load that the body receives; the engine adds weight and
+    /// `push`. Returns the impulse (N s) that the water gets back.
+    pub(super) fn apply(&mut self, system: &System<D>, dt: f64, push: &Load<D>, load: &mut Load<D>) -> Vector<D> {
+        let solid = &system.solids()[self.solid];
+        let Role::Free(body) = &solid.spec.role else { return Vector::zeros() };
+        let added = Load { force: push.force + system.gravity() * body.mass, torque: push.torque };
+        let mut whole = to_six(load) + to_six(&added);
+        lock(body, |i| whole[i] = 0.0);
+        let springs = self.springs(system, body);
+        let stiffness_sum = (0..D).map(|i| springs[(i, i)]).sum();
+        let fresh =
+            if stiffness_sum > self.state.stiffness_sum { 1.0 - self.state.stiffness_sum / stiffness_sum } else { 0.0 };
+        let left = self.release(stiffness_sum);
+        let time2 = (system.medium().h / system.medium().c0).powi(2);
+        let (mass, water) = (mass(solid, body), springs * time2);
+        let theta = theta(&mass, &water);
+        let both = (mass + water * theta).cholesky();
+        let answer = |impulse: Six| both.as_ref().map(|both| mass * both.solve(&impulse));
+        let share = applied_share(system, dt);
+        let (total, pending) = (whole + self.state.contacts, self.state.pending);
+        let impulse = answer(total * dt + pending * share).unwrap_or(total * dt);
+        let mut join = Six::zeros();
+        if theta * fresh > 0.0 {
+            let motion = to_six(&Load { force: solid.kinematics.velocity, torque: solid.kinematics.spin });
+            let closing = water * motion - self.flow(system, body) * time2;
+            join = answer(closing * (-theta * fresh)).unwrap_or(join);
+            lock(body, |i| join[i] = 0.0);
+        }
+        self.state.pending += total * dt - impulse;
+        // The moment of the pending momentum about the origin must not change while the body moves.
+        let carried = Wedge::torque(&solid.kinematics.velocity, &linear(&pending)) * -dt;
+        self.state.pending += to_six(&Load { force: Vector::zeros(), torque: carried });
+        lock(body, |i| self.state.pending[i] = 0.0);
+        self.given = (impulse + join) / dt - self.state.contacts;
+        let given = self.given - to_six(&added);
+        *load = Load { force: linear(&given), torque: angular::<D>(&given) };
+        left - linear::<D>(&join)
+    }
+
+    /// Updates the load of contacts and joints from the motion over the step that began as `before`.
+    pub(super) fn update_contacts(
+        &mut self,
+        system: &System<D>,
+        dt: f64,
+        before: &Kinematics<D>,
+        after: &Kinematics<D>,
+    ) {
+        let solid = &system.solids()[self.solid];
+        let Role::Free(body) = &solid.spec.role else { return };
+        let change = Load {
+            force: (after.velocity - before.velocity) / dt,
+            torque: (after.spin + before.spin * -1.0) * (1.0 / dt),
+        };
+        let mut contacts = mass(solid, body) * to_six(&change) - self.given;
+        lock(body, |i| contacts[i] = 0.0);
+        self.state.contacts += (contacts - self.state.contacts) * applied_share(system, dt);
+    }
+
+    /// K of the present wet springs, N/m, N and N m.
+    fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> Square {
+        let mut sum = Square::zeros();
+        self.for_each_wet(system, |part, _, _, along| sum += along * along.transpose() * part);
+        lock(body, |i| {
+            sum.row_mut(i).fill(0.0);
+            sum.column_mut(i).fill(0.0);
+        });
+        sum * stiffness(system)
+    }
+
+    /// K v_w of the present wet springs, N/s and N m/s.
+    fn flow(&self, system: &System<D>, body: &FreeBody<D>) -> Six {
+        let mut sum = Six::zeros();
+        self.for_each_wet(system, |part, x, normal, along| {
+            let (mut weight, mut flow) = (0.0, Vector::<D>::zeros());
+            system.water_near(x, &mut |i, _, w| (weight, flow) = (weight + w, flow + system.fluid().v[i] * w));
+            if weight > 0.0 {
+                sum += along * (part * normal.dot(&flow) / weight);
+            }
+        });
+        lock(body, |i| sum[i] = 0.0);
+        sum * stiffness(system)
+    }
+
+    /// Calls `visit` for every wet outer boundary particle with its wet fraction (0 to 1), position (m), normal n, and J.
+    fn for_each_wet(&self, system: &System<D>, mut visit: impl FnMut(f64, &Vector<D>, &Vector<D>, Six)) {
+        let solid = &system.solids()[self.solid];
+        let turn = &solid.kinematics.pose.rotation;
+        let wet = system.neighbours.wet();
+        let wetness = system.boundary.wetness.as_deref().unwrap_or_default();
+        let mut k = wet.partition_point(|&i| (i as usize) < solid.skin.start);
+        for (i, normal) in &self.outer {
+            k += wet[k..].iter().take_while(|w| *w < i).count();
+            if wet.get(k) == Some(i) {
+                let (x, normal) = (&system.boundary.particles.r[*i as usize], turn * normal);
+                let torque = Wedge::torque(&(x - solid.kinematics.centre), &normal);
+                visit((wetness[k] / FULL).min(1.0), x, &normal, to_six(&Load { force: normal, torque }));
+            }
+        }
+    }
+}
+
+/// k of one spring, N/m.
+fn stiffness<const D: usize>(system: &System<D>) -> f64 {
+    let medium = system.medium();
+    medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2)
+}
+
+/// θ: the share of the water's inertia T² K that is added to a mass matrix M, –.
+fn theta(mass: &Square, water: &Square) -> f64 {
+    let Some(root) = mass.cholesky().and_then(|c| c.l().try_inverse()) else { return 0.0 };
+    let stiffest = (root * water * root.transpose()).symmetric_eigenvalues().max();
+    if stiffest > STIFFEST { 1.0 / STIFFEST - 1.0 / stiffest } else { 0.0 }
+}
+
+/// The share (–) of the pending impulse that a step `dt` (s) applies.
+fn applied_share<const D: usize>(system: &System<D>, dt: f64) -> f64 {
+    let medium = system.medium();
+    1.0 - (-dt * medium.c0 / (TIME * medium.h)).exp()
+}
+
+/// Mass and inertia in the world's axes.
+fn mass<const D: usize>(solid: &Solid<D>, body: &FreeBody<D>) -> Square {
+    let mut all = Square::identity();
+    let turn = &solid.kinematics.pose.rotation;
+    let inertia: Matrix<D> = if D == 2 { body.inertia } else { turn * body.inertia * turn.transpose() };
+    for i in 0..D {
+        all[(i, i)] = body.mass;
+    }
+    for i in 0..Wedge::<D>::COMPONENTS {
+        for j in 0..Wedge::<D>::COMPONENTS {
+            all[(D + i, D + j)] = inertia[(i, j)];
+        }
+    }
+    all
+}
+
+/// Calls `visit` with the indices of the locked motions.
+fn lock<const D: usize>(body: &FreeBody<D>, mut visit: impl FnMut(usize)) {
+    let turns = body.locked_rotations.iter().take(Wedge::<D>::COMPONENTS);
+    body.locked_translations.iter().chain(turns).enumerate().filter(|(_, locked)| **locked).for_each(|(i, _)| visit(i));
+}
+
+fn to_six<const D: usize>(load: &Load<D>) -> Six {
+    let both = load.force.iter().copied().chain(load.torque.axial());
+    let mut all = Six::zeros();
+    all.iter_mut().zip(both).for_each(|(to, x)| *to = x);
+    all
+}
+
+fn linear<const D: usize>(six: &Six) -> Vector<D> {
+    Vector::from_fn(|i, _| six[i])
+}
+
+fn angular<const D: usize>(six: &Six) -> Wedge<D> {
+    Wedge::from_axial(&six.as_slice()[D..D + Wedge::<D>::COMPONENTS])
+}
+
+/// ω_b (1/s), the highest frequency of a body on the compressibility of water all around: the larger of the largest
+/// translational and the largest rotational one. Every boundary particle of the outer layer is a spring of stiffness
+/// ρ₀ c₀² dpᴰ⁻² (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
+pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &Medium<D>) -> f64 {
+    let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
+    let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
+    for point in shape.skin(medium.dp, 1) {
+        let normal = shape.outward(&point.r, 0.05 * medium.dp);
+        along += normal.component_mul(&normal) * spring;
+        for (sum, arm) in about.iter_mut().zip(Wedge::torque(&(point.r - body.centre), &normal).axial()) {
+            *sum += arm * arm * spring;
+        }
+    }
+    let inertia = |i: usize| if D == 2 { body.inertia[(0, 0)] } else { body.inertia[(i, i)] };
+    let turning = (0..Wedge::<D>::COMPONENTS).map(|i| about[i] / inertia(i));
+    turning.fold(along.max() / body.mass, f64::max).sqrt()
+}

@@ -1,0 +1,372 @@
+//! Moving the solids over a step: driven ones by their law, free ones by the engine or by an external program, then their
+//! boundary particles.
+
+use std::time::{Duration, Instant};
+
+use super::{
+    Accounting, AcousticAddedMass, AddedMassState, Interval,
+    load_breakdown::{BodyLoads, LoadBreakdown, contact_sums},
+    place,
+};
+use crate::{
+    error::{Error, Fault, Kind, Result},
+    solid::{
+        Contact, Engine, EngineFault, Kinematics, Load, Role, Solid,
+        rig::{Rig, Tied},
+    },
+    space::{Pose, Vector, Wedge},
+    system::{MomentumTransfer, System},
+};
+
+/// The rigid-body side of a run. A scene without free bodies has no engine and steps none.
+pub(crate) struct Bodies<const D: usize> {
+    engine: Option<Box<dyn Engine<D>>>,
+    added_masses: Vec<AcousticAddedMass<D>>,
+    constraints: Rig<D>,
+    pub(crate) accounting: Option<Accounting<D>>,
+    /// Whether an external program moves the free bodies.
+    external: bool,
+    steps: u64,
+    spent: Duration,
+}
+
+impl<const D: usize> Bodies<D> {
+    /// The bodies that `engine` moves, at the start, with the added masses of the light ones and their constraints; if they
+    /// are `external`, another program moves them.
+    pub(crate) fn new(
+        engine: Option<Box<dyn Engine<D>>>,
+        added_masses: Vec<AcousticAddedMass<D>>,
+        constraints: Rig<D>,
+        external: bool,
+    ) -> Self {
+        Self { engine, added_masses, constraints, accounting: None, external, steps: 0, spent: Duration::ZERO }
+    }
+
+    /// Whether an external program moves the free bodies.
+    pub(crate) fn external(&self) -> bool {
+        self.external
+    }
+
+    /// The constraints.
+    pub(crate) fn constraints(&self) -> &Rig<D> {
+        &self.constraints
+    }
+
+    /// The constraints, to be changed.
+    pub(crate) fn constraints_mut(&mut self) -> &mut Rig<D> {
+        &mut self.constraints
+    }
+
+    /// The longest step (s) that springs and motors allow at time `t` (s).
+    pub(crate) fn step_limit(&self, system: &System<D>, t: f64) -> f64 {
+        match self.engine.as_deref().filter(|_| !self.constraints.is_empty()) {
+            Some(engine) => self.constraints.limit(engine, &self.kinematics(system, t, true), t),
+            None => f64::INFINITY,
+        }
+    }
+
+    /// How each solid moves at time `t` (s), which is the engine's; nothing unless that is `wanted`.
+    fn kinematics(&self, system: &System<D>, t: f64, wanted: bool) -> Vec<Kinematics<D>> {
+        let Some(engine) = self.engine.as_deref().filter(|_| wanted) else { return Vec::new() };
+        let one = |(i, solid): (usize, &Solid<D>)| match &solid.spec.role {
+            Role::Fixed => solid.kinematics,
+            Role::Driven(motion) => solid.driven(motion, t),
+            Role::Free(_) => engine.kinematics(i),
+        };
+        system.solids.iter().enumerate().map(one).collect()
+    }
+
+    /// The state of the added masses in a checkpoint.
+    pub(crate) fn added_mass_state(&self) -> Vec<AddedMassState> {
+        self.added_masses.iter().map(AcousticAddedMass::state).collect()
+    }
+
+    /// Returns to a saved state after so many `steps`; whether it belongs to these bodies.
+    pub(crate) fn restore(&mut self, states: &[AddedMassState], steps: u64) -> bool {
+        self.added_masses.iter_mut().zip(states).for_each(|(added_mass, state)| added_mass.restore(*state));
+        self.steps = steps;
+        self.added_masses.len() == states.len()
+    }
+
+    /// Sets the engine, when the first free body is added.
+    pub(crate) fn set_engine(&mut self, engine: Box<dyn Engine<D>>) {
+        self.engine = Some(engine);
+    }
+
+    /// Adds a solid that starts as `start`, with its added mass if it is light.
+    pub(crate) fn add_body(&mut self, added_mass: Option<AcousticAddedMass<D>>, start: Kinematics<D>) {
+        self.added_masses.extend(added_mass);
+        self.constraints.admit(start);
+        self.accounting.iter_mut().for_each(Accounting::add_body);
+    }
+
+    /// Removes a solid with `count` boundary particles.
+    pub(crate) fn remove_body(&mut self, solid: usize, count: u32) {
+        if let Some(engine) = &mut self.engine {
+            engine.oust(solid);
+        }
+        self.added_masses.retain(|added_mass| added_mass.solid != solid);
+        self.added_masses.iter_mut().for_each(|added_mass| added_mass.renumber(solid, count));
+    }
+
+    /// Time spent in the engine so far.
+    pub(crate) fn spent(&self) -> Duration {
+        self.spent
+    }
+
+    /// Impulse (N s) of the water not yet applied to `solid`.
+    pub(crate) fn pending_impulse(&self, solid: usize) -> Vector<D> {
+        let own = self.added_masses.iter().find(|added_mass| added_mass.solid == solid);
+        own.map_or_else(Vector::zeros, AcousticAddedMass::pending_impulse)
+    }
+
+    /// The engine, if there are free bodies.
+    pub(crate) fn engine(&self) -> Option<&dyn Engine<D>> {
+        self.engine.as_deref()
+    }
+
+    /// The engine to act on, if there are free bodies.
+    pub(crate) fn engine_mut(&mut self) -> Option<&mut Box<dyn Engine<D>>> {
+        self.engine.as_mut()
+    }
+
+    /// Moves the solids over the whole step, under the loads of the last force pass and weights times `weight`; the factor does
+    /// not apply to a body that no water touches. Calls `hook` when the water has moved and the bodies have not. Returns the
+    /// impulses that the water got back.
+    pub(crate) fn advance(
+        &mut self,
+        system: &mut System<D>,
+        over: Interval,
+        weight: f64,
+        hook: &mut Hook<D>,
+    ) -> Result<Vec<MomentumTransfer<D>>> {
+        let end = over.t + over.dt;
+        // The engine itself adds the weight once.
+        let gravity = system.gravity() * (weight - 1.0);
+        let weighed = |solid: &Solid<D>| {
+            let mass = if let Role::Free(body) = &solid.spec.role { body.mass } else { 0.0 };
+            match solid.load == Load::zero() {
+                true => solid.load,
+                false => Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight },
+            }
+        };
+        let loads: Vec<_> = system.solids.iter().map(weighed).collect();
+        let external = self.external;
+        let at_end = |solid: &Solid<D>| match &solid.spec.role {
+            Role::Fixed => solid.kinematics,
+            Role::Driven(motion) => solid.driven(motion, end),
+            Role::Free(_) if external => unset(),
+            Role::Free(_) => solid.kinematics,
+        };
+        let solids = system.solids.iter().map(at_end).collect();
+        let mut step = BodyStep { bodies: self, system, over, loads, solids, transfers: Vec::new(), advanced: false };
+        if external {
+            step.apply_added_mass();
+        }
+        hook(&mut step)?;
+        let (solids, transfers) = step.finish()?;
+        self.steps += 1;
+        place(system, Some(over.dt), |i, solid| match &solid.spec.role {
+            Role::Fixed => None,
+            Role::Driven(_) | Role::Free(_) => Some(solids[i]),
+        });
+        Ok(transfers)
+    }
+}
+
+/// A function that is called in each step when the water has moved and the bodies have not.
+pub(crate) type Hook<'a, const D: usize> = dyn FnMut(&mut BodyStep<D>) -> Result<()> + 'a;
+
+/// The part of a step in which the bodies move: see [`Simulation::step_with`](crate::simulation::Simulation::step_with).
+///
+/// Solids have the numbers that they have in [`System::solids`].
+pub struct BodyStep<'a, const D: usize> {
+    bodies: &'a mut Bodies<D>,
+    system: &'a mut System<D>,
+    over: Interval,
+    loads: Vec<Load<D>>,
+    /// How each solid moves at the end of the step. Fixed and driven ones are set already; free ones are set by
+    /// [`BodyStep::advance_bodies`], or by you where the bodies are external.
+    pub solids: Vec<Kinematics<D>>,
+    transfers: Vec<MomentumTransfer<D>>,
+    advanced: bool,
+}
+
+impl<const D: usize> BodyStep<'_, D> {
+    /// Time at the start of the step, s.
+    pub fn time(&self) -> f64 {
+        self.over.t
+    }
+
+    /// Length of the step, s.
+    pub fn dt(&self) -> f64 {
+        self.over.dt
+    }
+
+    /// Force (N; N/m in 2-D) and torque about its centre (N m; N m/m in 2-D) of the water on each solid, constant over the
+    /// step, without weight.
+    pub fn loads(&self) -> &[Load<D>] {
+        &self.loads
+    }
+
+    /// Adds `load` (N, N m) about the centre of free solid number `solid` in this step, before [`BodyStep::advance_bodies`].
+    /// Without effect where the bodies are external: there your program applies forces.
+    pub fn push(&mut self, solid: usize, load: &Load<D>) {
+        if let Some(engine) = &mut self.bodies.engine {
+            engine.burden(solid, load);
+        }
+    }
+
+    /// Contact forces, pair by pair: of this step after [`BodyStep::advance_bodies`], of the last step before it.
+    pub fn contacts(&self) -> Vec<Contact<D>> {
+        self.bodies.engine().map(|engine| engine.contacts()).unwrap_or_default()
+    }
+
+    /// Advances the free bodies by the step, unless they have been advanced. If you do not call it, it is called afterwards.
+    ///
+    /// # Errors
+    /// `Usage` where the bodies are external; `Fault` if a body leaves the valid range.
+    pub fn advance_bodies(&mut self) -> Result<()> {
+        if self.bodies.external {
+            return Err(Error::new(Kind::Usage, "a simulation with external bodies has none of its own to advance")
+                .help("step your own world, and write the poses of its bodies into step.solids"));
+        }
+        if std::mem::replace(&mut self.advanced, true) || self.bodies.engine.is_none() {
+            return Ok(());
+        }
+        let Interval { t, dt } = self.over;
+        let constrained = !self.bodies.constraints.is_empty();
+        let accounted = self.bodies.accounting.is_some() || self.bodies.constraints.pulls_on_any();
+        let start = self.bodies.kinematics(self.system, t, constrained || accounted);
+        let mut pushes = Vec::new();
+        if let Some(engine) = &mut self.bodies.engine {
+            pushes.extend((0..if accounted { start.len() } else { 0 }).map(|i| engine.pushed(i)));
+            if constrained {
+                self.bodies.constraints.act(&mut **engine, &start, &self.system.around(&self.loads), [t, dt]);
+            }
+        }
+        self.apply_added_mass();
+        let driven = |(solid, target): (&Solid<D>, &Kinematics<D>)| {
+            matches!(solid.spec.role, Role::Driven(_)).then_some(*target)
+        };
+        let targets: Vec<_> = self.system.solids.iter().zip(&self.solids).map(driven).collect();
+        let Bodies { engine: Some(engine), added_masses, steps, spent, constraints, accounting, .. } =
+            &mut *self.bodies
+        else {
+            return Ok(());
+        };
+        let before: Vec<_> = added_masses.iter().map(|added_mass| engine.kinematics(added_mass.solid)).collect();
+        let clock = Instant::now();
+        engine.step(dt, &self.loads, &targets).map_err(|fault| fault_error(self.system, fault, *steps, t))?;
+        *spent += clock.elapsed();
+        for (i, solid) in self.system.solids.iter().enumerate() {
+            if let Role::Free(_) = solid.spec.role {
+                self.solids[i] = engine.kinematics(i);
+                if !self.system.domain().contains(&self.solids[i].centre) {
+                    return Err(fault_error(self.system, escaped(i, &self.solids[i]), *steps, t));
+                }
+            }
+        }
+        for (added_mass, before) in added_masses.iter_mut().zip(&before) {
+            added_mass.update_contacts(self.system, dt, before, &self.solids[added_mass.solid]);
+        }
+        let contacts = if accounted { contact_sums(&engine.contacts(), start.len()) } else { Vec::new() };
+        let iterated = engine.iterations() > 1;
+        let body_loads = |i: usize, constraints: Tied<D>| BodyLoads {
+            water: self.loads[i],
+            pushes: pushes[i],
+            contacts: contacts[i],
+            constraints,
+            before: &start[i],
+            after: &self.solids[i],
+            gyroscopic: engine.turned(i),
+            dt,
+            iterated,
+        };
+        let of = |i: usize| LoadBreakdown::of(self.system, i, &body_loads(i, constraints.tied(i)));
+        let breakdowns: Vec<_> = (0..contacts.len()).map(of).collect();
+        if constrained {
+            let unexplained: Vec<_> = breakdowns.iter().map(LoadBreakdown::residual).collect();
+            constraints.learn(&**engine, [&start, &self.solids], dt, Some(&unexplained));
+        }
+        if let Some(accounting) = accounting {
+            for (i, breakdown) in breakdowns.into_iter().enumerate() {
+                accounting.add_body_step(self.system, i, breakdown, &body_loads(i, constraints.tied(i)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the loads on light bodies by those with their acoustic added mass.
+    fn apply_added_mass(&mut self) {
+        let engine = &self.bodies.engine;
+        let mut returned = Vec::new();
+        for added_mass in &mut self.bodies.added_masses {
+            let solid = added_mass.solid;
+            let push = engine.as_ref().map_or_else(Load::zero, |engine| engine.pushed(solid));
+            returned.push((solid, added_mass.apply(self.system, self.over.dt, &push, &mut self.loads[solid])));
+        }
+        for (solid, impulse) in returned {
+            let transfer = self.system.return_impulse(solid, &impulse);
+            let energy = transfer.as_ref().map_or(0.0, |transfer| transfer.energy);
+            self.bodies.accounting.iter_mut().for_each(|accounting| accounting.add_returned(energy));
+            self.transfers.extend(transfer);
+        }
+    }
+
+    /// Completes the step; returns the kinematics of the solids at its end and the impulses that the water got back.
+    fn finish(mut self) -> Result<(Vec<Kinematics<D>>, Vec<MomentumTransfer<D>>)> {
+        if !self.bodies.external {
+            self.advance_bodies()?;
+            return Ok((self.solids, self.transfers));
+        }
+        let finite = |k: &Kinematics<D>| {
+            let sum = k.pose.position.norm() + k.pose.rotation.norm() + k.centre.norm();
+            (sum + k.velocity.norm() + k.spin.0.norm()).is_finite()
+        };
+        if let Some(solid) = self.solids.iter().position(|k| !finite(k)) {
+            let name = &self.system.solids[solid].spec.name;
+            let what = format!("the kinematics of body {name:?} after the step are not set, or are not finite");
+            return Err(Error::new(Kind::Usage, what).help(
+                "advance a simulation with external bodies by step_with, and write each free body into step.solids",
+            ));
+        }
+        for added_mass in &mut self.bodies.added_masses {
+            // The drift of half a step changed neither velocity nor spin.
+            let before = self.system.solids[added_mass.solid].kinematics;
+            added_mass.update_contacts(self.system, self.over.dt, &before, &self.solids[added_mass.solid]);
+        }
+        Ok((self.solids, self.transfers))
+    }
+}
+
+/// Kinematics that an external program has not set yet.
+fn unset<const D: usize>() -> Kinematics<D> {
+    let none = Vector::repeat(f64::NAN);
+    Kinematics { pose: Pose::at(none), centre: none, velocity: none, spin: Wedge::zero() }
+}
+
+/// The fault of solid number `solid` outside the domain.
+fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> {
+    EngineFault {
+        solid,
+        reason: "escape from the domain".into(),
+        cause: "Usual cause: it starts beside the tank, an impact threw it over a wall, or nothing supports it. If it may go \
+                there, set domain.min and domain.max wider.",
+        position: now.centre,
+        velocity: now.velocity,
+    }
+}
+
+fn fault_error<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {
+    Error::fault(Fault {
+        reason: fault.reason,
+        who: format!("body {:?}", system.solids[fault.solid].spec.name),
+        step,
+        time,
+        position: fault.position.iter().copied().collect(),
+        velocity: fault.velocity.iter().copied().collect(),
+        density: None,
+        cause: fault.cause.into(),
+    })
+}

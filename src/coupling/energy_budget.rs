@@ -1,0 +1,261 @@
+//! The energy budget of water and bodies since the start.
+//!
+//! A load that acts over a step does work at the mean of the velocities at its two ends, ½ (V₀ + V₁), so that the works of all
+//! loads add up to the change of kinetic energy. The work of the water is taken at the velocity of the force pass. The entry
+//! `coupling` is the difference between what a body received and what the water gave, and the difference that the engine's
+//! step, which moves the body by V₁, makes to the work of weight.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    load_breakdown::{BodyLoads, LoadBreakdown, locked},
+    power_breakdown::{PowerBreakdown, PowerMeter, total_power},
+};
+use crate::{
+    model::Dimension,
+    solid::{Dim, Kinematics, Load, Role},
+    space::Vector,
+    system::{Lost, System},
+};
+
+/// Energies since the start, J (J/m in 2-D): positive where water and bodies have gained.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EnergyBudget {
+    /// Work of driven solids on the water, and of gravity along periodic sides.
+    pub driven: f64,
+    /// Work of motors.
+    pub motors: f64,
+    /// Work of springs: stored or damped energy is negative.
+    pub springs: f64,
+    /// Work of the scene's forces and of a program's pushes.
+    pub forces: f64,
+    /// Work of contacts, of driven solids through them too.
+    pub contacts: f64,
+    /// Work of joints, end stops and ropes.
+    pub joints: f64,
+    /// Work of viscosity: negative.
+    pub viscous: f64,
+    /// Work of density diffusion.
+    pub diffusion: f64,
+    /// Work of the gradient correction.
+    pub gradient: f64,
+    /// Work of particle shifting.
+    pub shifting: f64,
+    /// Work of sponge layers: negative.
+    pub damping: f64,
+    /// Work of the boundary particles.
+    pub walls: f64,
+    /// Difference of what bodies received and what the water gave.
+    pub coupling: f64,
+    /// Energy of removed particles, negative.
+    pub removed: f64,
+    /// Energy of added free solids, less that of removed ones.
+    pub solids: f64,
+}
+
+impl EnergyBudget {
+    /// All entries with their names.
+    pub fn entries(&self) -> [(&'static str, f64); 15] {
+        [
+            ("driven", self.driven),
+            ("motors", self.motors),
+            ("springs", self.springs),
+            ("forces", self.forces),
+            ("contacts", self.contacts),
+            ("joints", self.joints),
+            ("viscous", self.viscous),
+            ("diffusion", self.diffusion),
+            ("gradient", self.gradient),
+            ("shifting", self.shifting),
+            ("damping", self.damping),
+            ("walls", self.walls),
+            ("coupling", self.coupling),
+            ("removed", self.removed),
+            ("solids", self.solids),
+        ]
+    }
+}
+
+/// Keeps the load breakdown of each body and, if asked for, the energy budget.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Accounting<const D: usize> {
+    /// Steps from one power breakdown to the next; `None` if none is needed.
+    interval: Option<u32>,
+    /// Steps since the last power breakdown.
+    since: u32,
+    /// Whether the energy budget is kept.
+    energy: bool,
+    powers: PowerBreakdown,
+    /// Viscous loads on the solids at the last power breakdown.
+    viscous: Vec<Load<D>>,
+    /// Work (J) of the water on each solid in the present step.
+    work: Vec<f64>,
+    breakdown: Vec<LoadBreakdown<D>>,
+    budget: EnergyBudget,
+    #[serde(skip)]
+    meter: Option<PowerMeter<D>>,
+}
+
+/// The state of an [`Accounting`] in a checkpoint.
+pub(crate) type AccountingState<const D: usize> = Accounting<D>;
+
+impl<const D: usize> Accounting<D> {
+    /// Starts to account for the solids of `system`, with the energy budget if `energy`, and a power breakdown every
+    /// `interval` steps, if any.
+    pub(crate) fn new(system: &System<D>, energy: bool, interval: Option<u32>) -> Self
+    where
+        Dim<D>: Dimension<D>,
+    {
+        let solids = system.solids().len();
+        Self {
+            interval,
+            since: 0,
+            energy,
+            powers: PowerBreakdown::default(),
+            viscous: vec![Load::zero(); solids],
+            work: vec![0.0; solids],
+            breakdown: vec![LoadBreakdown::zero(); solids],
+            budget: EnergyBudget::default(),
+            meter: interval.map(|_| PowerMeter::new(system.model())),
+        }
+    }
+
+    /// Whether the energy budget is kept.
+    pub(crate) fn has_energy(&self) -> bool {
+        self.energy
+    }
+
+    /// Steps from one power breakdown to the next, if any.
+    pub(crate) fn interval(&self) -> Option<u32> {
+        self.interval
+    }
+
+    /// The loads on solid number `solid` in the last step by their origin.
+    pub(crate) fn breakdown(&self, solid: usize) -> &LoadBreakdown<D> {
+        &self.breakdown[solid]
+    }
+
+    /// The energy budget, if it is kept.
+    pub(crate) fn budget(&self) -> Option<&EnergyBudget> {
+        self.energy.then_some(&self.budget)
+    }
+
+    /// The state in a checkpoint.
+    pub(crate) fn state(&self) -> AccountingState<D> {
+        Self {
+            viscous: self.viscous.clone(),
+            work: self.work.clone(),
+            breakdown: self.breakdown.clone(),
+            meter: None,
+            ..*self
+        }
+    }
+
+    /// Continues from `state`, which is of as many solids, with the same entries.
+    pub(crate) fn restore(&mut self, state: AccountingState<D>) {
+        *self = Self { meter: self.meter.take(), ..state };
+    }
+
+    /// Whether `state` is of as many solids, with the same entries.
+    pub(crate) fn matches(&self, state: &AccountingState<D>) -> bool {
+        self.interval == state.interval && self.energy == state.energy && self.breakdown.len() == state.breakdown.len()
+    }
+
+    /// Adds a solid.
+    pub(super) fn add_body(&mut self) {
+        self.viscous.push(Load::zero());
+        self.work.push(0.0);
+        self.breakdown.push(LoadBreakdown::zero());
+    }
+
+    /// Adds the work of a force pass whose rates apply for `dt` (s).
+    pub(crate) fn add_force_pass(&mut self, system: &System<D>, dt: f64) {
+        if let (Some(interval), Some(meter)) = (self.interval, &mut self.meter) {
+            if self.since == 0 {
+                let (powers, pressure) = meter.decompose(system);
+                self.powers = powers;
+                let solids = system.solids().iter().zip(pressure);
+                self.viscous = solids.map(|(solid, pressure)| solid.load - pressure).collect();
+            }
+            self.since = (self.since + 1) % interval;
+        }
+        if self.energy {
+            let PowerBreakdown { viscous, diffusion, gradient } = self.powers;
+            self.budget.viscous += viscous * dt;
+            self.budget.diffusion += diffusion * dt;
+            self.budget.gradient += gradient * dt;
+            self.budget.walls += (total_power(system) - viscous - diffusion - gradient) * dt;
+            self.budget.driven += system.periodic_power() * dt;
+        }
+        for (solid, work) in system.solids().iter().zip(&mut self.work) {
+            *work = solid.load.power(&solid.kinematics) * dt;
+            if let Role::Driven(_) = solid.spec.role {
+                self.budget.driven -= *work;
+            }
+        }
+    }
+
+    /// Adds the work of moving the water by `shifts` (m).
+    pub(crate) fn add_shifting(&mut self, system: &System<D>, shifts: &[Vector<D>]) {
+        self.budget.shifting -= system.particle_mass() * shifts.iter().map(|s| system.gravity().dot(s)).sum::<f64>();
+    }
+
+    /// Subtracts the energy of removed particles.
+    pub(crate) fn add_removed(&mut self, system: &System<D>, lost: &[Lost<D>]) {
+        self.add_displaced(lost.iter().map(|p| system.particle_energy(&p.r, &p.v, p.rho)).sum());
+    }
+
+    /// Subtracts the energy (J) of displaced water.
+    pub(crate) fn add_displaced(&mut self, energy: f64) {
+        self.budget.removed -= energy;
+    }
+
+    /// Adds the energy (J) of a solid that was added; a removed one counts negative.
+    pub(crate) fn add_solid_energy(&mut self, energy: f64) {
+        self.budget.solids += energy;
+    }
+
+    /// Subtracts the energy (J) that sponge layers absorbed.
+    pub(crate) fn add_absorbed(&mut self, energy: f64) {
+        self.budget.damping -= energy;
+    }
+
+    /// Adds the energy (J) of an impulse that was returned to the water.
+    pub(crate) fn add_returned(&mut self, energy: f64) {
+        self.budget.coupling += energy;
+    }
+
+    /// Adds a step of solid number `i` of `system`, if it is free, under the loads of `breakdown`, to which joints, ropes and
+    /// locks are added here.
+    pub(super) fn add_body_step(
+        &mut self,
+        system: &System<D>,
+        i: usize,
+        mut breakdown: LoadBreakdown<D>,
+        loads: &BodyLoads<'_, D>,
+    ) {
+        let Role::Free(body) = &system.solids()[i].spec.role else { return };
+        let BodyLoads { water, constraints, before, after, dt, iterated, .. } = *loads;
+        (breakdown.viscous, breakdown.pressure) = (self.viscous[i], breakdown.pressure - self.viscous[i]);
+        (breakdown.joints, breakdown.ropes) = (constraints.joints, constraints.ropes);
+        breakdown.locks = locked(body, constraints.held, &breakdown.residual());
+        if iterated {
+            breakdown.assign_residual_to_constraints();
+        }
+        let mean = Kinematics {
+            velocity: 0.5 * (before.velocity + after.velocity),
+            spin: (before.spin + after.spin) * 0.5,
+            ..*after
+        };
+        let work = |load: Load<D>| load.power(&mean) * dt;
+        let budget = &mut self.budget;
+        budget.motors += work(breakdown.motors);
+        budget.springs += work(breakdown.springs);
+        budget.forces += work(breakdown.forces + breakdown.pushes);
+        budget.contacts += work(breakdown.contacts);
+        budget.joints += work(breakdown.joints + breakdown.ropes);
+        let sunk = breakdown.weight.force.dot(&(after.centre - before.centre));
+        budget.coupling += work(water + breakdown.weight) - sunk - self.work[i];
+        self.breakdown[i] = breakdown;
+    }
+}

@@ -1,0 +1,173 @@
+//! The loads on each free body in the last step, by their origin.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    solid::{Contact, FreeBody, Kinematics, Load, Role, rig::Tied},
+    space::{Matrix, Vector, Wedge},
+    system::System,
+};
+
+/// The loads on a free body in the last step, about its centre of mass, by their origin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadBreakdown<const D: usize> {
+    /// Pressure of the water.
+    pub pressure: Load<D>,
+    /// Viscosity of the water.
+    pub viscous: Load<D>,
+    /// Deferred impulse: acoustic added mass and Verlet's two-step span.
+    pub delayed: Load<D>,
+    /// Weight.
+    pub weight: Load<D>,
+    /// Contacts, friction included.
+    pub contacts: Load<D>,
+    /// Locks and end stops of joints.
+    pub joints: Load<D>,
+    /// Ropes.
+    pub ropes: Load<D>,
+    /// Springs and mooring lines.
+    pub springs: Load<D>,
+    /// Motors of joints.
+    pub motors: Load<D>,
+    /// The scene's forces.
+    pub forces: Load<D>,
+    /// Pushes of a program.
+    pub pushes: Load<D>,
+    /// Reaction of locked motions: by definition the sum of the others there, negative.
+    pub locks: Load<D>,
+    /// Rate of change of momentum and angular momentum. For a 3-D body in a joint, on a rope or partly locked the latter is what
+    /// the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
+    pub change: Load<D>,
+}
+
+impl<const D: usize> LoadBreakdown<D> {
+    /// No load.
+    pub fn zero() -> Self {
+        let none = Load::zero();
+        Self {
+            pressure: none,
+            viscous: none,
+            delayed: none,
+            weight: none,
+            contacts: none,
+            joints: none,
+            ropes: none,
+            springs: none,
+            motors: none,
+            forces: none,
+            pushes: none,
+            locks: none,
+            change: none,
+        }
+    }
+
+    /// All loads with their names, without the change of momentum.
+    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] {
+        [
+            ("pressure", self.pressure),
+            ("viscous", self.viscous),
+            ("delayed", self.delayed),
+            ("weight", self.weight),
+            ("contacts", self.contacts),
+            ("joints", self.joints),
+            ("ropes", self.ropes),
+            ("springs", self.springs),
+            ("motors", self.motors),
+            ("forces", self.forces),
+            ("pushes", self.pushes),
+            ("locks", self.locks),
+        ]
+    }
+
+    /// The sum of all loads.
+    pub fn sum(&self) -> Load<D> {
+        self.kinds().into_iter().map(|(_, load)| load).sum()
+    }
+
+    /// The change of momentum less the sum.
+    pub fn residual(&self) -> Load<D> {
+        self.change - self.sum()
+    }
+
+    /// Assigns the remaining imbalance to the joints or the ropes, whichever pull harder: they turn between the iterations of a
+    /// step, and the directions of their reported forces do not.
+    pub(super) fn assign_residual_to_constraints(&mut self) {
+        let rest = self.residual();
+        let constraints =
+            if self.joints.force.norm() >= self.ropes.force.norm() { &mut self.joints } else { &mut self.ropes };
+        if *constraints != Load::zero() {
+            *constraints += rest;
+        }
+    }
+
+    /// The loads on solid number `i` in a step, all of the water's load as pressure, without joints, ropes and locks; zero
+    /// unless it is free.
+    pub(super) fn of(system: &System<D>, i: usize, loads: &BodyLoads<'_, D>) -> Self {
+        let solid = &system.solids()[i];
+        let Role::Free(body) = &solid.spec.role else { return Self::zero() };
+        let BodyLoads { water, pushes, contacts, constraints, before, after, gyroscopic, dt, .. } = *loads;
+        let change = (momentum(body, after) - momentum(body, before)) * (1.0 / dt);
+        Self {
+            pressure: solid.load,
+            delayed: water - solid.load,
+            weight: Load { force: system.gravity() * body.mass, torque: Wedge::zero() },
+            contacts,
+            springs: constraints.springs,
+            motors: constraints.motors,
+            forces: constraints.forces,
+            pushes,
+            change: Load { torque: gyroscopic.unwrap_or(change.torque), ..change },
+            ..Self::zero()
+        }
+    }
+}
+
+/// The loads on a free body in a step, and its motion.
+pub(super) struct BodyLoads<'a, const D: usize> {
+    /// Load of the water as it was applied.
+    pub(super) water: Load<D>,
+    pub(super) pushes: Load<D>,
+    pub(super) contacts: Load<D>,
+    pub(super) constraints: Tied<D>,
+    pub(super) before: &'a Kinematics<D>,
+    pub(super) after: &'a Kinematics<D>,
+    /// I₀ΔΩ/Δt minus the gyroscopic torque, if the engine integrates the angular velocity.
+    pub(super) gyroscopic: Option<Wedge<D>>,
+    pub(super) dt: f64,
+    /// Whether the engine took the step in several iterations.
+    pub(super) iterated: bool,
+}
+
+/// The sum of all `contacts` on each of so many solids.
+pub(super) fn contact_sums<const D: usize>(contacts: &[Contact<D>], solids: usize) -> Vec<Load<D>> {
+    let mut sums = vec![Load::zero(); solids];
+    for (solid, load) in contacts.iter().flat_map(|contact| contact.between.into_iter().zip(contact.loads)) {
+        sums[solid] += load;
+    }
+    sums
+}
+
+/// Momentum, kg m/s, and angular momentum about the centre of mass, kg m²/s.
+fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
+    Load {
+        force: motion.velocity * body.mass,
+        torque: angular_momentum(&body.inertia, &motion.pose.rotation, &motion.spin),
+    }
+}
+
+/// I Ω in the world's axes, with the inertia in the body's.
+fn angular_momentum<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &Wedge<D>) -> Wedge<D> {
+    if D == 2 {
+        return *spin * inertia[(0, 0)];
+    }
+    let world = rotation * inertia * rotation.transpose() * Vector::<D>::from_iterator(spin.axial());
+    Wedge::from_axial(world.as_slice())
+}
+
+/// The part of `load` along the locked motions of `body`: all of it if it is `held`.
+pub(super) fn locked<const D: usize>(body: &FreeBody<D>, held: bool, load: &Load<D>) -> Load<D> {
+    let force = Vector::from_fn(|i, _| if held || body.locked_translations[i] { load.force[i] } else { 0.0 });
+    let turns = load.torque.axial().into_iter().enumerate();
+    let torque: Vec<f64> = turns.map(|(i, t)| if held || body.locked_rotations[i] { t } else { 0.0 }).collect();
+    Load { force, torque: Wedge::from_axial(&torque) }
+}

@@ -1,0 +1,66 @@
+//! The coupling of water and bodies: the body step, the acoustic added mass, and where loads and energy come from.
+
+mod acoustic_added_mass;
+mod body_step;
+mod energy_budget;
+mod load_breakdown;
+mod power_breakdown;
+
+pub use acoustic_added_mass::stiffest_frequency;
+pub(crate) use acoustic_added_mass::{AcousticAddedMass, AddedMassState};
+pub use body_step::BodyStep;
+pub(crate) use body_step::{Bodies, Hook};
+pub(crate) use energy_budget::Accounting;
+pub use energy_budget::EnergyBudget;
+pub use load_breakdown::LoadBreakdown;
+
+use crate::{
+    solid::{Kinematics, Role, Solid},
+    space::{Pose, Vector},
+    system::System,
+};
+
+/// A time interval, s.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval {
+    /// Time at its start, s.
+    pub t: f64,
+    /// Its length, s.
+    pub dt: f64,
+}
+
+/// Moves the solids to where they are half a step on: driven ones exactly, free ones at constant velocity and spin.
+pub(crate) fn drift_half_step<const D: usize>(system: &mut System<D>, over: Interval) {
+    let half = 0.5 * over.dt;
+    place(system, None, |_, solid| match &solid.spec.role {
+        Role::Fixed => None,
+        Role::Driven(motion) => Some(solid.driven(motion, over.t + half)),
+        Role::Free(_) => Some(drifted(&solid.kinematics, half)),
+    });
+}
+
+/// Gives each solid the kinematics that `to` returns, if any, and places its boundary particles; `over` is the length (s) of
+/// the step that ends there.
+fn place<const D: usize>(
+    system: &mut System<D>,
+    over: Option<f64>,
+    to: impl Fn(usize, &Solid<D>) -> Option<Kinematics<D>>,
+) {
+    for i in 0..system.solids.len() {
+        if let Some(kinematics) = to(i, &system.solids[i]) {
+            match over {
+                Some(dt) => system.solids[i].go(kinematics, dt),
+                None => system.solids[i].kinematics = kinematics,
+            }
+            system.place_boundary(i);
+        }
+    }
+}
+
+/// The kinematics after `dt` (s) of free motion at constant velocity and spin.
+fn drifted<const D: usize>(k: &Kinematics<D>, dt: f64) -> Kinematics<D> {
+    let turn = (k.spin * dt).exp();
+    let centre: Vector<D> = k.centre + k.velocity * dt;
+    let pose = Pose { position: centre + turn * (k.pose.position - k.centre), rotation: turn * k.pose.rotation };
+    Kinematics { pose, centre, ..*k }
+}

@@ -1,0 +1,108 @@
+//! The power of each law on the water, by a second force pass with the pressure alone.
+//!
+//! With the pressure force (P_a + P_b)/(ρ_a ρ_b) and the volume form of continuity, a pair of water particles exchanges kinetic
+//! energy and energy of compression without a remainder [@colagrossi2003]. With e(ρ) the energy of compression and F·V, T·Ω the
+//! power on a solid, the powers are
+//!
+//!   Ė = Σ m (v·(a − g) + P/ρ² ρ̇)         of the water without its weight
+//!   viscous    Σ m v·(a − a′) + Σ ((F − F′)·V + (T − T′)·Ω)
+//!   diffusion  Σ m P/ρ² (ρ̇ − ρ̇′)
+//!   walls      Σ m (v·(a′ − g) + P/ρ² ρ̇′) + Σ (F′·V + T′·Ω)
+//!   work       −Σ (F·V + T·Ω)             of the solids on the water
+//!
+//! where a dash marks the pass with the pressure alone: Ė = viscous + diffusion + walls + work. `walls` is the power of the
+//! boundary particles and their repulsion. The sum of the first three needs no second pass. With corrected gradients the pressure
+//! does not exchange energy exactly; a third pass, with plain gradients, gives the difference, `gradient`.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    model::{Diffusion, Dimension, Gradient, Model, Shifting, Viscosity},
+    near::CHUNK,
+    solid::{Dim, Load},
+    space::Vector,
+    sweep::{Sums, Sweep},
+    system::System,
+};
+
+/// Powers on the water at a force pass, W (W/m in 2-D).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct PowerBreakdown {
+    /// Power of viscosity: negative.
+    pub(super) viscous: f64,
+    /// Power of density diffusion.
+    pub(super) diffusion: f64,
+    /// Power of the gradient correction.
+    pub(super) gradient: f64,
+}
+
+/// The force passes with the pressure alone.
+pub(super) struct PowerMeter<const D: usize> {
+    pressure: Box<dyn Sweep<D>>,
+    /// With plain gradients, if those of the model are corrected.
+    plain: Option<Box<dyn Sweep<D>>>,
+    fluid_sums: Vec<Sums<D>>,
+    boundary_sums: Vec<Sums<D>>,
+}
+
+impl<const D: usize> PowerMeter<D> {
+    /// The passes of a system of that model.
+    pub(super) fn new(model: &Model) -> Self
+    where
+        Dim<D>: Dimension<D>,
+    {
+        let pressure =
+            Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };
+        let plain = Model { gradient: Gradient::Plain, ..pressure.clone() };
+        let plain = (model.gradient != Gradient::Plain).then(|| Dim::<D>::sweep(&plain));
+        let (fluid_sums, boundary_sums) = (Vec::new(), Vec::new());
+        Self { pressure: Dim::<D>::sweep(&pressure), plain, fluid_sums, boundary_sums }
+    }
+
+    /// The powers at the last force pass, and the loads of the pressure alone on the solids; the state of `system` must be that
+    /// of the pass.
+    pub(super) fn decompose(&mut self, system: &System<D>) -> (PowerBreakdown, Vec<Load<D>>) {
+        let Self { pressure, plain, fluid_sums, boundary_sums } = self;
+        fluid_sums.resize(system.rates.fluid.len(), Sums::zero());
+        boundary_sums.resize(system.rates.boundary.len(), Sums::zero());
+        let mut pass = |pair_loop: &mut dyn Sweep<D>| {
+            let loads = system.pass_of(pair_loop, fluid_sums, boundary_sums);
+            (gains(system, fluid_sums), loads)
+        };
+        let (gained, loads) = pass(&mut **pressure);
+        let before = plain.as_mut().map(|plain| pass(&mut **plain));
+        let all = gains(system, &system.rates.fluid);
+        let on_solids = |more: &dyn Fn(usize) -> Load<D>| -> f64 {
+            system.solids.iter().enumerate().map(|(i, solid)| more(i).power(&solid.kinematics)).sum()
+        };
+        let powers = PowerBreakdown {
+            viscous: all[0] - gained[0] + on_solids(&|i| system.solids[i].load - loads[i]),
+            diffusion: all[1] - gained[1],
+            gradient: before
+                .map_or(0.0, |(plain, plain_loads)| gained[0] - plain[0] + on_solids(&|i| loads[i] - plain_loads[i])),
+        };
+        (powers, loads)
+    }
+}
+
+/// viscous + diffusion + gradient + walls, W: the power on the water at the last force pass beyond the work of the solids.
+pub(super) fn total_power<const D: usize>(system: &System<D>) -> f64 {
+    let on_solids: f64 = system.solids.iter().map(|solid| solid.load.power(&solid.kinematics)).sum();
+    gains(system, &system.rates.fluid).iter().sum::<f64>() + on_solids
+}
+
+/// The powers (W) on motion and on compression of the water by the rates `sums`, without its weight, added up in chunks in order.
+fn gains<const D: usize>(system: &System<D>, sums: &[Sums<D>]) -> [f64; 2] {
+    let (water, rho0, g) = (system.fluid(), system.medium().rho0, system.gravity());
+    let particles = water.v.par_chunks(CHUNK).zip(water.rho.par_chunks(CHUNK));
+    let chunk = |((v, rho), sums): ((&[Vector<D>], &[f64]), &[Sums<D>])| {
+        v.iter().zip(rho).zip(sums).fold([0.0; 2], |[motion, compression], ((v, rho), s)| {
+            let pressed = system.pressure(*rho) / (rho * rho);
+            [motion + v.dot(&(s.dv - g)), compression + pressed * s.dx * rho0]
+        })
+    };
+    let parts: Vec<[f64; 2]> = particles.zip(sums[..water.len()].par_chunks(CHUNK)).map(chunk).collect();
+    let mass = system.particle_mass();
+    parts.iter().fold([0.0; 2], |[a, b], part| [a + part[0] * mass, b + part[1] * mass])
+}

@@ -1,0 +1,268 @@
+//! Boundary particles: their arrays, and the density and velocity with which they act on the water.
+//!
+//! Every array of boundary particles is declared, extended, cut, saved and restored here and nowhere else.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::{System, boundary_extension::ExtensionParticle};
+use crate::{
+    error::{Error, Result},
+    law::wall::{Cover, Dbc, Fit, Slip, sticking},
+    model::{Model, Shifting, Walls},
+    near::Near,
+    particles::{PER_TASK, Particles},
+    solid::{Kinematics, Role, Solid, SolidSpec, skin},
+    space::{Bounds, Pose, Vector},
+};
+
+/// The boundary particles of all solids, one solid after the other.
+pub(crate) struct Boundary<const D: usize> {
+    pub(crate) particles: Particles<D>,
+    /// Positions in the frames of their solids, m.
+    local: Vec<Vector<D>>,
+    /// Share of the kernel's support that water fills, Σ V_f W, of each one near water, –; `None` unless a body needs it.
+    pub(crate) wetness: Option<Vec<f64>>,
+    /// Depths below the face, m; `None` unless the density relaxes to the water's pressure or water sticks to the face.
+    depths: Option<Vec<f64>>,
+    /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
+    normals: Option<Vec<Vector<D>>>,
+    /// Target density (kg/m³) and the fraction applied when it lies above the current one; `None` unless walls relax.
+    target_density: Option<Vec<(f64, f64)>>,
+    /// Velocities (m/s) with which they act on the water; `None` where those are their own.
+    pub(super) extrapolated_velocity: Option<Vec<Vector<D>>>,
+    /// Beside which of them water is not shifted; `None` unless water is shifted.
+    pub(super) shifting_suppressed: Option<Vec<bool>>,
+    coverage: Cover,
+    /// The box around the boundary particles of each solid, in its frame, m.
+    pub(super) bounds: Vec<Bounds<D>>,
+    /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
+    pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
+}
+
+impl<const D: usize> Boundary<D> {
+    /// No boundary particles yet.
+    pub(super) fn new(model: &Model) -> Self {
+        let volume = model.medium::<D>().volume0();
+        let (sticks, relaxes) = (model.slip == Slip::None, model.walls == Walls::Settling);
+        Self {
+            particles: Particles::default(),
+            local: Vec::new(),
+            wetness: None,
+            depths: (sticks || relaxes).then(Vec::new),
+            normals: sticks.then(Vec::new),
+            target_density: None,
+            extrapolated_velocity: None,
+            shifting_suppressed: None,
+            coverage: Cover::new(|r2| model.kernel_value(r2, D) * volume, model.dp, model.reach(), D),
+            bounds: Vec::new(),
+            poses_at_rebuild: None,
+        }
+    }
+
+    /// Appends the boundary particles of a solid that moves as `kinematics`, its `extension` last; returns their range.
+    pub(super) fn append(
+        &mut self,
+        model: &Model,
+        spec: &SolidSpec<D>,
+        kinematics: &Kinematics<D>,
+        extension: &[ExtensionParticle<D>],
+    ) -> Result<Range<usize>> {
+        let first = self.particles.len();
+        let mut faces = spec.shape.skin(model.dp, model.layers()).into_iter().map(|point| point.r).collect::<Vec<_>>();
+        for r in faces.iter().chain(extension.iter().map(|particle| &particle.r)) {
+            self.particles.push(kinematics.pose.point(r), model.rho0);
+            self.local.push(*r);
+        }
+        faces.extend(extension.iter().map(|particle| particle.behind_face));
+        if self.particles.len() == first {
+            return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
+                .help("make it larger or dp smaller"));
+        }
+        if let Some(depths) = &mut self.depths {
+            depths.par_extend(faces.par_iter().map(|r| -spec.shape.signed_distance(r)));
+        }
+        if let Some(normals) = &mut self.normals {
+            normals.par_extend(faces.par_iter().map(|r| spec.shape.outward(r, 0.05 * model.dp)));
+        }
+        self.bounds.push(Bounds::around(&self.local[first..]));
+        Ok(first..self.particles.len())
+    }
+
+    /// Removes the boundary particles `gone`, which are those of solid number `solid`.
+    pub(super) fn cut(&mut self, gone: &Range<usize>, solid: usize) {
+        let Self { particles: Particles { r, v, rho, id }, local, depths, normals, .. } = self;
+        let Self { target_density, extrapolated_velocity, bounds, .. } = self;
+        for vectors in [r, v, local].into_iter().chain(normals).chain(extrapolated_velocity) {
+            cut(vectors, gone);
+        }
+        [rho].into_iter().chain(depths).for_each(|numbers| cut(numbers, gone));
+        target_density.iter_mut().for_each(|targets| cut(targets, gone));
+        id.truncate(self.particles.r.len());
+        bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
+    }
+
+    /// The positions `r` (m) of all boundary particles, with those of each solid as at its pose.
+    pub(super) fn at_poses(&self, mut r: Vec<Vector<D>>, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
+        for (solid, pose) in solids.iter().zip(poses) {
+            for i in solid.skin.clone() {
+                r[i] = pose.point(&self.local[i]);
+            }
+        }
+        r
+    }
+
+    /// Places the boundary particles of `solid` where its kinematics say.
+    pub(super) fn place(&mut self, solid: &Solid<D>) {
+        let (range, Particles { r, v, .. }) = (solid.skin.clone(), &mut self.particles);
+        skin::place(&solid.kinematics, &self.local[range.clone()], &mut r[range.clone()], &mut v[range]);
+    }
+
+    /// Sets the target densities of the boundary particles near water.
+    fn set_targets(&mut self, neighbours: &Near<D>, targets: Vec<(f64, f64)>, rho0: f64) {
+        let count = self.particles.len();
+        let all = self.target_density.get_or_insert_default();
+        all.resize(count, (rho0, 0.0));
+        for (&i, target) in neighbours.wet().iter().zip(targets) {
+            all[i as usize] = target;
+        }
+    }
+}
+
+impl<const D: usize> System<D> {
+    /// Puts the boundary particles of solid `i` where its kinematics say.
+    pub(crate) fn place_boundary(&mut self, i: usize) {
+        self.boundary.place(&self.solids[i]);
+    }
+
+    /// Finds the boundary particles beside which water is not shifted.
+    pub(super) fn update_shifting_suppression(&mut self) {
+        if self.model.shift().is_none() {
+            return;
+        }
+        let mut suppressed = vec![false; self.boundary.particles.len()];
+        for solid in &self.solids {
+            suppressed[solid.skin.clone()].fill(suppresses_shifting(&self.model, solid));
+        }
+        self.boundary.shifting_suppressed = Some(suppressed);
+    }
+
+    /// Gives each boundary particle of `range` near water the density of still water at its depth.
+    pub(super) fn init_hydrostatic(&mut self, range: Range<usize>) {
+        let (water, boundary) = (&self.fluid.particles, &self.boundary.particles);
+        let still: Vec<f64> = self
+            .neighbours
+            .wet()
+            .par_iter()
+            .map(|&i| {
+                let x = &boundary.r[i as usize];
+                let mut nearest = (f64::INFINITY, 0.0);
+                self.neighbours.water_around(x, &mut |j| {
+                    let d = (water.r[j] - x).norm_squared();
+                    if d < nearest.0 {
+                        let head = self.equation_of_state.pressure(water.rho[j] / self.properties.rho0 - 1.0);
+                        nearest = (d, head + self.properties.gravity.dot(&(x - water.r[j])));
+                    }
+                });
+                self.properties.rho0 * (1.0 + self.equation_of_state.excess(nearest.1.max(0.0)))
+            })
+            .collect();
+        self.set_boundary_density(0.0, |k, i, rho| if range.contains(&i) { still[k] } else { rho });
+    }
+
+    /// Sets the density (kg/m³) of each boundary particle near water to what `rho` makes of its place among them, its
+    /// index and its density, but not below what the wall law allows, and relaxes it by the fraction `relaxation` (–)
+    /// towards its target. The others stay at ρ₀.
+    pub(crate) fn set_boundary_density(&mut self, relaxation: f64, mut rho: impl FnMut(usize, usize, f64) -> f64) {
+        let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
+        for (k, &i) in self.neighbours.wet().iter().enumerate() {
+            let i = i as usize;
+            let bare = rho(k, i, particles.rho[i]);
+            particles.rho[i] = match target_density.as_ref().and_then(|targets| targets.get(i)) {
+                None => Dbc.close(bare, rho0),
+                Some(&(target, fraction)) => {
+                    let own = Dbc.close(bare, target.min(rho0));
+                    own + (target - own) * if target > own { relaxation * fraction } else { relaxation }
+                }
+            };
+        }
+    }
+
+    /// Extrapolates the water to each boundary particle near it: the pressure there becomes its target density, if walls
+    /// relax to that, and the velocity the one with which it acts, if water sticks to the face.
+    pub(super) fn update_wall_state(&mut self) {
+        let (relaxes, sticks) = (self.model.walls == Walls::Settling, self.model.slip == Slip::None);
+        if !relaxes && !sticks && self.boundary.wetness.is_none() {
+            return;
+        }
+        let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, .. } = self;
+        let mut input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
+        input.shown = &boundary.particles.v;
+        let mut fits = vec![Fit::all(0.0); neighbours.wet().len()];
+        pair_loop.fits(&input, sticks, &mut fits);
+        if let Some(wetness) = &mut self.boundary.wetness {
+            *wetness = fits.iter().map(|fit| fit.weight).collect();
+        }
+        if relaxes {
+            self.update_wall_pressure(&fits);
+        }
+        if sticks {
+            self.update_wall_velocity(&fits);
+        }
+    }
+
+    /// Makes target densities of the extrapolated pressures of `fits`, one for each boundary particle near water.
+    fn update_wall_pressure(&mut self, fits: &[Fit<f64, D>]) {
+        let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
+        let depths = depths.as_deref().unwrap_or_default();
+        let target = |(&i, fit): (&u32, &Fit<f64, D>)| {
+            let i = i as usize;
+            let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
+            let pressure = fit.close(&pull, &medium.gravity, depths[i]);
+            let density = medium.rho0 * (1.0 + self.equation_of_state.excess(pressure));
+            (density, coverage.part(fit.weight, depths[i]))
+        };
+        let wet = self.neighbours.wet();
+        let targets = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(target).collect();
+        self.boundary.set_targets(&self.neighbours, targets, medium.rho0);
+    }
+
+    /// Makes the velocities with which boundary particles act of `fits`, one for each boundary particle near water.
+    fn update_wall_velocity(&mut self, fits: &[Fit<f64, D>]) {
+        let Boundary { particles, depths, normals, .. } = &self.boundary;
+        let (depths, normals) = (depths.as_deref().unwrap_or_default(), normals.as_deref().unwrap_or_default());
+        let velocity = |(&i, fit): (&u32, &Fit<f64, D>)| {
+            let i = i as usize;
+            let normal = self.owner(i).kinematics.pose.rotation * normals[i];
+            sticking(fit, particles.v[i], &normal, depths[i])
+        };
+        let (wet, count) = (self.neighbours.wet(), particles.len());
+        let velocities: Vec<Vector<D>> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(velocity).collect();
+        let all = self.boundary.extrapolated_velocity.get_or_insert_default();
+        all.resize(count, Vector::zeros());
+        for (&i, v) in wet.iter().zip(velocities) {
+            all[i as usize] = v;
+        }
+    }
+
+    /// The solid of boundary particle `i`.
+    fn owner(&self, i: usize) -> &Solid<D> {
+        &self.solids[self.solids.partition_point(|solid| solid.skin.end <= i)]
+    }
+}
+
+/// Whether water is not shifted beside `solid`.
+fn suppresses_shifting<const D: usize>(model: &Model, solid: &Solid<D>) -> bool {
+    match model.shifting {
+        Shifting::AwayFromSolids(_) => true,
+        Shifting::AwayFromFixed(_) => matches!(solid.spec.role, Role::Fixed),
+        Shifting::None | Shifting::Everywhere(_) => false,
+    }
+}
+
+/// Removes `gone` from an array that may be shorter.
+fn cut<T>(array: &mut Vec<T>, gone: &Range<usize>) {
+    let end = gone.end.min(array.len());
+    array.drain(gone.start.min(end)..end);
+}

@@ -1,0 +1,113 @@
+//! The state of a system in a checkpoint: enough to continue with the same bits.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Escape, System};
+use crate::{
+    error::{Error, Kind, Result},
+    particles::Particles,
+    solid::{Kinematics, Load, Solid, wave::Yielding},
+    space::{Matrix, Pose, Vector, Wedge},
+    sweep::Sums,
+};
+
+/// No boundary particle is so far away, m; a value that is not finite fails the comparison too.
+const FARTHEST: f64 = 1e100;
+
+/// The state of a system in a checkpoint.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct SystemState<const D: usize> {
+    fluid: Particles<D>,
+    /// Index of the original of each image; the images are the last of the fluid.
+    images: Vec<u32>,
+    skin: Particles<D>,
+    kinematics: Vec<Kinematics<D>>,
+    loads: Vec<Load<D>>,
+    accelerations: Vec<(Vector<D>, Wedge<D>)>,
+    yielding: Vec<Yielding>,
+    stress: Vec<Matrix<D>>,
+    gradient_correction: Vec<Matrix<D>>,
+    /// Positions of the water and poses of the solids when the neighbour lists were built.
+    built: (Vec<Vector<D>>, Vec<Pose<D>>),
+    passes: u64,
+}
+
+impl<const D: usize> System<D> {
+    /// The state from which [`System::restore`] continues with the same bits.
+    pub(crate) fn save(&self) -> SystemState<D> {
+        let of_solids = |solid: &Solid<D>| (solid.acceleration, solid.whirl);
+        SystemState {
+            fluid: self.fluid.particles.clone(),
+            images: self.fluid.images.of.clone(),
+            skin: self.boundary.particles.clone(),
+            kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
+            loads: self.solids.iter().map(|s| s.load).collect(),
+            accelerations: self.solids.iter().map(of_solids).collect(),
+            yielding: self.solids.iter().map(|s| s.yielding).collect(),
+            stress: self.fluid.stress.clone().unwrap_or_default(),
+            gradient_correction: self.fluid.gradient_correction.clone().unwrap_or_default(),
+            built: (self.neighbours.built().to_vec(), self.boundary.poses_at_rebuild.clone().unwrap_or_default()),
+            passes: self.status.passes,
+        }
+    }
+
+    /// Whether `state` has the numbers of particles and solids of this system.
+    fn fits(&self, state: &SystemState<D>) -> bool {
+        let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
+        let (count, solids) = (state.fluid.len(), self.solids.len());
+        let tensors = |own: &Option<Vec<Matrix<D>>>, kept: &[Matrix<D>]| {
+            kept.len() == if own.as_ref().is_none_or(Vec::is_empty) { 0 } else { count }
+        };
+        let Some(real) = count.checked_sub(state.images.len()) else { return false };
+        let fewer = self.status.solids_added || self.region.limits.escape == Escape::Remove;
+        let all = if fewer { real <= self.region.initial_count } else { real == self.region.initial_count };
+        all && state.images.iter().all(|&i| (i as usize) < real)
+            && state.skin.len() == self.boundary.particles.len()
+            && state.kinematics.len() == solids
+            && state.loads.len() == solids
+            && state.accelerations.len() == solids
+            && state.yielding.len() == solids
+            && state.yielding.iter().all(Yielding::is_finite)
+            && tensors(&self.fluid.stress, &state.stress)
+            && tensors(&self.fluid.gradient_correction, &state.gradient_correction)
+            && state.built.0.len() == count
+            && state.built.1.len() == solids
+            && whole(&state.fluid)
+            && whole(&state.skin)
+    }
+
+    /// Returns to a saved state of the same scene.
+    pub(crate) fn restore(&mut self, state: SystemState<D>) -> Result<()> {
+        if !self.fits(&state) {
+            return Err(Error::new(Kind::Restart, "the checkpoint holds another number of particles")
+                .help("it belongs to another scene: resume in the folder of its own run"));
+        }
+        let (water, poses) = state.built;
+        let boundary = self.boundary.at_poses(state.skin.r.clone(), &poses, &self.solids);
+        // No run continues with water outside its domain, but images lie beyond periodic sides.
+        let around = self.region.domain.grown(self.region.domain.size().max());
+        let near = water.iter().chain(&state.fluid.r).all(|x| around.contains(x));
+        if !near || !boundary.iter().chain(&state.skin.r).all(|x| x.amax() < FARTHEST) {
+            return Err(Error::new(Kind::Restart, "the checkpoint holds a particle that is nowhere"));
+        }
+        (self.boundary.particles, self.status.passes) = (state.skin, state.passes);
+        self.fluid.particles = state.fluid;
+        self.fluid.stress = self.fluid.stress.take().map(|_| state.stress);
+        self.fluid.gradient_correction = self.fluid.gradient_correction.take().map(|_| state.gradient_correction);
+        self.fluid.images.of = state.images;
+        self.rates.fluid.resize(self.fluid.particles.len(), Sums::zero());
+        let loads = state.kinematics.into_iter().zip(state.loads);
+        for (solid, (kinematics, load)) in self.solids.iter_mut().zip(loads) {
+            (solid.kinematics, solid.load) = (kinematics, load);
+        }
+        for ((solid, rates), yielding) in self.solids.iter_mut().zip(state.accelerations).zip(state.yielding) {
+            (solid.acceleration, solid.whirl) = rates;
+            solid.yielding = yielding;
+        }
+        self.neighbours.build(&water, &boundary);
+        self.rates.boundary.resize(self.neighbours.wet().len(), Sums::zero());
+        self.boundary.poses_at_rebuild = Some(poses);
+        self.check_water();
+        Ok(())
+    }
+}

@@ -1,0 +1,67 @@
+//! The arrays of the water: declared, reordered, saved and restored here and nowhere else.
+
+use rayon::prelude::*;
+
+use super::{Images, System};
+use crate::{
+    model::{Gradient, Model, Viscosity},
+    particles::{PER_TASK, Particles},
+    space::{Matrix, Vector},
+};
+
+/// The water: particles, then the images of those near periodic sides, and what the laws keep of each.
+pub(crate) struct Fluid<const D: usize> {
+    pub(crate) particles: Particles<D>,
+    pub(super) images: Images<D>,
+    /// Stress from the last pass, m²/s²; `None` unless the viscosity has one.
+    pub(super) stress: Option<Vec<Matrix<D>>>,
+    /// B − 1 of the corrected gradients from the last pass, –; `None` unless gradients are corrected.
+    pub(super) gradient_correction: Option<Vec<Matrix<D>>>,
+    /// Which particles a new solid displaces: they are removed when the lists are rebuilt.
+    pub(super) displaced: Option<Vec<bool>>,
+}
+
+impl<const D: usize> Fluid<D> {
+    /// Water at `r` (m), with velocities `v` (m/s; at rest where there is none) and densities `rho` (kg/m³).
+    pub(super) fn new(
+        model: &Model,
+        r: Vec<Vector<D>>,
+        mut v: Vec<Vector<D>>,
+        rho: Vec<f64>,
+        images: Images<D>,
+    ) -> Self {
+        v.resize(r.len(), Vector::zeros());
+        let zeros = |needed: bool| needed.then(|| vec![Matrix::zeros(); r.len()]);
+        Self {
+            stress: zeros(matches!(model.viscosity, Viscosity::Sps(_))),
+            gradient_correction: zeros(model.gradient == Gradient::Corrected),
+            particles: Particles { id: (0..r.len() as u32).collect(), r, v, rho },
+            images,
+            displaced: None,
+        }
+    }
+
+    /// Puts the particles into `order`: the new i-th is the old `order[i]`-th.
+    pub(super) fn permute(&mut self, order: &[u32]) {
+        let Self { particles: Particles { r, v, rho, id }, stress, gradient_correction, .. } = self;
+        permute(r, order);
+        permute(v, order);
+        permute(rho, order);
+        permute(id, order);
+        stress.iter_mut().chain(gradient_correction).for_each(|tensors| permute(tensors, order));
+    }
+}
+
+impl<const D: usize> System<D> {
+    /// Number of water particles, images not counted.
+    pub(crate) fn real_count(&self) -> usize {
+        self.fluid.particles.len() - self.fluid.images.of.len()
+    }
+}
+
+/// Puts `array` into `order`: the new i-th is the old `order[i]`-th. An empty array stays empty.
+pub(crate) fn permute<T: Copy + Send + Sync>(array: &mut Vec<T>, order: &[u32]) {
+    if !array.is_empty() {
+        *array = order.par_iter().with_min_len(PER_TASK).map(|&i| array[i as usize]).collect();
+    }
+}

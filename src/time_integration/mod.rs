@@ -1,0 +1,115 @@
+//! Time integration: the length of a step and the schemes that advance the water. No sums over pairs.
+
+mod sponge;
+pub mod step_size;
+mod symplectic;
+mod verlet;
+
+pub use symplectic::Symplectic;
+pub use verlet::Verlet;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    coupling::{Accounting, Interval},
+    law::wall::settled,
+    model::{Model, Scheme},
+    particles::PER_TASK,
+    space::Vector,
+    system::{MomentumTransfer, Reordering, System},
+};
+
+/// The chosen scheme with its state.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub enum Stepper<const D: usize> {
+    /// Verlet.
+    Verlet(Verlet<D>),
+    /// Symplectic.
+    Symplectic,
+}
+
+impl<const D: usize> Stepper<D> {
+    /// The stepper of a model's scheme, at the start of a run.
+    pub fn new(model: &Model) -> Self {
+        match model.scheme {
+            Scheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
+            Scheme::Symplectic => Self::Symplectic,
+        }
+    }
+
+    /// Reorders the arrays of particles with the water, whose reference density is `rho0` (kg/m³).
+    pub(crate) fn reorder(&mut self, reordering: &Reordering<D>, rho0: f64) {
+        if let Self::Verlet(verlet) = self {
+            verlet.reorder(reordering, rho0);
+        }
+    }
+
+    /// Adds the impulses that the water got to the velocities from which the next step starts.
+    pub(crate) fn add_transfers(&mut self, transfers: &[MomentumTransfer<D>]) {
+        if let Self::Verlet(verlet) = self {
+            let before = verlet.before_mut();
+            for MomentumTransfer { particles, velocity, .. } in transfers {
+                particles.iter().for_each(|&i| before[i] += *velocity);
+            }
+        }
+    }
+
+    /// Discards the step before, after particles were added or removed; the next step is one that needs none.
+    pub(crate) fn reset(&mut self) {
+        if let Self::Verlet(verlet) = self {
+            verlet.reset();
+        }
+    }
+
+    /// Advances the water of `system`, whose rates at the start are known, over an interval; returns the factor of the loads of
+    /// the last force pass on the bodies, –.
+    pub(crate) fn step(
+        &mut self,
+        system: &mut System<D>,
+        over: Interval,
+        mut accounting: Option<&mut Accounting<D>>,
+    ) -> f64 {
+        let weight = match self {
+            Self::Verlet(verlet) => verlet.step(system, over, accounting.as_deref_mut()),
+            Self::Symplectic => Symplectic.step(system, over, accounting.as_deref_mut()),
+        };
+        let before = if let Self::Verlet(verlet) = self { Some(verlet.before_mut()) } else { None };
+        let measured = accounting.as_ref().is_some_and(|accounting| accounting.has_energy());
+        let absorbed = sponge::absorb(system, over.dt, before, measured);
+        accounting.into_iter().for_each(|accounting| accounting.add_absorbed(absorbed));
+        weight
+    }
+}
+
+/// Displacement (m) of each water particle by shifting in a step `dt` (s); `None` if the model does not shift.
+fn shifts<const D: usize>(system: &System<D>, dt: f64) -> Option<Vec<Vector<D>>> {
+    let shift = system.model().shift()?;
+    let water = system.auxiliary_sums().par_iter().zip(&system.fluid.particles.v);
+    let shifts = water.with_min_len(PER_TASK).map(|(sums, v)| {
+        if sums.held > 0.0 { Vector::zeros() } else { shift.close(sums, v.norm(), dt, system.medium()) }
+    });
+    Some(shifts.collect())
+}
+
+/// Moves the water by `shifts` (m).
+fn apply_shifts<const D: usize>(
+    system: &mut System<D>,
+    shifts: &[Vector<D>],
+    accounting: &mut Option<&mut Accounting<D>>,
+) {
+    accounting.iter_mut().for_each(|accounting| accounting.add_shifting(system, shifts));
+    let r = &mut system.fluid.particles.r;
+    r.par_iter_mut().zip(shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
+    system.check_water();
+}
+
+/// Sets the densities of boundary particles near water to what `rho` makes of their rate dx/dt (1/s), index and density, and
+/// relaxes them over `dt` (s).
+fn step_boundary_density<const D: usize>(system: &mut System<D>, dt: f64, mut rho: impl FnMut(f64, usize, f64) -> f64) {
+    let medium = system.medium();
+    let relaxation = settled(dt, medium.h, medium.c0);
+    let rates = std::mem::take(&mut system.rates.boundary);
+    system.set_boundary_density(relaxation, |k, i, now| rho(rates[k].dx, i, now));
+    system.rates.boundary = rates;
+}

@@ -1,0 +1,31 @@
+//! Sponge layers over a step: v → v exp(−β sⁿ Δt), exact, so that they limit no step.
+
+use rayon::prelude::*;
+
+use crate::{particles::PER_TASK, space::Vector, system::System};
+
+/// Damps the water in the sponge layers over `dt` (s), and the velocities `before` from which a scheme continues. Returns the
+/// energy (J) that the water lost, if that is `measured`.
+pub(super) fn absorb<const D: usize>(
+    system: &mut System<D>,
+    dt: f64,
+    before: Option<&mut [Vector<D>]>,
+    measured: bool,
+) -> f64 {
+    if system.sponge_layers().is_empty() {
+        return 0.0;
+    }
+    let energy = if measured { system.kinetic() } else { 0.0 };
+    let mut v = std::mem::take(&mut system.fluid.particles.v);
+    let (layers, r) = (system.sponge_layers(), &system.fluid.particles.r);
+    for v in [Some(&mut v[..]), before].into_iter().flatten() {
+        v.par_iter_mut().zip(r).with_min_len(PER_TASK).for_each(|(v, r)| {
+            let rate: f64 = layers.iter().map(|layer| layer.rate(r)).sum();
+            if rate > 0.0 {
+                *v *= (-rate * dt).exp();
+            }
+        });
+    }
+    system.fluid.particles.v = v;
+    if measured { energy - system.kinetic() } else { 0.0 }
+}

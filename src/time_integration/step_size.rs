@@ -1,0 +1,28 @@
+//! The longest stable step:  Δt = CFL·min( √(h/|f|), h/(c₀ + h max|v_ab·r_ab|/(r² + η²)) ),  and with a viscosity ν₀
+//! Δt ≤ h²/(8 ν₀).
+//!
+//! f is the whole acceleration, gravity included; √(h/|f|) is what eq. (14) of the paper means by h/√|f|. Free bodies do not
+//! shorten the step: see `coupling/acoustic_added_mass.rs`.
+
+use crate::{
+    law::Medium,
+    model::{Model, Viscosity},
+    system::Peaks,
+};
+
+/// The longest step (s) that the water allows; eq. (14) of [@pirkhalili2023], [@monaghan1992].
+pub fn water<const D: usize>(peaks: &Peaks, medium: &Medium<D>, cfl: f64) -> f64 {
+    let by_force = (medium.h / peaks.acceleration).sqrt();
+    let by_sound = medium.h / (medium.c0 + medium.h * peaks.closing);
+    cfl * by_force.min(by_sound)
+}
+
+/// The longest step (s) that the model's viscosity allows; [@morris1997].
+pub fn viscous(model: &Model) -> f64 {
+    let nu0 = match model.viscosity {
+        Viscosity::Laminar(v) => v.nu0,
+        Viscosity::Sps(v) => v.nu0,
+        Viscosity::None | Viscosity::Artificial(_) => 0.0,
+    };
+    model.h * model.h / (8.0 * nu0)
+}

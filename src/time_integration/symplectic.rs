@@ -1,0 +1,78 @@
+//! Symplectic position Verlet: half a step with the forces at n, then the whole step with the forces at n+½.
+//!
+//!   r^{n+½} = r^n + ½Δt v^n,  v^{n+½} = v^n + ½Δt F^n,  ρ^{n+½} = ρ^n + ½Δt R^n
+//!   v^{n+1} = v^n + Δt F^{n+½},  r^{n+1} = r^n + ½Δt (v^n + v^{n+1}),
+//!   ρ^{n+1} = ρ^n (2 − ε)/(2 + ε),  ε = −Δt R^{n+½}/ρ^{n+½}
+//!
+//! Pair forces along r_ab at r^{n+½} conserve linear and angular momentum to round-off. Bodies get the
+//! same F^{n+½} over the same Δt.
+
+use rayon::prelude::*;
+
+use super::{apply_shifts, shifts, step_boundary_density};
+use crate::{
+    coupling::{Accounting, Interval, drift_half_step},
+    particles::PER_TASK,
+    system::{StepCheck, System},
+};
+
+/// The scheme [@dominguez2022]; it keeps no state between steps.
+pub struct Symplectic;
+
+impl Symplectic {
+    /// Advances the water, whose rates at the start are known, over an interval; returns the factor of the loads on bodies.
+    pub(super) fn step<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        over: Interval,
+        mut accounting: Option<&mut Accounting<D>>,
+    ) -> f64 {
+        let (dt, half) = (over.dt, 0.5 * over.dt);
+        let rho0 = system.medium().rho0;
+        let (start, boundary_start) = (system.fluid.particles.clone(), system.boundary.particles.rho.clone());
+
+        let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        system.status.check = now
+            .zip(system.neighbours.built())
+            .with_min_len(PER_TASK)
+            .map(|((((r, v), rho), s), then)| {
+                *r += *v * half;
+                *v += s.dv * half;
+                *rho += rho0 * s.dx * half;
+                StepCheck::displacement(then, r)
+            })
+            .reduce(|| StepCheck::NOTHING, StepCheck::and);
+        step_boundary_density(system, half, |dx, _, rho| rho + rho0 * dx * half);
+        drift_half_step(system, over);
+
+        system.rebuild_within_step();
+        system.update_rates();
+
+        accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
+        let shifts = shifts(system, dt);
+        let whole = |rho_start: f64, rho_half: f64, dx: f64| {
+            let epsilon = -dt * rho0 * dx / rho_half;
+            rho_start * (2.0 - epsilon) / (2.0 + epsilon)
+        };
+        let guard = system.guard();
+        let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        system.status.check = now
+            .zip(system.neighbours.built())
+            .enumerate()
+            .with_min_len(PER_TASK)
+            .map(|(i, ((((r, v), rho), s), then))| {
+                *v = start.v[i] + s.dv * dt;
+                *r = start.r[i] + (start.v[i] + *v) * half;
+                *rho = whole(start.rho[i], *rho, s.dx);
+                guard.check(then, r, v, *rho)
+            })
+            .reduce(|| StepCheck::NOTHING, StepCheck::and);
+        if let Some(shifts) = shifts {
+            apply_shifts(system, &shifts, &mut accounting);
+        }
+        step_boundary_density(system, dt, |dx, i, rho| whole(boundary_start[i], rho, dx));
+        1.0
+    }
+}
