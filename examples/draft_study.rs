@@ -13,12 +13,12 @@ use std::f64::consts::TAU;
 
 use pontoon::{
     error::{Error, Result},
+    geometry::{Region, Shape, fill},
+    math::{Pose, Vector},
     model::{Dimension, Model, Walls},
     probe::{Elevation, Probe},
-    shape::{Region, Shape, fill},
     simulation::{Setup, Simulation},
     solid::{Dim, FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
-    space::{Pose, Vector},
 };
 
 const RHO0: f64 = 1000.0;

@@ -8,9 +8,9 @@ use std::path::Path;
 
 use pontoon::{
     Result,
+    geometry::Shape,
     probe::{Elevation, Probe},
     scene::Scene,
-    shape::Shape,
     simulation::Simulation,
 };
 

@@ -8,13 +8,13 @@ use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    law::viscosity::Artificial,
+    geometry::{Region, Shape, fill},
+    math::{Pose, Vector},
     model::{Model, Viscosity},
     probe::{Elevation, Probe},
-    shape::{Region, Shape, fill},
     simulation::{Setup, Simulation},
     solid::{Role, SolidSpec},
-    space::{Pose, Vector},
+    sph::viscosity::Artificial,
 };
 
 /// Length and depth of the water, m.

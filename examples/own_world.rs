@@ -9,7 +9,7 @@ use pontoon::{
     probe::{Elevation, Probe},
     scene::{Scene, ShapeWords, SolidWords},
     simulation::Simulation,
-    solid::planar::{self, rapier::prelude::*},
+    solid::rapier2d::{self, rapier::prelude::*},
 };
 
 /// Width and height of the raft, m.
@@ -33,10 +33,10 @@ fn main() -> Result<()> {
             world.bodies[load].set_enabled(true);
         }
         water.step_with(until, |step| {
-            planar::give(&mut world.bodies[raft], &step.loads()[1]);
+            rapier2d::give(&mut world.bodies[raft], &step.loads()[1]);
             world.integration_parameters.dt = step.dt();
             world.step();
-            step.solids[1] = planar::kinematics(&world.bodies[raft]);
+            step.solids[1] = rapier2d::kinematics(&world.bodies[raft]);
             Ok(())
         })?;
         // Means over the half second before the crate falls, and over the last second.
@@ -85,6 +85,6 @@ fn water(world: &PhysicsWorld, raft: RigidBodyHandle) -> Result<Simulation<2>> {
     scene.model.c0_factor = Some(12.0);
     let mut water = Simulation::with_external_bodies(scene.build::<2>()?.setup)?;
     // The raft gets number 1, after the tank; the water in its place goes.
-    water.add_solid(planar::solid("raft", raft, &world.bodies, &world.colliders)?)?;
+    water.add_solid(rapier2d::solid("raft", raft, &world.bodies, &world.colliders)?)?;
     Ok(water)
 }

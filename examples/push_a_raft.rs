@@ -6,10 +6,10 @@
 
 use pontoon::{
     Result,
+    math::Vector,
     probe::{Elevation, Probe},
     scene::{AtWords, Scene, ShapeWords, SolidWords},
     simulation::Simulation,
-    space::Vector,
 };
 
 /// Width and height of the raft, m.

@@ -6,12 +6,12 @@
 
 use pontoon::{
     Result,
+    geometry::Shape,
+    math::{Pose, Vector},
     probe::{Elevation, Probe},
     scene::{AtWords, Scene, ShapeWords, SolidWords},
-    shape::Shape,
     simulation::Simulation,
     solid::{FreeBody, Role, SolidSpec},
-    space::{Pose, Vector},
 };
 
 /// Name, density (kg/m³) and place (m) of each block.

@@ -6,20 +6,18 @@
 
 // words
 pub mod error;
-pub mod words;
-pub mod series;
-pub mod space;
-pub mod lanes;
+pub mod math;
 // equations
-pub mod law;
+pub mod sph;
 // matter
 pub mod particles;
-pub mod shape;
+pub mod geometry;
 // neighbours and bodies
-pub mod near;
+pub mod neighbours;
+pub mod wavemaker;
 pub mod solid;
 // motion
-pub mod sweep;
+pub mod interaction;
 pub mod model;
 pub mod system;
 pub mod coupling;
@@ -28,9 +26,8 @@ pub mod simulation;
 // results
 pub mod plan;
 pub mod probe;
-pub mod check;
-pub mod stats;
-pub mod record;
+pub mod analysis;
+pub mod output;
 // entrance
 pub mod scene;
 pub mod preflight;

@@ -1,27 +1,27 @@
 //! The chosen laws, as data; the one place where a name becomes a type.
 
-pub use crate::law::wall::Slip;
+pub use crate::sph::boundary::Slip;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    lanes::{self, Level},
-    law::{
-        Medium, Term, Units,
-        continuity::Continuity,
-        diffusion::{Fourtakas, Molteni},
-        gradient::{Corrected, Moments},
-        kernel::{self, Kernel as _, REACH},
-        pressure::{Pressure, Tensile},
-        shifting::{HeldTerm, Shift, ShiftTerm},
-        viscosity::{Artificial, Laminar, Sps},
-        wall::Barrier,
-    },
-    near::Near,
+    interaction::{self, Sweep},
+    math::Vector,
+    math::simd::{self, Level},
+    neighbours::Near,
     solid::{Dim, HasEngine},
-    space::Vector,
-    sweep::{self, Sweep},
+    sph::{
+        Medium, Term, Units,
+        boundary::Barrier,
+        continuity::Continuity,
+        density_diffusion::{Fourtakas, Molteni},
+        gradient_correction::{Corrected, Moments},
+        kernel::{self, Kernel as _, REACH},
+        particle_shifting::{HeldTerm, Shift, ShiftTerm},
+        pressure::{Pressure, Tensile},
+        viscosity::{Artificial, Laminar, Sps},
+    },
 };
 
 /// Which kernel weighs the neighbours. Scene word `model.kernel`.
@@ -108,7 +108,7 @@ impl Sweeping {
     /// The instructions that its lanes use, if it has lanes.
     pub fn level(self) -> Option<Level> {
         match self {
-            Self::Fast => lanes::level(),
+            Self::Fast => simd::level(),
             Self::Reference => None,
         }
     }
@@ -382,10 +382,10 @@ impl<const D: usize> Make<'_, D> {
         wall: W,
     ) -> Box<dyn Sweep<D>> {
         let term = match self.model.diffusion {
-            Diffusion::None => return sweep::compile(kernel, inner, wall, &self.medium, self.units, self.level),
+            Diffusion::None => return interaction::compile(kernel, inner, wall, &self.medium, self.units, self.level),
             Diffusion::Molteni(d) => d.term(&self.medium),
             Diffusion::Fourtakas(d) => d.term(&self.medium),
         };
-        sweep::compile(kernel, (inner, term), wall, &self.medium, self.units, self.level)
+        interaction::compile(kernel, (inner, term), wall, &self.medium, self.units, self.level)
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::space::Vector;
+use crate::math::Vector;
 
 /// Particles that a thread takes at a time where each costs little.
 pub(crate) const PER_TASK: usize = 4096;

@@ -37,7 +37,7 @@ use kept::Kept;
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    record::{Checkpoint, Manifest, manifest::Status},
+    output::{Checkpoint, Manifest, manifest::Status},
     scene::Scene,
     simulation::Rescued,
     solid::Dim,

@@ -24,12 +24,12 @@ use rescue::Rescue;
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
     error::{Error, Fault, Kind, Result},
+    math::{Vector, Wedge},
     model::Dimension,
     solid::{
         Contact, Dim, HasEngine as _, Role, SolidSpec,
-        rig::{Rig, RigState},
+        constraint::assembly::{Rig, RigState},
     },
-    space::{Vector, Wedge},
     system::{System, SystemState},
     time_integration::{Stepper, step_size},
 };

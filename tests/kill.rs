@@ -12,7 +12,7 @@ use std::{
     time::Duration,
 };
 
-use pontoon::record::Checkpoint;
+use pontoon::output::Checkpoint;
 
 const LAST: &str = "checkpoint.bin";
 const PREVIOUS: &str = "checkpoint.previous.bin";

@@ -10,7 +10,7 @@ use std::{
 
 use pontoon::{
     error::{Error, Fault, Kind},
-    record::{Manifest, manifest::Status},
+    output::{Manifest, manifest::Status},
     report,
 };
 use serde_json::Value;

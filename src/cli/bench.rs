@@ -5,7 +5,7 @@ use pontoon::{
     Result,
     bench::{self, Timing, Work},
     error::{Error, Kind},
-    record::manifest::Machine,
+    output::manifest::Machine,
 };
 use serde::Serialize;
 

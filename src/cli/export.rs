@@ -8,7 +8,7 @@ use std::{
 use clap::{ArgGroup, Args};
 use pontoon::{
     error::{Error, Kind, Result},
-    record::{Manifest, Readings, arrays},
+    output::{Manifest, Readings, npz},
     run,
 };
 use serde::{Deserialize, de::DeserializeOwned};
@@ -57,7 +57,7 @@ fn series(folder: &Path, out: PathBuf) -> Result<String> {
         [(format!("{name}.t_s"), &of.t[..])].into_iter().chain(columns)
     });
     let told = spectra.iter().chain(&answers).map(|(name, x)| (name.clone(), &x[..]));
-    arrays::write(&out, all.chain(told))?;
+    npz::write(&out, all.chain(told))?;
     let counts = (tables.len(), spectra.len() / 2, answers.len() / COLUMNS.len());
     Ok(format!("{}: {} tables, {} spectra, {} RAOs\n", out.display(), counts.0, counts.1, counts.2))
 }
@@ -124,7 +124,7 @@ fn answers(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
 
 #[cfg(feature = "surface")]
 fn surface(folder: &Path) -> Result<String> {
-    use pontoon::record::{Film, surface};
+    use pontoon::output::{Film, surface};
 
     let (manifest, run) = (Manifest::read(folder)?, || folder.display());
     let Some((dimension, dp)) = manifest.told("dimension").zip(manifest.told("dp")) else {

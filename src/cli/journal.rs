@@ -11,7 +11,7 @@ use std::{
 
 use pontoon::{
     error::Error,
-    record::manifest::Status,
+    output::manifest::Status,
     run::{Drift, Outcome, Progress, Start, Watch},
     simulation::Rescued,
 };

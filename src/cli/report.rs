@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use pontoon::{
-    check::{Verdict, said},
-    record::manifest::{Pictures, Status},
+    analysis::{Verdict, format_verdicts},
+    output::manifest::{Pictures, Status},
     run::{Body, Outcome, Start},
 };
 
-pub use pontoon::words::{bytes, duration};
+pub use pontoon::math::format::{bytes, duration};
 
 use super::shelf::Listed;
 
@@ -138,7 +138,7 @@ fn bodies(bodies: &[Body]) -> String {
 
 fn checks(checks: &[Verdict]) -> String {
     let all: Vec<(&[String], &Verdict)> = checks.iter().map(|v| (&[][..], v)).collect();
-    table(&said::rows(&all, &[]))
+    table(&format_verdicts::rows(&all, &[]))
 }
 
 /// What `scenes` prints.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use pontoon::{
     error::{Error, Result},
-    record::manifest::Status,
+    output::manifest::Status,
     run::{self, Options, Outcome},
 };
 

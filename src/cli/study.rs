@@ -8,7 +8,7 @@ use std::{
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    record::has_folder,
+    output::has_folder,
     report::Shot,
     scene::Scene,
     study::{CHANCE, Grid, Job, Planned, Ran, Row, Sheet, State, USUAL, Vary, heads, interval, plan, split, spreads},

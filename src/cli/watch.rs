@@ -15,10 +15,10 @@ use crossterm::{
 };
 use pontoon::{
     error::{Error, Kind, Result, nearest},
+    math::format::unit,
+    output::{Manifest, Readings, manifest::Status},
     preflight::three,
-    record::{Manifest, Readings, manifest::Status},
     run::{self, Drift},
-    words::unit,
 };
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 

@@ -22,10 +22,10 @@ use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    law::Medium,
-    shape::Shape,
+    geometry::Shape,
+    math::{Matrix, Vector, Wedge},
     solid::{FreeBody, Kinematics, Load, Role, Solid},
-    space::{Matrix, Vector, Wedge},
+    sph::Medium,
     system::System,
 };
 

@@ -10,11 +10,11 @@ use super::{
 };
 use crate::{
     error::{Error, Fault, Kind, Result},
+    math::{Pose, Vector, Wedge},
     solid::{
         Contact, Engine, EngineFault, Kinematics, Load, Role, Solid,
-        rig::{Rig, Tied},
+        constraint::assembly::{Rig, Tied},
     },
-    space::{Pose, Vector, Wedge},
     system::{MomentumTransfer, System},
 };
 

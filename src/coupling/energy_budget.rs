@@ -12,9 +12,9 @@ use super::{
     power_breakdown::{PowerBreakdown, PowerMeter, total_power},
 };
 use crate::{
+    math::Vector,
     model::Dimension,
     solid::{Dim, Kinematics, Load, Role},
-    space::Vector,
     system::{Lost, System},
 };
 

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    solid::{Contact, FreeBody, Kinematics, Load, Role, rig::Tied},
-    space::{Matrix, Vector, Wedge},
+    math::{Matrix, Vector, Wedge},
+    solid::{Contact, FreeBody, Kinematics, Load, Role, constraint::assembly::Tied},
     system::System,
 };
 

@@ -15,8 +15,8 @@ pub use energy_budget::EnergyBudget;
 pub use load_breakdown::LoadBreakdown;
 
 use crate::{
+    math::{Pose, Vector},
     solid::{Kinematics, Role, Solid},
-    space::{Pose, Vector},
     system::System,
 };
 

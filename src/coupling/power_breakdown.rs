@@ -18,11 +18,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    interaction::{Sums, Sweep},
+    math::Vector,
     model::{Diffusion, Dimension, Gradient, Model, Shifting, Viscosity},
-    near::CHUNK,
+    neighbours::CHUNK,
     solid::{Dim, Load},
-    space::Vector,
-    sweep::{Sums, Sweep},
     system::System,
 };
 

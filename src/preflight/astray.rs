@@ -3,12 +3,12 @@
 
 use super::{
     Finding, Look,
-    words::{three, up},
+    format::{three, up},
 };
 use crate::{
+    math::{Bounds, Vector},
     scene::world_bounds,
     solid::{Role, Solid},
-    space::{Bounds, Vector},
 };
 
 impl<const D: usize> Look<'_, D> {

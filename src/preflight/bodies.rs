@@ -16,16 +16,16 @@ use serde::Serialize;
 use super::{
     Finding, Look,
     faces::Face,
+    format::{down, three, up},
     thickness::thinnest,
-    words::{down, three, up},
 };
 use crate::{
+    math::{Pose, Vector, Wedge},
     scene::world_bounds,
     solid::{
         FreeBody, Role, Solid,
         hydrostatics::{equilibrium_height, metacentric_height},
     },
-    space::{Pose, Vector, Wedge},
 };
 
 /// A tilt of less than this (rad) out of rest is not worth a word: half a degree.

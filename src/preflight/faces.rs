@@ -1,9 +1,9 @@
 //! The faces of a solid, seen at the places of its outermost boundary particles.
 
 use crate::{
-    shape::Shape,
+    geometry::Shape,
+    math::Vector,
     solid::{Role, Solid},
-    space::Vector,
 };
 
 /// A place on the true face of a solid, in its own frame.

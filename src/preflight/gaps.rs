@@ -3,9 +3,9 @@
 use super::{
     Finding, Look,
     faces::Face,
-    words::{down, place, three},
+    format::{down, place, three},
 };
-use crate::{scene::world_bounds, solid::Role, space::Vector};
+use crate::{math::Vector, scene::world_bounds, solid::Role};
 
 /// Solids nearer than this (dp) are in touch: contact is the engine's.
 const TOUCH: f64 = 0.1;

@@ -17,7 +17,7 @@ mod stands;
 mod swings;
 mod thickness;
 mod waves;
-mod words;
+mod format;
 
 use std::collections::BTreeMap;
 
@@ -25,10 +25,10 @@ use serde::Serialize;
 
 pub use absorb::Absorber;
 pub use bodies::{Afloat, Body, Tilt};
+pub use format::three;
 pub use size::{Disk, Size};
 pub use sound::{Expected, Sound, Step};
 pub use waves::Wave;
-pub use words::three;
 
 use crate::{
     error::Error,

@@ -2,19 +2,17 @@
 
 use super::{
     Finding, Look, Wave,
+    format::{down, three, up},
     stands::Stand,
     swings::heading,
     thickness::layered,
     waves::LEAST,
-    words::{down, three, up},
 };
 use crate::{
     plan::StatisticKind,
     scene::world_bounds,
-    solid::{
-        Motion, Solid,
-        wave::{self, FAST, Facts, Paddle, Region, Train},
-    },
+    solid::{Motion, Solid},
+    wavemaker::{self, FAST, Facts, Paddle, Region, Train},
 };
 
 /// Angle (rad) of a flap beyond which small angles are no good theory: 30°.
@@ -32,7 +30,13 @@ const BESIDE: f64 = 0.05;
 
 impl<const D: usize> Look<'_, D> {
     /// A paddle by name that stands in the water as no paddle of theory does.
-    pub(super) fn placed(&self, solid: &Solid<D>, motion: &Motion<D>, law: &wave::Wave, findings: &mut Vec<Finding>) {
+    pub(super) fn placed(
+        &self,
+        solid: &Solid<D>,
+        motion: &Motion<D>,
+        law: &wavemaker::Wave,
+        findings: &mut Vec<Finding>,
+    ) {
         let (name, level) = (&solid.spec.name, self.still.level);
         if layered(&solid.spec.shape) {
             return;
@@ -80,7 +84,7 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// A paddle that goes too fast for theory, or is too slow to come to its motion.
-    pub(super) fn quick(&self, wave: &Wave, law: &wave::Wave, findings: &mut Vec<Finding>) {
+    pub(super) fn quick(&self, wave: &Wave, law: &wavemaker::Wave, findings: &mut Vec<Finding>) {
         let (name, most) = (&wave.solid, FAST * wave.celerity_mps);
         if wave.paddle_mps > most * (1.0 + 1e-9) {
             let what = format!(
@@ -106,7 +110,7 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// A group whose crest is to stand where it cannot.
-    pub(super) fn focus(&self, wave: &Wave, stand: &Stand<D>, law: &wave::Wave, findings: &mut Vec<Finding>) {
+    pub(super) fn focus(&self, wave: &Wave, stand: &Stand<D>, law: &wavemaker::Wave, findings: &mut Vec<Finding>) {
         let Some((distance, time)) = law.facts().focus else { return };
         let (name, end) = (&wave.solid, self.end(stand));
         let least = distance / wave.group_mps + wave.ramp_s;
@@ -156,7 +160,7 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// What a wave that was asked for may not become.
-    pub(super) fn named(&self, wave: &Wave, solid: &Solid<D>, law: &wave::Wave, findings: &mut Vec<Finding>) {
+    pub(super) fn named(&self, wave: &Wave, solid: &Solid<D>, law: &wavemaker::Wave, findings: &mut Vec<Finding>) {
         let (name, facts) = (&wave.solid, law.facts());
         let sea = !matches!(facts.kind, "regular" | "solitary");
         if let Some(train) = facts.train.filter(|_| sea) {

@@ -2,13 +2,13 @@
 
 use super::{
     Finding, Look, Sound,
-    words::{place, three},
+    format::{place, three},
 };
 use crate::{
+    math::{Bounds, Vector},
     plan::ProbeKind,
     scene::world_bounds,
     solid::Solid,
-    space::{Bounds, Vector},
 };
 
 /// How much higher than its level water may come, in depths: what a dam break throws up a wall.

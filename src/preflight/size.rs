@@ -4,12 +4,12 @@ use serde::Serialize;
 
 use super::{
     Finding, Look, Step,
-    words::{three, up},
+    format::{three, up},
 };
 use crate::{
+    math::format::bytes,
     model::{Gradient, Viscosity},
-    record::frame::particle_bytes,
-    words::bytes,
+    output::frame::particle_bytes,
 };
 
 /// Disk that frames may take without a word, B.

@@ -4,12 +4,12 @@ use serde::Serialize;
 
 use super::{
     Finding, Look, faces,
-    words::{down, three, up},
+    format::{down, three, up},
 };
 use crate::{
-    law::wall::Slip,
     model::Scheme,
     solid::{Role, Solid},
+    sph::boundary::Slip,
     time_integration::step_size,
 };
 

@@ -2,13 +2,13 @@
 
 use super::{
     Finding, Look, Wave,
+    format::{place, three, up},
     thickness::layered,
-    words::{place, three, up},
 };
 use crate::{
+    math::{Bounds, Vector},
     scene::world_bounds,
     solid::Solid,
-    space::{Bounds, Vector},
     system::SpongeLayer,
 };
 

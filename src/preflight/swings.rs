@@ -2,8 +2,8 @@
 
 use super::Look;
 use crate::{
+    math::{Bounds, Vector},
     solid::{Motion, Solid},
-    space::{Bounds, Vector},
 };
 
 /// Times at which a driven solid is looked at.

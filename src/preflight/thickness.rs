@@ -3,12 +3,12 @@
 use super::{
     Finding, Look,
     faces::{self, Face},
-    words::{down, place, three, up},
+    format::{down, place, three, up},
 };
 use crate::{
-    shape::Shape,
+    geometry::Shape,
+    math::{Pose, Vector},
     solid::Role,
-    space::{Pose, Vector},
 };
 
 /// Places of a solid that are looked at.

@@ -5,16 +5,14 @@ use serde::Serialize;
 
 use super::{
     Finding, Look,
+    format::{down, three},
     stands::Stand,
     thickness::layered,
-    words::{down, three},
 };
 use crate::{
     scene::world_bounds,
-    solid::{
-        Motion, Role, Solid,
-        wave::{Paddle, Regime, Region, Train},
-    },
+    solid::{Motion, Role, Solid},
+    wavemaker::{Paddle, Regime, Region, Train},
 };
 
 /// Wave height over dp below which waves lose much of it on their way.

@@ -1,7 +1,7 @@
 //! The level of the water above a place.
 
 use super::{Probe, point};
-use crate::{error::Result, plan::Surface, simulation::Simulation, space::Vector, system::System};
+use crate::{error::Result, math::Vector, plan::Surface, simulation::Simulation, system::System};
 
 /// How many surfaces below the highest are told.
 const BELOW: usize = 3;

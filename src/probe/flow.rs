@@ -8,8 +8,8 @@
 use super::Probe;
 use crate::{
     error::{Error, Kind, Result},
+    math::Vector,
     simulation::Simulation,
-    space::Vector,
     system::System,
 };
 

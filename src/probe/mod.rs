@@ -39,8 +39,8 @@ pub use velocity::Velocity;
 
 use crate::{
     error::{Error, Kind, Result},
+    math::Vector,
     simulation::{Simulation, find},
-    space::Vector,
     system::System,
 };
 

@@ -7,8 +7,8 @@
 use super::{Probe, axes, find_solid};
 use crate::{
     error::Result,
+    math::{Matrix, Vector},
     simulation::Simulation,
-    space::{Matrix, Vector},
     system::System,
 };
 
@@ -88,7 +88,7 @@ fn turned<const D: usize>(m: &Matrix<D>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Pose;
+    use crate::math::Pose;
 
     #[test]
     fn angles_are_those_turned_about_each_axis() {

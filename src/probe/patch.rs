@@ -6,8 +6,8 @@
 use super::{Probe, axes, find_solid, pressure::pressure};
 use crate::{
     error::{Error, Result},
+    math::{Bounds, Vector},
     simulation::Simulation,
-    space::{Bounds, Vector},
     system::System,
 };
 

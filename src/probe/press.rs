@@ -1,7 +1,7 @@
 //! How solids press on each other: two of them, or all that touch.
 
 use super::{Probe, axes, find_solid};
-use crate::{error::Result, simulation::Simulation, solid::Contact, space::Vector, system::System};
+use crate::{error::Result, math::Vector, simulation::Simulation, solid::Contact, system::System};
 
 /// Watches the contact of two solids in the last step: the sum of the normal forces (N), the force on the second, friction
 /// included (N), and where it acts (m); NaN there while they do not touch.

@@ -1,7 +1,7 @@
 //! How far water has run up a solid: the highest water that lies on its face.
 
 use super::{Probe, find_solid};
-use crate::{error::Result, simulation::Simulation, space::Vector, system::System};
+use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
 /// How near to the face water lies on it, over dp: rows of particles are half a dp from a face, and one and a half.
 const ON: f64 = 1.0;

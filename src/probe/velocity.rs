@@ -1,7 +1,7 @@
 //! The water's velocity at a point: v(x) = Σ V_b v_b W / Σ V_b W.
 
 use super::{Probe, axes, interpolate, point};
-use crate::{error::Result, simulation::Simulation, space::Vector};
+use crate::{error::Result, math::Vector, simulation::Simulation};
 
 /// Watches the water's velocity (m/s) at a fixed point; NaN while the point is dry.
 pub struct Velocity<const D: usize> {

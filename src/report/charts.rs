@@ -5,10 +5,10 @@ use serde::Serialize;
 use super::{
     blob::Blob,
     figures::series,
+    format::{bare, unit},
     kept::{Kept, Table},
-    words::{bare, unit},
 };
-use crate::{check::Verdict, run::Answer, series::Series, stats};
+use crate::{analysis, analysis::Verdict, math::time_series::Series, run::Answer};
 
 /// Rows of a table above which it is thinned.
 const MOST_ROWS: usize = 6000;
@@ -176,7 +176,7 @@ pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
 fn spectra(table: &Table, charts: &[Chart], blob: &mut Blob) -> Vec<Spectral> {
     let shown = charts.iter().filter(|chart| !chart.folded).flat_map(|chart| chart.columns.iter().copied());
     let of = |column: usize| {
-        let spectrum = stats::swing(&series(&table.t, &table.x[column])?)?;
+        let spectrum = analysis::swing(&series(&table.t, &table.x[column])?)?;
         let f = blob.floats(spectrum.frequencies().map(|f| f as f32));
         let s = blob.floats(spectrum.density.iter().map(|s| *s as f32));
         Some(Spectral { column, rows: spectrum.density.len(), f, s })

@@ -4,9 +4,9 @@ use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash
 
 use super::{
     colour::{self, Map},
+    format,
     ink::{Anchor, Ink, fill, paint},
     picture::{Field, Panel},
-    words,
 };
 
 /// Ink of titles.
@@ -100,7 +100,7 @@ impl View {
         for x in marks(self.low[0], self.high[0], 6.0) {
             let (px, _) = self.pixel(&[x, self.low[1]]);
             self.dash(on, (px, bottom), (px, bottom + 0.3 * em));
-            ink.write(on, &words::minus(&short(x)), (px, bottom + 1.2 * em), small, Anchor::Middle, QUIET);
+            ink.write(on, &format::minus(&short(x)), (px, bottom + 1.2 * em), small, Anchor::Middle, QUIET);
         }
         let count = (6.0 * self.size.1 / self.size.0).max(2.0);
         for y in marks(self.low[1], self.high[1], f64::from(count)) {
@@ -108,7 +108,7 @@ impl View {
             self.dash(on, (self.corner.0 - 0.3 * em, py), (self.corner.0, py));
             if first {
                 let at = (self.corner.0 - 0.5 * em, py + 0.3 * em);
-                ink.write(on, &words::minus(&short(y)), at, small, Anchor::End, QUIET);
+                ink.write(on, &format::minus(&short(y)), at, small, Anchor::End, QUIET);
             }
         }
         if first {
@@ -160,7 +160,7 @@ pub fn legend(on: &mut Pixmap, ink: &Ink, bar: (f32, f32, f32, f32), em: f32, fi
     }
     for x in marks(range[0], range[1], 6.0) {
         let at = bar.0 + wide * ((x - range[0]) / (range[1] - range[0])) as f32;
-        ink.write(on, &words::minus(&short(x)), (at, bar.1 + bar.3 + 1.2 * em), 0.8 * em, Anchor::Middle, INK);
+        ink.write(on, &format::minus(&short(x)), (at, bar.1 + bar.3 + 1.2 * em), 0.8 * em, Anchor::Middle, INK);
     }
     ink.write(on, field.title(), (bar.0, bar.1 + bar.3 + 2.7 * em), em, Anchor::Start, INK);
 }

@@ -1,10 +1,10 @@
 //! Figures of series in tables: extremes, means, waves; the budget of energies.
 
-use super::{kept::Table, words};
+use super::{format, kept::Table};
 use crate::{
+    analysis::{moments, waves},
+    math::time_series::Series,
     probe::unaccounted,
-    series::Series,
-    stats::{moments, waves},
 };
 
 /// The numbers of the column `x` over `t` (s) as a series; none if there are less than two.
@@ -19,7 +19,7 @@ pub fn rows(tables: &[Table]) -> Vec<Vec<String>> {
     let head = ["series", "unit", "least", "at, s", "largest", "at, s", "mean", "std", "last", "waves", "period, s"];
     let mut rows =
         vec![head.into_iter().chain(["mean height", "highest third", "highest"]).map(String::from).collect::<Vec<_>>()];
-    let digits = words::digits;
+    let digits = format::digits;
     let time = |t: f64| format!("{t:.3}");
     for table in tables {
         for (i, (name, x)) in table.columns.iter().zip(&table.x).enumerate() {
@@ -28,7 +28,7 @@ pub fn rows(tables: &[Table]) -> Vec<Vec<String>> {
             }
             let Some(series) = series(&table.t, x) else { continue };
             let f = moments(&series);
-            let mut row = vec![format!("{} · {}", table.name, words::bare(name)), words::unit(name).into()];
+            let mut row = vec![format!("{} · {}", table.name, format::bare(name)), format::unit(name).into()];
             row.extend([digits(f.least.0), time(f.least.1), digits(f.largest.0), time(f.largest.1)]);
             row.extend([digits(f.mean), digits(f.deviation), digits(f.last)]);
             row.extend(waves(&series).map_or_else(
@@ -47,16 +47,16 @@ pub fn energy(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy" {
         return None;
     }
-    let unit = words::unit(table.columns.first()?);
+    let unit = format::unit(table.columns.first()?);
     let head = ["part", "start", "end", "change", "least", "largest"];
     let heads = head.iter().map(|h| if *h == "part" { h.to_string() } else { format!("{h}, {unit}") });
     let mut rows = vec![heads.collect::<Vec<String>>()];
-    let digits = words::digits;
-    let find = |part: &str| table.columns.iter().position(|name| words::bare(name) == part);
+    let digits = format::digits;
+    let find = |part: &str| table.columns.iter().position(|name| format::bare(name) == part);
     for (name, x) in table.columns.iter().zip(&table.x) {
         let (first, f) = (*x.first()?, moments(&series(&table.t, x)?));
         let cells = [first, f.last, f.last - first, f.least.0, f.largest.0];
-        rows.push(std::iter::once(words::bare(name)).chain(cells.map(digits)).collect());
+        rows.push(std::iter::once(format::bare(name)).chain(cells.map(digits)).collect());
     }
     let total = &table.x[find("total")?];
     let change = total.last()? - total.first()?;
@@ -77,19 +77,19 @@ pub fn budget(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy budget" {
         return None;
     }
-    let unit = words::unit(table.columns.first()?);
+    let unit = format::unit(table.columns.first()?);
     let last = table.x.iter().map(|x| x.last().copied()).collect::<Option<Vec<f64>>>()?;
     let entries = last.get(1..last.len().checked_sub(1)?)?;
     let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
     let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
     let row = |(name, energy): (&String, &f64)| {
-        vec![words::bare(name), words::digits(*energy), words::minus(&format!("{:.2}", share(*energy)))]
+        vec![format::bare(name), format::digits(*energy), format::minus(&format!("{:.2}", share(*energy)))]
     };
     let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
     let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();
     let said = format!(
         "The entries add up to what water and bodies have stored, but for {} % of all that was turned over.",
-        words::digits(100.0 * unaccounted(&last).unwrap_or_default())
+        format::digits(100.0 * unaccounted(&last).unwrap_or_default())
     );
     Some((rows, said))
 }

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    record::{Cloud, Film},
+    output::{Cloud, Film},
 };
 
 /// Places are told to this part of dp.

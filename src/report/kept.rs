@@ -12,10 +12,10 @@ use super::{
     rim::Rim,
 };
 use crate::{
-    check::{Check, Curves},
+    analysis::{Check, Curves},
     error::{Error, Result},
+    output::{Film, Manifest, Readings},
     plan::{Plan, ProbeKind},
-    record::{Film, Manifest, Readings},
     run::{self, Asked, Told},
     scene::{Scene, Stage},
     solid::Role,

@@ -22,7 +22,7 @@ mod pose;
 mod rim;
 mod sections;
 mod wire;
-pub(crate) mod words;
+pub(crate) mod format;
 
 pub use picture::{Field, Shot, picture};
 
@@ -33,7 +33,7 @@ use std::{
 
 use crate::{
     error::{Error, Kind, Result},
-    record::{has_folder, write_whole},
+    output::{has_folder, write_whole},
 };
 
 use kept::Kept;

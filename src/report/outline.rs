@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::wire::wires;
 use crate::{
-    shape::Shape,
-    space::{Pose, Vector},
+    geometry::Shape,
+    math::{Pose, Vector},
 };
 
 /// Corners of a circle.

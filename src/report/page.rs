@@ -9,11 +9,11 @@ use super::{
     colour::{MAPS, Maps},
     figures,
     film::{Reel, reel},
+    format::escape,
     kept::{Kept, Set},
     outline::Outline,
     rim::Rim,
     sections,
-    words::escape,
 };
 use crate::error::Result;
 

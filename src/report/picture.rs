@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     error::{Error, Kind, Result},
-    record::{Cloud, Film, has_folder, write_whole},
+    output::{Cloud, Film, has_folder, write_whole},
 };
 
 /// What the particles of a picture are coloured by.

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
 use super::outline::spread;
-use crate::space::Pose;
+use crate::math::Pose;
 
 /// A pose in three coordinates; in 2-D the third stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -60,7 +60,7 @@ impl Placement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Vector;
+    use crate::math::Vector;
 
     #[test]
     fn the_motion_of_a_solid_is_found_from_its_points() {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::outline::{Outline, outlines, placed, spread};
-use crate::{preflight::faces, shape::Shape, space::Vector};
+use crate::{geometry::Shape, math::Vector, preflight::faces};
 
 /// Largest turn from one point of a round corner to the next, rad.
 const STEP: f64 = TAU / 48.0;
@@ -167,7 +167,7 @@ fn divided(a: &[f64; 3], b: &[f64; 3], step: f64) -> Vec<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Pose;
+    use crate::math::Pose;
 
     fn flat(x: [f64; 2]) -> Vector<2> {
         Vector::from(x)
@@ -243,7 +243,7 @@ mod tests {
     fn the_rim_of_a_drawn_box_is_that_of_the_box() -> crate::error::Result<()> {
         use std::collections::BTreeSet;
 
-        use crate::shape::{Mesh, Touchable};
+        use crate::geometry::{Mesh, Touchable};
 
         let size = Vector::<3>::from([0.4, 0.2, 0.3]);
         let corner = |i: u32| Vector::from_fn(|axis, _| (f64::from(i >> axis & 1) - 0.5) * size[axis]);

@@ -5,12 +5,12 @@ use std::{fs, time::SystemTime};
 use super::{
     figures,
     film::Reel,
+    format::{self, bytes, digits, duration, escape, table, thousands},
     kept::{Kept, Table},
-    words::{self, bytes, digits, duration, escape, table, thousands},
 };
 use crate::{
-    check::{Verdict, said},
-    record::{Manifest, manifest::Status},
+    analysis::{Verdict, format_verdicts},
+    output::{Manifest, manifest::Status},
 };
 
 /// How a run stands, in a word, and the class of its badge.
@@ -121,10 +121,10 @@ pub fn warnings(runs: &[Kept]) -> String {
 
 /// The figures of a verdict in words.
 pub fn caption(verdict: &Verdict) -> String {
-    let rows = said::rows(&[(&[], verdict)], &[]);
+    let rows = format_verdicts::rows(&[(&[], verdict)], &[]);
     let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
     let said: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect();
-    words::minus(&said.join("; "))
+    format::minus(&said.join("; "))
 }
 
 /// A table that scrolls where the page is narrow.
@@ -149,7 +149,7 @@ pub fn verdicts(runs: &[Kept]) -> String {
         return if waiting { "<p>Checks are judged when a run has finished.</p>\n".into() } else { String::new() };
     }
     let said = "<p class=\"quiet\">N is the relative deviation (0 is perfect), M the ratio of the amplitudes (1 is perfect).</p>\n";
-    wide(&said::rows(&pairs, if several { &["run"] } else { &[] })) + said
+    wide(&format_verdicts::rows(&pairs, if several { &["run"] } else { &[] })) + said
 }
 
 /// What the scene asks for of its series; empty if it asks for nothing.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::outline::Outline;
-use crate::{shape::Mesh, space::Vector};
+use crate::{geometry::Mesh, math::Vector};
 
 /// Two facets that meet at a smaller turn than this are one smooth face, rad.
 const SHARP: f64 = 0.5;

@@ -14,15 +14,15 @@ use super::{
     statistics,
 };
 use crate::{
-    check::{Check, Verdict},
+    analysis::{Check, Verdict},
     error::{Error, Kind, Result},
     model::Dimension,
-    preflight,
-    record::{
-        Checkpoint, Extent, Manifest,
+    output::{
+        Checkpoint, Extent, Manifest, checkpoint,
         manifest::{Count, InForce, Machine, Pictures, Status},
-        removed, restart, write_whole,
+        removed, write_whole,
     },
+    preflight,
     scene::{Built, Plan, Resolved, Scene},
     simulation::Simulation,
     solid::{Dim, HasEngine as _, Role},
@@ -288,8 +288,8 @@ impl<const D: usize> Course<D> {
             statistics::SPECTRA,
             statistics::RAO,
             "frames.pvd",
-            restart::LAST,
-            restart::PREVIOUS,
+            checkpoint::LAST,
+            checkpoint::PREVIOUS,
             removed::REMOVED,
             folder::FAILURE,
             folder::SCENE,

@@ -3,10 +3,10 @@
 use std::fmt;
 
 use crate::{
+    output::Table,
     plan::{Plan, ProbeKind},
     preflight::three,
     probe::unaccounted,
-    record::Table,
 };
 
 /// What became of the energy since the start, by the latest reading of a probe.

@@ -7,7 +7,7 @@ use std::{
 
 use crate::{
     error::{Error, Kind, Result},
-    record::restart,
+    output::checkpoint,
     scene::table,
 };
 
@@ -69,7 +69,7 @@ pub fn create(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
 /// # Errors
 /// `File` if one cannot be removed.
 pub fn forget_failure(folder: &Path) -> Result<()> {
-    [FAILURE, restart::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
+    [FAILURE, checkpoint::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
         Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
             Err(Error::file(&path, format!("cannot be removed: {why}")))
         }

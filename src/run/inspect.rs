@@ -7,15 +7,15 @@ use serde::Serialize;
 use super::{folder, looks, not_built, with_threads};
 use crate::{
     error::Result,
+    geometry::Shape,
+    math::Vector,
     model::Dimension,
+    output::manifest::InForce,
     preflight::{self, Finding, Preflight},
     probe,
-    record::manifest::InForce,
     scene::{Built, Scene},
-    shape::Shape,
     simulation::Simulation,
     solid::Dim,
-    space::Vector,
 };
 
 /// How long a timing lasts at most, s: no step is begun after it.

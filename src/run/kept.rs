@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     error::{Error, Kind, Result},
-    record::{Checkpoint, restart},
+    output::{Checkpoint, checkpoint},
     scene::Scene,
 };
 
@@ -42,7 +42,7 @@ impl Kept {
         known.sets.retain(|(key, _)| sets.iter().all(|(set, _)| set != key));
         known.sets.extend_from_slice(sets);
         self.scene = Scene::read(&folder.join(folder::SCENE), &known.sets)?;
-        known.scene = restart::hash(self.scene.to_toml()?.as_bytes());
+        known.scene = checkpoint::hash(self.scene.to_toml()?.as_bytes());
         Ok(self)
     }
 }
@@ -52,22 +52,22 @@ impl Kept {
 /// # Errors
 /// What is wrong with the last one, if the one before is of no use either.
 pub fn newest(folder: &Path) -> Result<Kept> {
-    let last = match usable(folder, restart::LAST) {
+    let last = match usable(folder, checkpoint::LAST) {
         Ok((checkpoint, scene)) => return Ok(Kept { checkpoint, scene, warning: None }),
         Err(why) => why,
     };
-    match usable(folder, restart::PREVIOUS) {
+    match usable(folder, checkpoint::PREVIOUS) {
         Ok((checkpoint, scene)) => {
             let warning = format!(
                 "{}; the run goes on from the checkpoint before, {}, at t = {:.6} s",
                 last.what,
-                restart::PREVIOUS,
+                checkpoint::PREVIOUS,
                 checkpoint.time
             );
             Ok(Kept { checkpoint, scene, warning: Some(warning) })
         }
         // Said once where both say the same, and nothing of one that never was.
-        Err(why) if why.what == last.what || !folder.join(restart::PREVIOUS).exists() => Err(last),
+        Err(why) if why.what == last.what || !folder.join(checkpoint::PREVIOUS).exists() => Err(last),
         Err(why) => {
             let help = last.help.clone().unwrap_or_default();
             Err(last.help(format!("the checkpoint before is of no use either: {}\n{help}", why.what)))
@@ -77,14 +77,14 @@ pub fn newest(folder: &Path) -> Result<Kept> {
 
 /// Whether `folder` holds a checkpoint, be it of use or not.
 pub fn any(folder: &Path) -> bool {
-    [restart::LAST, restart::PREVIOUS].iter().any(|name| folder.join(name).exists())
+    [checkpoint::LAST, checkpoint::PREVIOUS].iter().any(|name| folder.join(name).exists())
 }
 
 /// The checkpoint `name` in `folder`, if the scene and the tables there are those that it was made with.
 fn usable(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
     let checkpoint = Checkpoint::read(&folder.join(name))?;
     let scene = Scene::read(&folder.join(folder::SCENE), &checkpoint.sets)?;
-    if restart::hash(scene.to_toml()?.as_bytes()) != checkpoint.scene {
+    if checkpoint::hash(scene.to_toml()?.as_bytes()) != checkpoint.scene {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
     }

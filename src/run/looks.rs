@@ -1,7 +1,7 @@
 //! What a run reads and judges: the probes and checks that its plan asks for.
 
 use crate::{
-    check::Check,
+    analysis::Check,
     error::{Error, Result, nearest},
     model::Dimension,
     probe::{self, Probe},

@@ -10,8 +10,8 @@ use std::{
 
 use crate::{
     error::{Error, Kind, Result},
+    output::{Extent, Frames, Mean, Table, manifest::Pictures},
     probe::{self, Probe},
-    record::{Extent, Frames, Mean, Table, manifest::Pictures},
     scene::Plan,
     simulation::Simulation,
 };

@@ -9,13 +9,13 @@ use serde::Serialize;
 
 use super::{outputs::series_folder, scene_file};
 use crate::{
+    analysis::{self, Band, moments, reflection, response, spectrum, transfer},
     error::{Error, Kind, Result},
+    math::format::unit,
+    math::time_series::Series,
+    output::{Manifest, Readings, write_whole},
     plan::{Plan, StatisticKind, StatisticWords},
-    record::{Manifest, Readings, write_whole},
     scene::Scene,
-    series::Series,
-    stats::{self, Band, moments, reflection, response, spectrum, transfer},
-    words::unit,
 };
 
 pub use answers::{Answer, RAO};
@@ -188,7 +188,7 @@ impl Told {
         let plain =
             [("mean", m.mean, own), ("std", m.deviation, own), ("min", m.least.0, own), ("max", m.largest.0, own)];
         self.push(name, of, series.span(), &plain);
-        let Some(w) = stats::waves(series) else { return };
+        let Some(w) = analysis::waves(series) else { return };
         let count = w.count as f64;
         let waves = [
             ("waves", count, "–"),
@@ -213,12 +213,12 @@ impl Told {
 
     /// Says of waves too few for an answer over frequency how many are needed.
     fn too_few(&mut self, name: &str, wave: &Series) {
-        if let Some(waves) = stats::waves(wave).filter(|waves| waves.count < stats::ENOUGH) {
+        if let Some(waves) = analysis::waves(wave).filter(|waves| waves.count < analysis::ENOUGH) {
             self.remarks.push(format!(
                 "statistic {name}: nothing is told over frequency: its time has {} waves, and {} are needed; of regular waves \
                  name the `period`",
                 waves.count,
-                stats::ENOUGH
+                analysis::ENOUGH
             ));
         }
     }

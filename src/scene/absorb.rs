@@ -11,11 +11,9 @@ use serde::{
 use super::{Scene, build_waves::Site};
 use crate::{
     error::Result,
-    solid::{
-        Motion,
-        wave::{Absorber, Maker, Tuning, Wave},
-    },
-    space::Vector,
+    math::Vector,
+    solid::Motion,
+    wavemaker::{Absorber, Maker, Tuning, Wave},
 };
 
 /// From the paddle's face to its gauge, in smoothing lengths: so far the kernel sees.

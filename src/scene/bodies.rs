@@ -7,7 +7,7 @@ use super::{
     flexible::{Draft, LineWords, Numbers, Unit},
     waves::WaveWords,
 };
-use crate::shape::Touchable;
+use crate::geometry::Touchable;
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -10,14 +10,14 @@ use super::{
 };
 use crate::{
     error::{Error, Kind, Result},
-    model::Model,
-    shape::{
+    geometry::{
         Shape,
         fill::{Region, fill},
     },
+    math::{Bounds, Pose, Vector},
+    model::Model,
     simulation::Setup,
     solid::{Role, SolidSpec},
-    space::{Bounds, Pose, Vector},
     system::periodic,
 };
 

@@ -11,7 +11,7 @@ use crate::{
     solid::{
         ContactSpec, End, ForceSpec, FreeMode, Hold, JointKind, JointSpec, Law, Links, Motor, RopeSpec, SolidSpec,
         SpringSpec,
-        links::{check_force, check_rope, check_spring},
+        constraint::links::{check_force, check_rope, check_spring},
     },
 };
 

@@ -8,10 +8,9 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    series::Series,
-    shape::Shape,
-    solid::{Formula, FreeBody, Law, Role, SolidSpec, hydrostatics::equilibrium_height},
-    space::{Matrix, Pose, Vector, Wedge},
+    geometry::Shape,
+    math::{Matrix, Pose, Vector, Wedge, expression::Formula, time_series::Series},
+    solid::{FreeBody, Law, Role, SolidSpec, hydrostatics::equilibrium_height},
 };
 
 /// Largest extent, dp, of bodies that must weigh half a water particle.

@@ -11,13 +11,10 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    series::Series,
-    shape::Shape,
-    solid::{
-        Law, Motion,
-        wave::{Component, Maker, Paddle, Spectrum, Wave},
-    },
-    space::{Bounds, Pose, Vector, Wedge},
+    geometry::Shape,
+    math::{Bounds, Pose, Vector, Wedge, time_series::Series},
+    solid::{Law, Motion},
+    wavemaker::{Component, Maker, Paddle, Spectrum, Wave},
 };
 
 /// The water at rest: what drafts and waves are measured in.

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::{CheckEntry, CheckWords, Reference, Scene, table, verify::guess};
 use crate::{
     error::{Error, Result},
+    math::expression::Formula,
     plan::Align,
-    solid::Formula,
 };
 
 impl Scene {

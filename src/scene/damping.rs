@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, build::Still, geometry::vector, resolve::Filler};
-use crate::{error::Result, space::Vector, system::SpongeLayer};
+use crate::{error::Result, math::Vector, system::SpongeLayer};
 
 /// β ℓ/((n + 1) √(gd)) where nobody says β: what goes through the zone and back with the speed of long waves has e⁻⁴ = 2 % left.
 const PASSES: f64 = 4.0;

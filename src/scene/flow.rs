@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, WaterWords, flexible::FieldWords};
-use crate::{error::Result, solid::Field, space::Vector, system::Periodic};
+use crate::{error::Result, math::Vector, math::expression::Field, system::Periodic};
 
 /// Where a period begins and ends along each axis that has one, m.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

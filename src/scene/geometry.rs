@@ -6,8 +6,8 @@ use super::{AtWords, Axis, LineWords, MeshWords, Scene, ShapeWords, drawing, mes
 
 use crate::{
     error::Result,
-    shape::Shape,
-    space::{Bounds, Pose, Vector},
+    geometry::Shape,
+    math::{Bounds, Pose, Vector},
 };
 
 /// How far the straight lines in place of a drawing's curves may leave them, dp: a hundredth of what particles see.

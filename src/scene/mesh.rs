@@ -8,8 +8,8 @@ use std::{
 
 use crate::{
     error::{Error, Result},
-    shape::{Mesh, mesh::MOST_FACETS},
-    space::Vector,
+    geometry::{Mesh, mesh::MOST_FACETS},
+    math::Vector,
 };
 
 /// Most bytes of a mesh or a drawing.

@@ -8,9 +8,9 @@ use super::{
 };
 use crate::{
     error::Result,
+    geometry::Touchable,
     model::{C0_FACTOR, Model, Scheme},
     plan::Surface,
-    shape::Touchable,
 };
 
 /// A value in force and who said it.

@@ -1,7 +1,7 @@
 //! What a run of a scene will take, told from its words: no particle is made.
 
 use super::{Frames, FramesWords, Scene, build::Body, build_waves::Pool, geometry::world_bounds, verify::FIELDS};
-use crate::{error::Result, model::Scheme, record::frame::particle_bytes, words::bytes};
+use crate::{error::Result, math::format::bytes, model::Scheme, output::frame::particle_bytes};
 
 /// About how large a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::{
     error::{Error, Result, nearest},
-    series::Series,
+    math::time_series::Series,
 };
 
 /// Largest table, B.

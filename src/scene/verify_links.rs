@@ -7,7 +7,7 @@ use super::{
     SolidWords, SpringWords, ValueWords,
     verify::{guess, last},
 };
-use crate::{error::Result, solid::Formula};
+use crate::{error::Result, math::expression::Formula};
 
 impl Scene {
     pub(super) fn verify_links(&self) -> Result<()> {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Absorb, AbsorbWords, DrivenWords, Scene, resolve::Filler, verify::said};
 use crate::{
     error::Result,
-    solid::wave::{COMPONENTS, Theory},
+    wavemaker::{COMPONENTS, Theory},
 };
 
 /// A wave by name: exactly one kind; none of a paddle that only absorbs.

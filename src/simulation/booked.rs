@@ -3,9 +3,9 @@
 use super::Simulation;
 use crate::{
     coupling::{Accounting, EnergyBudget, LoadBreakdown},
-    law::wall::Slip,
     model::{Dimension, Viscosity},
     solid::Dim,
+    sph::boundary::Slip,
 };
 
 /// Steps from one power breakdown to the next, where only the energy budget is kept: one force pass in sixteen more.

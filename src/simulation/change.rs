@@ -5,7 +5,7 @@ use crate::{
     coupling::AcousticAddedMass,
     error::{Error, Kind, Result},
     model::Dimension,
-    solid::{Dim, HasEngine as _, Kinematics, Links, Role, Solid, SolidSpec, within::swallowed},
+    solid::{Dim, HasEngine as _, Kinematics, Links, Role, Solid, SolidSpec, containment::swallowed},
     system::Reordering,
 };
 

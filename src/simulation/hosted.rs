@@ -11,8 +11,8 @@ impl<const D: usize> Simulation<D> {
     /// Sets up a simulation whose free solids an external program moves, such as a rapier world of your own: see
     /// [`Simulation::step_with`], and `examples/own_world.rs`.
     ///
-    /// The setup says of each of them its shape and mass, as of any free solid; [`solid::planar`](crate::solid::planar) and
-    /// [`solid::spatial`](crate::solid::spatial) take both from a body of rapier's. Contacts and constraints are those
+    /// The setup says of each of them its shape and mass, as of any free solid; [`solid::rapier2d`](crate::solid::rapier2d) and
+    /// [`solid::rapier3d`](crate::solid::rapier3d) take both from a body of rapier's. Contacts and constraints are those
     /// of your world. Such a simulation does not roll back, because your world cannot.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 
 use crate::{
     error::{Error, Result},
-    shape::Shape,
+    geometry::Shape,
+    math::{Matrix, Vector, Wedge},
     solid::{FreeBody, Kinematics, Role, SolidSpec},
-    space::{Matrix, Vector, Wedge},
 };
 
 /// Round-off allowed in the symmetry and the triangle inequality of an inertia, relative.
@@ -141,7 +141,7 @@ fn require(fine: bool, what: impl FnOnce() -> String, right: &str) -> Result<()>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Pose;
+    use crate::math::Pose;
 
     fn spec(mass: f64, inertia: [f64; 3]) -> SolidSpec<3> {
         let body = FreeBody {

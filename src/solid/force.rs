@@ -1,8 +1,8 @@
 //! Forces and torques that a law puts on a free solid: wind, a thruster, a hand.
 
 use crate::{
+    math::{Vector, Wedge},
     solid::{Kinematics, Law, Load},
-    space::{Vector, Wedge},
 };
 
 /// A force and a torque on a solid, after laws of time.

@@ -2,9 +2,9 @@
 
 use crate::{
     error::{Error, Result},
-    shape::Shape,
+    geometry::Shape,
+    math::{Bounds, Pose, Vector, Wedge},
     solid::FreeBody,
-    space::{Bounds, Pose, Vector, Wedge},
 };
 
 /// Change of the pose's last coordinate (m) that floats the body as posed: ρ₀ V_submerged = m.

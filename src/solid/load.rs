@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 use serde::{Deserialize, Serialize};
 
 use super::Kinematics;
-use crate::space::{Vector, Wedge};
+use crate::math::{Vector, Wedge};
 
 /// Force and torque on a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,51 +1,41 @@
 //! All that is not water: fixed, driven and free solids, their poses, skins and loads. No sums over pairs.
 
 mod body;
-pub mod driven;
-pub mod engine;
+pub mod boundary_motion;
+pub mod constraint;
+pub(crate) mod containment;
 pub mod force;
-pub mod formula;
 pub mod hydrostatics;
-pub mod joint;
-pub mod links;
 mod load;
-pub mod mooring;
-mod motor;
-#[cfg(feature = "dim2")]
-pub mod planar;
-mod pull;
-pub(crate) mod rig;
-mod rows;
-pub mod skin;
-#[cfg(feature = "dim3")]
-pub mod spatial;
+pub mod prescribed_motion;
+pub mod rapier;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../tests/unit/solid/bodies.rs"]
 mod tests;
-pub mod wave;
-pub(crate) mod within;
 
-pub use driven::{Law, Motion};
-pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};
+pub use constraint::{
+    ContactSpec, Contacts, Drive, Elastic, End, FreeMode, Hold, JointKind, JointReading, JointSpec, LineReading, Links,
+    Mobility, Motor, RopeSpec, SpringSpec,
+};
 pub use force::ForceSpec;
-pub use formula::{Field, Formula};
-pub use joint::{FreeMode, JointKind, JointSpec};
-pub use links::{ContactSpec, Contacts, Hold, Links};
 pub(crate) use load::Around;
 pub use load::Load;
-pub use mooring::{Elastic, End, RopeSpec, SpringSpec};
-pub use motor::{Drive, Motor};
-pub use rig::{JointReading, LineReading};
-pub use rows::Mobility;
+pub use prescribed_motion::{Law, Motion};
+#[cfg(feature = "dim2")]
+pub use rapier::rapier2d;
+#[cfg(feature = "dim3")]
+pub use rapier::rapier3d;
+pub use rapier::{Contact, Dim, Engine, EngineFault, HasEngine};
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use crate::wavemaker::Yielding;
 use crate::{
-    shape::Shape,
-    space::{Matrix, Pose, Vector, Wedge},
+    geometry::Shape,
+    math::{Matrix, Pose, Vector, Wedge},
 };
-use wave::Yielding;
 
 /// A solid as it is to be made.
 #[derive(Clone, Debug)]

@@ -87,7 +87,7 @@ fn unique<'a>(words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::Figures;
+    use crate::analysis::Figures;
 
     fn job(name: &str, scene: &str, law: &str) -> Job {
         Job {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Job;
 use crate::{
     error::{Error, Kind, Result},
-    record::restart::hash,
+    output::checkpoint::hash,
 };
 
 /// Longest name of a folder that is made of the values themselves.

@@ -6,9 +6,9 @@ use std::{
 };
 
 use crate::{
-    check::{Check, Curves, Verdict},
+    analysis::{Check, Curves, Verdict},
     error::{Error, Kind, Result},
-    record::{Manifest, manifest::Status},
+    output::{Manifest, manifest::Status},
     run::{self, Options, Watch},
     scene::{Frames, FramesWords, Scene, Size},
 };

@@ -3,8 +3,8 @@
 use std::time::SystemTime;
 
 use super::{CHANCE, Row, plot, spreads};
-use crate::record::manifest::Machine;
-pub use crate::report::words::{escape, table, unit};
+use crate::output::manifest::Machine;
+pub use crate::report::format::{escape, table, unit};
 
 const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\

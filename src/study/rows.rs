@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Job, Ran, State};
 use crate::{
-    check::{Figures, Verdict},
+    analysis::{Figures, Verdict},
     error::{Error, Kind, Result},
 };
 

@@ -11,9 +11,9 @@ use super::{
     spread::{self, Apart, Point, across, together},
 };
 use crate::{
-    check::said,
+    analysis::format_verdicts,
     error::{Error, Result},
-    record::{manifest::Machine, write_whole},
+    output::{manifest::Machine, write_whole},
 };
 
 /// The table and the page of a study.
@@ -240,10 +240,10 @@ impl Sheet {
             cells.extend(r.varied.iter().map(|(_, value)| value.clone()));
             cells.extend(repeated.then(|| r.repeat.to_string()));
             cells.push(r.check.clone());
-            cells.extend([r.figures.n, r.figures.m, r.figures.peak].map(said::figure));
-            cells.push(said::digits(r.figures.off));
-            cells.push(said::figure(r.aligned_n));
-            cells.push(r.delay_s.map_or("–".into(), said::delay));
+            cells.extend([r.figures.n, r.figures.m, r.figures.peak].map(format_verdicts::figure));
+            cells.push(format_verdicts::digits(r.figures.off));
+            cells.push(format_verdicts::figure(r.aligned_n));
+            cells.push(r.delay_s.map_or("–".into(), format_verdicts::delay));
             cells.extend([r.wall_s, r.cpu_s].map(|s| s.map_or("–".into(), |s| format!("{s:.1}"))));
             cells.push(r.particle_steps.map_or("–".into(), |n| format!("{:.3e}", n as f64)));
             let why = r.reason.as_ref().and_then(|why| why.lines().next()).map(|why| format!(": {why}"));

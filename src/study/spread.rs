@@ -6,7 +6,7 @@ use super::{
     Row,
     rows::{DISTANCE, Metric},
 };
-use crate::check::said;
+use crate::analysis::format_verdicts;
 
 /// The figures of which a spread is told.
 const FIGURES: [Metric; 5] = [
@@ -148,7 +148,7 @@ pub fn spreads(rows: &[Row]) -> Vec<Vec<String>> {
     let used: Vec<Metric> = FIGURES.into_iter().filter(known).collect();
     let row = |of: &Vec<&Row>| {
         let told = |(name, figure): &Metric| {
-            let number = if *name == DISTANCE.0 { said::digits } else { said::figure };
+            let number = if *name == DISTANCE.0 { format_verdicts::digits } else { format_verdicts::figure };
             across(of, *figure).map_or("–".into(), |spread| spread.said(number))
         };
         let mut cells = vec![of[0].run.clone(), of[0].check.clone(), of.len().to_string()];
@@ -168,7 +168,7 @@ pub const CHANCE: &str = "Repeats start with their water moved by a millionth of
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::Figures;
+    use crate::analysis::Figures;
 
     fn row(run: &str, repeat: usize, n: Option<f64>) -> Row {
         let figures = Figures { n, ..Figures::default() };
@@ -206,7 +206,7 @@ mod tests {
         assert!(apart(&[row("a", 1, Some(0.1)), row("b", 1, Some(0.2))]).is_empty());
         assert!(spreads(&[row("a", 1, Some(0.1))]).is_empty());
         assert_eq!(Spread::of([]), None);
-        let said = |values: &[f64]| Spread::of(values.iter().copied()).map(|s| s.said(said::digits));
+        let said = |values: &[f64]| Spread::of(values.iter().copied()).map(|s| s.said(format_verdicts::digits));
         assert_eq!(said(&[0.25]), Some("0.250".into()));
         assert_eq!(said(&[0.25, 0.25 + 1e-7]), Some("0.250 ± 7e-8".into()), "no row of noughts");
     }

@@ -11,10 +11,10 @@ use super::{
     rows::{labels, rows},
 };
 use crate::{
-    check::{Curves, Verdict, said},
+    analysis::{Curves, Verdict, format_verdicts},
     error::{Error, Result},
-    record::{manifest::Machine, write_whole},
-    series::Series,
+    math::time_series::Series,
+    output::{manifest::Machine, write_whole},
 };
 
 /// Cases that are run, quick or full.
@@ -49,7 +49,7 @@ impl Validation {
         let named: Vec<Vec<Verdict>> = ran.iter().map(named).collect();
         let pairs: Vec<(&[String], &Verdict)> =
             names.iter().zip(&named).flat_map(|(name, all)| all.iter().map(move |v| (&name[..], v))).collect();
-        let mut table = said::rows(&pairs, &["case"]);
+        let mut table = format_verdicts::rows(&pairs, &["case"]);
         let costs = ran.iter().flat_map(|ran| ran.verdicts.iter().map(|_| costs(ran)));
         let heads = ["wall, s", "processors, s", "particle-steps"].map(String::from);
         table.iter_mut().zip(std::iter::once(heads).chain(costs)).for_each(|(row, costs)| row.extend(costs));
@@ -119,7 +119,11 @@ fn section(case: &Case, jobs: &[Job], ran: &[Ran]) -> Result<String> {
         text += &match known.is_empty() {
             false => plot(&known, &verdicts)?,
             true => {
-                format!("<p>{}: {}</p>\n", page::escape(&verdicts[0].series), page::escape(&said::remark(verdicts[0])))
+                format!(
+                    "<p>{}: {}</p>\n",
+                    page::escape(&verdicts[0].series),
+                    page::escape(&format_verdicts::remark(verdicts[0]))
+                )
             }
         };
     }
@@ -153,7 +157,7 @@ fn plot(known: &[&Curves], verdicts: &[&Verdict]) -> Result<String> {
 
 /// The figures of a check in a line.
 fn figures(verdict: &Verdict) -> String {
-    let head_and_row = said::rows(&[(&[], verdict)], &[]);
+    let head_and_row = format_verdicts::rows(&[(&[], verdict)], &[]);
     let pairs = head_and_row[0].iter().zip(&head_and_row[1]).skip(1).filter(|(_, figure)| !figure.is_empty());
     pairs.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect::<Vec<_>>().join("; ")
 }

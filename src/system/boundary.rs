@@ -9,12 +9,12 @@ use rayon::prelude::*;
 use super::{System, boundary_extension::ExtensionParticle};
 use crate::{
     error::{Error, Result},
-    law::wall::{Cover, Dbc, Fit, Slip, sticking},
+    math::{Bounds, Pose, Vector},
     model::{Model, Shifting, Walls},
-    near::Near,
+    neighbours::Near,
     particles::{PER_TASK, Particles},
-    solid::{Kinematics, Role, Solid, SolidSpec, skin},
-    space::{Bounds, Pose, Vector},
+    solid::{Kinematics, Role, Solid, SolidSpec, boundary_motion},
+    sph::boundary::{Cover, Dbc, Fit, Slip, sticking},
 };
 
 /// The boundary particles of all solids, one solid after the other.
@@ -116,7 +116,7 @@ impl<const D: usize> Boundary<D> {
     /// Places the boundary particles of `solid` where its kinematics say.
     pub(super) fn place(&mut self, solid: &Solid<D>) {
         let (range, Particles { r, v, .. }) = (solid.skin.clone(), &mut self.particles);
-        skin::place(&solid.kinematics, &self.local[range.clone()], &mut r[range.clone()], &mut v[range]);
+        boundary_motion::place(&solid.kinematics, &self.local[range.clone()], &mut r[range.clone()], &mut v[range]);
     }
 
     /// Sets the target densities of the boundary particles near water.

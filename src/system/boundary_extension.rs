@@ -4,9 +4,9 @@
 //! Without them fluid can leak through the sliding joint, which is one dp wide.
 
 use crate::{
+    math::Vector,
     model::Model,
     solid::{Role, SolidSpec},
-    space::Vector,
 };
 
 /// Faces touch if they are no further apart, dp.
@@ -62,9 +62,9 @@ pub(super) fn of_solid<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: 
 mod tests {
     use super::*;
     use crate::{
-        shape::Shape,
+        geometry::Shape,
+        math::Pose,
         solid::{Law, Motion},
-        space::Pose,
     };
 
     /// A bed, its face at y = 0, and on it at dp = 0.1 a paddle 0.4 m thick, its foot at `foot` (m), that moves so.

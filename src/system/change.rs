@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::{Reordering, System, boundary_extension::ExtensionParticle};
 use crate::{
     error::Result,
+    math::{Vector, Wedge},
     solid::{Kinematics, Load, Role, Solid, SolidSpec},
-    space::{Vector, Wedge},
 };
 
 impl<const D: usize> System<D> {

@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{Escape, System};
 use crate::{
     error::{Error, Kind, Result},
+    interaction::Sums,
+    math::{Matrix, Pose, Vector, Wedge},
     particles::Particles,
-    solid::{Kinematics, Load, Solid, wave::Yielding},
-    space::{Matrix, Pose, Vector, Wedge},
-    sweep::Sums,
+    solid::{Kinematics, Load, Solid},
+    wavemaker::Yielding,
 };
 
 /// No boundary particle is so far away, m; a value that is not finite fails the comparison too.

@@ -4,9 +4,9 @@ use rayon::prelude::*;
 
 use super::{Images, System};
 use crate::{
+    math::{Matrix, Vector},
     model::{Gradient, Model, Viscosity},
     particles::{PER_TASK, Particles},
-    space::{Matrix, Vector},
 };
 
 /// The water: particles, then the images of those near periodic sides, and what the laws keep of each.

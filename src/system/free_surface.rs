@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::System;
-use crate::{particles::PER_TASK, solid::Role, space::Vector};
+use crate::{math::Vector, particles::PER_TASK, solid::Role};
 
 impl<const D: usize> System<D> {
     /// Heights (m) of the surfaces above the horizontal place `at` (m; the last axis does not count), from the highest down, to

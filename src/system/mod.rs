@@ -24,7 +24,7 @@ pub use sponge_layer::SpongeLayer;
 pub(crate) use step_check::StepCheck;
 pub use step_check::{Escape, ExitPath, Limits, Lost};
 
-pub use crate::sweep::Peaks;
+pub use crate::interaction::Peaks;
 
 use std::time::{Duration, Instant};
 
@@ -32,13 +32,13 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    law::{Extra, Medium, gradient, state::State},
+    interaction::{Input, Output, Sums, Sweep},
+    math::{Bounds, Matrix, Pose, Vector},
     model::{Dimension, Model, Viscosity},
-    near::{CHUNK, Near},
+    neighbours::{CHUNK, Near},
     particles::PER_TASK,
     solid::{Dim, Links, Load, Solid},
-    space::{Bounds, Matrix, Pose, Vector},
-    sweep::{Input, Output, Sums, Sweep},
+    sph::{Extra, Medium, equation_of_state::State, gradient_correction},
 };
 
 /// Water and solids at one instant.
@@ -291,7 +291,7 @@ impl<const D: usize> System<D> {
         }
         if let Some(corrections) = &mut self.fluid.gradient_correction {
             corrections.par_iter_mut().zip(auxiliary).with_min_len(PER_TASK).for_each(|(correction, sums)| {
-                let rows = gradient::close(&sums.moment);
+                let rows = gradient_correction::close(&sums.moment);
                 *correction = Matrix::from_fn(|i, j| rows[i][j]);
             });
         }

@@ -7,10 +7,10 @@
 use super::{Fluid, Lost, Rates, System};
 use crate::{
     error::{Error, Result},
+    interaction::{Peaks, Sums},
+    math::{Bounds, Vector},
     model::Model,
     solid::{Role, SolidSpec},
-    space::{Bounds, Vector},
-    sweep::{Peaks, Sums},
 };
 
 /// How far images reach beyond a side, over the kernel's support: the skin beyond a side sees water as that inside does, also

@@ -7,9 +7,9 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
+    math::{Bounds, Vector},
     model::Model,
     solid::{Links, SolidSpec},
-    space::{Bounds, Vector},
 };
 
 /// What a simulation starts from.

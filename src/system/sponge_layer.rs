@@ -7,7 +7,7 @@
 use super::System;
 use crate::{
     error::{Error, Result},
-    space::Vector,
+    math::Vector,
 };
 
 /// A layer: all water beyond a plane.

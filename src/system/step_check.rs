@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::System;
 use crate::{
+    math::{Bounds, Vector},
     particles::{PER_TASK, Particles},
-    space::{Bounds, Vector},
 };
 
 /// The valid range of a water particle. Scene words `[guard]`.

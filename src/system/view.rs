@@ -4,11 +4,11 @@ use std::time::Duration;
 
 use super::{Periodic, System};
 use crate::{
-    law::Medium,
+    math::{Bounds, Vector},
     model::Model,
     particles::View,
     solid::{Around, Links, Load, Role, Solid},
-    space::{Bounds, Vector},
+    sph::Medium,
 };
 
 impl<const D: usize> System<D> {

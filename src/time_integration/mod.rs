@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     coupling::{Accounting, Interval},
-    law::wall::settled,
+    math::Vector,
     model::{Model, Scheme},
     particles::PER_TASK,
-    space::Vector,
+    sph::boundary::settled,
     system::{MomentumTransfer, Reordering, System},
 };
 

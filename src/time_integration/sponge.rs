@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::{particles::PER_TASK, space::Vector, system::System};
+use crate::{math::Vector, particles::PER_TASK, system::System};
 
 /// Damps the water in the sponge layers over `dt` (s), and the velocities `before` from which a scheme continues. Returns the
 /// energy (J) that the water lost, if that is `measured`.

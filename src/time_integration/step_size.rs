@@ -5,8 +5,8 @@
 //! shorten the step: see `coupling/acoustic_added_mass.rs`.
 
 use crate::{
-    law::Medium,
     model::{Model, Viscosity},
+    sph::Medium,
     system::Peaks,
 };
 

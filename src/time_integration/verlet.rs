@@ -18,9 +18,9 @@ use serde::{Deserialize, Serialize};
 use super::{apply_shifts, shifts, step_boundary_density};
 use crate::{
     coupling::{Accounting, Interval},
+    math::Vector,
     model::{Diffusion, Model, Viscosity},
     particles::PER_TASK,
-    space::Vector,
     system::{Reordering, StepCheck, System, permute},
 };
 

@@ -3,10 +3,11 @@
 use std::{f64::consts::TAU, path::Path};
 
 use pontoon::{
-    Error, preflight,
+    Error,
+    math::Vector,
+    preflight,
     scene::{Built, Scene},
     simulation::Simulation,
-    space::Vector,
 };
 
 /// A basin one half of a wave long, whose left end is a box; water 0.12 m deep is in it, about to rise at the left. The wave

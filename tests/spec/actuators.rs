@@ -4,10 +4,10 @@ use std::path::Path;
 
 use pontoon::{
     Result,
+    math::{Matrix, Pose, Vector, Wedge},
     scene::Scene,
     simulation::Simulation,
     solid::{Kinematics, Law, Motion, Role},
-    space::{Matrix, Pose, Vector, Wedge},
 };
 
 /// Water 0.1 m deep in a tank of 0.4 m × 0.3 m at the origin, at dp 10 mm, that moves as `driven` says.

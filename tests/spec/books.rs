@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use pontoon::{
+    geometry::Shape,
+    math::{Vector, Wedge},
     model::Dimension,
     probe::{Budget, Probe},
     scene::Scene,
-    shape::Shape,
     simulation::Simulation,
     solid::{Dim, Load, Role},
-    space::{Vector, Wedge},
 };
 
 use crate::rig;

@@ -130,15 +130,15 @@ fn the_change_of_a_tied_body_is_that_of_its_angular_momentum_to_first_order_in_t
             let solid = &sim.system().solids()[2];
             let pontoon::solid::Role::Free(body) = &solid.spec.role else { panic!("it is free") };
             let turn = solid.kinematics.pose.rotation;
-            let spin = pontoon::space::Vector::<3>::from_iterator(solid.kinematics.spin.axial());
+            let spin = pontoon::math::Vector::<3>::from_iterator(solid.kinematics.spin.axial());
             turn * body.inertia * turn.transpose() * spin
         };
         let before = momentum(&sim);
-        let mut sum = pontoon::space::Vector::<3>::zeros();
+        let mut sum = pontoon::math::Vector::<3>::zeros();
         while sim.time() < 0.05 {
             sim.step_to(0.05)?;
             let change = sim.load_breakdown(2).unwrap().change.torque.axial();
-            sum += pontoon::space::Vector::<3>::from_iterator(change) * sim.dt();
+            sum += pontoon::math::Vector::<3>::from_iterator(change) * sim.dt();
         }
         let gained = momentum(&sim) - before;
         Ok(((sum - gained).norm(), gained.norm()))

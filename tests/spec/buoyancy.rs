@@ -7,12 +7,12 @@
 use std::f64::consts::TAU;
 
 use pontoon::{
-    law::viscosity::Artificial,
+    geometry::{Region, Shape, fill},
+    math::{Pose, Vector},
     model::{Dimension, Model, Viscosity, Walls},
-    shape::{Region, Shape, fill},
     simulation::Simulation,
     solid::{Dim, FreeBody, Role, hydrostatics},
-    space::{Pose, Vector},
+    sph::viscosity::Artificial,
 };
 
 use crate::rig;

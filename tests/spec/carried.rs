@@ -4,12 +4,12 @@ use std::path::Path;
 
 use pontoon::{
     Result,
+    geometry::Shape,
+    math::{Bounds, Matrix, Pose, Vector, Wedge, expression::Formula},
     model::{Model, Scheme, Sweeping, Walls},
     scene::Scene,
-    shape::Shape,
     simulation::{Setup, Simulation},
-    solid::{Formula, Law, Links, Load, Motion, Role, SolidSpec},
-    space::{Bounds, Matrix, Pose, Vector, Wedge},
+    solid::{Law, Links, Load, Motion, Role, SolidSpec},
 };
 
 use crate::rig;
@@ -193,7 +193,7 @@ fn water_in_a_tank_that_gains_speed_leans_by_a_over_g() {
     let mut tank = rig::tank([length, 0.25], dp);
     tank.role = Role::Driven(Motion::slide(Vector::from([1.0, 0.0]), law));
     let mut model = Model::water(2, dp, depth);
-    model.viscosity = pontoon::model::Viscosity::Artificial(pontoon::law::viscosity::Artificial { alpha: 0.1 });
+    model.viscosity = pontoon::model::Viscosity::Artificial(pontoon::sph::viscosity::Artificial { alpha: 0.1 });
     let water = rig::lattice([0.0, 0.0], [length, depth], dp);
     let levels = vec![depth; water.len()];
     let mut setup = Setup::new(model, water, levels, vec![tank]);

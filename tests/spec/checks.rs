@@ -6,11 +6,11 @@ use std::{
 };
 
 use pontoon::{
-    check::{Align, Check, CheckWords, Reference, Score, Verdict, amplitude, deviation, off, peak, said},
+    analysis::{Align, Check, CheckWords, Reference, Score, Verdict, amplitude, deviation, format_verdicts, off, peak},
     error::{Kind, Result},
+    math::time_series::Series,
     run::{self, Options, Progress},
     scene::Scene,
-    series::Series,
 };
 
 use crate::rig::Home;
@@ -274,7 +274,7 @@ fn the_table_of_checks_has_only_columns_that_one_of_them_uses() -> std::io::Resu
     let plain = judge(&by_formula("box.heave_m", "t", bound(0.1)), &folder);
     let heads = |verdicts: &[&Verdict]| {
         let all: Vec<(&[String], &Verdict)> = verdicts.iter().map(|v| (&[][..], *v)).collect();
-        said::rows(&all, &[])[0].join("|")
+        format_verdicts::rows(&all, &[])[0].join("|")
     };
     assert_eq!(heads(&[&plain]), "check|N|M|bound|");
     let limit = Some(Score { off: Some(0.1), ..Score::default() });

@@ -1,11 +1,11 @@
 //! Water and solids: what one loses the other gains.
 
 use pontoon::{
+    geometry::Shape,
+    math::{Bounds, Pose, Vector, Wedge, expression::Formula},
     model::{Diffusion, Dimension, Model, Scheme, Sweeping, Viscosity, Walls},
-    shape::Shape,
     simulation::{Setup, Simulation},
-    solid::{Dim, Formula, Law, Motion, Role},
-    space::{Bounds, Pose, Vector, Wedge},
+    solid::{Dim, Law, Motion, Role},
 };
 
 use crate::rig;

@@ -1,11 +1,11 @@
 //! From one body to a thousand: the same bits at any number of threads. How a pile comes to rest is in `carried`.
 
 use pontoon::{
+    geometry::Shape,
+    math::Vector,
     model::{Dimension, Model},
-    shape::Shape,
     simulation::Simulation,
     solid::{Dim, Role},
-    space::Vector,
 };
 
 use crate::rig;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pontoon::{Error, scene::Scene, space::Vector, system::SpongeLayer};
+use pontoon::{Error, math::Vector, scene::Scene, system::SpongeLayer};
 
 const TANK: &str = r#"
 dimension = 2

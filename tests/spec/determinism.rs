@@ -1,12 +1,12 @@
 //! The same bits at any number of threads, and after a restart.
 
 use pontoon::{
-    law::{shifting::Shift, viscosity::Sps},
+    geometry::Shape,
+    math::{Pose, Vector, expression::Formula},
     model::{Gradient, Model, Scheme, Shifting, Viscosity, Walls},
-    shape::Shape,
     simulation::Simulation,
-    solid::{Formula, Law, Motion, Role},
-    space::{Pose, Vector},
+    solid::{Law, Motion, Role},
+    sph::{particle_shifting::Shift, viscosity::Sps},
 };
 
 use crate::rig;

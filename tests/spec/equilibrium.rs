@@ -5,10 +5,10 @@ use std::{f64::consts::TAU, path::Path};
 
 use pontoon::{
     Result,
+    math::{Pose, Vector},
     scene::Scene,
     simulation::Simulation,
     solid::{Role, hydrostatics::equilibrium_height},
-    space::{Pose, Vector},
 };
 
 const DP: f64 = 0.02;

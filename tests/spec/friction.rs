@@ -4,12 +4,12 @@ use std::path::Path;
 
 use pontoon::{
     Result,
+    geometry::Shape,
+    math::{Pose, Vector},
     model::Model,
     scene::Scene,
-    shape::Shape,
     simulation::Simulation,
     solid::Role,
-    space::{Pose, Vector},
 };
 
 use crate::rig;

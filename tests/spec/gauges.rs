@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     Result,
+    math::Vector,
     model::Model,
+    output::Readings,
     plan::Surface,
     probe::{Elevation, Flow, Force, Patch, Probe, Row, Runup},
-    record::Readings,
     run::{self, Options, Progress},
     scene::Scene,
     simulation::Simulation,
-    space::Vector,
 };
 
 use crate::rig::{self, Home};

@@ -1,16 +1,16 @@
 //! Corrected gradients: exact where the field is linear, momentum kept, and waves that live.
 
 use pontoon::{
-    law::{
+    geometry::Shape,
+    math::Vector,
+    model::{Gradient, Kernel, Model, Shifting, Sweeping, Viscosity},
+    simulation::{Setup, Simulation},
+    sph::{
         Extra, Pair, Side, Term,
-        gradient::{self, Corrected},
+        gradient_correction::{self, Corrected},
         kernel::{Kernel as _, Wendland},
         viscosity::Laminar,
     },
-    model::{Gradient, Kernel, Model, Shifting, Sweeping, Viscosity},
-    shape::Shape,
-    simulation::{Setup, Simulation},
-    space::Vector,
 };
 
 use crate::rig::{self, Dice};
@@ -36,7 +36,7 @@ fn the_slope_of_a_linear_field_is_exact_however_particles_lie() {
         let pair = Pair::new(r.into(), [0.0; 3], r.norm_squared(), 0.0, 0.0, side, side);
         Corrected.extra(&pair, factor, &mut sums, &mut other);
     }
-    let form = gradient::close(&sums.moment);
+    let form = gradient_correction::close(&sums.moment);
     let mut found = [Vector::<3>::zeros(); 2];
     for b in &near {
         let r = centre - *b;
@@ -116,7 +116,7 @@ fn what_it_does_not_go_with_is_refused() {
     assert!(of(Kernel::Wendland, Shifting::None).clash().is_none());
     for model in [
         of(Kernel::Cubic { tensile: true }, Shifting::None),
-        of(Kernel::Wendland, Shifting::Everywhere(pontoon::law::shifting::Shift::default())),
+        of(Kernel::Wendland, Shifting::Everywhere(pontoon::sph::particle_shifting::Shift::default())),
     ] {
         let water = rig::lattice([0.0, 0.0], [0.2, 0.2], 0.02);
         let levels = vec![0.2; water.len()];

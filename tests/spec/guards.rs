@@ -2,12 +2,12 @@
 
 use pontoon::{
     error::Kind,
+    geometry::Shape,
+    math::{Bounds, Vector},
     model::Model,
     run::{self, Inspection},
-    shape::Shape,
     simulation::{Escape, Limits, Setup, Simulation},
     solid::Role,
-    space::{Bounds, Vector},
 };
 
 use crate::rig::{self, Home};

@@ -5,15 +5,15 @@ use std::path::Path;
 use pontoon::{
     Result,
     error::Kind,
+    geometry::Shape,
+    math::{Vector, Wedge},
     scene::Scene,
-    shape::Shape,
     simulation::Simulation,
     solid::{
         Load, Role,
-        planar::{self, rapier::prelude as rapier},
-        spatial,
+        rapier2d::{self, rapier::prelude as rapier},
+        rapier3d,
     },
-    space::{Vector, Wedge},
 };
 
 use crate::rig;
@@ -126,7 +126,7 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
     let (mut inside, mut hosted) = (Simulation::new(setup()?)?, Simulation::with_external_bodies(setup()?)?);
     let (mut world, bodies) = world(&hosted);
     for (body, name) in bodies.iter().zip(["float", "foam"]) {
-        let spec = planar::solid(name, *body, &world.bodies, &world.colliders)?;
+        let spec = rapier2d::solid(name, *body, &world.bodies, &world.colliders)?;
         let known = &hosted.system().solids()[hosted.system().solid(name).unwrap_or_default()].spec;
         let (Role::Free(taken), Role::Free(said)) = (&spec.role, &known.role) else { panic!("both are free") };
         assert!((taken.mass / said.mass - 1.0).abs() < 1e-12 && spec.shape == known.shape && spec.pose == known.pose);
@@ -136,12 +136,12 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
         inside.step()?;
         hosted.step_with(f64::INFINITY, |step| {
             for (i, &body) in bodies.iter().enumerate() {
-                planar::give(&mut world.bodies[body], &step.loads()[i + 1]);
+                rapier2d::give(&mut world.bodies[body], &step.loads()[i + 1]);
             }
             world.integration_parameters.dt = step.dt();
             world.step();
             for (i, &body) in bodies.iter().enumerate() {
-                step.solids[i + 1] = planar::kinematics(&world.bodies[body]);
+                step.solids[i + 1] = rapier2d::kinematics(&world.bodies[body]);
             }
             Ok(())
         })?;
@@ -168,12 +168,12 @@ fn a_hosted_body_that_nobody_places_is_told_by_name() -> Result<()> {
 
 #[test]
 fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
-    use spatial::rapier::prelude::{
+    use rapier3d::rapier::prelude::{
         ColliderBuilder, ColliderSet, PhysicsWorld, RigidBodyBuilder, SharedShape, Vector as Point,
     };
     let mut world = PhysicsWorld::default();
     let body = world.insert_body(RigidBodyBuilder::dynamic().translation(Point::new(0.0, 0.0, 1.0)).lock_rotations());
-    let made = |world: &PhysicsWorld| spatial::solid("boat", body, &world.bodies, &world.colliders);
+    let made = |world: &PhysicsWorld| rapier3d::solid("boat", body, &world.bodies, &world.colliders);
     assert!(made(&world).is_err_and(|e| e.what.contains("no collider")));
     for (x, shape) in [
         (0.0, SharedShape::cuboid(0.1, 0.2, 0.3)),
@@ -197,12 +197,12 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
     let mut other = PhysicsWorld::default();
     let tetra = other.insert_body(RigidBodyBuilder::fixed());
     other.insert_collider(ColliderBuilder::convex_hull(&hull).expect("a hull"), Some(tetra));
-    let spec = spatial::solid("rock", tetra, &other.bodies, &other.colliders)?;
+    let spec = rapier3d::solid("rock", tetra, &other.bodies, &other.colliders)?;
     assert!(matches!(spec.role, Role::Fixed) && (spec.shape.volume().volume - 1.0 / 6.0).abs() < 1e-12);
     other.insert_collider(ColliderBuilder::cone(0.1, 0.1), Some(tetra));
-    let error = spatial::solid("rock", tetra, &other.bodies, &other.colliders).expect_err("water feels no cone");
+    let error = rapier3d::solid("rock", tetra, &other.bodies, &other.colliders).expect_err("water feels no cone");
     assert!(error.what.contains("Cone") && error.help.is_some(), "{error}");
-    assert!(spatial::solid("gone", tetra, &world.bodies, &ColliderSet::new()).is_err());
+    assert!(rapier3d::solid("gone", tetra, &world.bodies, &ColliderSet::new()).is_err());
     Ok(())
 }
 

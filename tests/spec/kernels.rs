@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use pontoon::{
-    law::{
+    math::Vector,
+    sph::{
         Medium,
         kernel::{Cubic, Kernel, Wendland, lattice},
     },
-    space::Vector,
 };
 
 const H: f64 = 0.037;

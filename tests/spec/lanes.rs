@@ -1,25 +1,24 @@
 //! The fast sweep against the oracle, on real states: what it rounds is far below what a step changes.
 
 use pontoon::{
-    lanes,
-    law::{
+    geometry::Shape,
+    interaction::{self, Input, Output, Sums},
+    math::{Bounds, Pose, Vector, expression::Formula, simd},
+    model::{Diffusion, Dimension, Gradient, Kernel, Model, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
+    neighbours::Near,
+    particles::Particles,
+    simulation::{Setup, Simulation},
+    solid::{Dim, Law, Motion, Role},
+    sph::{
         Units,
         continuity::Continuity,
-        diffusion::{Fourtakas, Molteni},
+        density_diffusion::{Fourtakas, Molteni},
+        equation_of_state::State,
         kernel::Wendland,
+        particle_shifting::Shift,
         pressure::Pressure,
-        shifting::Shift,
-        state::State,
         viscosity::{Artificial, Laminar, Sps},
     },
-    model::{Diffusion, Dimension, Gradient, Kernel, Model, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
-    near::Near,
-    particles::Particles,
-    shape::Shape,
-    simulation::{Setup, Simulation},
-    solid::{Dim, Formula, Law, Motion, Role},
-    space::{Bounds, Pose, Vector},
-    sweep::{self, Input, Output, Sums},
 };
 
 use crate::rig::{self, Dice};
@@ -298,7 +297,7 @@ fn every_law_in_three_dimensions() {
 }
 
 /// All sums of a stirred cloud by lanes with the instructions of `level`.
-fn with_instructions(level: lanes::Level, water: &Particles<3>, skin: &Particles<3>, model: &Model) -> Vec<Sums<3>> {
+fn with_instructions(level: simd::Level, water: &Particles<3>, skin: &Particles<3>, model: &Model) -> Vec<Sums<3>> {
     let mut near = Near::new(model.reach(), model.dp, Some(level));
     near.build(&water.r, &skin.r);
     let units = Units { length: Near::<3>::unit(model.reach()), time: model.h / model.c0 };
@@ -307,7 +306,7 @@ fn with_instructions(level: lanes::Level, water: &Particles<3>, skin: &Particles
     let wall = ((Pressure, Continuity), Artificial { alpha: 0.1 }.term(&counted));
     let inner = (wall, Fourtakas::default().term(&counted));
     let kernel = Wendland::new(counted.h, 3);
-    let mut sweep = sweep::compile(kernel, inner, wall, &counted, units, Some(level));
+    let mut sweep = interaction::compile(kernel, inner, wall, &counted, units, Some(level));
     let (mut sums, mut on_skin) = (vec![Sums::zero(); water.len()], vec![Sums::zero(); near.wet().len()]);
     let (shown, stress, forms, marks) = (&skin.v[..], &[][..], &[][..], &[][..]);
     let input = Input { near: &near, water, skin, shown, stress, forms, marks, medium: &medium, state: &state };
@@ -330,7 +329,7 @@ fn every_instruction_set_gives_the_same_bits() {
         skin.push(r, 1000.0);
     }
     // A processor has one or two; both round a multiplication and an addition once.
-    let all = lanes::levels().into_iter().map(|level| with_instructions(level, &water, &skin, &model));
+    let all = simd::levels().into_iter().map(|level| with_instructions(level, &water, &skin, &model));
     let all: Vec<_> = all.collect();
     assert!(all.iter().all(|sums| *sums == all[0]));
 }

@@ -2,19 +2,19 @@
 //! diffusion flattens, and the sweep does what an independent loop over all pairs does.
 
 use pontoon::{
-    law::{
-        Extra, Medium, Pair, Side, Term, Units,
-        continuity::Continuity,
-        diffusion::{Fourtakas, Molteni},
-        gradient::{Corrected, Moments},
-        kernel::{Kernel as _, Wendland},
-        pressure::{Pressure, Tensile},
-        shifting::{HeldTerm, Shift, ShiftTerm},
-        viscosity::{Artificial, Laminar, Sps, SpsTerm},
-        wall::{Barrier, Cover, Fit, settled, sticking},
-    },
+    math::Vector,
     model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
-    space::Vector,
+    sph::{
+        Extra, Medium, Pair, Side, Term, Units,
+        boundary::{Barrier, Cover, Fit, settled, sticking},
+        continuity::Continuity,
+        density_diffusion::{Fourtakas, Molteni},
+        gradient_correction::{Corrected, Moments},
+        kernel::{Kernel as _, Wendland},
+        particle_shifting::{HeldTerm, Shift, ShiftTerm},
+        pressure::{Pressure, Tensile},
+        viscosity::{Artificial, Laminar, Sps, SpsTerm},
+    },
 };
 
 use crate::rig::{self, Dice};

@@ -1,11 +1,11 @@
 //! Bodies lighter than the water that goes with them: foam, shells, plates.
 
 use pontoon::{
+    geometry::Shape,
+    math::{Pose, Vector},
     model::{Model, Slip, Sweeping, Walls},
-    shape::Shape,
     simulation::Simulation,
     solid::{FreeBody, Role},
-    space::{Pose, Vector},
 };
 
 use crate::rig;

@@ -7,11 +7,11 @@ use std::{
 
 use pontoon::{
     Error,
+    geometry::{Mesh, Shape, Touchable},
+    math::Vector,
     scene::Scene,
-    shape::{Mesh, Shape, Touchable},
     simulation::Simulation,
     solid::Role,
-    space::Vector,
 };
 use proptest::prelude::*;
 

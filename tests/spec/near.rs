@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use pontoon::{
+    math::Vector,
     model::Sweeping,
-    near::{CHUNK, Clusters, Near, PAD, Pairs},
-    space::Vector,
+    neighbours::{CHUNK, Clusters, Near, PAD, Pairs},
 };
 
 use crate::rig::Dice;

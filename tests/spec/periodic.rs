@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use pontoon::{
-    law::{shifting::Shift, viscosity::Laminar},
+    geometry::Shape,
+    math::{Pose, Vector},
     model::{Diffusion, Model, Shifting, Slip, Sweeping, Viscosity},
-    shape::Shape,
     simulation::{Setup, Simulation},
     solid::Role,
-    space::{Pose, Vector},
+    sph::{particle_shifting::Shift, viscosity::Laminar},
 };
 
 use crate::rig::{self, Dice};

@@ -2,11 +2,11 @@
 
 use pontoon::{
     Result,
+    geometry::Shape,
+    math::{Vector, Wedge},
     model::Model,
     probe::{Elevation, Energy, Force, Front, Motion, Pressure, Probe, Velocity},
-    shape::Shape,
     simulation::Simulation,
-    space::{Vector, Wedge},
 };
 
 use crate::rig;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pontoon::{
     Result,
-    record::Readings,
+    output::Readings,
     run::{self, Drift, Options, Progress},
 };
 

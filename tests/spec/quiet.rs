@@ -1,9 +1,9 @@
 //! Still water stays still.
 
 use pontoon::{
-    law::shifting::Shift,
     model::{Gradient, Model, Scheme, Shifting, Walls},
     simulation::Simulation,
+    sph::particle_shifting::Shift,
 };
 
 use crate::rig;

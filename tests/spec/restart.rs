@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, f64::consts::PI, fs, path::Path};
 use pontoon::{
     Result,
     model::Dimension,
-    record::Checkpoint,
+    output::Checkpoint,
     run::{self, Options, Progress},
     scene::Scene,
     simulation::Simulation,

@@ -3,11 +3,11 @@
 use std::{fs, path::PathBuf};
 
 use pontoon::{
+    geometry::Shape,
+    math::{Pose, Vector},
     model::{Dimension, Model},
-    shape::Shape,
     simulation::{Setup, Simulation},
     solid::{Dim, FreeBody, Role, SolidSpec},
-    space::{Pose, Vector},
 };
 
 /// Lattice points of spacing `dp` filling the box from `min` to `min + size`, cell centres.

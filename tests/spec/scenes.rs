@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     model::Dimension,
-    record::frame::particle_bytes,
+    output::frame::particle_bytes,
     scene::{Built, Scene, shipped},
     simulation::Simulation,
     solid::Dim,

@@ -3,9 +3,9 @@
 use std::{f64::consts::PI, sync::Arc};
 
 use pontoon::{
-    shape::{Mesh, Shape, Touchable},
+    geometry::{Mesh, Shape, Touchable},
+    math::{Matrix, Vector},
     solid::FreeBody,
-    space::{Matrix, Vector},
 };
 
 /// An upright prism `height` (m) high over an L, `long` × `deep` (m) with both its legs `leg` (m) broad, its inner corner cut out of the

@@ -4,12 +4,12 @@ use std::{fs, path::Path};
 
 use pontoon::{
     Result,
+    geometry::Shape,
+    math::{Pose, Vector},
     report::{self, Field, Shot},
     run::{self, Options, Progress},
     scene::Scene,
-    shape::Shape,
     solid::{Dim, Engine, FreeBody, HasEngine, Kinematics, Links, Load, Role, SolidSpec},
-    space::{Pose, Vector},
 };
 use serde_json::Value;
 use tiny_skia::Pixmap;

@@ -2,10 +2,10 @@
 
 use pontoon::{
     coupling::stiffest_frequency,
-    law::viscosity::Laminar,
+    math::Vector,
     model::{Diffusion, Model, Scheme, Viscosity},
     simulation::Simulation,
-    space::Vector,
+    sph::viscosity::Laminar,
     time_integration::step_size,
 };
 
@@ -86,7 +86,7 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
 
 #[test]
 fn a_body_on_water_swings_faster_by_the_root_of_its_mass() {
-    use pontoon::{shape::Shape, solid::FreeBody};
+    use pontoon::{geometry::Shape, solid::FreeBody};
     let dp = 0.01;
     let medium = Model::water(2, dp, 1.0).medium::<2>();
     let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };

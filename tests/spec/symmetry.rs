@@ -4,12 +4,12 @@ use std::path::Path;
 
 use pontoon::{
     Result,
+    geometry::Shape,
+    math::{Matrix, Vector, Wedge},
     model::{Dimension, Model, Sweeping},
     scene::Scene,
-    shape::Shape,
     simulation::Simulation,
     solid::{Dim, Kinematics, Role, SolidSpec},
-    space::{Matrix, Vector, Wedge},
 };
 
 use crate::rig;

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use pontoon::{
     Result,
+    math::{Pose, Vector},
     scene::Scene,
     simulation::{Setup, Simulation},
     solid::{FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
-    space::{Pose, Vector},
 };
 
 use crate::skin_volume::angle;

@@ -5,12 +5,12 @@
 use std::{f64::consts::TAU, path::Path};
 
 use pontoon::{
+    analysis::{Harmonic, harmonic},
+    math::Vector,
+    math::time_series::Series,
     scene::Scene,
-    series::Series,
     simulation::Simulation,
-    solid::wave::wave_number,
-    space::Vector,
-    stats::{Harmonic, harmonic},
+    wavemaker::wave_number,
 };
 
 /// Between readings of the gauges, s.

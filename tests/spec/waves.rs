@@ -4,13 +4,14 @@ use std::{f64::consts::TAU, path::Path};
 
 use pontoon::{
     Error,
+    math::Vector,
     model::{Dimension, Model, Scheme, Viscosity},
     preflight::{self, Finding, Preflight, Wave},
     scene::{Built, DampingWords, DrivenWords, ProbeEntry, Scene, ShapeWords, SolidWords, WaveWords},
     simulation::{Setup, Simulation},
-    solid::{Dim, wave::Region},
-    space::Vector,
+    solid::Dim,
     system::SpongeLayer,
+    wavemaker::Region,
 };
 
 use crate::rig;

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use super::*;
-use crate::{record::Readings, run::resume, simulation::Rescued, space::Vector};
+use crate::{math::Vector, output::Readings, run::resume, simulation::Rescued};
 
 /// Water that falls over, with a table of every kind: by step, of means, of many rows at one time.
 const SCENE: &str = r#"
@@ -98,7 +98,7 @@ fn what_was_written_of_a_course_that_ended_in_an_alarm_is_taken_back() -> Result
     }
     let frames = fs::read_dir(out.join("frames")).map_err(|e| Error::file(&out, e))?.count();
     assert_eq!(frames, 2 * (1 + (back_to / 0.02) as usize), "water and boundaries of each frame up to {back_to} s");
-    for name in [restart::LAST, restart::PREVIOUS] {
+    for name in [checkpoint::LAST, checkpoint::PREVIOUS] {
         assert_eq!(Checkpoint::read(&out.join(name))?.time, back_to, "{name}");
     }
 

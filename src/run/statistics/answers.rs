@@ -4,7 +4,7 @@ use std::{f64::consts::PI, path::Path};
 
 use serde::{Serialize, Serializer};
 
-use crate::{error::Result, record::write_whole, stats::Band};
+use crate::{analysis::Band, error::Result, output::write_whole};
 
 /// The file, in the run's folder.
 pub const RAO: &str = "rao.csv";

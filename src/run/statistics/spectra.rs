@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Tables, find};
-use crate::{error::Result, record::write_whole, stats::swing, words::unit};
+use crate::{analysis::swing, error::Result, math::format::unit, output::write_whole};
 
 /// The file, in the run's folder.
 pub const SPECTRA: &str = "spectra.csv";
@@ -43,7 +43,7 @@ fn density(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{error::Error, record::Readings};
+    use crate::{error::Error, output::Readings};
 
     #[test]
     fn what_swings_has_its_spectrum_in_rows_and_what_does_not_has_no_file() -> Result<()> {

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::{Case, Map, Trial, chart, judge::Outcome};
 use crate::{
     error::{Error, Result},
-    record::write_whole,
+    output::write_whole,
 };
 
 /// A case, what came out of it if it has been run, and what that is worth.

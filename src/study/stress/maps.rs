@@ -10,9 +10,9 @@ use serde::Deserialize;
 use super::judge::{Bound, Course, Judge, Of};
 use crate::{
     error::{Error, Kind, Result, nearest},
-    record::restart::hash,
+    math::expression::Field,
+    output::checkpoint::hash,
     scene::Scene,
-    solid::Field,
 };
 
 const TEXT: &str = include_str!("../../../scenes/stress.toml");

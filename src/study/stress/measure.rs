@@ -6,11 +6,11 @@ use super::{
 };
 use crate::{
     error::Result,
+    geometry::Shape,
+    math::{Vector, Wedge, expression::Formula},
     probe::{Energy, Motion, Probe, find_solid},
-    shape::Shape,
     simulation::Simulation,
-    solid::{Formula, Kinematics, Role, Solid, hydrostatics::equilibrium_height},
-    space::{Vector, Wedge},
+    solid::{Kinematics, Role, Solid, hydrostatics::equilibrium_height},
     system::System,
 };
 

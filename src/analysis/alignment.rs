@@ -1,0 +1,100 @@
+//! One constant delay between a run and its reference: clocks that differ, a gate that took time to open.
+
+use serde::{Deserialize, Serialize};
+
+use super::error_metrics::{amplitude, deviation};
+use crate::{math::time_series::Series, plan::Align};
+
+/// The largest delay of either sign that [`best_delay`] looks at, s.
+const WIDEST: f64 = 0.3;
+
+/// From one delay that is tried to the next, s: a hundredth of the period of the shortest waves in a tank.
+const STEP: f64 = 0.002;
+
+/// Share of the reference that must lie within the run for a delay to count, –: else the best would be that
+/// which moves the difficult part out of sight.
+const KEPT: f64 = 0.9;
+
+/// A run against its reference once one constant delay is taken out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Aligned {
+    /// By how much the run is late, s; negative where it leads.
+    pub delay: f64,
+    /// Relative deviation then, –.
+    #[serde(rename = "N")]
+    pub n: f64,
+    /// Amplitude ratio then, –.
+    #[serde(rename = "M")]
+    pub m: f64,
+}
+
+/// When both series first pass a threshold, s; none if they never do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Arrival {
+    /// The run.
+    pub run: Option<f64>,
+    /// Its reference; 0 where its clock starts then.
+    pub reference: Option<f64>,
+}
+
+/// The two once the delay is taken out that `align` means, and when they arrive if it says so; `sim` may
+/// reach further than `window`, in which arrivals count.
+pub fn align(sim: &Series, reference: &Series, align: Align, window: (f64, f64)) -> (Option<Aligned>, Option<Arrival>) {
+    let (delay, arrival) = match align {
+        Align::Crossing(threshold) => {
+            let run = sim.within(window.0, window.1).ok().and_then(|sim| sim.crossing(threshold));
+            let arrival = Arrival { run, reference: reference.crossing(threshold) };
+            (arrival.run.zip(arrival.reference).map(|(run, reference)| run - reference), Some(arrival))
+        }
+        Align::Start(_) => (None, None),
+        Align::Best => (best_delay(sim, reference), None),
+    };
+    let aligned = delay.and_then(|delay| {
+        let moved = moved(sim, reference, delay)?;
+        Some(Aligned { delay, n: deviation(sim, &moved).ok()?, m: amplitude(sim, &moved).ok()? })
+    });
+    (aligned, arrival)
+}
+
+/// The delay (s) within ±0.3 s by which `sim` is late for the least N against `reference`; none if there is
+/// no such delay, as where the reference is zero.
+///
+/// Every 2 ms is tried, the smallest first, and the best is refined by golden sections to a microsecond.
+/// ```
+/// # use pontoon::{analysis::best_delay, math::time_series::Series};
+/// let t: Vec<f64> = (0..400).map(|i| 0.01 * i as f64).collect();
+/// let wave = |late: f64| t.iter().map(|t| (3.0 * (t - late)).sin()).collect::<Vec<_>>();
+/// let (sim, reference) = (Series::new(t.clone(), wave(0.05))?, Series::new(t.clone(), wave(0.0))?);
+/// let delay = best_delay(&sim, &reference.within(0.5, 3.5)?).unwrap();
+/// assert!((delay - 0.05).abs() < 1e-4);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+pub fn best_delay(sim: &Series, reference: &Series) -> Option<f64> {
+    let n = |delay: f64| moved(sim, reference, delay).and_then(|moved| deviation(sim, &moved).ok());
+    let count = (WIDEST / STEP).round() as i32;
+    let mut best: Option<(f64, f64)> = None;
+    for i in (0..=count).flat_map(|i| [i, -i]) {
+        let delay = f64::from(i) * STEP;
+        if let Some(n) = n(delay)
+            && best.is_none_or(|(_, least)| n < least)
+        {
+            best = Some((delay, n));
+        }
+    }
+    let (middle, least) = best?;
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut a, mut b) = ((middle - STEP).max(-WIDEST), (middle + STEP).min(WIDEST));
+    while b - a > 1e-6 {
+        let (x, y) = (b - golden * (b - a), a + golden * (b - a));
+        if n(x).unwrap_or(f64::INFINITY) <= n(y).unwrap_or(f64::INFINITY) { b = y } else { a = x }
+    }
+    let fine = 0.5 * (a + b);
+    Some(if n(fine).is_some_and(|n| n < least) { fine } else { middle })
+}
+
+/// `reference` as much later as the run is late, where the run covers it; none if it covers too little.
+fn moved(sim: &Series, reference: &Series, delay: f64) -> Option<Series> {
+    let (first, last) = sim.span();
+    let moved = reference.moved(delay).within(first, last).ok()?;
+    (moved.times().len() as f64 >= KEPT * reference.times().len() as f64).then_some(moved)
+}

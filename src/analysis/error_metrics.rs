@@ -1,0 +1,132 @@
+//! Measures of the difference between two series: deviation N, amplitude M, first peak, largest distance.
+
+use crate::{
+    error::{Error, Result},
+    math::time_series::Series,
+};
+
+/// Relative deviation of a simulated series from a measured one: 0 is perfect.
+///
+///   N = √( Σ (sim_i − ref_i)² / Σ ref_i² )
+///
+/// `sim`, `reference`: values over time (s), same unit, any lengths ≥ 2: `sim` is interpolated
+/// linearly to the reference's times. Returns N (–). Its companion [`amplitude`] judges size alone.
+///
+/// # Errors
+/// `Scene` if the reference leaves the simulated span (names both spans; shorten the reference or lengthen
+/// the run), or is zero throughout (use [`amplitude`] of the two the other way round).
+///
+/// Source: [@pirkhalili2023], eq. (26).
+/// ```
+/// # use pontoon::{analysis::deviation, math::time_series::Series};
+/// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
+/// let sim = Series::new([0.0, 2.0], [3.0, 3.0])?;   // off by 0, −1, 3
+/// assert_eq!(deviation(&sim, &reference)?, (10.0_f64 / 25.0).sqrt());
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+pub fn deviation(sim: &Series, reference: &Series) -> Result<f64> {
+    ratio(sim, reference, |s, r| (s - r) * (s - r))
+}
+
+/// Size of a simulated series relative to a measured one: 1 is perfect.
+///
+///   M = √( Σ sim_i² / Σ ref_i² )
+///
+/// Arguments and errors as for [`deviation`]. Returns M (–).
+///
+/// Source: [@pirkhalili2023], eq. (27).
+/// ```
+/// # use pontoon::{analysis::amplitude, math::time_series::Series};
+/// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
+/// let sim = Series::new([0.0, 2.0], [6.0, 6.0])?;
+/// assert_eq!(amplitude(&sim, &reference)?, (108.0_f64 / 25.0).sqrt());
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+pub fn amplitude(sim: &Series, reference: &Series) -> Result<f64> {
+    ratio(sim, reference, |s, _| s * s)
+}
+
+/// Relative error of the first peak, as of the first impact on a wall: 0 is perfect.
+///
+///   |peak_sim − peak_ref| / |peak_ref|
+///
+/// The first peak is the largest |x| of the first stretch in which |x| stays above half of the series'
+/// largest, so that ripples on the way up do not count. Each series has its own; their times may differ.
+/// Returns the error (–).
+///
+/// # Errors
+/// `Scene` if the reference is zero throughout.
+/// ```
+/// # use pontoon::{analysis::peak, math::time_series::Series};
+/// let t = [0.0, 1.0, 2.0, 3.0, 4.0];
+/// let reference = Series::new(t, [0.0, 1.0, 8.0, 2.0, 10.0])?;   // first peak 8
+/// let sim = Series::new(t, [0.0, 0.0, 1.0, 6.0, 2.0])?;          // 6
+/// assert_eq!(peak(&sim, &reference)?, 0.25);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+pub fn peak(sim: &Series, reference: &Series) -> Result<f64> {
+    let expected = first_peak(reference.values());
+    if expected == 0.0 {
+        return Err(all_zero());
+    }
+    Ok((first_peak(sim.values()) - expected).abs() / expected.abs())
+}
+
+/// Largest distance of a simulated series from its reference: 0 is perfect. It says something where the
+/// reference is zero too.
+///
+///   max |sim_i − ref_i|
+///
+/// Arguments as for [`deviation`]. Returns the distance, in the unit of the series.
+///
+/// # Errors
+/// `Scene` if the reference leaves the simulated span.
+/// ```
+/// # use pontoon::{analysis::off, math::time_series::Series};
+/// let still = Series::new([0.0, 1.0, 2.0], [0.0, 0.0, 0.0])?;
+/// let sim = Series::new([0.0, 2.0], [0.0, -0.5])?;
+/// assert_eq!(off(&sim, &still)?, 0.5);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+pub fn off(sim: &Series, reference: &Series) -> Result<f64> {
+    covers(sim, reference)?;
+    let pairs = reference.times().iter().zip(reference.values());
+    Ok(pairs.map(|(&t, &r)| (sim.at(t) - r).abs()).fold(0.0, f64::max))
+}
+
+/// The value of the first peak, with its sign.
+fn first_peak(x: &[f64]) -> f64 {
+    let half = 0.5 * x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let stretch = x.iter().skip_while(|x| x.abs() < half).take_while(|x| x.abs() >= half);
+    stretch.fold(0.0, |peak: f64, &x| if x.abs() > peak.abs() { x } else { peak })
+}
+
+/// √( Σ term(sim_i, ref_i) / Σ ref_i² ) over the reference's times.
+fn ratio(sim: &Series, reference: &Series, term: impl Fn(f64, f64) -> f64) -> Result<f64> {
+    covers(sim, reference)?;
+    let size: f64 = reference.values().iter().map(|r| r * r).sum();
+    if size == 0.0 {
+        return Err(all_zero());
+    }
+    let pairs = reference.times().iter().zip(reference.values());
+    let sum: f64 = pairs.map(|(&t, &r)| term(sim.at(t), r)).sum();
+    Ok((sum / size).sqrt())
+}
+
+/// Refuses a reference that leaves the simulated span.
+fn covers(sim: &Series, reference: &Series) -> Result<()> {
+    let (inner, outer) = (reference.span(), sim.span());
+    if inner.0 < outer.0 || inner.1 > outer.1 {
+        let what = format!(
+            "the reference spans {} to {} s, the simulated series only {} to {} s",
+            inner.0, inner.1, outer.0, outer.1
+        );
+        return Err(Error::scene(what).help("lengthen the run (`until`), or shorten the reference"));
+    }
+    Ok(())
+}
+
+fn all_zero() -> Error {
+    Error::scene("the reference is zero throughout, so nothing can be relative to it")
+        .help("compare with a quantity that is not zero, such as the level instead of its change")
+}

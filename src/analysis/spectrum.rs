@@ -1,0 +1,208 @@
+//! Spectra by Welch's method: means of Hann-windowed periodograms of half-overlapping parts of a record. [@welch1967]
+
+use realfft::{RealFftPlanner, num_complex::Complex};
+
+use super::{moments, waves};
+use crate::math::time_series::Series;
+
+/// Fewest samples of a record.
+const LEAST: usize = 16;
+
+/// Waves that a part of a record holds at least, where the record is cut at all.
+const WAVES_A_PART: usize = 16;
+
+/// Into how many quarters a long record is cut; with those that lie half over two there are seven.
+pub(super) const QUARTERS: usize = 4;
+
+/// Waves that a series has at least whose spectrum is shown: fewer lines than that a wave's width are no spectrum.
+const SHOWN_WAVES: usize = 8;
+
+/// How much of a spectrum's variance is shown, –; what is faster is noise.
+const SHOWN: f64 = 0.999;
+
+/// Complex amplitudes, from frequency 0 up.
+pub type Lines = Vec<Complex<f64>>;
+
+/// A one-sided spectrum, its integral the variance of the record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spectrum {
+    /// From one frequency to the next, Hz; the first is 0.
+    pub step: f64,
+    /// Density, in the squared unit of the series a Hz.
+    pub density: Vec<f64>,
+}
+
+impl Spectrum {
+    /// Frequencies, Hz.
+    pub fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.density.len()).map(|i| i as f64 * self.step)
+    }
+
+    /// ∫ fⁿ S df from `from` to `until` (Hz).
+    pub fn moment(&self, n: i32, from: f64, until: f64) -> f64 {
+        let inside = self.frequencies().zip(&self.density).filter(|(f, _)| (from..=until).contains(f));
+        inside.map(|(f, s)| f.powi(n) * s).sum::<f64>() * self.step
+    }
+
+    /// Significant height H_m0 = 4 √m₀, in the unit of the series.
+    pub fn height(&self) -> f64 {
+        4.0 * self.moment(0, 0.0, f64::INFINITY).sqrt()
+    }
+
+    /// Peak frequency, Hz: the centroid of the highest line and two on either side, over which a Hann window spreads what
+    /// swings with one period.
+    pub fn peak(&self) -> f64 {
+        let lines = 0..self.density.len();
+        let top = lines.max_by(|a, b| self.density[*a].total_cmp(&self.density[*b])).unwrap_or(0);
+        let near = || self.frequencies().zip(&self.density).take(top + 3).skip(top.saturating_sub(2));
+        near().map(|(f, s)| f * s).sum::<f64>() / near().map(|(_, s)| s).sum::<f64>()
+    }
+
+    /// Peak period T_p, s.
+    pub fn peak_period(&self) -> f64 {
+        1.0 / self.peak()
+    }
+
+    /// Mean period T_m02 = √(m₀/m₂), s.
+    pub fn mean_period(&self) -> f64 {
+        (self.moment(0, 0.0, f64::INFINITY) / self.moment(2, 0.0, f64::INFINITY)).sqrt()
+    }
+}
+
+/// The spectrum of `series`; none if it is constant or has fewer than 16 samples.
+///
+/// Samples are taken evenly from the smooth curve through the series, less their mean. A record of 64 waves or more is cut
+/// into quarters that overlap by half; a shorter one is taken whole.
+pub fn spectrum(series: &Series) -> Option<Spectrum> {
+    let of = moments(series);
+    if of.least.0 == of.largest.0 {
+        return None;
+    }
+    let variance = of.deviation.powi(2);
+    let cut = waves(series).is_some_and(|w| w.count >= QUARTERS * WAVES_A_PART);
+    let (step, parts) = transforms(&[series], if cut { QUARTERS } else { 1 })?;
+    let count = parts[0].first()?.len();
+    let mut density = vec![0.0; count];
+    for part in &parts[0] {
+        density.iter_mut().zip(part).for_each(|(s, a)| *s += a.norm_sqr());
+    }
+    let sum = density.iter().sum::<f64>() * step;
+    if !(sum > 0.0 && variance > 0.0) {
+        return None;
+    }
+    density.iter_mut().for_each(|s| *s *= variance / sum);
+    Some(Spectrum { step, density })
+}
+
+/// The spectrum of `series` as it is shown: of eight waves or more, up to the frequency below which 99.9 % of the variance lies.
+pub fn swing(series: &Series) -> Option<Spectrum> {
+    waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
+    let mut all = spectrum(series)?;
+    let whole: f64 = all.density.iter().sum();
+    let mut sum = 0.0;
+    let below = all.density.iter().take_while(|s| {
+        sum += **s;
+        sum - **s < SHOWN * whole
+    });
+    let rows = below.count();
+    all.density.truncate(rows);
+    Some(all)
+}
+
+/// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
+/// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
+pub fn spectra(series: &[&Series]) -> Option<(f64, Vec<Lines>)> {
+    let (step, parts) = transforms(series, 1)?;
+    Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
+}
+
+/// From one frequency to the next (Hz), and for each series the transforms of its windowed parts, over the time that all
+/// cover: `cut` into so many, and those that lie half over two.
+pub(super) fn transforms(series: &[&Series], cut: usize) -> Option<(f64, Vec<Vec<Lines>>)> {
+    let spans = series.iter().map(|s| s.span());
+    let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));
+    let count = series.iter().map(|s| s.times().len()).min()?;
+    if count < LEAST || until <= from {
+        return None;
+    }
+    let dt = (until - from) / (count - 1) as f64;
+    let length = (count / cut) & !1;
+    let mut planner = RealFftPlanner::<f64>::new();
+    let plan = planner.plan_fft_forward(length);
+    let hann = |i: usize| 0.5 - 0.5 * (std::f64::consts::TAU * i as f64 / length as f64).cos();
+    let mut all = Vec::new();
+    for series in series {
+        let samples: Vec<f64> = (0..count).map(|i| series.smooth(from + i as f64 * dt).0).collect();
+        let mean = samples.iter().sum::<f64>() / count as f64;
+        let mut parts = Vec::new();
+        for start in (0..=count - length).step_by(length / 2) {
+            let mut part: Vec<f64> = (0..length).map(|i| hann(i) * (samples[start + i] - mean)).collect();
+            let mut found = plan.make_output_vec();
+            plan.process(&mut part, &mut found).ok()?;
+            parts.push(found);
+        }
+        all.push(parts);
+    }
+    Some((1.0 / (length as f64 * dt), all))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+    use std::f64::consts::TAU;
+
+    /// A sea of so many components evenly apart in frequency, with phases that a golden angle apart make irregular.
+    fn sea(density: impl Fn(f64) -> f64, step: f64, count: u32, until: f64) -> Result<Series> {
+        let t: Vec<f64> = (0..=(until / 0.05) as usize).map(|i| i as f64 * 0.05).collect();
+        let part = |t: f64, i: u32| {
+            let f = (f64::from(i) + 0.5) * step;
+            let phase = 2.399_963 * f64::from(i) * f64::from(i);
+            (2.0 * density(f) * step).sqrt() * (TAU * f * t + phase).cos()
+        };
+        let x: Vec<f64> = t.iter().map(|&t| (0..count).map(|i| part(t, i)).sum()).collect();
+        Series::new(t, x)
+    }
+
+    /// JONSWAP of peak frequency `peak` (Hz) and γ = 3.3, not normed.
+    fn jonswap(f: f64, peak: f64) -> f64 {
+        let sigma = if f <= peak { 0.07 } else { 0.09 };
+        let bump = (-0.5 * ((f / peak - 1.0) / sigma).powi(2)).exp();
+        f.powi(-5) * (-1.25 * (peak / f).powi(4)).exp() * 3.3_f64.powf(bump)
+    }
+
+    #[test]
+    fn a_sine_has_its_period_and_four_deviations() -> Result<()> {
+        let t: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.02).collect();
+        let x: Vec<f64> = t.iter().map(|t| 0.3 + 0.1 * (TAU * t / 1.37).sin()).collect();
+        let Some(found) = spectrum(&Series::new(t, x)?) else { panic!("it has a spectrum") };
+        // 14.6 periods, not a whole number: the variance of what is over is within 2 %, half of that of the root.
+        assert!((found.height() / (0.4 / 2.0_f64.sqrt()) - 1.0).abs() < 0.02, "{}", found.height());
+        // Lines are 1/20 Hz apart; the centroid of a Hann window's is its middle, but for what other lines have of it.
+        assert!((found.peak_period() / 1.37 - 1.0).abs() < 0.01, "{}", found.peak_period());
+        Ok(())
+    }
+
+    #[test]
+    fn a_jonswap_sea_has_its_significant_height_and_its_peak() -> Result<()> {
+        let (peak, step, count) = (0.5, 0.0025, 800);
+        let m0: f64 = (0..count).map(|i| jonswap((f64::from(i) + 0.5) * step, peak) * step).sum();
+        let height = 0.1;
+        let scale = height * height / (16.0 * m0);
+        // 400 s, the time after which a sum of such components repeats itself: all its variance, 200 peak periods.
+        let series = sea(|f| scale * jonswap(f, peak), step, count, 400.0)?;
+        let Some(found) = spectrum(&series) else { panic!("it has a spectrum") };
+        assert!((found.height() / height - 1.0).abs() < 0.02, "H_m0 within 2 %: {}", found.height());
+        // Lines of a quarter of the record are 1/100 Hz apart, and the peak of one sea of 200 waves wanders by as much.
+        assert!((found.peak_period() * peak - 1.0).abs() < 0.05, "T_p within 5 %: {}", found.peak_period());
+        Ok(())
+    }
+
+    #[test]
+    fn what_does_not_change_has_no_spectrum() -> Result<()> {
+        let t: Vec<f64> = (0..100).map(f64::from).collect();
+        assert_eq!(spectrum(&Series::new(t.clone(), vec![0.3; 100])?), None);
+        assert_eq!(spectrum(&Series::new(t[..8].to_vec(), t[..8].to_vec())?), None, "too short");
+        Ok(())
+    }
+}

@@ -1,0 +1,289 @@
+//! Verdicts: a column of the run's own CSV against a column of a reference CSV, or against a formula.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    alignment::{Aligned, Arrival, align},
+    error_metrics::{amplitude, deviation, off, peak},
+    reference_table,
+};
+use crate::{
+    error::{Error, Result},
+    math::expression::Formula,
+    math::time_series::Series,
+    plan::{Align, CheckWords, Reference, Score},
+};
+
+/// A reference that a run is to be held against.
+#[derive(Clone, Debug)]
+pub struct Check {
+    words: CheckWords,
+    reference: Known,
+}
+
+/// What is known of a series.
+#[derive(Clone, Debug)]
+enum Known {
+    /// Samples, their delay added, in the window.
+    Table(Series),
+    /// A value at any time.
+    Formula(Formula),
+}
+
+/// A run and what it is held against, as lines.
+#[derive(Clone, Debug)]
+pub struct Curves {
+    /// The run, from its start to its end.
+    pub sim: Series,
+    /// The same as the check's instrument shows it, if it has one.
+    pub meaned: Option<Series>,
+    /// The reference, where both the window and the run cover it.
+    pub reference: Series,
+    /// Whether the reference is a formula.
+    pub exact: bool,
+    /// Share of the reference in the window that the run covers, –.
+    pub covered: f64,
+}
+
+/// Figures of a comparison; one is none where it cannot be formed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// Relative deviation, –.
+    #[serde(rename = "N")]
+    pub n: Option<f64>,
+    /// Amplitude ratio, –.
+    #[serde(rename = "M")]
+    pub m: Option<f64>,
+    /// Relative error of the first peak, –.
+    pub peak: Option<f64>,
+    /// Largest |run − reference|, in the unit of the series.
+    pub off: Option<f64>,
+}
+
+/// The figures of the run as an instrument shows it that takes a running mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meaned {
+    /// Over how long, s.
+    pub seconds: f64,
+    /// The figures.
+    #[serde(flatten)]
+    pub figures: Figures,
+}
+
+/// How a run did against a reference.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Which series, as `probe.column`.
+    pub series: String,
+    /// The figures of the run as it is.
+    #[serde(flatten)]
+    pub figures: Figures,
+    /// The figures of its running mean, if the check asks for one.
+    pub meaned: Option<Meaned>,
+    /// N and M with one delay taken out, of the running mean if there is one.
+    pub aligned: Option<Aligned>,
+    /// When run and reference first pass the threshold of the check, if it has one.
+    pub arrival: Option<Arrival>,
+    /// What the paper reached.
+    pub paper: Option<Score>,
+    /// What the run must reach.
+    pub bound: Option<Score>,
+    /// Share of the reference that lies within the simulated time, –.
+    pub covered: f64,
+    /// Whether the bound is kept; none if there is no bound or too little to judge by.
+    pub passed: Option<bool>,
+    /// Why a figure is missing.
+    pub note: Option<String>,
+}
+
+impl Check {
+    /// The check of a run that `words` mean; the tables that they name lie in `folder`.
+    ///
+    /// # Errors
+    /// `File` if the table cannot be read; `Scene` if it lacks a column, has fewer than two samples in the
+    /// window, or the formula is none.
+    pub fn new(words: &CheckWords, folder: &Path) -> Result<Self> {
+        let reference = match &words.reference {
+            Reference::Formula(text) => Known::Formula(Formula::parse(text)?),
+            Reference::Table { file, time, column, delay } => {
+                let path = folder.join(file);
+                let (from, until) = window(words, 0.0);
+                let whole = reference_table::read(&path, time, column, *delay)?;
+                Known::Table(
+                    whole.within(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
+                )
+            }
+        };
+        Ok(Self { words: words.clone(), reference })
+    }
+
+    /// What it looks at and what for.
+    pub fn words(&self) -> &CheckWords {
+        &self.words
+    }
+
+    /// The run whose tables lie in `folder`, and its reference.
+    ///
+    /// # Errors
+    /// `File` if the run's table cannot be read; `Scene` if it has no such column, or the run and the
+    /// reference have no time in common.
+    pub fn curves(&self, folder: &Path) -> Result<Curves> {
+        let (sim, meaned) = self.run(folder)?;
+        let (reference, covered, _) = self.common(&sim)?;
+        let exact = matches!(self.reference, Known::Formula(_));
+        Ok(Curves { sim, meaned, reference, exact, covered })
+    }
+
+    /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
+    /// comparison that cannot be made says so in its note, and misses its bound unless the run is too short.
+    pub fn judge(&self, folder: &Path) -> Verdict {
+        let mut verdict = self.blank();
+        let (sim, meaned) = match self.run(folder) {
+            Ok(run) => run,
+            Err(why) => {
+                verdict.passed = self.words.bound.map(|_| false);
+                return Verdict { note: Some(why.to_string()), ..verdict };
+            }
+        };
+        let (reference, covered, start) = match self.common(&sim) {
+            Ok(common) => common,
+            Err(why) => {
+                // A run that ends before its reference begins, or before it is set to zero, is too short, no failure.
+                let (from, until) = window(&self.words, 0.0);
+                let set = self.words.zero.is_none_or(|at| at <= sim.span().1);
+                let reaches = set && matches!(self.reference, Known::Formula(_)) && sim.within(from, until).is_ok();
+                verdict.passed = self.words.bound.filter(|_| reaches).map(|_| false);
+                return Verdict { note: Some(why.to_string()), ..verdict };
+            }
+        };
+        verdict.covered = covered;
+        verdict.note = deviation(&sim, &reference).err().map(|why| why.to_string());
+        verdict.figures = self.figures(&sim, &reference, start);
+        verdict.meaned = self
+            .words
+            .mean
+            .zip(meaned.as_ref())
+            .map(|(seconds, meaned)| Meaned { seconds, figures: self.figures(meaned, &reference, start) });
+        if let Some(how) = self.words.align {
+            let shown = meaned.as_ref().unwrap_or(&sim);
+            (verdict.aligned, verdict.arrival) = match how {
+                Align::Start(_) => (None, Some(Arrival { run: Some(start), reference: Some(0.0) })),
+                how => align(shown, &reference, how, window(&self.words, start)),
+            };
+        }
+        match self.words.bound {
+            Some(_) if covered < 0.5 => {
+                verdict.note = Some("the run covers less than half of the reference: not judged".into());
+            }
+            bound => verdict.passed = bound.map(|bound| verdict.keeps(&bound)),
+        }
+        verdict
+    }
+
+    fn blank(&self) -> Verdict {
+        Verdict {
+            series: self.words.label(),
+            figures: Figures::default(),
+            meaned: None,
+            aligned: None,
+            arrival: None,
+            paper: self.words.paper,
+            bound: self.words.bound,
+            covered: 0.0,
+            passed: None,
+            note: None,
+        }
+    }
+
+    /// The run's series, and what the instrument shows of it.
+    fn run(&self, folder: &Path) -> Result<(Series, Option<Series>)> {
+        let (probe, column) = self.words.series.split_once('.').unwrap_or((&self.words.series, ""));
+        let path: PathBuf = folder.join(format!("{probe}.csv"));
+        let mut sim = reference_table::read(&path, "t_s", column, 0.0)?;
+        if let Some(at) = self.words.zero {
+            sim = sim.less(sim.at(at));
+        }
+        let meaned = self.words.mean.map(|seconds| sim.running_mean(seconds));
+        Ok((sim, meaned))
+    }
+
+    /// When the reference's clock starts, s of the run's: 0 unless it has one of its own.
+    fn start(&self, sim: &Series) -> Result<f64> {
+        let Some(Align::Start(threshold)) = self.words.align else { return Ok(0.0) };
+        sim.crossing(threshold).ok_or_else(|| {
+            Error::scene(format!("the run never passes {threshold}, with which the clock of its reference starts"))
+        })
+    }
+
+    /// The reference where the run covers it, which share of it that is, and when its clock starts.
+    fn common(&self, sim: &Series) -> Result<(Series, f64, f64)> {
+        let (first, last) = sim.span();
+        if let Some(at) = self.words.zero.filter(|at| *at > last) {
+            return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
+        }
+        let start = self.start(sim)?;
+        let (from, until) = window(&self.words, start);
+        match &self.reference {
+            Known::Table(whole) => {
+                let whole = whole.moved(start);
+                let common = whole.within(first, last).map_err(|_| {
+                    let (from, to) = whole.span();
+                    Error::scene(format!(
+                        "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
+                    ))
+                })?;
+                let covered = common.times().len() as f64 / whole.times().len() as f64;
+                Ok((common, covered, start))
+            }
+            Known::Formula(formula) => {
+                let times = sim.within(from, until)?.times().to_vec();
+                let values: Vec<f64> = times.iter().map(|&t| formula.at(t - start).0).collect();
+                if let Some(i) = values.iter().position(|x| !x.is_finite()) {
+                    return Err(Error::scene(format!("the formula gives {} at t = {} s", values[i], times[i])));
+                }
+                let covered = if until.is_finite() {
+                    let from = from.max(first);
+                    ((last.min(until) - from) / (until - from)).clamp(0.0, 1.0)
+                } else {
+                    1.0
+                };
+                Ok((Series::new(times, values)?, covered, start))
+            }
+        }
+    }
+
+    fn figures(&self, sim: &Series, reference: &Series, start: f64) -> Figures {
+        let (from, until) = window(&self.words, start);
+        Figures {
+            n: deviation(sim, reference).ok(),
+            m: amplitude(sim, reference).ok(),
+            peak: sim.within(from, until).and_then(|sim| peak(&sim, reference)).ok(),
+            off: off(sim, reference).ok(),
+        }
+    }
+}
+
+impl Verdict {
+    /// Whether every figure that `bound` names is there and within it.
+    pub fn keeps(&self, bound: &Score) -> bool {
+        let within =
+            |limit: Option<f64>, figure: Option<f64>| limit.is_none_or(|most| figure.is_some_and(|x| x <= most));
+        within(bound.n, self.figures.n)
+            && within(bound.m, self.figures.m.map(|m| (m - 1.0).abs()))
+            && within(bound.peak, self.figures.peak)
+            && within(bound.off, self.figures.off)
+            && within(bound.aligned_n, self.aligned.map(|a| a.n))
+            && within(bound.delay, self.aligned.map(|a| a.delay.abs()))
+    }
+}
+
+/// First and last time of the run that count, s, where the reference's clock starts at `start` (s).
+fn window(words: &CheckWords, start: f64) -> (f64, f64) {
+    let from = match words.align {
+        Some(Align::Start(_)) => 0.0,
+        _ => f64::NEG_INFINITY,
+    };
+    (words.from.unwrap_or(from) + start, words.until.unwrap_or(f64::INFINITY) + start)
+}

@@ -1,0 +1,133 @@
+//! Which points lie near a place: a grid of cells, filled once.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::{
+    math::{Bounds, Vector},
+    particles::PER_TASK,
+};
+
+/// Points sorted into cubic cells.
+pub(super) struct Cells<const D: usize> {
+    min: Vector<D>,
+    size: f64,
+    count: [usize; D],
+    /// Where each cell's points start in `order`.
+    start: Vec<u32>,
+    order: Vec<u32>,
+    /// The coordinates of the points in that order, axis by axis.
+    along: [Vec<f64>; D],
+}
+
+impl<const D: usize> Cells<D> {
+    /// A grid over `points` of cells `size` (m) wide, or wider.
+    pub fn new(points: &[Vector<D>], size: f64) -> Self {
+        let bounds = Bounds::around(points);
+        let along = std::array::from_fn(|_| Vec::new());
+        let mut grid = Self { min: bounds.min, size, count: [0; D], start: vec![0], order: Vec::new(), along };
+        if points.is_empty() {
+            return grid;
+        }
+        let cells = |size: f64| bounds.size().map(|s| (s / size).floor() + 1.0);
+        // Few points in much space: wider cells rather than many empty ones.
+        while cells(grid.size).product() > 4.0 * points.len() as f64 + 64.0 {
+            grid.size *= 1.5;
+        }
+        grid.count = cells(grid.size).map(|n| n as usize).into();
+        let home = |x: &Vector<D>| grid.index(&grid.place(x).map(|c| c as usize)) as u32;
+        let home: Vec<u32> = points.par_iter().with_min_len(PER_TASK).map(home).collect();
+        grid.start = vec![0; grid.count.iter().product::<usize>() + 1];
+        home.iter().for_each(|&c| grid.start[c as usize + 1] += 1);
+        for c in 1..grid.start.len() {
+            grid.start[c] += grid.start[c - 1];
+        }
+        let mut next = grid.start.clone();
+        grid.order = vec![0; points.len()];
+        for (i, &c) in home.iter().enumerate() {
+            let place = &mut next[c as usize];
+            grid.order[*place as usize] = i as u32;
+            *place += 1;
+        }
+        let sorted = |axis: usize| grid.order.par_iter().with_min_len(PER_TASK).map(move |&i| points[i as usize][axis]);
+        grid.along = std::array::from_fn(|axis| sorted(axis).collect());
+        grid
+    }
+
+    fn place(&self, x: &Vector<D>) -> [isize; D] {
+        std::array::from_fn(|i| ((x[i] - self.min[i]) / self.size).floor() as isize)
+    }
+
+    /// The first axis runs fastest, so that neighbours along it lie side by side.
+    fn index(&self, place: &[usize; D]) -> usize {
+        (0..D).rev().fold(0, |sum, i| sum * self.count[i] + place[i])
+    }
+
+    /// Visits every point within `distance` (m) of `x`, and some farther ones, in an order fixed by the points.
+    pub fn near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(usize, &Vector<D>)) {
+        self.rows_near(x, distance, |places| {
+            let at = |k| Vector::from_fn(|axis, _| self.along[axis][k]);
+            places.for_each(|k| visit(self.order[k] as usize, &at(k)));
+        });
+    }
+
+    /// Appends to `found` every point nearer than `distance` (m) to `x`, in an order fixed by the points; `r2` is
+    /// scratch memory.
+    pub fn within(&self, x: &Vector<D>, distance: f64, r2: &mut Vec<f64>, found: &mut Vec<u32>) {
+        let mut n = found.len();
+        self.rows_near(x, distance, |places| {
+            r2.clear();
+            r2.resize(places.len(), 0.0);
+            for (x, along) in x.iter().zip(&self.along) {
+                r2.iter_mut().zip(&along[places.clone()]).for_each(|(r2, y)| *r2 += (x - y) * (x - y));
+            }
+            found.resize(n + places.len(), 0);
+            // A few in a dozen are near enough: taken without a branch, which would be guessed wrong.
+            for (&i, &r2) in self.order[places].iter().zip(&*r2) {
+                found[n] = i;
+                n += usize::from(r2 < distance * distance);
+            }
+        });
+        found.truncate(n);
+    }
+
+    /// Visits places in `order`, those of a row of cells at a time.
+    fn rows_near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(Range<usize>)) {
+        if self.order.is_empty() {
+            return;
+        }
+        let low: [isize; D] = self.place(&x.add_scalar(-distance)).map(|c| c.max(0));
+        let high = self.place(&x.add_scalar(distance));
+        let high: [isize; D] = std::array::from_fn(|i| high[i].min(self.count[i] as isize - 1));
+        if (0..D).any(|i| low[i] > high[i]) {
+            return;
+        }
+        let mut row = low.map(|c| c as usize);
+        loop {
+            let first = self.index(&row);
+            let last = first + (high[0] - low[0]) as usize;
+            let places = self.start[first] as usize..self.start[last + 1] as usize;
+            if !places.is_empty() {
+                visit(places);
+            }
+            // The next row: count up the axes after the first.
+            let Some(axis) = (1..D).find(|&i| (row[i] as isize) < high[i]) else { return };
+            row[axis] += 1;
+            (1..axis).for_each(|i| row[i] = low[i] as usize);
+        }
+    }
+}
+
+/// The points that keep `distance` (m) from every earlier point that was kept, as flags; the first `given` are kept
+/// however near they are.
+pub(super) fn spaced<const D: usize>(points: &[Vector<D>], given: usize, distance: f64) -> Vec<bool> {
+    let cells = Cells::new(points, distance);
+    let mut kept = vec![false; points.len()];
+    for (i, x) in points.iter().enumerate() {
+        let mut free = true;
+        cells.near(x, distance, |j, y| free &= !(kept[j] && (x - y).norm_squared() < distance * distance));
+        kept[i] = i < given || free;
+    }
+    kept
+}

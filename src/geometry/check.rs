@@ -1,0 +1,200 @@
+//! Whether a shape can exist: finite, positive sizes, an axis that is there, outlines that do not cross.
+
+use super::Shape;
+use crate::{
+    error::{Error, Result},
+    math::Vector,
+};
+
+/// Most points of an outline: each of its edges is held against each, and every particle near it against all.
+const MOST_POINTS: usize = 10_000;
+
+impl<const D: usize> Shape<D> {
+    /// Whether the shape can exist in `D` dimensions.
+    ///
+    /// # Errors
+    /// A scene error for a size that is not a positive number, an axis that does not exist, a shape of the
+    /// other dimension, an outline that crosses itself, repeats a point or runs clockwise, an empty compound.
+    pub fn check(&self) -> Result<()> {
+        match self {
+            Shape::Box { size } => sizes("the size of a box", size),
+            Shape::Ball { radius } => positive("the radius of a ball", *radius),
+            Shape::Capsule { length, radius, axis } => rod("capsule", D, *length, *radius, *axis),
+            Shape::Cylinder { length, radius, axis } => {
+                if D == 2 {
+                    return Err(Error::scene("a cylinder is a 3-D shape").help("in 2-D use a ball (a disc) or a box"));
+                }
+                rod("cylinder", D, *length, *radius, *axis)
+            }
+            Shape::Polygon { points } => polygon(points),
+            Shape::Polyline { points, thickness } => {
+                positive("the thickness of a polyline wall", *thickness)?;
+                outline("polyline", points, 2, false)
+            }
+            Shape::Tank { size, thickness } => {
+                sizes("the size of a tank", size)?;
+                positive("the thickness of a tank's walls", *thickness)
+            }
+            Shape::Mesh { .. } if D == 3 => Ok(()), // was checked when it was made
+            Shape::Mesh { .. } => Err(Error::scene("a mesh is a 3-D shape").help("in 2-D use a polygon")),
+            Shape::Compound(parts) => compound(parts),
+        }
+    }
+}
+
+fn positive(what: &str, value: f64) -> Result<()> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(Error::scene(format!("{what} is {value}")).help("give a length above zero, in metres"))
+}
+
+fn sizes<const D: usize>(what: &str, size: &Vector<D>) -> Result<()> {
+    size.iter().try_for_each(|&s| positive(what, s))
+}
+
+fn rod(name: &str, dimension: usize, length: f64, radius: f64, axis: usize) -> Result<()> {
+    positive(&format!("the length of a {name}"), length)?;
+    positive(&format!("the radius of a {name}"), radius)?;
+    if axis < dimension {
+        return Ok(());
+    }
+    let known = if dimension == 2 { "0 (along) or 1 (up)" } else { "0, 1 or 2 (up)" };
+    Err(Error::scene(format!("a {name} in {dimension}-D has no axis {axis}")).help(format!("axis is {known}")))
+}
+
+fn polygon<const D: usize>(points: &[Vector<D>]) -> Result<()> {
+    outline("polygon", points, 3, true)?;
+    let n = points.len();
+    let area: f64 = (0..n).map(|i| wedge(&points[i], &points[(i + 1) % n])).sum();
+    if area > 0.0 {
+        return Ok(());
+    }
+    Err(Error::scene("the points of a polygon run clockwise").help("reverse the points: counter-clockwise"))
+}
+
+fn compound<const D: usize>(parts: &[(crate::math::Pose<D>, Shape<D>)]) -> Result<()> {
+    if parts.is_empty() {
+        return Err(Error::scene("a compound without parts").help("give it at least one shape"));
+    }
+    for (pose, part) in parts {
+        let skew = (pose.rotation.transpose() * pose.rotation - crate::math::Matrix::identity()).norm();
+        if !pose.position.iter().all(|x| x.is_finite()) || skew.is_nan() || skew > 1e-6 {
+            return Err(Error::scene("a part of a compound has a pose that is no pose")
+                .help("give finite coordinates and a pure rotation"));
+        }
+        part.check()?;
+    }
+    Ok(())
+}
+
+/// What polygons (closed) and polylines (open) have in common.
+fn outline<const D: usize>(name: &str, points: &[Vector<D>], least: usize, closed: bool) -> Result<()> {
+    if D != 2 {
+        return Err(Error::scene(format!("a {name} is a 2-D shape"))
+            .help("in 3-D use boxes, balls, cylinders, capsules, meshes"));
+    }
+    let n = points.len();
+    if n < least {
+        return Err(Error::scene(format!("a {name} of {n} points")).help(format!("give at least {least} points")));
+    }
+    if n > MOST_POINTS {
+        return Err(Error::scene(format!("a {name} of {n} points; the most is {MOST_POINTS}"))
+            .help("thin it out: what is finer than dp cannot be seen"));
+    }
+    if let Some(i) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        return Err(
+            Error::scene(format!("point {} of a {name} is not a number", i + 1)).help("give finite coordinates")
+        );
+    }
+    let edges = if closed { n } else { n - 1 };
+    for i in 0..edges {
+        if points[i] == points[(i + 1) % n] {
+            let (a, b) = (i + 1, (i + 1) % n + 1);
+            return Err(Error::scene(format!("points {a} and {b} of a {name} are the same")).help("leave one out"));
+        }
+    }
+    for i in 0..edges {
+        for j in i + 1..edges {
+            let (a, b, c, d) = (&points[i], &points[(i + 1) % n], &points[j], &points[(j + 1) % n]);
+            let crossed = match (j == i + 1, closed && (j + 1) % n == i) {
+                (true, _) => folds(a, b, d),
+                (_, true) => folds(c, d, b),
+                _ => cross(a, b, c, d),
+            };
+            if crossed {
+                let what = format!("a {name} crosses itself: edges {} and {}, counted from 1", i + 1, j + 1);
+                return Err(Error::scene(what).help("reorder the points so that the outline never meets itself"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// a₀b₁ − a₁b₀.
+fn wedge<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Whether the corner a-b-c turns straight back.
+fn folds<const D: usize>(a: &Vector<D>, b: &Vector<D>, c: &Vector<D>) -> bool {
+    let (u, v) = (b - a, c - b);
+    u.dot(&v) < 0.0 && wedge(&u, &v).abs() <= 1e-9 * u.norm() * v.norm()
+}
+
+/// Whether the segments a-b and c-d meet (touching counts).
+fn cross<const D: usize>(a: &Vector<D>, b: &Vector<D>, c: &Vector<D>, d: &Vector<D>) -> bool {
+    let side = |p: &Vector<D>, q: &Vector<D>, x: &Vector<D>| wedge(&(q - p), &(x - p));
+    let between = |p: &Vector<D>, q: &Vector<D>, x: &Vector<D>| (x - p).dot(&(x - q)) <= 0.0;
+    let (s1, s2, s3, s4) = (side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b));
+    s1 * s2 < 0.0 && s3 * s4 < 0.0
+        || s1 == 0.0 && between(a, b, c)
+        || s2 == 0.0 && between(a, b, d)
+        || s3 == 0.0 && between(c, d, a)
+        || s4 == 0.0 && between(c, d, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Vec<Vector<2>> {
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector::from).to_vec()
+    }
+
+    fn refusal<const D: usize>(shape: Shape<D>) -> String {
+        shape.check().err().map(|e| e.to_string()).unwrap_or_default()
+    }
+
+    #[test]
+    fn impossible_shapes_are_refused_with_advice() {
+        assert!(refusal(Shape::Box { size: Vector::from([1.0, -1.0]) }).contains("-1"));
+        assert!(refusal(Shape::<3>::Ball { radius: f64::NAN }).contains("NaN"));
+        assert!(refusal(Shape::<2>::Capsule { length: 1.0, radius: 1.0, axis: 2 }).contains("axis 2"));
+        assert!(refusal(Shape::<2>::Cylinder { length: 1.0, radius: 1.0, axis: 0 }).contains("3-D"));
+        assert!(refusal(Shape::<3>::Polygon { points: vec![] }).contains("2-D"));
+        assert!(refusal(Shape::<2>::Compound(vec![])).contains("without parts"));
+        assert!(refusal(Shape::Polygon { points: square()[..2].to_vec() }).contains("2 points"));
+        let reversed = square().into_iter().rev().collect();
+        assert!(refusal(Shape::Polygon { points: reversed }).contains("reverse"));
+        let mut bow = square();
+        bow.swap(1, 2);
+        assert!(refusal(Shape::Polygon { points: bow }).contains("crosses itself"));
+        let mut spike = square();
+        spike.insert(1, Vector::from([2.0, 0.0]));
+        assert!(refusal(Shape::Polygon { points: spike }).contains("crosses itself"));
+    }
+
+    #[test]
+    fn an_outline_of_a_million_points_is_refused_at_once() {
+        let points = (0..1_000_000).map(|i| Vector::from([f64::from(i), 0.0])).collect();
+        assert!(refusal(Shape::<2>::Polyline { points, thickness: 0.1 }).contains("the most is 10000"));
+    }
+
+    #[test]
+    fn sound_shapes_pass() {
+        assert_eq!(Shape::Polygon { points: square() }.check(), Ok(()));
+        assert_eq!(Shape::Polyline { points: square(), thickness: 0.1 }.check(), Ok(()));
+        assert_eq!(Shape::<3>::Cylinder { length: 1.0, radius: 0.1, axis: 1 }.check(), Ok(()));
+    }
+}

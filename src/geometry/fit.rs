@@ -1,0 +1,215 @@
+//! How water and solids fit together: which points lie in a solid, which are too near to its face, and
+//! the packing of the water around the solids that do not fit the lattice.
+
+use rayon::prelude::*;
+
+use super::{Shape, fill::Lattice, packing};
+use crate::{
+    math::{Bounds, Pose, Vector},
+    particles::PER_TASK,
+};
+
+/// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
+const ZONE: f64 = 6.0;
+/// Layers of skin in the packing: as deep as its kernel reaches.
+const LAYERS: usize = 2;
+/// The widest gap, beyond half a dp, between a face and its water that is let be, dp.
+const GAP: f64 = 0.1;
+/// Least distance of packed water from a face, dp: what lies nearer is squeezed between two of them.
+const NARROW: f64 = 0.35;
+
+/// A solid in the way of the water.
+pub(super) struct Obstacle<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    pose: &'a Pose<D>,
+    dp: f64,
+    /// Everything within one dp.
+    close: Bounds<D>,
+    /// Everything that the packing of its water involves.
+    around: Bounds<D>,
+    /// The lines of its polyline walls, in the world.
+    lines: Vec<Vec<Vector<D>>>,
+    /// What the cells taken so far lack in the solid's volume, on each side, cells.
+    owed: Vec<f64>,
+    /// Whether water on the lattice would lie too near to its face, or too far.
+    misfit: bool,
+}
+
+impl<'a, const D: usize> Obstacle<'a, D> {
+    pub fn new(shape: &'a Shape<D>, pose: &'a Pose<D>, dp: f64) -> Self {
+        let bounds = shape.bounds_at(pose);
+        let mut lines = Vec::new();
+        collect_lines(shape, pose, &mut lines);
+        let around = bounds.grown((ZONE + packing::REACH + 1.0) * dp);
+        Self { shape, pose, dp, close: bounds.grown(dp), around, lines, owed: vec![0.0; 2 * D], misfit: false }
+    }
+
+    fn distance(&self, x: &Vector<D>) -> f64 {
+        self.shape.signed_distance(&self.pose.local(x))
+    }
+
+    fn outward(&self, x: &Vector<D>) -> Vector<D> {
+        self.pose.rotation * self.shape.outward(&self.pose.local(x), 1e-3 * self.dp)
+    }
+
+    /// Whether the cell at `x` goes to the solid, or lies in the ground below a bed. Cells that a face cuts are
+    /// shared out so that, along each side, the solid gets its volume and not half a row more or less.
+    pub fn takes(&mut self, x: &Vector<D>) -> bool {
+        // A line over one dp has a cubic cell's second moment along any normal: before a curved face, too, the
+        // shares add up to the volume.
+        let share = if self.close.contains(x) { 0.5 - self.distance(x) / self.dp } else { 0.0 };
+        if share <= 0.0 || share >= 1.0 {
+            return share >= 1.0 || self.buries(x);
+        }
+        let n = self.outward(x);
+        // A cell cut by the bed's own face is not ground, one cut by its underside is.
+        self.buries(&(x + n * self.dp)) || self.settle(share, &n)
+    }
+
+    /// Settles a cell of which the solid has a `share`: the side that faces along `n` takes it or is owed.
+    fn settle(&mut self, share: f64, n: &Vector<D>) -> bool {
+        let axis = n.iamax();
+        let owed = &mut self.owed[2 * axis + usize::from(n[axis] > 0.0)];
+        *owed += share;
+        let taken = *owed >= 0.5;
+        if taken {
+            *owed -= 1.0;
+        }
+        taken
+    }
+
+    /// Whether `x` lies in the ground below a bed.
+    fn buries(&self, x: &Vector<D>) -> bool {
+        self.lines.iter().any(|line| below_bed(x, line))
+    }
+
+    /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
+    /// belongs to the water (`in_water`) or is not above it.
+    pub fn judge(&mut self, x: &Vector<D>, in_water: impl Fn(&Vector<D>) -> bool) {
+        if self.misfit || !self.close.contains(x) {
+            return;
+        }
+        let distance = self.distance(x) / self.dp;
+        self.misfit = distance < 0.5 - 1e-6;
+        if distance > 0.5 + GAP && distance < 1.0 {
+            // Only before a face along the lattice: at a corner this distance is as it should be.
+            let n = self.outward(x);
+            let is_above = n[D - 1] < -0.5;
+            self.misfit = n.amax() > 1.0 - 1e-6 && (!is_above || in_water(&(x - n * self.dp)));
+        }
+    }
+
+    /// Whether water on the lattice does not fit it.
+    pub fn is_misfit(&self) -> bool {
+        self.misfit
+    }
+
+    /// Whether the water point `x` lies so near to the face that it can only be in a gap too narrow for a row of particles.
+    pub fn cramps(&self, x: &Vector<D>) -> bool {
+        self.close.contains(x) && self.distance(x) < NARROW * self.dp
+    }
+
+    /// Puts `x` back to half a dp from the face if it is nearer. Returns how far (m) it may then go without
+    /// coming nearer than that.
+    fn push_out(&self, x: &mut Vector<D>) -> f64 {
+        if !self.close.contains(x) {
+            return 0.5 * self.dp;
+        }
+        let lack = 0.5 * self.dp - self.distance(x);
+        if lack > 0.0 {
+            *x += self.outward(x) * lack;
+        }
+        // Behind a thin wall its distance may jump.
+        if self.lines.is_empty() { -lack } else { 0.0 }
+    }
+}
+
+fn collect_lines<const D: usize>(shape: &Shape<D>, pose: &Pose<D>, lines: &mut Vec<Vec<Vector<D>>>) {
+    match shape {
+        Shape::Polyline { points, .. } => lines.push(points.iter().map(|x| pose.point(x)).collect()),
+        Shape::Compound(parts) => parts.iter().for_each(|(inner, part)| collect_lines(part, &pose.then(inner), lines)),
+        _ => (),
+    }
+}
+
+/// Whether the part of the line next above `x` is a bed: walked towards +x, the water above it.
+fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
+    let (mut lowest, mut bed) = (f64::INFINITY, false);
+    for ab in line.windows(2) {
+        let (a, b) = (&ab[0], &ab[1]);
+        if (a[0] > x[0]) != (b[0] > x[0]) {
+            let height = a[1] + (x[0] - a[0]) * (b[1] - a[1]) / (b[0] - a[0]);
+            if height > x[1] && height < lowest {
+                (lowest, bed) = (height, b[0] > a[0]);
+            }
+        }
+    }
+    bed
+}
+
+/// Packs the water around the solids that do not fit the lattice; `home` is each point's lattice.
+pub(super) fn fit<const D: usize>(
+    water: &mut [Vector<D>],
+    home: &[usize],
+    lattices: &[Lattice<D>],
+    obstacles: &mut [Obstacle<D>],
+    dp: f64,
+) {
+    if obstacles.iter().all(|o| !o.misfit) {
+        return;
+    }
+    let (moving, still) = ghosts(lattices, obstacles);
+    let misfits: Vec<_> = obstacles.iter().filter(|o| o.misfit).collect();
+    let to_misfit = |x: &Vector<D>| {
+        let near = misfits.iter().filter(|o| o.around.contains(x));
+        near.map(|o| o.distance(x)).fold(f64::INFINITY, f64::min) / dp
+    };
+    let (mut movable, mut held) = (Vec::new(), Vec::new());
+    let far: Vec<f64> = water.par_iter().with_min_len(PER_TASK).map(to_misfit).collect();
+    for (i, (x, far)) in water.iter().zip(far).enumerate() {
+        match far {
+            d if d < ZONE => movable.push(i),
+            d if d < ZONE + packing::REACH + 1.0 => held.push(*x),
+            _ => (),
+        }
+    }
+    let mut points: Vec<_> = movable.iter().map(|&i| water[i]).collect();
+    // The water is continued beyond its regions, or it would creep out of them; that part is left behind.
+    points.extend(moving);
+    let all_movable = points.len();
+    points.extend(held);
+    points.extend(still);
+    let near = Bounds::around(&points).grown(packing::REACH * dp);
+    for o in &*obstacles {
+        let skin = o.shape.skin(dp, LAYERS);
+        points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
+    }
+    packing::relax(&mut points, all_movable, dp, |i, _, x| {
+        let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].keep_within(x));
+        // Twice: what one face of a corner pushes out, it may push into the other.
+        (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))
+    });
+    movable.iter().zip(&points).for_each(|(&i, x)| water[i] = *x);
+}
+
+/// Lattice points in a margin around the regions, near the solids that do not fit: those that may move,
+/// and the outermost, which hold them.
+fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
+    const MARGIN: i64 = 8;
+    const RIM: i64 = 3;
+    let (mut moving, mut still) = (Vec::new(), Vec::new());
+    for (k, lattice) in lattices.iter().enumerate() {
+        let inner = lattice.grown(MARGIN - RIM);
+        lattice.each(MARGIN, |x| {
+            if obstacles.iter().any(|o| o.misfit && o.around.contains(x))
+                && !lattices.iter().any(|l| l.holds(x))
+                && !lattices[..k].iter().any(|l| l.grown(MARGIN).contains(x))
+                && !obstacles.iter_mut().any(|o| o.takes(x))
+            {
+                let zone = obstacles.iter().any(|o| o.misfit && o.distance(x) < ZONE * o.dp);
+                if zone && inner.contains(x) { &mut moving } else { &mut still }.push(*x);
+            }
+        });
+    }
+    (moving, still)
+}

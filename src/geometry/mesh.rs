@@ -1,0 +1,192 @@
+//! A solid given by the triangles of its surface: checked to be one, measured exactly.
+
+mod shells;
+#[cfg(feature = "dim3")]
+mod ray;
+mod tree;
+mod welding;
+
+use std::collections::HashMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Volume, submerged_volume::Facet};
+use crate::{
+    error::{Error, Result},
+    math::{Bounds, Matrix, Vector},
+};
+use tree::Tree;
+
+/// Most facets of a mesh: far more than particles can feel.
+pub const MOST_FACETS: usize = 500_000;
+
+/// The longest mesh, m: what is longer is in another unit.
+const LARGEST: f64 = 1e6;
+
+/// The closed surface of a solid in space, as triangles that are counter-clockwise seen from outside.
+#[derive(Clone)]
+pub struct Mesh {
+    points: Vec<Vector<3>>,
+    facets: Vec<[u32; 3]>,
+    bounds: Bounds<3>,
+    tree: Tree,
+}
+
+/// What of a mesh other bodies touch. The water sees the mesh itself, whatever is chosen. Scene word `mesh.contact`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Touchable {
+    /// The surface of a solid that is fixed. Of one that moves its hull, where that has at most a hundredth more
+    /// volume, else its decomposition: two surfaces without an inside cannot be kept apart.
+    #[default]
+    Fitting,
+    /// Every facet, whatever moves: exact, slow, and between two such solids not robust.
+    Surface,
+    /// The convex hull.
+    Hull,
+    /// Convex parts that follow the solid to about a sixtieth of its size.
+    Decomposition,
+    /// Nothing: other bodies pass through it.
+    None,
+}
+
+impl Mesh {
+    /// The solid with these corners (m) and facets, three indices of corners each, counter-clockwise seen from outside.
+    /// Corners in the same place become one, facets with two corners in one place are left out.
+    ///
+    /// # Errors
+    /// `Scene` if a corner is not finite or not there, there are too many facets, the surface is open, turned inside
+    /// out or partly turned over, passes through itself, or has a shell within a shell that faces the same way: says where (m), how
+    /// often, and what to do.
+    pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
+        if facets.len() > MOST_FACETS {
+            return Err(Error::scene(format!("a mesh of {} facets; the most is {MOST_FACETS}", facets.len()))
+                .help("thin it out (\"decimate\"): what is finer than dp cannot be seen"));
+        }
+        if let Some(i) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+            return Err(Error::scene(format!("corner {} of a mesh is not a number", i + 1))
+                .help("give finite coordinates: export the mesh again"));
+        }
+        if let Some(i) = facets.iter().position(|f| f.iter().any(|&p| p as usize >= points.len())) {
+            return Err(Error::scene(format!("facet {} of a mesh has a corner that is not there", i + 1))
+                .help(format!("corners are counted from 0, and there are {}", points.len())));
+        }
+        let (points, facets) = joined(points, facets);
+        let size = Bounds::around(&points).size().max();
+        if size > LARGEST {
+            return Err(Error::scene(format!("a mesh {size:.1e} m long; the most is {LARGEST:.0e} m"))
+                .help("in which unit is the file? Write, say,  unit = \"mm\""));
+        }
+        welding::closed(&points, &facets)?;
+        let volume = moments(&points, &facets).volume;
+        let bounds = Bounds::around(&points);
+        if volume <= 1e-12 * bounds.size().product() {
+            return Err(match volume < 0.0 {
+                true => Error::scene("the mesh is inside out: its facets run clockwise, seen from outside")
+                    .help("turn them round in the program that made it, or write  flip = true  beside the file's name"),
+                false => {
+                    Error::scene("the mesh has no volume").help("a solid has an inside: close its surface round it")
+                }
+            });
+        }
+        let tree = Tree::new(&points, &facets)?;
+        let mesh = Self { points, facets, bounds, tree };
+        mesh.tree.crossing(&mesh).map_or(Ok(()), |(a, b)| Err(welding::crossed(&mesh.corners(a), &mesh.corners(b))))?;
+        shells::nested(&mesh.points, &mesh.facets)?;
+        Ok(mesh)
+    }
+
+    /// The corners, m.
+    pub fn points(&self) -> &[Vector<3>] {
+        &self.points
+    }
+
+    /// The facets: three indices of corners each, counter-clockwise seen from outside.
+    pub fn facets(&self) -> &[[u32; 3]] {
+        &self.facets
+    }
+
+    /// The smallest axis-aligned box around it, m.
+    pub fn bounds(&self) -> Bounds<3> {
+        self.bounds
+    }
+
+    /// Exact volume, centroid and second moment of the polyhedron.
+    pub fn volume(&self) -> Volume<3> {
+        moments(&self.points, &self.facets)
+    }
+
+    /// Area of the surface, m².
+    pub fn surface(&self) -> f64 {
+        (0..self.facets.len()).map(|i| self.corners(i)).map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum()
+    }
+
+    /// Signed distance (m) of `x` (m) from the surface, negative inside, and the direction in which it grows, unit
+    /// length.
+    ///
+    /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. [@baerentzen2005]
+    pub fn distance(&self, x: &Vector<3>) -> (f64, Vector<3>) {
+        self.tree.distance(x)
+    }
+
+    /// The facets with their corners, for sums over the surface; none in 2-D.
+    pub(super) fn triangles<const D: usize>(&self) -> Vec<Facet<D>> {
+        let corner = |p: &Vector<3>| Vector::from_fn(|i, _| p[i]);
+        let all = (0..if D == 3 { self.facets.len() } else { 0 }).map(|i| self.corners(i));
+        all.map(|corners| std::array::from_fn(|i| corner(&corners[i]))).collect()
+    }
+
+    fn corners(&self, facet: usize) -> [Vector<3>; 3] {
+        self.facets[facet].map(|p| self.points[p as usize])
+    }
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.points == other.points && self.facets == other.facets
+    }
+}
+
+impl std::fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "Mesh of {} facets", self.facets.len())
+    }
+}
+
+/// One corner for each place that a facet touches, and the facets that have three places.
+fn joined(points: &[Vector<3>], facets: &[[u32; 3]]) -> (Vec<Vector<3>>, Vec<[u32; 3]>) {
+    let (mut kept, mut places) = (Vec::new(), HashMap::new());
+    let mut index = |p: u32| {
+        // −0 and 0 are one place.
+        let x = points[p as usize].add_scalar(0.0);
+        *places.entry([x[0].to_bits(), x[1].to_bits(), x[2].to_bits()]).or_insert_with(|| {
+            kept.push(x);
+            kept.len() as u32 - 1
+        })
+    };
+    let all = facets.iter().map(|f| f.map(&mut index));
+    let facets = all.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+    (kept, facets)
+}
+
+/// The signed sum of the tetrahedra between the facets and the middle of all corners.
+fn moments(points: &[Vector<3>], facets: &[[u32; 3]]) -> Volume<3> {
+    let bounds = Bounds::around(points);
+    let origin = (bounds.min + bounds.max) * 0.5;
+    let (mut volume, mut first, mut second) = (0.0, Vector::<3>::zeros(), Matrix::<3>::zeros());
+    for facet in facets {
+        let [a, b, c] = facet.map(|p| points[p as usize] - origin);
+        let part = a.dot(&b.cross(&c)) / 6.0;
+        let s = a + b + c;
+        volume += part;
+        first += s * (0.25 * part);
+        second += (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose()) * (0.05 * part);
+    }
+    let centroid = first / volume;
+    Volume { volume, centroid: origin + centroid, second_moment: second - centroid * centroid.transpose() * volume }
+}
+
+#[cfg(all(test, feature = "dim3"))]
+#[path = "../../tests/unit/geometry/mesh.rs"]
+mod tests;

@@ -1,0 +1,117 @@
+//! Whether every shell of a mesh faces as it should: out of the solid, so into the hollow that it is the wall of.
+
+use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use super::welding::place;
+use crate::{
+    error::{Error, Result},
+    math::{Bounds, Vector},
+};
+
+/// Part of the whole's volume below which a shell is round-off, and faces neither way.
+const NOTHING: f64 = 1e-9;
+
+/// How near a facet of another shell a place is on it, over the facet's size: more than the round-off of a file in single
+/// precision.
+const ON: f64 = 1e-4;
+
+/// Round-off of the turns round a place, –: on the edge of another shell they are no whole number.
+const ROUND_OFF: f64 = 1e-6;
+
+/// Facets that hang together by edges.
+struct Shell {
+    facets: Vec<[u32; 3]>,
+    bounds: Bounds<3>,
+    volume: f64,
+}
+
+/// Refuses a shell whose inside counts twice, or is taken off where nothing is. The surface is closed and nowhere crosses
+/// itself.
+pub fn nested(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
+    let shells = shells(points, facets);
+    let whole: f64 = shells.iter().map(|shell| shell.volume).sum();
+    let judged = |i: usize| {
+        let inward = shells[i].volume < 0.0;
+        let (x, turns) = around(i, &shells, points)?;
+        (shells[i].volume.abs() > NOTHING * whole && turns != f64::from(u8::from(inward))).then_some((i, x, turns))
+    };
+    let wrong = if shells.len() > 1 { (0..shells.len()).into_par_iter().find_map_first(judged) } else { None };
+    wrong.map_or(Ok(()), |(i, x, turns)| Err(refusal(shells[i].volume, &x, turns)))
+}
+
+fn refusal(volume: f64, x: &Vector<3>, turns: f64) -> Error {
+    let (at, size) = (place(x), volume.abs());
+    if volume < 0.0 && turns == 0.0 {
+        let what = format!(
+            "a shell of the mesh about {at} m is inside out: its {size:.3e} m³ are taken off, and nothing is there"
+        );
+        return Error::scene(what)
+            .help("turn its normals outward in the program that made it: only the wall of a hollow faces inward");
+    }
+    let what = format!(
+        "a shell of the mesh about {at} m lies inside another and faces as that does: its {size:.3e} m³ count twice"
+    );
+    Error::scene(what).help(
+        "the inner shell of a hollow solid has to face inward: turn its normals in the program that made it; if the solid \
+         is full, leave the inner shell out",
+    )
+}
+
+/// A place on shell `i`, and how often the others go round it: the solid angle of their facets over that of a sphere.
+fn around(i: usize, shells: &[Shell], points: &[Vector<3>]) -> Option<(Vector<3>, f64)> {
+    let corners = |facet: &[u32; 3]| facet.map(|p| points[p as usize]);
+    let turns = |x: &Vector<3>| -> f64 {
+        let others = shells.iter().enumerate().filter(|(j, other)| *j != i && other.bounds.contains(x));
+        others.flat_map(|(_, other)| &other.facets).map(|facet| angle(&corners(facet), x)).sum::<f64>() / (2.0 * TAU)
+    };
+    let middles = shells[i].facets.iter().map(|facet| corners(facet).iter().sum::<Vector<3>>() / 3.0);
+    let mut found = middles.map(|x| (x, turns(&x))).filter(|(_, turns)| (turns - turns.round()).abs() < ROUND_OFF);
+    found.next().map(|(x, turns)| (x, turns.round()))
+}
+
+/// The solid angle under which a facet is seen from `x`, sr, positive from its inner side, after van Oosterom and Strackee
+/// (1983); no number from the facet itself.
+fn angle(facet: &[Vector<3>; 3], x: &Vector<3>) -> f64 {
+    let [a, b, c] = facet.map(|p| p - x);
+    let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+    let (sine, all) = (a.dot(&b.cross(&c)), la * lb * lc);
+    let cosine = all + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+    if cosine < 0.0 && sine.abs() < ON * all { f64::NAN } else { 2.0 * sine.atan2(cosine) }
+}
+
+/// The shells of a closed surface.
+fn shells(points: &[Vector<3>], facets: &[[u32; 3]]) -> Vec<Shell> {
+    let sides = |(i, &[a, b, c]): (usize, &[u32; 3])| {
+        [(a, b), (b, c), (c, a)].map(|(p, q): (u32, u32)| (p.min(q), p.max(q), i))
+    };
+    let mut edges: Vec<(u32, u32, usize)> = facets.iter().enumerate().flat_map(sides).collect();
+    edges.sort_unstable();
+    // Each facet knows an earlier one of its shell, the first itself.
+    let mut above: Vec<usize> = (0..facets.len()).collect();
+    for pair in edges.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)).filter(|pair| pair.len() == 2) {
+        let (a, b) = (first(&mut above, pair[0].2), first(&mut above, pair[1].2));
+        above[a.max(b)] = a.min(b);
+    }
+    let mut all: Vec<Vec<[u32; 3]>> = vec![Vec::new(); facets.len()];
+    (0..facets.len()).for_each(|i| all[first(&mut above, i)].push(facets[i]));
+    let shell = |facets: Vec<[u32; 3]>| {
+        let around = Bounds::around(facets.iter().flatten().map(|&p| &points[p as usize]));
+        let wedge = |facet: &[u32; 3]| {
+            let [a, b, c] = facet.map(|p| points[p as usize] - around.min);
+            a.dot(&b.cross(&c)) / 6.0
+        };
+        Shell { volume: facets.iter().map(wedge).sum(), bounds: around.grown(ON * around.size().max()), facets }
+    };
+    all.into_iter().filter(|facets| !facets.is_empty()).map(shell).collect()
+}
+
+/// The first facet of the shell of facet `i`; halves the way there.
+fn first(above: &mut [usize], mut i: usize) -> usize {
+    while above[i] != i {
+        above[i] = above[above[i]];
+        i = above[i];
+    }
+    i
+}

@@ -1,0 +1,104 @@
+//! The nearest place of a mesh, by parry's tree of boxes; without `dim3` there is none, and no mesh.
+
+#[cfg(feature = "dim3")]
+pub use with_parry::Tree;
+#[cfg(not(feature = "dim3"))]
+pub use without::Tree;
+
+#[cfg(feature = "dim3")]
+mod with_parry {
+    use parry3d::{
+        bounding_volume::BoundingVolume,
+        math::Vector as Point,
+        query::PointQueryWithLocation,
+        shape::{TriMesh, TriMeshFlags, TrianglePointLocation},
+    };
+    use rayon::prelude::*;
+
+    use super::super::{Mesh, ray};
+    use crate::{
+        error::{Error, Result},
+        math::Vector,
+    };
+
+    /// Facets near one that are held against it, at most.
+    const MOST_NEAR: usize = 200;
+
+    /// The facets in a tree of boxes, with the normals of facets, edges and corners.
+    #[derive(Clone)]
+    pub struct Tree(TriMesh);
+
+    impl Tree {
+        pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
+            let points = points.iter().map(|p| Point::from_array((*p).into())).collect();
+            TriMesh::with_flags(points, facets.to_vec(), TriMeshFlags::ORIENTED)
+                .map(Self)
+                .map_err(|why| Error::scene(format!("the mesh is no surface: {why}")))
+        }
+
+        /// See [`Mesh::distance`].
+        pub fn distance(&self, x: &Vector<3>) -> (f64, Vector<3>) {
+            let at = Point::from_array((*x).into());
+            let (foot, (facet, location)) = self.0.project_local_point_and_get_location(at, false);
+            let way = x - Vector::from(foot.point.to_array());
+            let distance = way.norm();
+            let (sign, turn) = if foot.is_inside { (-1.0, -1.0 / distance) } else { (1.0, 1.0 / distance) };
+            // On the surface the way has no direction: the normal there.
+            let size = self.0.bvh().root_aabb().extents().length();
+            let normal = if distance > 1e-12 * size { way * turn } else { self.normal(facet, location) };
+            (sign * distance, normal)
+        }
+
+        fn normal(&self, facet: u32, location: TrianglePointLocation) -> Vector<3> {
+            let normal = match (location, self.0.pseudo_normals_if_oriented()) {
+                (TrianglePointLocation::OnVertex(i), Some(normals)) => {
+                    normals.vertices_pseudo_normal[self.0.indices()[facet as usize][i as usize] as usize]
+                }
+                (TrianglePointLocation::OnEdge(i, _), Some(normals)) => {
+                    normals.edges_pseudo_normal[facet as usize][i as usize]
+                }
+                _ => self.0.triangle(facet).normal().unwrap_or(Point::ZERO),
+            };
+            Vector::from(normal.to_array()).try_normalize(1e-12).unwrap_or_else(Vector::zeros)
+        }
+
+        /// Two facets without a common corner that pass through each other.
+        pub fn crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> {
+            let apart = |a: usize, b: usize| mesh.facets[a].iter().all(|p| !mesh.facets[b].contains(p));
+            (0..mesh.facets.len()).into_par_iter().find_map_first(|a| {
+                let around = self.0.triangle(a as u32).local_aabb();
+                let near = self.0.bvh().leaves(|node| node.aabb().intersects(&around)).take(MOST_NEAR);
+                let mut later = near.map(|b| b as usize).filter(|b| *b > a && apart(a, *b));
+                later.find(|&b| ray::cross(&mesh.corners(a), &mesh.corners(b))).map(|b| (a, b))
+            })
+        }
+    }
+}
+
+#[cfg(not(feature = "dim3"))]
+mod without {
+    use super::super::Mesh;
+    use crate::{
+        error::{Error, Result},
+        math::Vector,
+    };
+
+    /// There is none.
+    #[derive(Clone)]
+    pub enum Tree {}
+
+    impl Tree {
+        pub fn new(_: &[Vector<3>], _: &[[u32; 3]]) -> Result<Self> {
+            Err(Error::scene("a mesh needs three dimensions, which this program was built without")
+                .help("build it with the feature dim3"))
+        }
+
+        pub fn distance(&self, _: &Vector<3>) -> (f64, Vector<3>) {
+            match *self {}
+        }
+
+        pub fn crossing(&self, _: &Mesh) -> Option<(usize, usize)> {
+            match *self {}
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Geometry: what a solid or a body of water looks like. No motion, no mass.
+//!
+//! A [`Shape`] gives its exact volume properties, its signed distance, the part of it under water and its
+//! boundary particles; [`fill()`] puts water on a lattice and fits it to the solids.
+
+mod boundary_points;
+mod cells;
+mod check;
+mod distance;
+pub mod fill;
+mod fit;
+pub mod mesh;
+mod moments;
+mod offset;
+pub(crate) mod overlap;
+mod packing;
+mod shell;
+mod submerged_volume;
+
+use std::sync::Arc;
+
+use crate::math::{Matrix, Pose, Vector};
+
+pub use fill::{Filled, Region, fill};
+pub use mesh::{Mesh, Touchable};
+
+/// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape<const D: usize> {
+    /// A box of edge lengths `size`, centred on the origin.
+    Box { size: Vector<D> },
+    /// A ball of `radius` around the origin: a disc in 2-D.
+    Ball { radius: f64 },
+    /// A straight part of `length` along `axis` (0, 1, 2), centred on the origin, with round ends.
+    Capsule { length: f64, radius: f64, axis: usize },
+    /// A circular cylinder of `length` along `axis`, centred on the origin; 3-D only.
+    Cylinder { length: f64, radius: f64, axis: usize },
+    /// A simple polygon, counter-clockwise; 2-D only.
+    Polygon { points: Vec<Vector<D>> },
+    /// A wall along an open line, 2-D only: walking from the first point to the last, the water is on
+    /// the left and the solid, `thickness` thick, on the right. A line walked towards +x is a bed: no
+    /// water is filled below it, however thin it is.
+    Polyline { points: Vec<Vector<D>>, thickness: f64 },
+    /// An open-topped tank: bottom and side walls `thickness` thick around the inner box from the
+    /// origin to `size`.
+    Tank { size: Vector<D>, thickness: f64 },
+    /// A solid by the facets of its surface, and what of it other bodies touch; 3-D only.
+    Mesh { mesh: Arc<Mesh>, contact: Touchable },
+    /// Several shapes as one solid, each at its pose; they must not overlap, unless it is fixed or driven.
+    Compound(Vec<(Pose<D>, Shape<D>)>),
+}
+
+/// Volume properties of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Volume<const D: usize> {
+    /// Volume, m³ (area, m², in 2-D).
+    pub volume: f64,
+    /// Centroid in the shape's frame, m.
+    pub centroid: Vector<D>,
+    /// ∫ (x − centroid)(x − centroid)ᵀ dV, m⁵ (m⁴ in 2-D). The inertia about the centroid of a body of
+    /// density ρ is ρ tr J in 2-D and ρ (tr J · 1 − J) in 3-D.
+    pub second_moment: Matrix<D>,
+}
+
+/// A boundary particle of a skin, in the shape's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkinPoint<const D: usize> {
+    /// Position, m.
+    pub r: Vector<D>,
+    /// Layer, 0 the one nearest the water, half a dp inside the true face.
+    pub layer: u8,
+}

@@ -1,0 +1,270 @@
+//! Layers of polygons and polyline walls: curves parallel to the outline, cut where another part of the
+//! outline is nearer, mitred at outer corners of a wall, and divided evenly. 2-D only.
+
+use super::{
+    Shape, SkinPoint,
+    distance::{Side, right_of, side_of},
+};
+use crate::math::Vector;
+
+/// A curve at one depth. Its ends are points of their own unless it ends where the wall ends.
+struct Curve<const D: usize> {
+    points: Vec<Vector<D>>,
+    open_start: bool,
+    open_end: bool,
+}
+
+/// Corners that turn by less than this (cosine; 30°) are smooth: a curve runs on through them.
+const SMOOTH: f64 = 0.866;
+
+/// The layers inside a counter-clockwise polygon.
+pub(super) fn polygon_skin<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+    // Walked backwards the solid is on the right, as a wall's is.
+    let line: Vec<_> = points.iter().chain(points.first()).rev().copied().collect();
+    let shape = Shape::Polygon { points: points.to_vec() };
+    layered(&line, true, dp, layers, |x| -shape.signed_distance(x))
+}
+
+/// The layers on the right of an open line, as many as are asked for, however thick the wall.
+pub(super) fn wall_skin<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+    layered(points, false, dp, layers, |x| match side_of(x, points) {
+        Side::Right(depth) => depth,
+        _ => 0.0,
+    })
+}
+
+fn layered<const D: usize>(
+    line: &[Vector<D>],
+    closed: bool,
+    dp: f64,
+    layers: usize,
+    depth_at: impl Fn(&Vector<D>) -> f64,
+) -> Vec<SkinPoint<D>> {
+    let mut skin = Vec::new();
+    for k in 0..layers {
+        let depth = (k as f64 + 0.5) * dp;
+        // A hair of slack: the parallel itself is to count as deep enough.
+        let valid = |x: &Vector<D>| depth_at(x) >= depth * (1.0 - 1e-7);
+        let pieces = parallels(line, closed, depth, dp, &valid);
+        for curve in joined(pieces, closed, dp) {
+            skin.extend(divided(&curve, dp).into_iter().map(|r| SkinPoint { r, layer: k as u8 }));
+        }
+    }
+    skin
+}
+
+/// The valid pieces of the parallel at `depth`, in the order of the line.
+fn parallels<const D: usize>(
+    line: &[Vector<D>],
+    closed: bool,
+    depth: f64,
+    dp: f64,
+    valid: &impl Fn(&Vector<D>) -> bool,
+) -> Vec<Curve<D>> {
+    let edges = line.len() - 1;
+    let normal: Vec<_> = line.windows(2).map(|ab| right_of(&ab[0], &ab[1])).collect();
+    // How far the parallel runs on past corner i, before which edge i − 1 and after which edge i lies.
+    let past = |i: usize| -> Option<f64> {
+        let (a, b) = match (i == 0 || i == edges, closed) {
+            (true, false) => return None,
+            (true, true) => (normal[edges - 1], normal[0]),
+            _ => (normal[i - 1], normal[i]),
+        };
+        let turns_left = a[0] * b[1] - a[1] * b[0] > 0.0;
+        // The mitre's length is d tan(θ/2), at most for θ = 100°; sharper corners get an arc.
+        let half = ((1.0 - a.dot(&b)) / (1.0 + a.dot(&b)).max(1e-12)).sqrt();
+        Some(if turns_left && half < 1.2 { depth * half } else { 0.0 })
+    };
+    let mut pieces = Vec::new();
+    for (i, ab) in line.windows(2).enumerate() {
+        let along = (ab[1] - ab[0]).normalize();
+        let shift = normal[i] * depth;
+        let a = ab[0] + shift - along * past(i).unwrap_or(0.0);
+        let b = ab[1] + shift + along * past(i + 1).unwrap_or(0.0);
+        for (from, to) in valid_spans(&a, &b, dp, valid) {
+            let open_start = from == a && past(i).is_none();
+            let open_end = to == b && past(i + 1).is_none();
+            pieces.push(Curve { points: vec![from, to], open_start, open_end });
+        }
+        if i + 1 < edges || closed {
+            let next = normal[(i + 1) % edges];
+            pieces.extend(arc(&ab[1], &normal[i], &next, depth, dp, valid));
+        }
+    }
+    pieces
+}
+
+/// The arc around a sharp outer corner of the parallel, if the corner is one.
+fn arc<const D: usize>(
+    corner: &Vector<D>,
+    from: &Vector<D>,
+    to: &Vector<D>,
+    depth: f64,
+    dp: f64,
+    valid: &impl Fn(&Vector<D>) -> bool,
+) -> Option<Curve<D>> {
+    let sine = from[0] * to[1] - from[1] * to[0];
+    let turn = sine.atan2(from.dot(to));
+    if turn <= 0.0 || (0.5 * turn).tan() < 1.2 {
+        return None;
+    }
+    let steps = (8.0 * turn * depth / dp).ceil().max(8.0);
+    let at = |i: usize| {
+        let (sin, cos) = (turn * i as f64 / steps).sin_cos();
+        let mut n = Vector::zeros();
+        (n[0], n[1]) = (cos * from[0] - sin * from[1], sin * from[0] + cos * from[1]);
+        corner + n * depth
+    };
+    let points: Vec<_> = (0..=steps as usize).map(at).filter(valid).collect();
+    (points.len() > 1).then_some(Curve { points, open_start: false, open_end: false })
+}
+
+/// The parts of the segment a-b where `valid` holds, their ends found by halving.
+fn valid_spans<const D: usize>(
+    a: &Vector<D>,
+    b: &Vector<D>,
+    dp: f64,
+    valid: &impl Fn(&Vector<D>) -> bool,
+) -> Vec<(Vector<D>, Vector<D>)> {
+    let steps = (8.0 * (b - a).norm() / dp).ceil().max(8.0) as usize;
+    let at = |u: f64| a + (b - a) * u;
+    let edge = |mut inside: f64, mut outside: f64| {
+        for _ in 0..40 {
+            let middle = 0.5 * (inside + outside);
+            *(if valid(&at(middle)) { &mut inside } else { &mut outside }) = middle;
+        }
+        at(inside)
+    };
+    let (mut spans, mut start) = (Vec::new(), valid(a).then_some(*a));
+    for i in 1..=steps {
+        let (before, here) = ((i - 1) as f64 / steps as f64, i as f64 / steps as f64);
+        match (start, valid(&at(here))) {
+            (None, true) => start = Some(edge(here, before)),
+            (Some(from), false) => {
+                spans.push((from, edge(before, here)));
+                start = None;
+            }
+            _ => (),
+        }
+    }
+    spans.extend(start.map(|from| (from, *b)));
+    spans
+}
+
+/// Joins pieces that go on smoothly from one to the next.
+fn joined<const D: usize>(pieces: Vec<Curve<D>>, closed: bool, dp: f64) -> Vec<Curve<D>> {
+    let smooth = |a: &Curve<D>, b: &Curve<D>| {
+        let (p, q) = (&a.points, &b.points);
+        let (end, before) = (p[p.len() - 1], p[p.len() - 2]);
+        let turn = (end - before).normalize().dot(&(q[1] - q[0]).normalize());
+        (end - q[0]).norm() < 1e-3 * dp && turn > SMOOTH
+    };
+    let mut curves: Vec<Curve<D>> = Vec::new();
+    for piece in pieces.into_iter().filter(|c| (c.points[1] - c.points[0]).norm() > 1e-6 * dp) {
+        match curves.last_mut() {
+            Some(last) if smooth(last, &piece) => {
+                last.points.extend(&piece.points);
+                last.open_end = piece.open_end;
+            }
+            _ => curves.push(piece),
+        }
+    }
+    let wraps = closed && curves.len() > 1 && smooth(&curves[curves.len() - 1], &curves[0]);
+    if wraps && let Some(mut last) = curves.pop() {
+        last.points.extend(&curves[0].points);
+        curves[0].points = last.points;
+    }
+    curves
+}
+
+/// Points about one dp apart along the curve. An end that is no point of its own is half a step away.
+fn divided<const D: usize>(curve: &Curve<D>, dp: f64) -> Vec<Vector<D>> {
+    let length: f64 = curve.points.windows(2).map(|ab| (ab[1] - ab[0]).norm()).sum();
+    let spare = 0.5 * (f64::from(curve.open_start) + f64::from(curve.open_end));
+    let steps = (length / dp - spare).round().max(if spare > 0.0 { 0.0 } else { 1.0 });
+    let step = length / (steps + spare);
+    let first = if curve.open_start { 0.5 * step } else { 0.0 };
+    let mut places = (0..=steps as usize).map(|i| first + i as f64 * step).peekable();
+    let (mut points, mut walked) = (Vec::new(), 0.0);
+    for (i, ab) in curve.points.windows(2).enumerate() {
+        let long = (ab[1] - ab[0]).norm();
+        let is_last = i + 2 == curve.points.len();
+        while let Some(s) = places.next_if(|s| is_last || *s <= walked + long) {
+            points.push(ab[0] + (ab[1] - ab[0]) * ((s - walked) / long).min(1.0));
+        }
+        walked += long;
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(points: &[[f64; 2]]) -> Vec<Vector<2>> {
+        points.iter().map(|&p| Vector::from(p)).collect()
+    }
+
+    /// The largest distance from a point of the face to its nearest particle.
+    fn bare(face: &[Vector<2>], skin: &[SkinPoint<2>]) -> f64 {
+        let at = |ab: &[Vector<2>], u: f64| ab[0] + (ab[1] - ab[0]) * u;
+        let places =
+            face.windows(2).flat_map(|ab| (0..200).map(|i| at(ab, (i as f64 + 0.5) / 200.0)).collect::<Vec<_>>());
+        let nearest = |x: Vector<2>| skin.iter().map(|p| (p.r - x).norm()).fold(f64::INFINITY, f64::min);
+        places.map(nearest).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_polygon_that_draws_a_box_has_the_skin_of_the_box() {
+        let square = Shape::Polygon { points: line(&[[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]) };
+        let block = Shape::Box { size: Vector::from([1.0, 1.0]) }.skin(0.1, 4);
+        let drawn = square.skin(0.1, 4);
+        assert_eq!(drawn.len(), block.len());
+        for p in &drawn {
+            assert!(block.iter().any(|q| q.layer == p.layer && (q.r - p.r).norm() < 1e-7));
+        }
+    }
+
+    #[test]
+    fn a_wall_that_draws_a_tank_has_the_skin_of_the_tank() {
+        let size = Vector::from([1.0, 0.5]);
+        let wall = Shape::Polyline { points: line(&[[0.0, 0.5], [0.0, 0.0], [1.0, 0.0], [1.0, 0.5]]), thickness: 0.3 };
+        let (drawn, tank) = (wall.skin(0.1, 3), Shape::Tank { size, thickness: 0.3 }.skin(0.1, 3));
+        assert_eq!(drawn.len(), tank.len());
+        for p in &drawn {
+            assert!(tank.iter().any(|q| q.layer == p.layer && (q.r - p.r).norm() < 1e-7));
+        }
+    }
+
+    #[test]
+    fn walls_of_any_bend_are_covered_and_never_too_near() {
+        let dp = 0.1;
+        let smooth: Vec<_> = (0..60).map(|i| [0.04 * i as f64, (0.2 * i as f64).sin() * 0.3]).collect();
+        let walls = [
+            line(&[[0.0, 0.0], [1.03, 0.0], [2.1, 0.37]]),
+            line(&[[0.0, 0.8], [0.6, 0.0], [1.2, 0.8]]),
+            line(&[[0.0, 0.0], [1.0, 0.7], [2.0, 0.0]]),
+            line(&[[0.0, 0.0], [0.9, 0.0], [0.9, 0.45], [1.4, 0.45], [1.4, 0.0], [2.0, 0.0]]),
+            line(&smooth),
+        ];
+        for points in walls {
+            let skin = Shape::Polyline { points: points.clone(), thickness: 0.3 }.skin(dp, 3);
+            for p in &skin {
+                let Side::Right(depth) = side_of(&p.r, &points) else { panic!("{p:?} is in the water") };
+                // Spans are sampled every dp/8: a dip this shallow may hide between two samples.
+                assert!(depth >= (p.layer as f64 + 0.5 - 1e-3) * dp, "{p:?} at {depth}");
+            }
+            // Half a dp deep and half a spacing aside would be 0.71 dp; a ridge's tip has to be barer.
+            assert!(bare(&points, &skin) < 1.0 * dp, "{points:?}: {}", bare(&points, &skin));
+        }
+    }
+
+    #[test]
+    fn a_fine_polygon_has_the_skin_of_a_disc() {
+        let circle = |i: usize| (std::f64::consts::TAU * i as f64 / 90.0).sin_cos();
+        let points: Vec<_> = (0..90).map(|i| Vector::from([circle(i).1, circle(i).0])).collect();
+        let skin = Shape::Polygon { points }.skin(0.1, 3);
+        let disc = Shape::<2>::Ball { radius: 1.0 }.skin(0.1, 3);
+        assert_eq!(skin.len(), disc.len());
+    }
+}

@@ -1,0 +1,386 @@
+//! Eight pairs at a time, each pair once: a particle meets later clusters, and what it gives them they take with
+//! the sign changed.
+//!
+//! A thread takes a slab and writes its sums, and those of the slab after it, into rows of its own; then every particle
+//! adds what two slabs hold for it. So nothing depends on the threads and nobody waits. Positions are whole numbers,
+//! whose differences are exact; the rest is single precision in units of the kernel's support and the time sound
+//! takes through h.
+
+use std::time::{Duration, Instant};
+
+use fearless_simd::{Select, SimdBase, SimdCvtFloat, SimdFloat};
+use rayon::prelude::*;
+
+use super::{
+    Input, Output, Peaks, Sums, Sweep,
+    accumulators::{Needs, Running, triangle},
+    boundary_sums::{self, Fits},
+    compiled::{Compiled, Laws},
+    simd_layout::{Cluster, Packed},
+};
+use crate::{
+    math::Vector,
+    math::simd::{self, LANES, Level, Row, Simd, Work, f32x8, i32x8},
+    neighbours::{Clusters, Pairs, Slab},
+    particles::PER_TASK,
+    sph::{Extra, Pair, Side, Term, Units, boundary::Fit, kernel::Kernel},
+};
+
+/// The sweep in lanes with its laws.
+pub(super) struct Lanes<const D: usize> {
+    laws: Box<dyn Laws<D>>,
+    fits: Box<dyn Fits<D>>,
+    units: Units,
+    level: Level,
+    packed: Packed<D>,
+    /// Whether the water lies packed for this pass already.
+    has_water: bool,
+    /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
+    sums: Vec<Row>,
+    /// Where in `sums` the rows of a cluster begin: its own slab's, and those of the slab before.
+    at: Vec<[u32; 2]>,
+    spent: Duration,
+}
+
+impl<const D: usize> Lanes<D> {
+    /// The sweep of those laws, made in `units`.
+    pub(super) fn new(laws: Box<dyn Laws<D>>, fits: Box<dyn Fits<D>>, units: Units, level: Level) -> Self {
+        let (packed, sums, at) = (Packed::default(), Vec::new(), Vec::new());
+        Self { laws, fits, units, level, packed, has_water: false, sums, at, spent: Duration::ZERO }
+    }
+
+    /// Makes room for the sums of all slabs, `rows` a cluster; returns how many rows each slab writes.
+    fn lay_out(&mut self, clusters: &Clusters, rows: usize) -> Vec<usize> {
+        self.at.resize(clusters.len(), [0; 2]);
+        let mut lengths = Vec::with_capacity(clusters.slabs.len());
+        let (mut offset, mut before) = (0, None);
+        for (s, slab) in clusters.slabs.iter().enumerate() {
+            for c in slab.first..slab.end {
+                self.at[c][0] = (offset + (c - slab.first) * rows) as u32;
+                self.at[c][1] = before.map_or(u32::MAX, |(offset, first)| (offset + (c - first) * rows) as u32);
+            }
+            let last = clusters.slabs.get(s + 1).map_or(slab.end, |next| next.end);
+            before = Some((offset, slab.first));
+            // And rows for what goes nowhere.
+            lengths.push((last - slab.first + 1) * rows);
+            offset += (last - slab.first + 1) * rows;
+        }
+        // The first slab has none before it: rows of zeros stand for them.
+        self.at.iter_mut().take_while(|at| at[1] == u32::MAX).for_each(|at| at[1] = offset as u32);
+        self.sums.resize(offset + rows, Row::default());
+        self.sums[offset..].fill(Row::default());
+        lengths
+    }
+
+    /// The sums of the particle in `slot`, in the sweep's units, by their row among the first `rows`.
+    #[inline(always)]
+    fn of_slot(&self, slot: u32, rows: usize) -> impl Fn(usize) -> f64 {
+        let (c, l) = (slot as usize / LANES, slot as usize % LANES);
+        let [own, before] = self.at[c];
+        let (own, before) = (&self.sums[own as usize..][..rows], &self.sums[before as usize..][..rows]);
+        move |row| f64::from(own[row].0[l]) + f64::from(before[row].0[l])
+    }
+
+    /// Acceleration and density rate of the particle in `slot`, in SI.
+    #[inline(always)]
+    fn sums_of(&self, slot: u32) -> Sums<D> {
+        let rate = 1.0 / self.units.time;
+        let acceleration = self.units.length * rate * rate;
+        let sum = self.of_slot(slot, D + 1);
+        let mut dv = Vector::<D>::zeros();
+        for (k, dv) in dv.iter_mut().enumerate() {
+            *dv = sum(k) * acceleration;
+        }
+        Sums { dv, dx: sum(D) * rate }
+    }
+
+    /// The extra sums of the particle in `slot`, in SI.
+    fn extra_of(&self, slot: u32, needs: Needs) -> Extra<f64, D> {
+        let (sum, mut sums) = (self.of_slot(slot, needs.sums(D)), Running::all(0.0));
+        sums.each(needs, needs, |row, x| *x = sum(row));
+        let Units { length, time } = self.units;
+        let Extra { grad_c, div_r, held, strain, moment } = sums.extra;
+        let strain = strain.map(|row| row.map(|x| x / time));
+        Extra { grad_c: grad_c.map(|x| x / length), div_r, held, strain, moment }
+    }
+
+    /// Sums over all slabs; gives the largest |v_ab·r_ab|/(r² + η²), 1/s.
+    fn pairs(&mut self, clusters: &Clusters) -> f64 {
+        let lengths = self.lay_out(clusters, self.laws.needs().sums(D));
+        let start = Instant::now();
+        let works = works(clusters, &lengths, &mut self.sums);
+        let (laws, level, packed) = (&self.laws, self.level, &self.packed);
+        let closing = works
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|(slab, sums)| laws.slab(level, packed, slab, sums))
+            .reduce(|| 0.0, |a, b| if b > a { b } else { a });
+        self.spent += start.elapsed();
+        f64::from(closing) / self.units.time
+    }
+}
+
+/// The slabs, each with the rows of `sums` that it writes.
+fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [Row]) -> Vec<(&'a Slab, &'a mut [Row])> {
+    let mut rest = sums;
+    let mut works = Vec::with_capacity(lengths.len());
+    for (slab, &length) in clusters.slabs.iter().zip(lengths) {
+        let (these, others) = rest.split_at_mut(length);
+        works.push((slab, these));
+        rest = others;
+    }
+    works
+}
+
+impl<const D: usize> Sweep<D> for Lanes<D> {
+    fn extra(&self) -> bool {
+        self.laws.needs().any()
+    }
+
+    fn spent(&self) -> Duration {
+        self.spent
+    }
+
+    fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]) {
+        let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
+        self.packed.pack(input, clusters, &self.units, false);
+        self.has_water = true;
+        let lengths = self.lay_out(clusters, boundary_sums::rows(D, flow));
+        let start = Instant::now();
+        let works = works(clusters, &lengths, &mut self.sums);
+        let (sums, level, packed) = (&self.fits, self.level, &self.packed);
+        works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.slab(level, packed, slab, flow, rows));
+        self.spent += start.elapsed();
+        let Units { length, time } = self.units;
+        fits.par_iter_mut().zip(&clusters.wet).with_min_len(PER_TASK).for_each(|(fit, &slot)| {
+            let sum = self.of_slot(slot, boundary_sums::rows(D, flow));
+            boundary_sums::each(fit, flow, |row, x| *x = sum(row));
+            fit.head *= (length / time).powi(2);
+            fit.arm = fit.arm.map(|x| x * length);
+            fit.flow = fit.flow.map(|x| x * (length / time));
+        });
+    }
+
+    fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
+        let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
+        let needs = self.laws.needs();
+        self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
+        if needs.inputs(D) > 0 {
+            self.packed.pack_rows(input, clusters, &self.units, needs);
+        }
+        let closing = self.pairs(clusters);
+        let g = input.medium.gravity;
+        let water = output.water.par_iter_mut().zip(&clusters.water).with_min_len(PER_TASK);
+        let a2 = water
+            .map(|(out, &slot)| {
+                *out = self.sums_of(slot);
+                out.dv += g;
+                out.dv.norm_squared()
+            })
+            .reduce(|| 0.0, f64::max);
+        let skin = output.skin.par_iter_mut().zip(&clusters.wet).with_min_len(PER_TASK);
+        skin.for_each(|(out, &slot)| *out = self.sums_of(slot));
+        let extra = output.extra.par_iter_mut().zip(&clusters.water).with_min_len(PER_TASK);
+        extra.for_each(|(out, &slot)| *out = self.extra_of(slot, needs));
+        Peaks { acceleration: a2.sqrt(), closing }
+    }
+}
+
+/// The sums of a slab by the laws `laws`.
+pub(super) fn slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
+    laws: &Compiled<K, T, W>,
+    level: Level,
+    packed: &Packed<D>,
+    slab: &Slab,
+    sums: &mut [Row],
+) -> f32 {
+    simd::with(level, OfSlab { laws: *laws, packed, slab, sums })
+}
+
+struct OfSlab<'a, K, T, W, const D: usize> {
+    /// By value: so the compiler sees that no sum written changes it.
+    laws: Compiled<K, T, W>,
+    packed: &'a Packed<D>,
+    slab: &'a Slab,
+    sums: &'a mut [Row],
+}
+
+/// One particle in all lanes.
+struct One<S: Simd, const D: usize> {
+    cluster: usize,
+    x: [i32x8<S>; D],
+    v: [f32x8<S>; D],
+    side: Side<f32x8<S>, D>,
+}
+
+/// What every pair of a slab needs.
+#[derive(Clone, Copy)]
+struct Given<'a, S: Simd, K, const D: usize> {
+    simd: S,
+    kernel: K,
+    eta2: f32x8<S>,
+    reach2: f32x8<S>,
+    zero: f32x8<S>,
+    clusters: &'a [Cluster<D>],
+    /// Rows of input.
+    rows: &'a [Row],
+    /// The slab's first cluster.
+    first: usize,
+    /// What all laws together need.
+    needs: Needs,
+}
+
+impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> Work for OfSlab<'_, K, T, W, D> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> f32 {
+        let Self { laws, packed, slab, sums } = self;
+        let Slab { first, middle, end, spans, index } = slab;
+        let needs = const { Needs::of::<(T, W), D>() };
+        let given = Given {
+            simd,
+            kernel: laws.kernel,
+            eta2: f32x8::splat(simd, laws.eta2 as f32),
+            reach2: f32x8::splat(simd, laws.reach2 as f32),
+            zero: f32x8::splat(simd, 0.0),
+            clusters: &packed.clusters,
+            rows: &packed.rows,
+            first: *first,
+            needs,
+        };
+        sums.fill(Row::default());
+        let mut closing = given.zero;
+        for c in *first..*end {
+            for l in 0..LANES {
+                let [start, skin, end] = spans[(c - first) * LANES + l];
+                let (start, skin, end) = (start as usize, skin as usize, end as usize);
+                if start == end {
+                    continue;
+                }
+                // Water meets water first; a boundary particle meets water only, by the laws of walls.
+                let skin = if c < *middle { skin } else { start };
+                let (one, mut sum) = (given.one(c, l), Running::all(given.zero));
+                given.meet(&laws.inner, &one, &index[start..skin], sums, &mut sum, &mut closing);
+                given.meet(&laws.wall, &one, &index[skin..end], sums, &mut sum, &mut closing);
+                let mine = &mut sums[(c - first) * needs.sums(D)..][..needs.sums(D)];
+                sum.each(needs, needs, |row, sum| mine[row].0[l] += simd::total(*sum));
+            }
+        }
+        simd::largest(closing)
+    }
+}
+
+impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
+    /// The particle in lane `l` of cluster `c`.
+    #[inline(always)]
+    fn one(&self, c: usize, l: usize) -> One<S, D> {
+        let Cluster { x, v, s } = &self.clusters[c];
+        let all = |x: f32| f32x8::splat(self.simd, x);
+        let mut one = One {
+            cluster: c,
+            x: [i32x8::splat(self.simd, 0); D],
+            v: [self.zero; D],
+            side: self.side(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
+        };
+        for k in 0..D {
+            one.x[k] = i32x8::splat(self.simd, x[k][l]);
+            one.v[k] = all(v[k][l]);
+        }
+        one
+    }
+
+    /// A side of a pair from densities, pressure and volume `s` and what `read` makes of the rows beside cluster `c`.
+    #[inline(always)]
+    fn side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> Side<f32x8<S>, D> {
+        let [x, low, p, s] = s;
+        let (repulsion, mark, none) = (self.zero, self.zero, [[self.zero; D]; D]);
+        let mut side = Side { x, low, p, s, repulsion, mark, stress: none, form: none };
+        let inputs = self.needs.inputs(D);
+        if inputs > 0 {
+            let rows = &self.rows[c * inputs..][..inputs];
+            if self.needs.mark {
+                side.mark = read(&rows[0].0);
+            }
+            if self.needs.repulsion {
+                side.repulsion = read(&rows[self.needs.repulsion_at()].0);
+            }
+            let mut entry = |row: usize, entry: &mut f32x8<S>| *entry = read(&rows[row].0);
+            if self.needs.stress {
+                triangle(&mut side.stress, self.needs.stress_at(), &mut entry);
+            }
+            if self.needs.form {
+                triangle(&mut side.form, self.needs.form_at(D), &mut entry);
+            }
+        }
+        side
+    }
+
+    /// Lets `one` meet `others` by the law `law`: adds its share to `sum` and theirs to their `sums`; its own cluster
+    /// comes to it lane by lane, so there its share goes nowhere, to the last rows.
+    #[inline(always)]
+    fn meet<L: Term<D>>(
+        &self,
+        law: &L,
+        one: &One<S, D>,
+        others: &[u32],
+        sums: &mut [Row],
+        sum: &mut Running<f32x8<S>, D>,
+        closing: &mut f32x8<S>,
+    ) {
+        let (simd, zero, own) = (self.simd, self.zero, const { Needs::of::<L, D>() });
+        let rows = self.needs.sums(D);
+        let nowhere = sums.len() - rows;
+        for &j in others {
+            let j = j as usize;
+            let Cluster { x, v, s } = &self.clusters[j];
+            let (mut r_ab, mut v_ab, mut force) = ([zero; D], [zero; D], [zero; D]);
+            for k in 0..D {
+                r_ab[k] = f32x8::float_from(one.x[k] - simd::load_whole(simd, &x[k]));
+                v_ab[k] = one.v[k] - simd::load(simd, &v[k]);
+            }
+            let mut r2 = r_ab[0] * r_ab[0];
+            for d in &r_ab[1..] {
+                r2 = d.mul_add(*d, r2);
+            }
+            let load = |row: &[f32; LANES]| simd::load(simd, row);
+            let side = self.side(j, [load(&s[0]), load(&s[1]), load(&s[2]), load(&s[3])], load);
+            let factor = self.kernel.slope(r2);
+            let ab = Pair::new(r_ab, v_ab, r2, self.kernel.w(r2), self.eta2, one.side, side);
+            let along_r = factor * law.along_r(&ab, zero);
+            for (force, r) in force.iter_mut().zip(&r_ab) {
+                *force = along_r * *r;
+            }
+            if L::DRAG {
+                let along_v = factor * law.along_v(&ab, zero);
+                for (force, v) in force.iter_mut().zip(&v_ab) {
+                    *force = along_v.mul_add(*v, *force);
+                }
+            }
+            if L::VECTOR {
+                let vector = law.vector(&ab, [zero; D]);
+                for (force, vector) in force.iter_mut().zip(&vector) {
+                    *force = factor.mul_add(*vector, *force);
+                }
+            }
+            let (rate_a, rate_b) = law.rate(&ab, (zero, zero));
+            let near = r2.simd_lt(self.reach2).select(ab.vr.abs() * ab.inv_r2, zero);
+            *closing = SimdBase::max(*closing, near);
+
+            let at = if j == one.cluster { nowhere } else { (j - self.first) * rows };
+            let theirs = &mut sums[at..][..rows];
+            let mut b = Running::all(zero);
+            b.each(own, self.needs, |row, b| *b = load(&theirs[row].0));
+            for (k, force) in force.into_iter().enumerate() {
+                sum.dv[k] += force;
+                b.dv[k] -= force;
+            }
+            sum.dx = factor.mul_add(rate_a, sum.dx);
+            b.dx = factor.mul_add(rate_b, b.dx);
+            if L::EXTRA {
+                law.extra(&ab, factor, &mut sum.extra, &mut b.extra);
+            }
+            b.each(own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
+        }
+    }
+}

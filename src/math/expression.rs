@@ -1,0 +1,227 @@
+//! A formula in the time t, or in the place x, y, z, as a scene says it: its value and, by the chain rule, its exact rate
+//! by the first of them.
+//!
+//! Usual precedence: −t^2 is −(t²), 2^3^2 is 2^(3²), 2e-3 is a number. Every node is evaluated as the pair
+//! (x, dx/dt), so there is nothing to differentiate symbolically and nothing to approximate.
+
+mod parser;
+
+use crate::{error::Result, math::Vector};
+use parser::read;
+
+/// A formula in the time t (s): numbers, `t`, `pi`, `+ - * / ^`, brackets and the usual functions.
+///
+/// ```
+/// # use pontoon::math::expression::Formula;
+/// let heave = Formula::parse("0.05*sin(2*pi*t/1.2)")?;
+/// let (value, rate) = heave.at(0.0);
+/// assert_eq!(value, 0.0);
+/// assert!((rate - 0.05 * std::f64::consts::TAU / 1.2).abs() < 1e-15);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Formula {
+    root: Node,
+}
+
+/// A function of one number: its value and its derivative there.
+type Function = fn(f64) -> (f64, f64);
+
+#[derive(Clone, Debug)]
+enum Node {
+    Number(f64),
+    /// The i-th of the numbers that the formula is of.
+    Variable(usize),
+    Negate(Box<Node>),
+    Binary(Binary, Box<Node>, Box<Node>),
+    Call(Function, Box<Node>),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Min,
+    Max,
+}
+
+const FUNCTIONS: [(&str, Function); 14] = [
+    ("sin", |x| (x.sin(), x.cos())),
+    ("cos", |x| (x.cos(), -x.sin())),
+    ("tan", |x| (x.tan(), 1.0 + x.tan().powi(2))),
+    ("asin", |x| (x.asin(), 1.0 / (1.0 - x * x).sqrt())),
+    ("acos", |x| (x.acos(), -1.0 / (1.0 - x * x).sqrt())),
+    ("atan", |x| (x.atan(), 1.0 / (1.0 + x * x))),
+    ("sinh", |x| (x.sinh(), x.cosh())),
+    ("cosh", |x| (x.cosh(), x.sinh())),
+    ("tanh", |x| (x.tanh(), 1.0 - x.tanh().powi(2))),
+    ("exp", |x| (x.exp(), x.exp())),
+    ("ln", |x| (x.ln(), 1.0 / x)),
+    ("log10", |x| (x.log10(), 1.0 / (x * std::f64::consts::LN_10))),
+    ("sqrt", |x| (x.sqrt(), 0.5 / x.sqrt())),
+    ("abs", |x| (x.abs(), if x < 0.0 { -1.0 } else { 1.0 })),
+];
+
+/// Functions of two numbers.
+const CHOICES: [(&str, Binary); 2] = [("min", Binary::Min), ("max", Binary::Max)];
+
+impl Formula {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// `Scene` if it cannot be read: says what is wrong, at which character, and which words are known.
+    pub fn parse(text: &str) -> Result<Self> {
+        read(text, &["t"]).map(|root| Self { root })
+    }
+
+    /// The formula that is `x` at all times.
+    pub fn constant(x: f64) -> Self {
+        Self { root: Node::Number(x) }
+    }
+
+    /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
+    pub fn at(&self, t: f64) -> (f64, f64) {
+        self.root.at(&[t])
+    }
+}
+
+/// A formula in the place: x and y (m), in 3-D also z.
+///
+/// ```
+/// # use pontoon::math::expression::Field;
+/// let swirl = Field::<2>::parse("-sin(pi*x)*cos(pi*y)")?;
+/// assert_eq!(swirl.at(&[0.5, 0.0].into()), -1.0);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Field<const D: usize> {
+    root: Node,
+}
+
+impl<const D: usize> Field<D> {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// As [`Formula::parse`].
+    pub fn parse(text: &str) -> Result<Self> {
+        read(text, &["x", "y", "z"][..D]).map(|root| Self { root })
+    }
+
+    /// Value at the place `r` (m).
+    pub fn at(&self, r: &Vector<D>) -> f64 {
+        self.root.at(r.as_slice()).0
+    }
+}
+
+impl Node {
+    fn at(&self, t: &[f64]) -> (f64, f64) {
+        match self {
+            Self::Number(x) => (*x, 0.0),
+            Self::Variable(i) => (t[*i], if *i == 0 { 1.0 } else { 0.0 }),
+            Self::Negate(x) => {
+                let (x, dx) = x.at(t);
+                (-x, -dx)
+            }
+            Self::Binary(binary, x, y) => binary.at(x.at(t), y.at(t)),
+            Self::Call(function, x) => {
+                let (x, dx) = x.at(t);
+                let (value, slope) = function(x);
+                (value, if dx == 0.0 { 0.0 } else { slope * dx })
+            }
+        }
+    }
+}
+
+impl Binary {
+    fn at(self, (x, dx): (f64, f64), (y, dy): (f64, f64)) -> (f64, f64) {
+        match self {
+            Self::Add => (x + y, dx + dy),
+            Self::Subtract => (x - y, dx - dy),
+            Self::Multiply => (x * y, dx * y + x * dy),
+            Self::Divide => (x / y, (dx - x / y * dy) / y),
+            Self::Power => {
+                let base = if dx == 0.0 || y == 0.0 { 0.0 } else { y * x.powf(y - 1.0) * dx };
+                let exponent = if dy == 0.0 { 0.0 } else { x.powf(y) * x.ln() * dy };
+                (x.powf(y), base + exponent)
+            }
+            Self::Min => {
+                if y < x {
+                    (y, dy)
+                } else {
+                    (x, dx)
+                }
+            }
+            Self::Max => {
+                if y > x {
+                    (y, dy)
+                } else {
+                    (x, dx)
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn precedence_is_that_of_mathematics() {
+        for (text, value) in [
+            ("-t^2", -9.0),
+            ("2^3^2", 512.0),
+            ("2^-t", 0.125),
+            ("8/4/2", 1.0),
+            ("8 / 2 * 4", 16.0),
+            ("1-2+3", 2.0),
+            ("2e-3*t + 1.5E3", 1500.006),
+            ("-(1+t)*-2", 8.0),
+            ("max(t, 1) - min(t, 1)", 2.0),
+            ("(-t)^2", 9.0),
+        ] {
+            assert_eq!(Formula::parse(text).unwrap().at(3.0).0, value, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_rate_is_the_derivative() {
+        for (name, _) in FUNCTIONS {
+            check_rate(&format!("{name}(0.3 + 0.4*t)"));
+        }
+        for text in ["t^3 - 2^t + t^t", "exp(-t^2)/(1+t)", "0.05*sin(2*pi*t/1.2)*tanh(t)", "max(t^2, t)", "7", "-t*-t"]
+        {
+            check_rate(text);
+        }
+        assert_eq!(Formula::parse("t^2").unwrap().at(0.0), (0.0, 0.0));
+        assert_eq!(Formula::parse("(t-1)^3").unwrap().at(0.0), (-1.0, 3.0));
+    }
+
+    /// The central difference of step 1e-5 is exact to 1e-10 f''' and to the round-off 1e-11 of its quotient.
+    fn check_rate(text: &str) {
+        let formula = Formula::parse(text).unwrap();
+        let (t, step) = (0.7, 1e-5);
+        let difference = (formula.at(t + step).0 - formula.at(t - step).0) / (2.0 * step);
+        let rate = formula.at(t).1;
+        assert!((rate - difference).abs() < 1e-8 * (1.0 + rate.abs()), "{text}: {rate} against {difference}");
+    }
+
+    #[test]
+    fn a_wrong_formula_is_told_where_and_how() {
+        let said = |text: &str| Formula::parse(text).unwrap_err().to_string();
+        assert!(said("2*sinus(t)").contains("character 3: \"sinus\" is not known; did you mean \"sin"));
+        assert!(said("2*x").contains("\"x\" is not known"));
+        assert!(said("3t").contains("an operator is expected before 't'"));
+        assert!(said("sin(t").contains("it ends where ')' is expected"));
+        assert!(said("1.2.3").contains("\"1.2.3\" is not a number"));
+        for text in ["", "t*", ")", "sin t", "min(t)", "1e", "π", "t²", "2**t"] {
+            assert!(said(text).contains("known: "), "{text}");
+        }
+        assert!(said(&"(".repeat(900)).contains("nested"));
+        assert!(said(&"-".repeat(900)).contains("nested"));
+        assert!(said(&"1+".repeat(900)).contains("longer"));
+    }
+}

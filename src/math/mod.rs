@@ -1,0 +1,9 @@
+//! Mathematics without physics: vectors and rotations, time series, formulas, SIMD numbers, number formats.
+
+pub mod expression;
+pub mod format;
+pub mod simd;
+pub mod time_series;
+mod vector;
+
+pub use vector::{Bounds, Matrix, Pose, Vector, Wedge};

@@ -1,0 +1,231 @@
+//! Particles of one kind in clusters of eight, and for each particle the later clusters that it must meet.
+//!
+//! A column is cut into runs of eight. The clusters of a slab follow one another, water first, then boundary
+//! particles. A list holds, for one particle, every cluster of its own slab or the next that comes later and has a
+//! particle within the lists' reach: so each pair of particles is met once, and what a slab writes lies in itself and the
+//! slab after it. A water particle's list begins with its own cluster; boundary particles do not meet.
+
+use rayon::prelude::*;
+
+use super::{
+    columns::{Columns, Sorted},
+    search::{self, Sizes},
+    whole,
+};
+use crate::{
+    math::Vector,
+    math::simd::{LANES, Level},
+};
+
+/// No particle: a pad that fills up a cluster.
+pub const PAD: u32 = u32::MAX;
+
+/// Where a pad lies: half the range of whole numbers from its cluster, so far that no kernel reaches it and
+/// so near that no difference overflows.
+pub const AWAY: i32 = 1 << 30;
+
+/// Widths of a column that a cluster may span.
+const SPAN: f64 = 2.0;
+
+/// Clusters that one thread takes, and their lists.
+#[derive(Clone, Debug, Default)]
+pub struct Slab {
+    /// First cluster of water.
+    pub first: usize,
+    /// End of the water, first cluster of boundary particles.
+    pub middle: usize,
+    /// End of the slab's clusters.
+    pub end: usize,
+    /// For each slot of the slab: first entry in `index`, start of the clusters of boundary particles, end.
+    pub spans: Vec<[u32; 3]>,
+    /// Clusters to meet.
+    pub index: Vec<u32>,
+}
+
+/// All clusters.
+#[derive(Clone, Debug, Default)]
+pub struct Clusters {
+    /// The particle in each slot, eight slots a cluster: an index among the water or the skin, or [`PAD`].
+    pub source: Vec<u32>,
+    /// The slabs in order.
+    pub slabs: Vec<Slab>,
+    /// The slot of each water particle.
+    pub water: Vec<u32>,
+    /// The slot of each wet boundary particle, in the order of [`super::Near::wet`].
+    pub wet: Vec<u32>,
+}
+
+/// What the search for pairs needs to know of a cluster besides its particles.
+pub(super) struct Extent<const D: usize> {
+    pub(super) column: u32,
+    /// Lowest and highest particle along the columns, m.
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// Middle and half of its box, in units.
+    pub(super) centre: [i32; D],
+    pub(super) half: [f32; D],
+}
+
+/// The clusters of one kind in each column.
+pub(super) type Ranges = Vec<std::ops::Range<u32>>;
+
+impl Clusters {
+    /// Number of clusters.
+    pub fn len(&self) -> usize {
+        self.source.len() / LANES
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.source.is_empty()
+    }
+
+    /// Memory of the clusters and their lists, B.
+    pub(super) fn bytes(&self) -> usize {
+        let slab = |slab: &Slab| 12 * slab.spans.len() + 4 * slab.index.len();
+        4 * (self.source.len() + self.water.len() + self.wet.len()) + self.slabs.iter().map(slab).sum::<usize>()
+    }
+
+    /// Makes clusters and lists of the water and of those boundary particles that may be near it; returns which
+    /// boundary particles are, in ascending order.
+    pub(super) fn build<const D: usize>(
+        &mut self,
+        columns: &Columns<D>,
+        (water_r, water): (&[Vector<D>], &Sorted),
+        (skin_r, skin): (&[Vector<D>], &Sorted),
+        sizes: &Sizes,
+        level: Level,
+    ) -> Vec<u32> {
+        self.source.clear();
+        self.slabs.resize_with(columns.slabs(), Slab::default);
+        let mut extents = Vec::new();
+        let (mut ranges, mut end) = ([vec![0..0; columns.len()], vec![0..0; columns.len()]], 0);
+        for (s, slab) in self.slabs.iter_mut().enumerate() {
+            slab.first = end;
+            for (kind, (r, sorted)) in [(water_r, water), (skin_r, skin)].into_iter().enumerate() {
+                for column in columns.of_slab(s) {
+                    let before = extents.len() as u32;
+                    let particles = &sorted.order[sorted.start[column] as usize..sorted.start[column + 1] as usize];
+                    cut(particles, r, columns.up, SPAN * sizes.width, column as u32, &mut self.source, &mut extents);
+                    ranges[kind][column] = before..extents.len() as u32;
+                }
+                if kind == 0 {
+                    slab.middle = extents.len();
+                }
+            }
+            end = extents.len();
+            slab.end = end;
+        }
+        let x = self.places(water_r, skin_r, &mut extents, sizes.inv_unit);
+        let touched = search::find(columns, &mut self.slabs, &self.source, &x, &extents, &ranges, sizes, level);
+        self.maps(water_r.len(), &touched)
+    }
+
+    /// The places of all slots in whole units, and the boxes around the clusters.
+    fn places<const D: usize>(
+        &self,
+        water: &[Vector<D>],
+        skin: &[Vector<D>],
+        extents: &mut [Extent<D>],
+        inv_unit: f64,
+    ) -> Vec<[[i32; LANES]; D]> {
+        let mut x = vec![[[0; LANES]; D]; self.len()];
+        let work = self.by_slab(&mut x, 1).into_par_iter().zip(self.by_slab(extents, 1));
+        work.for_each(|((slab, x), (_, extents))| {
+            for ((c, x), extent) in (slab.first..).zip(x).zip(extents) {
+                let source = &self.source[c * LANES..(c + 1) * LANES];
+                fill(x, source, if c < slab.middle { water } else { skin }, inv_unit);
+                let n = filled(source);
+                for (k, x) in x.iter().enumerate() {
+                    let apart = |i: &i32| i.wrapping_sub(x[0]);
+                    let low = x[..n].iter().map(apart).min().unwrap_or(0);
+                    let high = x[..n].iter().map(apart).max().unwrap_or(0);
+                    extent.centre[k] = x[0].wrapping_add(low).wrapping_add((high - low) / 2);
+                    // One more for the half that the division may drop.
+                    extent.half[k] = ((high - low) / 2 + 1) as f32;
+                }
+            }
+        });
+        x
+    }
+
+    /// `items`, of which each cluster has `each`, slab by slab.
+    pub fn by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> {
+        let mut rest = items;
+        let mut parts = Vec::with_capacity(self.slabs.len());
+        for slab in &self.slabs {
+            let (these, others) = rest.split_at_mut((slab.end - slab.first) * each);
+            parts.push((slab, these));
+            rest = others;
+        }
+        parts
+    }
+
+    /// Notes which slot each particle has; returns the wet boundary particles in ascending order.
+    fn maps(&mut self, water: usize, touched: &[u8]) -> Vec<u32> {
+        self.water.clear();
+        self.water.resize(water, 0);
+        let mut wet = Vec::new();
+        for slab in &self.slabs {
+            for slot in slab.first * LANES..slab.middle * LANES {
+                if self.source[slot] != PAD {
+                    self.water[self.source[slot] as usize] = slot as u32;
+                }
+            }
+            for slot in slab.middle * LANES..slab.end * LANES {
+                if touched[slot / LANES] >> (slot % LANES) & 1 == 1 {
+                    wet.push((self.source[slot], slot as u32));
+                }
+            }
+        }
+        wet.par_sort_unstable();
+        self.wet = wet.iter().map(|w| w.1).collect();
+        wet.into_iter().map(|w| w.0).collect()
+    }
+}
+
+/// The places of a cluster in whole units, pads far away.
+#[inline(always)]
+pub fn fill<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) {
+    let n = filled(source);
+    for (l, &i) in source[..n].iter().enumerate() {
+        for (x, r) in x.iter_mut().zip(r[i as usize].iter()) {
+            x[l] = whole(*r, inv_unit);
+        }
+    }
+    for x in x {
+        let away = x[0].wrapping_add(AWAY);
+        x[n..].fill(away);
+    }
+}
+
+/// How many lanes of a cluster hold a particle: the first ones.
+#[inline(always)]
+pub fn filled(source: &[u32]) -> usize {
+    if source[LANES - 1] == PAD { source.iter().take_while(|&&i| i != PAD).count() } else { LANES }
+}
+
+/// Cuts a column's particles into clusters.
+fn cut<const D: usize>(
+    particles: &[u32],
+    r: &[Vector<D>],
+    up: usize,
+    span: f64,
+    column: u32,
+    source: &mut Vec<u32>,
+    extents: &mut Vec<Extent<D>>,
+) {
+    let height = |i: u32| r[i as usize][up];
+    let mut rest = particles;
+    while let Some(&lowest) = rest.first() {
+        let low = height(lowest);
+        let n = 1 + rest[1..].iter().take(LANES - 1).take_while(|&&i| height(i) - low <= span).count();
+        let (these, others) = rest.split_at(n);
+        source.extend(these);
+        source.extend(std::iter::repeat_n(PAD, LANES - n));
+        let high = these.iter().map(|&i| height(i)).fold(low, f64::max);
+        let low = these.iter().map(|&i| height(i)).fold(low, f64::min);
+        extents.push(Extent { column, low, high, centre: [0; D], half: [0.0; D] });
+        rest = others;
+    }
+}

@@ -1,0 +1,115 @@
+//! Neighbour lists in chunks of particles, for the oracle: each made and read by one thread at a time.
+
+use rayon::prelude::*;
+
+use super::Grid;
+use crate::math::{Bounds, Vector};
+
+/// Particles in a chunk: the unit of parallel work, fixed so that no result depends on the threads.
+pub const CHUNK: usize = 128;
+
+/// Where in its chunk's `index` a particle's neighbours are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Span {
+    /// First neighbour of the first kind.
+    pub start: u32,
+    /// End of the first kind, start of the second.
+    pub middle: u32,
+    /// End of the second kind.
+    pub end: u32,
+}
+
+/// The neighbours of [`CHUNK`] particles.
+#[derive(Clone, Debug, Default)]
+pub struct Chunk {
+    /// One span a particle.
+    pub spans: Vec<Span>,
+    /// Neighbours, one particle after the other.
+    pub index: Vec<u32>,
+}
+
+impl Chunk {
+    /// Neighbours of both kinds of the chunk's `i`-th particle.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> (&[u32], &[u32]) {
+        let s = self.spans[i];
+        (&self.index[s.start as usize..s.middle as usize], &self.index[s.middle as usize..s.end as usize])
+    }
+}
+
+/// The lists of all particles.
+#[derive(Clone, Debug, Default)]
+pub struct Lists {
+    /// For water: first kind water, second kind skin.
+    pub water: Vec<Chunk>,
+    /// For the wet boundary particles: first kind water; no second.
+    pub skin: Vec<Chunk>,
+}
+
+impl Lists {
+    /// Memory of the lists, B.
+    pub(super) fn bytes(&self) -> usize {
+        let chunk = |chunk: &Chunk| 12 * chunk.spans.len() + 4 * chunk.index.len();
+        self.water.iter().chain(&self.skin).map(chunk).sum()
+    }
+
+    /// Lists all pairs nearer than `reach` (m) among water and of water with skin; returns which of the boundary
+    /// particles `near` have any.
+    pub(super) fn build<const D: usize>(
+        &mut self,
+        (water, water_r): (&Grid<D>, &[Vector<D>]),
+        (skin, skin_r): (&Grid<D>, &[Vector<D>]),
+        near: &[u32],
+        reach: f64,
+    ) -> Vec<u32> {
+        self.water.resize_with(water_r.len().div_ceil(CHUNK), Chunk::default);
+        self.water.par_iter_mut().enumerate().for_each(|(c, chunk)| {
+            chunk.clear();
+            for i in c * CHUNK..water_r.len().min((c + 1) * CHUNK) {
+                let start = chunk.index.len();
+                chunk.append(water, water_r, &water_r[i], i as u32, reach);
+                let middle = chunk.index.len();
+                chunk.append(skin, skin_r, &water_r[i], u32::MAX, reach);
+                chunk.close(start, middle);
+            }
+        });
+        let mut beside = vec![false; skin_r.len()];
+        for chunk in &self.water {
+            for span in &chunk.spans {
+                for &j in &chunk.index[span.middle as usize..span.end as usize] {
+                    beside[j as usize] = true;
+                }
+            }
+        }
+        let wet: Vec<u32> = near.iter().copied().filter(|&i| beside[i as usize]).collect();
+        self.skin.resize_with(wet.len().div_ceil(CHUNK), Chunk::default);
+        self.skin.par_iter_mut().zip(wet.par_chunks(CHUNK)).for_each(|(chunk, wet)| {
+            chunk.clear();
+            for &i in wet {
+                let start = chunk.index.len();
+                chunk.append(water, water_r, &skin_r[i as usize], u32::MAX, reach);
+                chunk.close(start, chunk.index.len());
+            }
+        });
+        wet
+    }
+}
+
+impl Chunk {
+    fn clear(&mut self) {
+        self.spans.clear();
+        self.index.clear();
+    }
+
+    /// Appends the particles of `grid` nearer than `reach` to `x`, without `this` one.
+    fn append<const D: usize>(&mut self, grid: &Grid<D>, r: &[Vector<D>], x: &Vector<D>, this: u32, reach: f64) {
+        let reach2 = reach * reach;
+        grid.rows(&Bounds { min: *x, max: *x }.grown(reach), |row| {
+            self.index.extend(row.iter().filter(|&&j| j != this && (r[j as usize] - x).norm_squared() < reach2));
+        });
+    }
+
+    fn close(&mut self, start: usize, middle: usize) {
+        self.spans.push(Span { start: start as u32, middle: middle as u32, end: self.index.len() as u32 });
+    }
+}

@@ -1,0 +1,240 @@
+//! Series as CSV, written while the run goes on: a header with units, then a row for each look.
+
+use std::{
+    fs::{File, OpenOptions},
+    io::{Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+};
+
+use super::cannot_write;
+use crate::{
+    error::{Error, Kind, Result},
+    math::time_series::Series,
+};
+
+/// A CSV file that grows by whole rows.
+///
+/// Every row reaches the system at once, so a run that dies loses none; a row that fails half-way, as on a
+/// full disk, is taken back. Numbers are written so that reading them gives the same bits; a number that
+/// does not exist (NaN) is an empty field.
+pub struct Table {
+    path: PathBuf,
+    file: File,
+    bytes: u64,
+    columns: usize,
+    first: Option<Vec<f64>>,
+    last: Option<(f64, Vec<f64>)>,
+}
+
+impl Table {
+    /// A new table at `path` with the columns `t_s` and `columns`.
+    ///
+    /// # Errors
+    /// `File` if it exists or cannot be written.
+    pub fn create(path: &Path, columns: &[String]) -> Result<Self> {
+        let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(|e| cannot_write(path, &e))?;
+        let mut table = Self { path: path.to_owned(), file, bytes: 0, columns: columns.len(), first: None, last: None };
+        table.append(&format!("t_s,{}\n", columns.join(",")))?;
+        Ok(table)
+    }
+
+    /// The table at `path` as it was when it had `bytes` bytes; what came after is cut off.
+    ///
+    /// # Errors
+    /// `Restart` if it is shorter than that, has no whole row there or its header names other columns; `File` if it cannot be
+    /// opened.
+    pub fn resume(path: &Path, columns: &[String], bytes: u64) -> Result<Self> {
+        let text = std::fs::read(path).map_err(|e| Error::file(path, e))?;
+        let header = format!("t_s,{}\n", columns.join(","));
+        let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
+        if kept.is_none_or(|k| !k.starts_with(header.as_bytes()) || !k.ends_with(b"\n")) {
+            let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
+            return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
+        }
+        let file = OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?;
+        let mut table = Self { path: path.to_owned(), file, bytes, columns: columns.len(), first: None, last: None };
+        table.cut(bytes)?;
+        Ok(table)
+    }
+
+    /// Takes back all but the first `bytes` bytes, the header and whole rows.
+    ///
+    /// # Errors
+    /// `File` if it cannot be read or cut.
+    pub fn cut(&mut self, bytes: u64) -> Result<()> {
+        let text = std::fs::read(&self.path).map_err(|e| Error::file(&self.path, e))?;
+        let kept = usize::try_from(bytes).map_or(&text[..], |n| &text[..n.min(text.len())]);
+        let kept = String::from_utf8_lossy(kept);
+        let rows = kept.split_once('\n').map_or("", |(_, rows)| rows);
+        self.first = rows.lines().next().and_then(read_row).map(|(_, row)| row);
+        self.last = rows.lines().next_back().and_then(read_row);
+        let cut = self.file.set_len(bytes).and_then(|()| self.file.seek(SeekFrom::Start(bytes)));
+        cut.map_err(|e| cannot_write(&self.path, &e))?;
+        self.bytes = bytes;
+        Ok(())
+    }
+
+    /// Adds the row of time `t` (s).
+    ///
+    /// # Errors
+    /// `File` if it cannot be written; the rows before stay whole.
+    pub fn row(&mut self, t: f64, values: &[f64]) -> Result<()> {
+        assert_eq!(values.len(), self.columns, "a value for each column");
+        let mut line = number(t);
+        for &x in values {
+            line.push(',');
+            line.push_str(&number(x));
+        }
+        line.push('\n');
+        self.append(&line)?;
+        self.first.get_or_insert_with(|| values.to_vec());
+        self.last = Some((t, values.to_vec()));
+        Ok(())
+    }
+
+    /// Adds rows of time `t` (s), each of words and of values for the columns behind them: all rows or none.
+    ///
+    /// # Errors
+    /// `File` if they cannot be written; the rows before stay whole.
+    pub fn rows(&mut self, t: f64, rows: &[([&str; 2], Vec<f64>)]) -> Result<()> {
+        let mut lines = String::new();
+        for (words, values) in rows {
+            assert_eq!(words.len() + values.len(), self.columns, "a word or a value for each column");
+            let numbers = values.iter().map(|&x| number(x));
+            let fields = [number(t)].into_iter().chain(words.map(String::from)).chain(numbers);
+            lines += &(fields.collect::<Vec<_>>().join(",") + "\n");
+        }
+        self.append(&lines)?;
+        if let Some((_, values)) = rows.last() {
+            self.last = Some((t, values.clone()));
+        }
+        Ok(())
+    }
+
+    /// Values of the first row.
+    pub fn first(&self) -> Option<&[f64]> {
+        self.first.as_deref()
+    }
+
+    /// Time (s) and values of the last row.
+    pub fn last(&self) -> Option<(f64, &[f64])> {
+        self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
+    }
+
+    /// Length of the file, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Waits until all rows are on the disk itself.
+    ///
+    /// # Errors
+    /// `File` if the disk refuses.
+    pub fn sync(&self) -> Result<()> {
+        self.file.sync_data().map_err(|e| cannot_write(&self.path, &e))
+    }
+
+    fn append(&mut self, line: &str) -> Result<()> {
+        if let Err(why) = self.file.write_all(line.as_bytes()) {
+            // Cutting can fail only where writing did: the error to tell is the first.
+            let _ = self.file.set_len(self.bytes);
+            return Err(cannot_write(&self.path, &why));
+        }
+        self.bytes += line.len() as u64;
+        Ok(())
+    }
+}
+
+/// A table as it stands in its file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Readings {
+    /// Names of the columns after the time.
+    pub columns: Vec<String>,
+    /// Times, s.
+    pub t: Vec<f64>,
+    /// A row of numbers for each column; NaN where there was nothing to measure.
+    pub x: Vec<Vec<f64>>,
+}
+
+impl Readings {
+    /// The table at `path`. A last row that is cut, as that of a killed run may be, is left out.
+    ///
+    /// # Errors
+    /// `File` if it cannot be read.
+    pub fn read(path: &Path) -> Result<Self> {
+        let broken = |why: csv::Error| Error::file(path, why);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path).map_err(broken)?;
+        let columns: Vec<String> = reader.headers().map_err(broken)?.iter().skip(1).map(String::from).collect();
+        let (mut t, mut x) = (Vec::new(), vec![Vec::new(); columns.len()]);
+        for record in reader.records() {
+            let record = record.map_err(broken)?;
+            let field = |i: usize| record.get(i).and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
+            if record.len() == columns.len() + 1 && field(0).is_finite() {
+                t.push(field(0));
+                x.iter_mut().enumerate().for_each(|(i, column)| column.push(field(i + 1)));
+            }
+        }
+        Ok(Self { columns, t, x })
+    }
+
+    /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.
+    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<Series> {
+        let column = &self.x[self.columns.iter().position(|column| column == name)?];
+        let known = self.t.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
+        let (t, x): (Vec<f64>, Vec<f64>) = known.unzip();
+        Series::new(t, x).ok()
+    }
+}
+
+/// The shortest text that reads back as `x`; nothing for NaN.
+fn number(x: f64) -> String {
+    if x.is_nan() { String::new() } else { format!("{x:?}") }
+}
+
+/// Time and values of a row, empty fields as NaN.
+fn read_row(line: &str) -> Option<(f64, Vec<f64>)> {
+    let mut fields = line.split(',').map(|x| x.parse().unwrap_or(f64::NAN));
+    Some((fields.next()?, fields.collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns() -> Vec<String> {
+        vec!["a_m".into(), "b_N".into()]
+    }
+
+    #[test]
+    fn a_resumed_table_is_the_unbroken_one_byte_for_byte() -> Result<()> {
+        let folder = std::env::temp_dir().join(format!("pontoon-table-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
+        let path = folder.join("x.csv");
+        let mut table = Table::create(&path, &columns())?;
+        table.row(0.0, &[1.0 / 3.0, f64::NAN])?;
+        let bytes = table.bytes();
+        table.row(0.1, &[-1e-9, 2.0])?;
+        let whole = std::fs::read(&path).map_err(|e| Error::file(&path, e))?;
+        assert!(Table::create(&path, &columns()).is_err(), "an existing table is never overwritten");
+
+        let mut again = Table::resume(&path, &columns(), bytes)?;
+        let (t, row) = again.last().map(|(t, row)| (t, row.to_vec())).unwrap_or_default();
+        assert!(t == 0.0 && row[0] == 1.0 / 3.0 && row[1].is_nan(), "the same bits; got {t} {row:?}");
+        again.row(0.1, &[-1e-9, 2.0])?;
+        again.row(0.2, &[0.0, 0.0])?;
+        again.cut(whole.len() as u64)?;
+        assert_eq!(again.last(), Some((0.1, &[-1e-9, 2.0][..])), "the row that is the last again");
+        assert!(again.first().is_some_and(|row| row[0] == 1.0 / 3.0), "the first row stays: {:?}", again.first());
+        assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
+        assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
+        assert!(Table::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");
+        assert!(Table::resume(&path, &columns()[..1], bytes).is_err(), "other columns");
+        assert!(Table::resume(&path, &columns(), bytes - 1).is_err(), "a row that is not whole");
+        std::fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
+    }
+}

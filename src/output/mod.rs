@@ -1,0 +1,88 @@
+//! What is kept of a run: tables (CSV), frames (VTK), checkpoints, the manifest. No opinion on any of it.
+
+pub mod checkpoint;
+pub mod csv;
+pub mod frame;
+pub mod frame_sequence;
+pub mod manifest;
+pub mod mean;
+pub mod npz;
+pub mod removed;
+#[cfg(feature = "surface")]
+pub mod surface;
+
+pub use checkpoint::{Checkpoint, Extent};
+pub use csv::{Readings, Table};
+pub use frame::Frames;
+pub use frame_sequence::{Cloud, Film};
+pub use manifest::Manifest;
+pub use mean::Mean;
+
+use std::{
+    fs::{self, File},
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use crate::error::{Error, Result};
+
+/// Writes the file at `path` all at once: a reader sees the old file or the new one, never a part.
+///
+/// # Errors
+/// `File`, naming the file, if the disk is full or the folder cannot be written; the old file stays.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_part(path, |file| file.write_all(bytes))?;
+    put_part(path)
+}
+
+/// That there is a folder for the file at `path`, before work is spent on it.
+///
+/// # Errors
+/// `File` if there is none.
+pub fn has_folder(path: &Path) -> Result<()> {
+    match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+        Some(folder) => Err(Error::file(path, format!("there is no folder {}", folder.display()))
+            .help("make it first, or name a file in another")),
+        None => Ok(()),
+    }
+}
+
+/// Fills the file that is to become the one at `path`.
+fn write_part(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+    let part = part_of(path);
+    File::create(&part).and_then(|mut file| fill(&mut file)).map_err(|why| {
+        // The part is of no use; that it cannot be removed either would hide the first trouble.
+        let _ = fs::remove_file(&part);
+        cannot_write(path, &why)
+    })
+}
+
+/// Gives the part that was filled its name.
+fn put_part(path: &Path) -> Result<()> {
+    fs::rename(part_of(path), path).map_err(|why| {
+        let _ = fs::remove_file(part_of(path));
+        cannot_write(path, &why)
+    })
+}
+
+/// The name that the file at `path` has until it is whole.
+fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".part");
+    name.into()
+}
+
+/// Waits until the names in `folder` are on the disk. Not every system can; then they will be soon.
+fn settle(folder: &Path) {
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+}
+
+/// The error of a file that cannot be written.
+fn cannot_write(path: &Path, why: &io::Error) -> Error {
+    let gone = why.kind() == io::ErrorKind::NotFound;
+    let help = match path.parent().filter(|folder| gone && !folder.exists()) {
+        Some(folder) => format!("the folder {} is gone, and with it what was written there", folder.display()),
+        None => "what was written before is intact; free some space or choose another folder with --out".into(),
+    };
+    Error::file(path, format!("cannot be written: {why}")).help(help)
+}

@@ -1,0 +1,395 @@
+//! Joints, springs, ropes and forces in a running system: what they do in a step, and what they felt.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    jacobian::{Mobility, Row},
+    joint::Joint,
+    lines::{Elastic, Line, RopeSpec, SpringSpec, start_length},
+    links::{Hold, Links},
+    motor::Drive,
+    reactions::{Pull, mend},
+};
+use crate::{
+    math::{Vector, Wedge},
+    solid::{Around, Engine, ForceSpec, Kinematics, Load},
+};
+
+/// Δt times the highest frequency of the springs, at most: their period is right within 0.2 %.
+const SPRING_STEP: f64 = 0.2;
+
+/// What a joint felt in the last step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JointReading<const D: usize> {
+    /// Force of its locks and end stops on the second solid, N (N/m in 2-D); the motor's is not in it.
+    pub force: Vector<D>,
+    /// Their torque on it about the joint, N m (N m/m in 2-D).
+    pub torque: Wedge<D>,
+    /// Its coordinate from the start, m or rad (−π to π); 0 where it has none.
+    pub position: f64,
+    /// Its rate, m/s or rad/s.
+    pub rate: f64,
+    /// Force of its motor, N or N m.
+    pub motor: f64,
+    /// Energy that its motor has taken from the solids since the start, J (J/m in 2-D).
+    pub absorbed: f64,
+}
+
+impl<const D: usize> JointReading<D> {
+    /// Power that its motor takes from the solids now, −F ẋ, W (W/m in 2-D).
+    pub fn power(&self) -> f64 {
+        -self.motor * self.rate
+    }
+}
+
+/// What a spring or a rope felt in the last step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LineReading {
+    /// Its length, m.
+    pub length: f64,
+    /// Its tension, N (N/m in 2-D); negative where it pushes.
+    pub tension: f64,
+}
+
+/// What the ties did to a solid in the last step, by their kind.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tied<const D: usize> {
+    pub(crate) joints: Load<D>,
+    pub(crate) ropes: Load<D>,
+    pub(crate) springs: Load<D>,
+    pub(crate) motors: Load<D>,
+    pub(crate) forces: Load<D>,
+    /// Whether it was held still.
+    pub(crate) held: bool,
+}
+
+impl<const D: usize> Tied<D> {
+    /// Nothing.
+    pub(crate) fn zero() -> Self {
+        let none = Load::zero();
+        Self { joints: none, ropes: none, springs: none, motors: none, forces: none, held: false }
+    }
+}
+
+/// What of it must be kept to go on to the same bits.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct RigState<const D: usize> {
+    joints: Vec<(Option<Drive>, JointReading<D>)>,
+    springs: Vec<(Elastic, LineReading)>,
+    ropes: Vec<LineReading>,
+}
+
+struct Spring<const D: usize> {
+    line: Line<D>,
+    tension_only: bool,
+}
+
+/// All ties at work.
+pub(crate) struct Rig<const D: usize> {
+    start: Vec<Kinematics<D>>,
+    joints: Vec<Joint<D>>,
+    springs: Vec<Spring<D>>,
+    ropes: Vec<Line<D>>,
+    forces: Vec<ForceSpec<D>>,
+    holds: Vec<Hold>,
+    /// Rows of each joint's locks and of its coordinate in the present step.
+    rows: Vec<Vec<Row<D>>>,
+    /// What they did to each solid in the last step.
+    tied: Vec<Tied<D>>,
+    state: RigState<D>,
+}
+
+impl<const D: usize> Rig<D> {
+    /// The ties of solids that start as `start`.
+    pub(crate) fn new(links: &Links<D>, start: Vec<Kinematics<D>>) -> Self {
+        let none = JointReading {
+            force: Vector::zeros(),
+            torque: Wedge::zero(),
+            position: 0.0,
+            rate: 0.0,
+            motor: 0.0,
+            absorbed: 0.0,
+        };
+        let spring = |s: &SpringSpec<D>| {
+            let length = start_length(&s.ends);
+            let elastic = Elastic { stiffness: s.stiffness, damping: s.damping, length: s.length.unwrap_or(length) };
+            (elastic, LineReading { length, tension: 0.0 })
+        };
+        let rope = |r: &RopeSpec<D>| LineReading { length: start_length(&r.ends), tension: 0.0 };
+        let made = |s: &SpringSpec<D>| Spring { line: Line::new(&s.ends, &start), tension_only: s.tension_only };
+        Self {
+            joints: links.joints.iter().map(|joint| Joint::new(joint.clone(), &start)).collect(),
+            springs: links.springs.iter().map(made).collect(),
+            ropes: links.ropes.iter().map(|r| Line::new(&r.ends, &start)).collect(),
+            forces: links.forces.clone(),
+            holds: links.holds.clone(),
+            rows: Vec::new(),
+            tied: vec![Tied::zero(); start.len()],
+            state: RigState {
+                joints: vec![(None, none); links.joints.len()],
+                springs: links.springs.iter().map(spring).collect(),
+                ropes: links.ropes.iter().map(rope).collect(),
+            },
+            start,
+        }
+    }
+
+    /// Takes up a solid that has come as `start`.
+    pub(crate) fn admit(&mut self, start: Kinematics<D>) {
+        self.start.push(start);
+        self.tied.push(Tied::zero());
+    }
+
+    /// Whether there is nothing that acts.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.joints.is_empty()
+            && self.springs.is_empty()
+            && self.ropes.is_empty()
+            && self.forces.is_empty()
+            && self.holds.is_empty()
+    }
+
+    /// Puts motors, springs and forces on the engine's solids for the step from `t` (s) on, `dt` (s) long, in which they start as
+    /// `solids` says, with what is `around` them.
+    pub(crate) fn act(
+        &mut self,
+        engine: &mut dyn Engine<D>,
+        solids: &[Kinematics<D>],
+        around: &Around<D>,
+        [t, dt]: [f64; 2],
+    ) {
+        self.tied.fill(Tied::zero());
+        for hold in &self.holds {
+            self.tied[hold.solid].held = hold.holds(t);
+            engine.hold(hold.solid, hold.holds(t));
+        }
+        for (spring, (elastic, reading)) in self.springs.iter().zip(&mut self.state.springs) {
+            let (ends, mobility) = (spring.line.ends(solids), spring.line.mobility(engine));
+            let (length, row) = spring.line.along(&ends);
+            if let Some(row) = row {
+                let ease = row.with(&row, &mobility);
+                let wet = spring.line.solids().into_iter().flatten().any(|i| around.wet[i]);
+                let elastic = if wet { elastic.in_water(around.crossing, ease) } else { *elastic };
+                reading.tension = elastic.tension(length, row.rate(&ends), ease, dt, spring.tension_only);
+                give(engine, spring.line.solids(), &row.loads(-reading.tension));
+                note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
+            }
+        }
+        for force in &self.forces {
+            let load = force.load(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
+            engine.burden(force.solid, &load);
+            self.tied[force.solid].forces += load;
+        }
+        // Last, so that they know of what the others do.
+        self.rows.clear();
+        for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
+            let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
+            let ((rows, _), free) = (joint.rows(&ends, &mobility), joint.free(&ends));
+            let drive = joint.drive(*set, t + 0.5 * dt);
+            if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
+                let loads =
+                    joint.spec.between.map(|end| end.map_or_else(Load::zero, |i| around.loads[i] + engine.pushed(i)));
+                let going = [free.rate(&ends), own.gain(&loads, &mobility), own.with(own, &mobility)];
+                reading.motor = joint.force(&drive, &ends, going, dt);
+                give(engine, joint.spec.between, &free.loads(reading.motor));
+                note(&mut self.tied, joint.spec.between, &free.loads(reading.motor), |tied| &mut tied.motors);
+            }
+            self.rows.push(rows);
+        }
+    }
+
+    /// Reads what they felt in the step, `dt` (s) long, from `before` to `after`. Where the engine does not tell all of
+    /// its impulses, `told` says what changed the momentum of each solid and no other load explains (N, N m).
+    pub(crate) fn learn(
+        &mut self,
+        engine: &dyn Engine<D>,
+        [before, after]: [&[Kinematics<D>]; 2],
+        dt: f64,
+        told: Option<&[Load<D>]>,
+    ) {
+        let pulls = self.pulls(engine, before, dt, told);
+        for (i, (joint, (_, reading))) in self.joints.iter().zip(&mut self.state.joints).enumerate() {
+            let (was, is) = (joint.ends(before), joint.ends(after));
+            let held: Load<D> = pulls[i].iter().map(|pull| pull.loads()[1]).sum();
+            let arm = joint.point(&was) - was[1].centre;
+            (reading.force, reading.torque) = (held.force, held.torque + Wedge::torque(&arm, &held.force) * -1.0);
+            reading.position = joint.position(&is);
+            let rate = |ends: &[Kinematics<D>; 2]| joint.free(ends).map_or(0.0, |row| row.rate(ends));
+            reading.absorbed -= reading.motor * 0.5 * (rate(&was) + rate(&is)) * dt;
+            reading.rate = rate(&is);
+        }
+        for (spring, (_, reading)) in self.springs.iter().zip(&mut self.state.springs) {
+            reading.length = spring.line.along(&spring.line.ends(after)).0;
+        }
+        let (of_joints, of_ropes) = pulls.split_at(self.joints.len());
+        for ((rope, reading), pull) in self.ropes.iter().zip(&mut self.state.ropes).zip(of_ropes) {
+            let length = rope.along(&rope.ends(after)).0;
+            *reading = LineReading { length, tension: pull.first().map_or(0.0, |pull| -pull.force) };
+        }
+        for pull in of_joints.iter().flatten() {
+            note(&mut self.tied, pull.between, &pull.loads(), |tied| &mut tied.joints);
+        }
+        for pull in of_ropes.iter().flatten() {
+            note(&mut self.tied, pull.between, &pull.loads(), |tied| &mut tied.ropes);
+        }
+    }
+
+    /// The pulls of each joint and then of each rope in a step `dt` (s) long.
+    fn pulls(
+        &self,
+        engine: &dyn Engine<D>,
+        before: &[Kinematics<D>],
+        dt: f64,
+        told: Option<&[Load<D>]>,
+    ) -> Vec<Vec<Pull<D>>> {
+        let of_joint = |(i, joint): (usize, &Joint<D>)| {
+            let (between, mobility) = (joint.spec.between, joint.mobility(engine));
+            let rows = self.rows[i].iter().zip(engine.impulses(i));
+            rows.map(|(row, impulse)| Pull { between, row: *row, mobility, force: impulse / dt }).collect()
+        };
+        let of_rope = |(i, rope): (usize, &Line<D>)| {
+            let (between, mobility) = (rope.solids(), rope.mobility(engine));
+            let force = -engine.rope_impulse(i) / dt;
+            let pull = |row| Pull { between, row, mobility, force };
+            rope.along(&rope.ends(before)).1.map(pull).into_iter().collect()
+        };
+        let joints = self.joints.iter().enumerate().map(of_joint);
+        let ropes = self.ropes.iter().enumerate().map(of_rope);
+        let mut pulls: Vec<Vec<Pull<D>>> = joints.chain(ropes).collect();
+        if let Some(told) = told {
+            let sizes: Vec<usize> = pulls.iter().map(Vec::len).collect();
+            let mut all: Vec<Pull<D>> = pulls.into_iter().flatten().collect();
+            mend(&mut all, told);
+            let mut all = all.into_iter();
+            pulls = sizes.into_iter().map(|size| all.by_ref().take(size).collect()).collect();
+        }
+        pulls
+    }
+
+    /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s).
+    ///
+    /// ω² is at most the largest, over all solids, of Σ k A (A + B) over the springs of the solid, with A² and B² the ease of its own
+    /// and of the other end (Gershgorin's bound, solid by solid).
+    pub(crate) fn limit(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>], t: f64) -> f64 {
+        let mut squares = vec![0.0; solids.len()];
+        let mut stiffen = |ends: [Option<usize>; 2], row: &Row<D>, mobility: &[Mobility<D>; 2], stiffness: f64| {
+            let own = row.ease(mobility).map(f64::sqrt);
+            for (solid, ease) in ends.iter().zip(own) {
+                if let Some(solid) = solid {
+                    squares[*solid] += stiffness * ease * (own[0] + own[1]);
+                }
+            }
+        };
+        for (joint, (set, _)) in self.joints.iter().zip(&self.state.joints) {
+            let Some(drive) = joint.drive(*set, t).filter(|drive| drive.stiffness > 0.0) else { continue };
+            let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
+            if let (rows, locks) = joint.rows(&ends, &mobility)
+                && let Some(row) = rows.get(locks)
+            {
+                stiffen(joint.spec.between, row, &mobility, drive.stiffness);
+            }
+        }
+        for (spring, (elastic, _)) in self.springs.iter().zip(&self.state.springs) {
+            let (ends, mobility) = (spring.line.ends(solids), spring.line.mobility(engine));
+            if let Some(row) = spring.line.along(&ends).1 {
+                stiffen(spring.line.solids(), &row, &mobility, elastic.stiffness);
+            }
+        }
+        SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt()
+    }
+
+    /// How long (s) from time `t` (s) on until the next solid is let go; no step goes past that.
+    pub(crate) fn let_go(&self, t: f64) -> f64 {
+        self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether there is a joint or a rope.
+    pub(crate) fn pulls_on_any(&self) -> bool {
+        !(self.joints.is_empty() && self.ropes.is_empty())
+    }
+
+    /// What the ties did to solid number `i` in the last step.
+    pub(crate) fn tied(&self, i: usize) -> Tied<D> {
+        self.tied[i]
+    }
+
+    /// What joint number `i` felt in the last step.
+    pub(crate) fn joint(&self, i: usize) -> JointReading<D> {
+        self.state.joints[i].1
+    }
+
+    /// The coordinates of the modes that generic joint number `i` leaves free, m or rad (−π to π), where the solids are.
+    pub(crate) fn coordinates(&self, i: usize, solids: &[Kinematics<D>]) -> Vec<f64> {
+        let joint = &self.joints[i];
+        let ends = joint.ends(solids);
+        joint.spec.free.iter().map(|free| joint.coordinate(free.mode, &ends)).collect()
+    }
+
+    /// How far (m) and by what angle (rad) joint number `i` is torn where the solids are.
+    pub(crate) fn gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
+        self.joints[i].gap(&self.joints[i].ends(solids))
+    }
+
+    /// What spring number `i` felt in the last step.
+    pub(crate) fn spring(&self, i: usize) -> LineReading {
+        self.state.springs[i].1
+    }
+
+    /// What rope number `i` felt in the last step.
+    pub(crate) fn rope(&self, i: usize) -> LineReading {
+        self.state.ropes[i]
+    }
+
+    /// What spring number `i` is made of, to be changed.
+    pub(crate) fn elastic(&mut self, i: usize) -> &mut Elastic {
+        &mut self.state.springs[i].0
+    }
+
+    /// Drives joint number `i` from now on, in place of its motor; `None` gives it back to that.
+    pub(crate) fn drive(&mut self, i: usize, drive: Option<Drive>) {
+        self.state.joints[i].0 = drive;
+    }
+
+    /// What must be kept to go on to the same bits.
+    pub(crate) fn save(&self) -> RigState<D> {
+        self.state.clone()
+    }
+
+    /// Goes back to what was kept; says whether it is of these ties.
+    pub(crate) fn restore(&mut self, kept: RigState<D>) -> bool {
+        let same = kept.joints.len() == self.joints.len()
+            && kept.springs.len() == self.springs.len()
+            && kept.ropes.len() == self.ropes.len();
+        if same {
+            self.state = kept;
+        }
+        same
+    }
+}
+
+/// Gives a load each to the solids at both ends; what is not free does not care.
+fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], loads: &[Load<D>; 2]) {
+    for (end, load) in ends.iter().zip(loads) {
+        if let Some(solid) = end {
+            engine.burden(*solid, load);
+        }
+    }
+}
+
+/// Notes a load each for the solids at both ends.
+fn note<const D: usize>(
+    tied: &mut [Tied<D>],
+    ends: [Option<usize>; 2],
+    loads: &[Load<D>; 2],
+    kind: impl Fn(&mut Tied<D>) -> &mut Load<D>,
+) {
+    for (end, load) in ends.iter().zip(loads) {
+        if let Some(solid) = end {
+            *kind(&mut tied[*solid]) += *load;
+        }
+    }
+}
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../../tests/unit/solid/assembly.rs"]
+pub(in crate::solid) mod tests;

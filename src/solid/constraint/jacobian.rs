@@ -1,0 +1,121 @@
+//! Rows of what ties two solids: directions in which one moves against the other, and the loads along them.
+//!
+//! A row J takes the velocities of two solids to a rate, ẋ = J v, and an impulse λ along it to a load on each, λ Jᵀ on the second
+//! and its opposite on the first. With M⁻¹ of both solids J M⁻¹ Jᵀ is how easily the pair gives way there, 1/kg or 1/(kg m²).
+
+use nalgebra::SMatrix;
+
+use crate::{
+    math::{Pose, Vector, Wedge},
+    solid::{Kinematics, Load},
+};
+
+/// How easily a solid is moved: zero where it is not free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mobility<const D: usize> {
+    /// One over the mass, along each axis, 1/kg.
+    pub linear: Vector<D>,
+    /// Inverse of the inertia about the centre of mass in the world's axes, 1/(kg m²); in 2-D the number stands in `[(0, 0)]`.
+    pub angular: SMatrix<f64, 3, 3>,
+}
+
+impl<const D: usize> Mobility<D> {
+    /// That of a solid that nothing moves.
+    pub fn none() -> Self {
+        Self { linear: Vector::zeros(), angular: SMatrix::zeros() }
+    }
+
+    /// The spin (rad/s) that the angular impulse `torque` (N m s) gives.
+    pub(in crate::solid) fn spin(&self, torque: &Wedge<D>) -> Wedge<D> {
+        let torque = torque.axial();
+        let mut spin = [0.0; 3];
+        for (i, spin) in spin.iter_mut().enumerate() {
+            *spin = torque.iter().enumerate().map(|(j, t)| self.angular[(i, j)] * t).sum();
+        }
+        Wedge::from_axial(&spin)
+    }
+}
+
+/// A row of two solids.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solid) struct Row<const D: usize> {
+    along: Vector<D>,
+    about: [Wedge<D>; 2],
+}
+
+impl<const D: usize> Row<D> {
+    /// Along the unit vector `n`, at the world point `x` (m) of both.
+    pub(in crate::solid) fn along(n: Vector<D>, x: &Vector<D>, ends: &[Kinematics<D>; 2]) -> Self {
+        Self::between(n, &[*x, *x], ends)
+    }
+
+    /// Along the unit vector `n`, at a world point (m) of each.
+    pub(in crate::solid) fn between(n: Vector<D>, places: &[Vector<D>; 2], ends: &[Kinematics<D>; 2]) -> Self {
+        Self { along: n, about: [0, 1].map(|k| Wedge::torque(&(places[k] - ends[k].centre), &n)) }
+    }
+
+    /// About the axis `a`.
+    pub(in crate::solid) fn about(a: Wedge<D>) -> Self {
+        Self { along: Vector::zeros(), about: [a, a] }
+    }
+
+    /// How fast the second moves against the first along it, m/s or rad/s.
+    pub(in crate::solid) fn rate(&self, ends: &[Kinematics<D>; 2]) -> f64 {
+        let [first, second] = ends;
+        self.along.dot(&(second.velocity - first.velocity)) + self.about[1].power(&second.spin)
+            - self.about[0].power(&first.spin)
+    }
+
+    /// How its rate changes under a load on the first and one on the second, m/s² or rad/s².
+    pub(in crate::solid) fn gain(&self, loads: &[Load<D>; 2], mobility: &[Mobility<D>; 2]) -> f64 {
+        let [first, second] = [0, 1].map(|k| {
+            let velocity = mobility[k].linear.component_mul(&loads[k].force);
+            self.along.dot(&velocity) + self.about[k].power(&mobility[k].spin(&loads[k].torque))
+        });
+        second - first
+    }
+
+    /// The load of `force` (N or N m) along it on the first and the second, about their centres.
+    pub(in crate::solid) fn loads(&self, force: f64) -> [Load<D>; 2] {
+        let load = |k: usize, f: f64| Load { force: self.along * f, torque: self.about[k] * f };
+        [load(0, -force), load(1, force)]
+    }
+
+    /// J M⁻¹ J'ᵀ with another row.
+    pub(in crate::solid) fn with(&self, other: &Self, mobility: &[Mobility<D>; 2]) -> f64 {
+        let each = mobility.iter().zip(self.about.iter().zip(&other.about));
+        each.map(|(m, (a, b))| self.along.dot(&m.linear.component_mul(&other.along)) + a.power(&m.spin(b))).sum()
+    }
+
+    /// How easily each end alone gives way.
+    pub(in crate::solid) fn ease(&self, mobility: &[Mobility<D>; 2]) -> [f64; 2] {
+        let still = Mobility::none();
+        [[mobility[0], still], [still, mobility[1]]].map(|one| self.with(self, &one))
+    }
+
+    fn less(&self, other: &Self, part: f64) -> Self {
+        let about = [0, 1].map(|k| self.about[k] + other.about[k] * -part);
+        Self { along: self.along - other.along * part, about }
+    }
+}
+
+/// How the solid at an end moves; the world does not.
+pub(in crate::solid) fn of<const D: usize>(end: Option<usize>, solids: &[Kinematics<D>]) -> Kinematics<D> {
+    let world =
+        Kinematics { pose: Pose::identity(), centre: Vector::zeros(), velocity: Vector::zeros(), spin: Wedge::zero() };
+    end.and_then(|solid| solids.get(solid)).copied().unwrap_or(world)
+}
+
+/// Takes out of each row what those before it among the first `locks` do already (Gram and Schmidt): the rows along which the
+/// engine gives its impulses.
+pub(in crate::solid) fn part<const D: usize>(rows: &mut [Row<D>], locks: usize, mobility: &[Mobility<D>; 2]) {
+    for j in 0..locks {
+        let done = rows[j];
+        let own = done.with(&done, mobility);
+        if own > 0.0 {
+            for row in &mut rows[j + 1..] {
+                *row = row.less(&done, row.with(&done, mobility) / own);
+            }
+        }
+    }
+}

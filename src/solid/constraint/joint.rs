@@ -1,0 +1,319 @@
+//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, and end stops. The locks are the
+//! engine's, the motor on the coordinate is ours: see `motor`.
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+
+use super::{
+    jacobian::{Mobility, Row, of, part},
+    motor::{Drive, Going, Motor},
+};
+use crate::{
+    math::{Matrix, Pose, Vector, Wedge},
+    solid::{Engine, Kinematics},
+};
+
+/// What a joint leaves free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turning about an axis.
+    Hinge,
+    /// Moving along a line.
+    Slider,
+    /// Nothing.
+    Fixed,
+    /// Turning any way; 3-D.
+    Ball,
+    /// All but moving along a line: the second solid is towed along it.
+    Tow,
+    /// What its list of modes says.
+    Generic,
+}
+
+/// A mode of motion that a generic joint leaves free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeMode {
+    /// Its number: 0 to D − 1 along the axes of the joint's frame, from D on about them; in 2-D the one turn is 2.
+    pub mode: usize,
+    /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// How many modes of motion a pair of solids has.
+pub(crate) const fn modes<const D: usize>() -> usize {
+    D + D * (D - 1) / 2
+}
+
+/// The modes in the order of the engine: turns first.
+pub(in crate::solid) fn turns_first<const D: usize>() -> impl Iterator<Item = usize> {
+    (D..modes::<D>()).chain(0..D)
+}
+
+/// A joint as it is to be made.
+#[derive(Clone, Debug)]
+pub struct JointSpec<const D: usize> {
+    /// Its name.
+    pub name: String,
+    /// What it leaves free.
+    pub kind: JointKind,
+    /// Numbers of the two solids; `None` is the world.
+    pub between: [Option<usize>; 2],
+    /// The world point at which it sits at the start, m.
+    pub at: Vector<D>,
+    /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero. Of a generic
+    /// joint the first axis of its frame; zero for the world's axes.
+    pub axis: Vector<D>,
+    /// What a generic joint leaves free; empty of any other.
+    pub free: Vec<FreeMode>,
+    /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
+    pub limits: Option<[f64; 2]>,
+    /// What moves or brakes it.
+    pub motor: Option<Motor>,
+    /// Whether the two solids touch one another.
+    pub contacts: bool,
+}
+
+impl<const D: usize> JointSpec<D> {
+    /// A joint of this kind at the world point `at` (m), along or about `axis`, without limits or motor. The second of `between`
+    /// moves against the first.
+    pub fn new(
+        name: impl Into<String>,
+        kind: JointKind,
+        between: [Option<usize>; 2],
+        at: Vector<D>,
+        axis: Vector<D>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            kind,
+            between,
+            at,
+            axis,
+            free: Vec::new(),
+            limits: None,
+            motor: None,
+            contacts: false,
+        }
+    }
+
+    /// The same joint, generic, with one more mode left free: 0 to D − 1 along the axes of its frame, from D on about them.
+    pub fn leaving(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
+        self.kind = JointKind::Generic;
+        self.free.push(FreeMode { mode, limits });
+        self
+    }
+
+    /// The same joint with end stops, m or rad from the start.
+    pub fn limits(mut self, min: f64, max: f64) -> Self {
+        self.limits = Some([min, max]);
+        self
+    }
+
+    /// The same joint with a motor.
+    pub fn motor(mut self, motor: Motor) -> Self {
+        self.motor = Some(motor);
+        self
+    }
+}
+
+/// A joint in a running system.
+pub(in crate::solid) struct Joint<const D: usize> {
+    pub(in crate::solid) spec: JointSpec<D>,
+    /// Where it sits in the two solids; x is its axis.
+    frames: [Pose<D>; 2],
+}
+
+impl<const D: usize> Joint<D> {
+    /// The joint between solids that start as `start`.
+    pub(in crate::solid) fn new(spec: JointSpec<D>, start: &[Kinematics<D>]) -> Self {
+        let frames = spec.frames(start);
+        Self { spec, frames }
+    }
+
+    /// How its two solids move.
+    pub(in crate::solid) fn ends(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
+        self.spec.between.map(|end| of(end, solids))
+    }
+
+    pub(in crate::solid) fn mobility(&self, engine: &dyn Engine<D>) -> [Mobility<D>; 2] {
+        self.spec.between.map(|end| end.map_or_else(Mobility::none, |solid| engine.mobility(solid)))
+    }
+
+    fn sits(&self, ends: &[Kinematics<D>; 2]) -> [Pose<D>; 2] {
+        [0, 1].map(|k| ends[k].pose.then(&self.frames[k]))
+    }
+
+    /// The world point of the second solid at which it sits, m.
+    pub(in crate::solid) fn point(&self, ends: &[Kinematics<D>; 2]) -> Vector<D> {
+        self.sits(ends)[1].position
+    }
+
+    /// Its coordinate, m or rad (−π to π); 0 if it has none.
+    pub(in crate::solid) fn position(&self, ends: &[Kinematics<D>; 2]) -> f64 {
+        self.spec.own().map_or(0.0, |mode| self.coordinate(mode, ends))
+    }
+
+    /// The coordinate of a mode, m or rad (−π to π): how far the second solid has gone along that axis of the frame in the first, or
+    /// turned about it, twice the angle of the quaternion's part.
+    pub(in crate::solid) fn coordinate(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> f64 {
+        let [first, second] = self.sits(ends);
+        if mode < D {
+            return first.rotation.column(mode).dot(&(second.position - first.position));
+        }
+        let turn = first.rotation.transpose() * second.rotation;
+        let (i, j) = if D == 2 { (0, 1) } else { ((mode + 1) % D, (mode + 2) % D) };
+        (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
+    }
+
+    /// How far (m) and by what angle (rad) its ends are apart where it locks them together.
+    pub(in crate::solid) fn gap(&self, ends: &[Kinematics<D>; 2]) -> [f64; 2] {
+        let locked = |modes: std::ops::Range<usize>| modes.filter(|&mode| self.spec.locks(mode));
+        let off = |mode: usize| self.coordinate(mode, ends);
+        let apart = locked(0..D).map(|mode| off(mode).powi(2)).sum::<f64>().sqrt();
+        [apart, locked(D..modes::<D>()).map(|mode| off(mode).abs()).fold(0.0, f64::max)]
+    }
+
+    /// The row of its coordinate, if it has one.
+    pub(in crate::solid) fn free(&self, ends: &[Kinematics<D>; 2]) -> Option<Row<D>> {
+        self.spec.own().map(|mode| self.row(mode, ends))
+    }
+
+    /// The row of a mode's coordinate.
+    fn row(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> Row<D> {
+        let [first, second] = self.sits(ends);
+        match mode.checked_sub(D) {
+            None => {
+                // The engine takes the first one, too, where the second is, but for what it holds of the way between them.
+                let off = first.local(&second.position);
+                let held = Vector::from_fn(|axis, _| if self.spec.locks(axis) { off[axis] } else { 0.0 });
+                let places = [second.position - first.rotation * held, second.position];
+                Row::between(first.rotation.column(mode).into(), &places, ends)
+            }
+            Some(axis) => Row::about(turning(&first.rotation.column(axis).into())),
+        }
+    }
+
+    /// The rows of its locks in the order of the engine. In 3-D the engine measures a locked turn by its part of the quaternion (w, v)
+    /// between the frames, whose rate is ½ (w ω + ω × v).
+    fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<Row<D>> {
+        let locked = turns_first::<D>().filter(|&mode| self.spec.locks(mode));
+        if D == 2 {
+            return locked.map(|mode| self.row(mode, ends)).collect();
+        }
+        let [first, second] = self.sits(ends);
+        let turn = first.rotation.transpose() * second.rotation;
+        let turn = Matrix3::from_fn(|i, j| turn[(i, j)]);
+        let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
+        let rates = (Matrix3::identity() * q.w - q.imag().cross_matrix()) * 0.5_f64.copysign(q.w);
+        let row = |mode: usize| match mode.checked_sub(D) {
+            None => self.row(mode, ends),
+            Some(axis) => {
+                let about: Vector<D> = first.rotation * Vector::from_fn(|i, _| rates[(axis, i)]);
+                Row::about(Wedge::from_axial(about.as_slice()))
+            }
+        };
+        locked.map(row).collect()
+    }
+
+    /// The rows of its locks, and after them that of its coordinate (of a generic joint those of its end stops) less what the locks do
+    /// of it; and how many locks there are.
+    pub(in crate::solid) fn rows(
+        &self,
+        ends: &[Kinematics<D>; 2],
+        mobility: &[Mobility<D>; 2],
+    ) -> (Vec<Row<D>>, usize) {
+        let mut rows = self.locks(ends);
+        let locks = rows.len();
+        match self.spec.own() {
+            Some(mode) => rows.push(self.row(mode, ends)),
+            None => rows.extend(self.spec.stops().iter().map(|(mode, _)| self.row(*mode, ends))),
+        }
+        part(&mut rows, locks, mobility);
+        (rows, locks)
+    }
+
+    /// What drives it at time `t` (s): a program's `set`, or its own motor.
+    pub(in crate::solid) fn drive(&self, set: Option<Drive>, t: f64) -> Option<Drive> {
+        set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.at(t)))
+    }
+
+    /// The force of its motor, N or N m, over a step of `dt` (s) in which what is known to act lets its rate gain `gain` (m/s², rad/s²).
+    pub(in crate::solid) fn force(
+        &self,
+        drive: &Drive,
+        ends: &[Kinematics<D>; 2],
+        [rate, gain, ease]: [f64; 3],
+        dt: f64,
+    ) -> f64 {
+        drive.force(&Going { angle: self.spec.kind == JointKind::Hinge, x: self.position(ends), rate, gain, ease, dt })
+    }
+}
+
+impl<const D: usize> JointSpec<D> {
+    /// Its frame in both solids, which start as `start`; x is its axis.
+    pub(in crate::solid) fn frames(&self, start: &[Kinematics<D>]) -> [Pose<D>; 2] {
+        let axis = if D == 2 && self.kind == JointKind::Hinge { Vector::zeros() } else { self.axis };
+        let world = Pose { position: self.at, rotation: frame(&axis) };
+        self.between.map(|end| {
+            let pose = of(end, start).pose;
+            Pose { position: pose.local(&world.position), rotation: pose.rotation.transpose() * world.rotation }
+        })
+    }
+
+    /// The mode of its one coordinate, if it is of a kind that has one.
+    pub(crate) fn own(&self) -> Option<usize> {
+        match self.kind {
+            JointKind::Hinge => Some(D),
+            JointKind::Slider => Some(0),
+            JointKind::Fixed | JointKind::Ball | JointKind::Tow | JointKind::Generic => None,
+        }
+    }
+
+    /// Whether it locks a mode.
+    pub(crate) fn locks(&self, mode: usize) -> bool {
+        match self.kind {
+            JointKind::Hinge | JointKind::Slider => self.own() != Some(mode),
+            JointKind::Fixed => true,
+            JointKind::Ball => mode < D,
+            JointKind::Tow => mode == 0,
+            JointKind::Generic => self.free.iter().all(|free| free.mode != mode),
+        }
+    }
+
+    /// The modes that have end stops, with these, in the order of the engine.
+    pub(in crate::solid) fn stops(&self) -> Vec<(usize, [f64; 2])> {
+        let of = |mode: usize| match self.own() == Some(mode) {
+            true => self.limits,
+            false => self.free.iter().find(|free| free.mode == mode)?.limits,
+        };
+        turns_first::<D>().filter_map(|mode| Some((mode, of(mode)?))).collect()
+    }
+}
+
+/// Turning once about `axis`; in 2-D counter-clockwise.
+fn turning<const D: usize>(axis: &Vector<D>) -> Wedge<D> {
+    if D == 2 { Wedge::from_axial(&[1.0]) } else { Wedge::from_axial(axis.as_slice()) }
+}
+
+/// A right-handed frame with its x along `axis`; the world's if that is nowhere.
+fn frame<const D: usize>(axis: &Vector<D>) -> Matrix<D> {
+    let length = axis.norm();
+    if length == 0.0 {
+        return Matrix::identity();
+    }
+    let mut all = Matrix::<D>::identity();
+    let x = axis / length;
+    all.set_column(0, &x);
+    if D == 2 {
+        all.set_column(1, &turning(&x).at(&x));
+    } else {
+        let away = x.iamin();
+        let z = turning(&x).at(&Vector::from_fn(|i, _| f64::from(u8::from(i == away)))).normalize();
+        all.set_column(1, &turning(&z).at(&x));
+        all.set_column(2, &z);
+    }
+    all
+}
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../../tests/unit/solid/joint.rs"]
+mod tests;

@@ -1,0 +1,131 @@
+//! Lines between two points of solids or of the ground: springs, ours, and ropes, the engine's.
+//!
+//! A spring of length l pulls with  T = k (l − l₀) + c l̇,  a mooring line (`tension_only`) never pushes. As an explicit force it
+//! bounds the step: a mode of frequency ω is stable while Δt ω < 2 and runs (Δt ω)²/24 too fast. The damping is taken at the rate at
+//! the step's end under itself alone, so that it bounds nothing.
+//!
+//! Real water takes what swings in it as sound, of the critical damping ρ₀ c₀ A/(2 m ω). Particles carry none of ω h/c₀ > 2, and what
+//! they take from a body later than it goes would feed such a swing: while an end is wet it has a hundredth of the critical damping.
+
+use serde::{Deserialize, Serialize};
+
+use super::jacobian::{Mobility, Row, of};
+use crate::{
+    math::Vector,
+    solid::{Engine, Kinematics},
+};
+
+/// ω h/c₀ from which on particles do not carry a swing away as sound, –.
+const SOUNDLESS: f64 = 2.0;
+
+/// What such a swing has of the critical damping, at least, –.
+const CALMED: f64 = 0.01;
+
+/// Where a line is made fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End<const D: usize> {
+    /// Number of the solid; `None` is the ground.
+    pub solid: Option<usize>,
+    /// The point of it that is here at the start, m.
+    pub at: Vector<D>,
+}
+
+/// A spring or a mooring line as it is to be made.
+#[derive(Clone, Debug)]
+pub struct SpringSpec<const D: usize> {
+    /// Its name.
+    pub name: String,
+    /// Its two ends.
+    pub ends: [End<D>; 2],
+    /// k, N/m (N/m² in 2-D).
+    pub stiffness: f64,
+    /// c, N s/m.
+    pub damping: f64,
+    /// l₀, m; `None`: its length at the start.
+    pub length: Option<f64>,
+    /// Whether it goes slack instead of pushing.
+    pub tension_only: bool,
+}
+
+/// A rope as it is to be made: it cannot be stretched.
+#[derive(Clone, Debug)]
+pub struct RopeSpec<const D: usize> {
+    /// Its name.
+    pub name: String,
+    /// Its two ends.
+    pub ends: [End<D>; 2],
+    /// The longest that it can be, m; `None`: its length at the start.
+    pub length: Option<f64>,
+}
+
+/// What a spring is made of; what a program may change during a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Elastic {
+    /// k, N/m.
+    pub stiffness: f64,
+    /// c, N s/m.
+    pub damping: f64,
+    /// l₀, m.
+    pub length: f64,
+}
+
+/// A line in a running system.
+pub(in crate::solid) struct Line<const D: usize> {
+    solids: [Option<usize>; 2],
+    /// Its ends in their solids, m.
+    pub(in crate::solid) local: [Vector<D>; 2],
+}
+
+impl<const D: usize> Line<D> {
+    /// The line whose ends are made fast where the solids start.
+    pub(in crate::solid) fn new(ends: &[End<D>; 2], start: &[Kinematics<D>]) -> Self {
+        Self { solids: ends.map(|end| end.solid), local: ends.map(|end| of(end.solid, start).pose.local(&end.at)) }
+    }
+
+    pub(in crate::solid) fn ends(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
+        self.solids.map(|end| of(end, solids))
+    }
+
+    pub(in crate::solid) fn solids(&self) -> [Option<usize>; 2] {
+        self.solids
+    }
+
+    /// Its length, m, and the row along it; none where it has no length.
+    pub(in crate::solid) fn along(&self, ends: &[Kinematics<D>; 2]) -> (f64, Option<Row<D>>) {
+        let [a, b] = [0, 1].map(|k| ends[k].pose.point(&self.local[k]));
+        let length = (b - a).norm();
+        (length, (length > 0.0).then(|| Row::along((b - a) / length, &b, ends)))
+    }
+
+    pub(in crate::solid) fn mobility(&self, engine: &dyn Engine<D>) -> [Mobility<D>; 2] {
+        self.solids.map(|end| end.map_or_else(Mobility::none, |solid| engine.mobility(solid)))
+    }
+}
+
+impl Elastic {
+    /// The same with ends in water that sound takes `crossing` (s) to cross by a smoothing length; they give way by `g` (1/kg).
+    pub(in crate::solid) fn in_water(&self, crossing: f64, g: f64) -> Self {
+        let swings = (self.stiffness * g).sqrt() * crossing > SOUNDLESS;
+        let calmed = if swings { CALMED * 2.0 * (self.stiffness / g).sqrt() } else { 0.0 };
+        Self { damping: self.damping.max(calmed), ..*self }
+    }
+
+    /// The tension (N) at this length (m), which grows at `rate` (m/s), over a step `dt` (s) of ends that give way by `g` (1/kg).
+    pub(in crate::solid) fn tension(&self, length: f64, rate: f64, g: f64, dt: f64, tension_only: bool) -> f64 {
+        let stretch = length - self.length;
+        if tension_only && stretch <= 0.0 {
+            return 0.0;
+        }
+        let tension = self.stiffness * stretch + self.damping * rate / (1.0 + dt * self.damping * g);
+        if tension_only { tension.max(0.0) } else { tension }
+    }
+}
+
+/// Length of a line between the points at which its ends start, m.
+pub(in crate::solid) fn start_length<const D: usize>(ends: &[End<D>; 2]) -> f64 {
+    (ends[1].at - ends[0].at).norm()
+}
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../../tests/unit/solid/lines.rs"]
+mod tests;

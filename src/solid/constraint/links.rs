@@ -1,0 +1,303 @@
+//! What ties solids to one another and to the world: joints, springs, ropes, forces after a law, and who touches whom.
+
+use std::collections::BTreeMap;
+
+use super::{
+    joint::{JointKind, JointSpec, modes},
+    lines::{End, RopeSpec, SpringSpec, start_length},
+};
+use crate::{
+    error::{Error, Result},
+    solid::{ForceSpec, Role, SolidSpec},
+};
+
+/// All ties of a simulation. Solids are numbered as in its list of solids.
+#[derive(Clone, Debug, Default)]
+pub struct Links<const D: usize> {
+    /// Joints.
+    pub joints: Vec<JointSpec<D>>,
+    /// Springs and mooring lines.
+    pub springs: Vec<SpringSpec<D>>,
+    /// Ropes.
+    pub ropes: Vec<RopeSpec<D>>,
+    /// Forces and torques after a law of time.
+    pub forces: Vec<ForceSpec<D>>,
+    /// Free solids that are held still at first.
+    pub holds: Vec<Hold>,
+    /// Pairs of solids that touch otherwise than their own friction and restitution say, or not at all.
+    pub contacts: Contacts,
+}
+
+/// A free solid that is held still, whatever pushes it, until it is let go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Number of the solid.
+    pub solid: usize,
+    /// When it is let go, s.
+    pub until: f64,
+}
+
+impl Hold {
+    /// Whether it still holds at time `t` (s); a few last bits too early count as let go.
+    pub(in crate::solid) fn holds(&self, t: f64) -> bool {
+        t < self.until * (1.0 - 1e-12)
+    }
+}
+
+/// How two solids touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSpec {
+    /// Numbers of the two.
+    pub between: [usize; 2],
+    /// Whether they touch at all, or pass through one another.
+    pub touch: bool,
+    /// Coulomb friction coefficient, –; by default the mean of both solids'.
+    pub friction: Option<f64>,
+    /// Restitution coefficient, –; by default the mean of both solids'.
+    pub restitution: Option<f64>,
+}
+
+/// Contacts of pairs, found by the numbers of both in either order; of several of the same pair the last counts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contacts(BTreeMap<[usize; 2], ContactSpec>);
+
+impl Contacts {
+    /// How many pairs there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// That of solids `a` and `b`.
+    pub fn find(&self, a: usize, b: usize) -> Option<&ContactSpec> {
+        self.0.get(&[a.min(b), a.max(b)])
+    }
+}
+
+impl Extend<ContactSpec> for Contacts {
+    fn extend<T: IntoIterator<Item = ContactSpec>>(&mut self, specs: T) {
+        let keyed = |spec: ContactSpec| {
+            let [a, b] = spec.between;
+            ([a.min(b), a.max(b)], spec)
+        };
+        self.0.extend(specs.into_iter().map(keyed));
+    }
+}
+
+impl FromIterator<ContactSpec> for Contacts {
+    fn from_iter<T: IntoIterator<Item = ContactSpec>>(specs: T) -> Self {
+        let mut contacts = Self::default();
+        contacts.extend(specs);
+        contacts
+    }
+}
+
+impl<const D: usize> Links<D> {
+    /// Whether there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.joints.is_empty()
+            && self.springs.is_empty()
+            && self.ropes.is_empty()
+            && self.forces.is_empty()
+            && self.holds.is_empty()
+            && self.contacts.is_empty()
+    }
+
+    /// Whether solids `a` and `b` may touch: not if a joint holds them without contacts, or a pair is told not to.
+    pub fn touch(&self, a: usize, b: usize) -> bool {
+        let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts;
+        self.contacts.find(a, b).is_none_or(|pair| pair.touch) && !self.joints.iter().any(jointed)
+    }
+
+    /// The name of a tie of solid number `solid`, if it has one.
+    pub(crate) fn of(&self, solid: usize) -> Option<String> {
+        let joints = self.joints.iter().map(|joint| (&joint.name, joint.between));
+        let ends = |ends: &[End<D>; 2]| ends.map(|end| end.solid);
+        let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends)));
+        let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends)));
+        let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None]));
+        let named = joints.chain(springs).chain(ropes).chain(forces);
+        let held = self.holds.iter().any(|hold| hold.solid == solid).then(|| "its release".to_string());
+        named.filter(|(_, ends)| ends.contains(&Some(solid))).map(|(name, _)| format!("{name:?}")).next().or(held)
+    }
+
+    /// Refuses what cannot be meant of these solids.
+    ///
+    /// # Errors
+    /// `Scene`: names the tie, what is wrong with it, and what would be right.
+    pub fn check(&self, solids: &[SolidSpec<D>]) -> Result<()> {
+        (0..self.joints.len()).try_for_each(|i| self.check_joint(i, solids))?;
+        self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
+        self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
+        self.forces.iter().try_for_each(|force| check_force(force, solids))?;
+        self.holds.iter().try_for_each(|hold| check_hold(hold, solids))?;
+        self.contacts.0.values().try_for_each(|pair| check_contact(pair, solids))
+    }
+
+    /// Refuses joint number `i` if it cannot be meant.
+    ///
+    /// # Errors
+    /// `Scene`, as [`Links::check`].
+    pub fn check_joint(&self, i: usize, solids: &[SolidSpec<D>]) -> Result<()> {
+        let joint = &self.joints[i];
+        let who = format!("joint \"{}\"", joint.name);
+        check_ends(&who, joint.between, solids)?;
+        let refuse = |what: &str, help: &str| Err(Error::scene(format!("{who} {what}")).help(help));
+        if !joint.at.norm().is_finite() {
+            return refuse("has no finite place", "its place is a point of the world at the start, m");
+        }
+        let axis = joint.axis.norm();
+        let needed =
+            matches!(joint.kind, JointKind::Slider | JointKind::Tow) || (joint.kind == JointKind::Hinge && D == 3);
+        if needed && !(axis > 1e-12 && axis.is_finite()) {
+            return refuse(
+                "has no axis",
+                "a slider moves and a tow holds along a direction, a hinge in 3-D turns about an axis",
+            );
+        }
+        if D == 2 && joint.kind == JointKind::Ball {
+            return refuse("is a ball joint, and a plane has none", "in 2-D a hinge turns freely about its point");
+        }
+        if joint.own().is_none() && (joint.limits.is_some() || joint.motor.is_some()) {
+            return refuse("has no coordinate to limit or to drive", "only a hinge or a slider has limits and a motor");
+        }
+        let generic = joint.kind == JointKind::Generic;
+        let known =
+            |mode: usize| mode < modes::<D>() && joint.free.iter().filter(|free| free.mode == mode).count() == 1;
+        if generic == joint.free.is_empty() || !joint.free.iter().all(|free| known(free.mode)) {
+            let help = "a generic joint leaves some modes free, each named once; no other joint has a list of them";
+            return refuse("has modes that cannot be left free", help);
+        }
+        if let Some((_, [min, max])) = joint.stops().into_iter().find(|(mode, stop)| !reaches(stop, *mode >= D)) {
+            let help = "from 0 or less to 0 or more: 0 is where it starts; a turn less than a whole one";
+            return refuse(&format!("has limits {min} to {max}"), help);
+        }
+        let twin = |other: &&JointSpec<D>| same(other.between, joint.between) && (other.at - joint.at).norm() < 1e-9;
+        if let Some(other) = self.joints[..i].iter().find(twin) {
+            let what = format!("sits where joint \"{}\" of the same two solids does", other.name);
+            return refuse(&what, "one joint holds them there: remove the other, or make it one of another kind");
+        }
+        Ok(())
+    }
+}
+
+/// Whether end stops (m, or rad of a turn) have the start between them.
+fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
+    let wide = turn && max - min >= std::f64::consts::TAU;
+    min <= 0.0 && 0.0 <= max && min < max && max.is_finite() && min.is_finite() && !wide
+}
+
+/// Refuses a spring that cannot be meant.
+///
+/// # Errors
+/// `Scene`, as [`Links::check`].
+pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+    let who = format!("spring \"{}\"", spring.name);
+    check_line(&who, &spring.ends, solids)?;
+    let numbers = [("stiffness", spring.stiffness, 0.0), ("damping", spring.damping, 0.0)];
+    for (word, x, least) in numbers.into_iter().chain(spring.length.map(|l| ("length", l, 0.0))) {
+        if !(x >= least && x.is_finite()) {
+            return Err(Error::scene(format!("{who} has a {word} of {x}")).help(format!("its {word} is 0 or more")));
+        }
+    }
+    if spring.stiffness == 0.0 && spring.damping == 0.0 {
+        let help = "give a stiffness, N/m, or a damping, N s/m, above 0";
+        return Err(Error::scene(format!("{who} is neither stiff nor damped")).help(help));
+    }
+    Ok(())
+}
+
+/// Refuses a rope that cannot be meant.
+///
+/// # Errors
+/// `Scene`, as [`Links::check`].
+pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+    let who = format!("rope \"{}\"", rope.name);
+    check_line(&who, &rope.ends, solids)?;
+    let start = start_length(&rope.ends);
+    let length = rope.length.unwrap_or(start);
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(Error::scene(format!("{who} is {length} m long")).help("give it a length above 0, m"));
+    }
+    // Room for the round-off of places written in decimals.
+    if start > length * (1.0 + 1e-9) {
+        let what = format!("{who} is {length} m long, and its ends start {start} m apart");
+        return Err(Error::scene(what).help(format!("write  length = {start:.6}  or more, or start nearer")));
+    }
+    Ok(())
+}
+
+/// Refuses a force that cannot be meant.
+///
+/// # Errors
+/// `Scene`, as [`Links::check`].
+pub fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+    let who = format!("force \"{}\"", force.name);
+    check_ends(&who, [Some(force.solid), None], solids)?;
+    let finite = |laws: &[crate::solid::Law]| laws.iter().all(|law| law.at(0.0).0.is_finite());
+    if !finite(&force.force) || !finite(&force.torque) {
+        return Err(Error::scene(format!("{who} is not finite at t = 0")).help("check its formula or table"));
+    }
+    Ok(())
+}
+
+fn check_hold<const D: usize>(hold: &Hold, solids: &[SolidSpec<D>]) -> Result<()> {
+    check_ends("a hold", [Some(hold.solid), None], solids)?;
+    let still = |body: &crate::solid::FreeBody<D>| body.velocity.norm() == 0.0 && body.spin.0.norm() == 0.0;
+    let fine = matches!(&solids[hold.solid].role, Role::Free(body) if still(body));
+    if fine && hold.until.is_finite() {
+        return Ok(());
+    }
+    Err(Error::scene(format!("\"{}\" cannot be held until {} s", solids[hold.solid].name, hold.until))
+        .help("what is held at first starts at rest, without velocity or spin, and is let go at a time, s"))
+}
+
+fn check_contact<const D: usize>(pair: &ContactSpec, solids: &[SolidSpec<D>]) -> Result<()> {
+    let [a, b] = pair.between;
+    if a == b || a.max(b) >= solids.len() {
+        return Err(Error::scene("a contact is not between two solids that are there").help("give the numbers of two"));
+    }
+    let friction = pair.friction.is_none_or(|x| x >= 0.0 && x.is_finite());
+    if !friction || !pair.restitution.is_none_or(|x| (0.0..=1.0).contains(&x)) {
+        let help = "friction is 0 or more, restitution 0 to 1";
+        return Err(
+            Error::scene(format!("the contact of \"{}\" and \"{}\"", solids[a].name, solids[b].name)).help(help)
+        );
+    }
+    Ok(())
+}
+
+fn check_line<const D: usize>(who: &str, ends: &[End<D>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
+    check_ends(who, ends.map(|end| end.solid), solids)?;
+    match ends.iter().all(|end| end.at.norm().is_finite()) {
+        true => Ok(()),
+        false => Err(Error::scene(format!("{who} has an end that is nowhere")).help("its ends are points, m")),
+    }
+}
+
+/// Refuses ends that are no solids, the same one, or none of them free.
+fn check_ends<const D: usize>(who: &str, ends: [Option<usize>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
+    if ends.iter().flatten().any(|&i| i >= solids.len()) {
+        return Err(Error::scene(format!("{who} names a solid that is not there")));
+    }
+    if ends[0] == ends[1] {
+        return Err(Error::scene(format!("{who} ties a solid to itself")).help("name two solids, or one and the world"));
+    }
+    let free = |&i: &usize| matches!(solids[i].role, Role::Free(_));
+    if ends.iter().flatten().any(free) {
+        return Ok(());
+    }
+    let names: Vec<&str> = ends.iter().flatten().map(|&i| solids[i].name.as_str()).collect();
+    let verb = if names.len() == 2 { "are" } else { "is" };
+    Err(Error::scene(format!("{who} has nothing to act on: \"{}\" {verb} not free", names.join("\" and \"")))
+        .help("one of its ends at least must be a free solid: free = { density = 500.0 }"))
+}
+
+/// Whether two pairs are the same in either order.
+fn same<T: PartialEq + Copy>(a: [T; 2], b: [T; 2]) -> bool {
+    a == b || a == [b[1], b[0]]
+}

@@ -1,0 +1,16 @@
+//! Constraints between solids: joints, motors, springs, ropes, contact pairs, and the reactions that they transmit.
+
+pub(crate) mod assembly;
+mod jacobian;
+pub mod joint;
+pub mod lines;
+pub mod links;
+mod motor;
+mod reactions;
+
+pub use assembly::{JointReading, LineReading};
+pub use jacobian::Mobility;
+pub use joint::{FreeMode, JointKind, JointSpec};
+pub use lines::{Elastic, End, RopeSpec, SpringSpec};
+pub use links::{ContactSpec, Contacts, Hold, Links};
+pub use motor::{Drive, Motor};

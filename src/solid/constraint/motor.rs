@@ -1,0 +1,123 @@
+//! The motor on a joint's coordinate, a load like any other on both solids:
+//!
+//!   F = F₀ + k (x* − x) + c (v* − ẋ)
+//!
+//! The stiffness bounds the step as a spring's does. The damping bounds none: it is taken at the rate at the step's end, on a pair as
+//! easy to move as its locks leave it, g = J M⁻¹ Jᵀ, with s = Δt c g,
+//!
+//!   c (v* − ẋ − w Δt ẍ)/(1 + s),   w = 1/(1 + (0.1/s)²),
+//!
+//! ẍ what water, weight, pushes and F₀ let the rate gain. Without that term the pair would give way by Δt ẍ beside v* however strong
+//! the brake is: what is light, by 0.2 m/s. With it the speed at which a brake yields to a load is right within a twentieth. What the
+//! locks of other joints, end stops and contacts do is not in ẍ, so w is small where the step resolves the damping anyway; and it is
+//! left out where there is a stiffness, which finds its place at rest under whatever acts.
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
+use crate::solid::Law;
+
+/// s = Δt c g at which half of what the rate gains in a step is foreseen, –.
+const RESOLVED: f64 = 0.1;
+
+/// A motor, brake or power take-off. Forces are N (N m of a hinge; in 2-D per metre of width), positive if they drive the second
+/// solid the way in which the coordinate grows.
+#[derive(Clone, Debug)]
+pub struct Motor {
+    /// F₀, N or N m.
+    pub force: Law,
+    /// x*, m or rad from the start.
+    pub position: Law,
+    /// v*, m/s or rad/s; by default the rate of `position`.
+    pub velocity: Option<Law>,
+    /// k, N/m or N m/rad.
+    pub stiffness: Law,
+    /// c, N s/m or N m s/rad.
+    pub damping: Law,
+    /// The strongest that it can be, N or N m.
+    pub strongest: f64,
+}
+
+impl Default for Motor {
+    /// None at all.
+    fn default() -> Self {
+        let none = || Law::constant(0.0);
+        Self {
+            force: none(),
+            position: none(),
+            velocity: None,
+            stiffness: none(),
+            damping: none(),
+            strongest: f64::INFINITY,
+        }
+    }
+}
+
+impl Motor {
+    /// A linear power take-off: F = −c ẋ.
+    pub fn damping(c: f64) -> Self {
+        Self { damping: Law::constant(c), ..Self::default() }
+    }
+
+    /// What it does at time `t` (s).
+    pub fn at(&self, t: f64) -> Drive {
+        let (position, rate) = self.position.at(t);
+        Drive {
+            force: self.force.at(t).0,
+            position,
+            velocity: self.velocity.as_ref().map_or(rate, |law| law.at(t).0),
+            stiffness: self.stiffness.at(t).0,
+            damping: self.damping.at(t).0,
+            strongest: self.strongest,
+        }
+    }
+}
+
+/// What a motor does at an instant; the names are those of [`Motor`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drive {
+    /// F₀, N or N m.
+    pub force: f64,
+    /// x*, m or rad.
+    pub position: f64,
+    /// v*, m/s or rad/s.
+    pub velocity: f64,
+    /// k, N/m or N m/rad.
+    pub stiffness: f64,
+    /// c, N s/m or N m s/rad.
+    pub damping: f64,
+    /// The strongest that it can be, N or N m.
+    pub strongest: f64,
+}
+
+/// How a joint's coordinate goes when a motor is asked for its force.
+pub(in crate::solid) struct Going {
+    /// Whether it is an angle: a difference is counted the short way round then.
+    pub(in crate::solid) angle: bool,
+    /// Where it is, m or rad.
+    pub(in crate::solid) x: f64,
+    /// Its rate, m/s or rad/s.
+    pub(in crate::solid) rate: f64,
+    /// What that gains by what is known to act, m/s² or rad/s².
+    pub(in crate::solid) gain: f64,
+    /// g: how easily the pair gives way, 1/kg or 1/(kg m²).
+    pub(in crate::solid) ease: f64,
+    /// The step, s.
+    pub(in crate::solid) dt: f64,
+}
+
+impl Drive {
+    /// Its force over a step, N or N m.
+    pub(in crate::solid) fn force(&self, going: &Going) -> f64 {
+        let mut off = self.position - going.x;
+        if going.angle {
+            off -= TAU * (off / TAU).round();
+        }
+        let stiff = going.dt * self.damping * going.ease;
+        let foreseen = if self.stiffness > 0.0 { 0.0 } else { 1.0 / (1.0 + (RESOLVED / stiff).powi(2)) };
+        let gained = foreseen * going.dt * (going.gain + going.ease * self.force);
+        let damped = self.damping * (self.velocity - going.rate - gained) / (1.0 + stiff);
+        (self.force + self.stiffness * off + damped).clamp(-self.strongest, self.strongest)
+    }
+}

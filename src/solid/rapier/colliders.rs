@@ -1,0 +1,211 @@
+//! The convex parts with which a solid is touched, and who starts inside whom; compiled for each dimension with the world.
+
+use super::super::{
+    parts,
+    rapier::{
+        geometry::SharedShape,
+        math::{Pose as Frame, Vector as Point},
+        parry::{bounding_volume::BoundingVolume, query::contact, shape::Cuboid},
+    },
+};
+use super::{D, from_point, to_frame, to_point};
+use crate::{
+    error::{Error, Result},
+    geometry::Shape,
+    math::{Bounds, Pose, Vector},
+    solid::{
+        Kinematics, Links, Role, SolidSpec,
+        containment::{Placed, swallowed},
+    },
+};
+
+/// A solid's convex parts in its own frame.
+pub(super) type Parts = Vec<(Frame, SharedShape)>;
+
+/// Adds the convex parts of `shape`, posed in the solid's frame; of a mesh that is `fixed` its surface.
+pub(super) fn collect(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut Parts) -> Result<()> {
+    let frame = to_frame(pose);
+    let mut cuboid = |min: Vector<D>, max: Vector<D>| {
+        let centre = Frame::from_translation(to_point(&(0.5 * (min + max))));
+        found.push((frame * centre, SharedShape::new(Cuboid::new(to_point(&(0.5 * (max - min)))))));
+    };
+    match shape {
+        Shape::Box { size } => cuboid(-0.5 * size, 0.5 * size),
+        Shape::Tank { size, thickness } => {
+            let (low, mut high) = (Vector::repeat(-thickness), size.add_scalar(*thickness));
+            high[D - 1] = size[D - 1];
+            for axis in 0..D {
+                let (mut min, mut max) = (low, high);
+                max[axis] = 0.0;
+                cuboid(min, max);
+                if axis < D - 1 {
+                    (min[axis], max[axis]) = (size[axis], high[axis]);
+                    cuboid(min, max);
+                }
+            }
+        }
+        Shape::Ball { radius } => found.push((frame, SharedShape::ball(*radius))),
+        Shape::Capsule { length, radius, axis } => {
+            let end = Point::AXES[*axis] * (0.5 * length);
+            found.push((frame, SharedShape::capsule(-end, end, *radius)));
+        }
+        Shape::Compound(inner) => {
+            for (place, shape) in inner {
+                collect(shape, &pose.then(place), fixed, found)?;
+            }
+        }
+        Shape::Cylinder { .. } | Shape::Polygon { .. } | Shape::Polyline { .. } | Shape::Mesh { .. } => {
+            found.extend(parts(shape, fixed)?.into_iter().map(|(inner, part)| (frame * inner, part)));
+        }
+    }
+    Ok(())
+}
+
+/// The box around the parts at `frame`, its least and its largest corner (m), and none of no parts.
+fn around(parts: &Parts, frame: &Frame) -> Option<(Vector<D>, Vector<D>)> {
+    let boxes = parts.iter().map(|(inner, part)| part.compute_aabb(&(*frame * *inner)));
+    boxes.reduce(|a, b| a.merged(&b)).map(|whole| (from_point(whole.mins), from_point(whole.maxs)))
+}
+
+/// Smallest edge of the box around the parts, m.
+pub(super) fn thickness(parts: &Parts) -> f64 {
+    around(parts, &Frame::IDENTITY).map_or(f64::INFINITY, |(min, max)| (max - min).min())
+}
+
+/// The inner room of a tank, or of a polyline whose two ends rise: its least and its largest corner, m.
+fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
+    let corners: Vec<Vector<D>> = match shape {
+        Shape::Tank { size, .. } => Bounds { min: Vector::zeros(), max: *size }.corners().collect(),
+        Shape::Polyline { points, .. } => points.clone(),
+        Shape::Compound(parts) => return parts.iter().find_map(|(inner, part)| room(part, &pose.then(inner))),
+        _ => return None,
+    };
+    let corners: Vec<Vector<D>> = corners.iter().map(|x| pose.point(x)).collect();
+    let Bounds { min, max } = Bounds::around(&corners);
+    let rises = |x: &Vector<D>| x[D - 1] > min[D - 1];
+    let basin =
+        matches!(shape, Shape::Tank { .. }) || corners.first().is_some_and(rises) && corners.last().is_some_and(rises);
+    basin.then_some((min, max))
+}
+
+/// What to do about a body that has no room in a tank or basin.
+fn cramped((inner, here): Placed<D>, parts: &Parts, (outer, there): Placed<D>, allowed: f64) -> Option<String> {
+    let ((min, max), own) = (room(&outer.shape, there)?, around(parts, &to_frame(here))?);
+    let (body, tank, size, space) = (&inner.name, &outer.name, own.1 - own.0, max - min);
+    if let Some(axis) = (0..D - 1).find(|&axis| size[axis] > space[axis]) {
+        let (size, space, axis) = (size[axis], space[axis], ["x", "y"][axis]);
+        return Some(format!(
+            "\"{body}\" is {size:.4} m long along {axis} and \"{tank}\" has room for {space:.4} m: make it smaller, or the \
+             tank larger"
+        ));
+    }
+    let (low, floor) = (own.0[D - 1], min[D - 1]);
+    (low < floor - allowed).then(|| {
+        format!(
+            "\"{body}\" is {:.4} m high and reaches {:.4} m below the floor of \"{tank}\": move it up, or, if it floats so \
+             deep, make it smaller or lighter, or the water deeper",
+            size[D - 1],
+            floor - low
+        )
+    })
+}
+
+/// Refuses a free solid that starts deeper than `allowed` (m) inside another, contact skins counted.
+pub(super) fn refuse_overlap(
+    solids: &[SolidSpec<D>],
+    start: &[Kinematics<D>],
+    parts: &[Parts],
+    links: &Links<D>,
+    allowed: f64,
+) -> Result<()> {
+    let free = |i: usize| matches!(solids[i].role, Role::Free(_));
+    for a in 0..solids.len() {
+        for b in a + 1..solids.len() {
+            if !(free(a) || free(b)) || !links.touch(a, b) {
+                continue;
+            }
+            let (frame_a, frame_b) = (to_frame(&start[a].pose), to_frame(&start[b].pose));
+            let skins = solids[a].contact_skin + solids[b].contact_skin;
+            let mut depth: f64 = 0.0;
+            for (inner_a, part_a) in &parts[a] {
+                for (inner_b, part_b) in &parts[b] {
+                    let touch = contact(&(frame_a * *inner_a), &**part_a, &(frame_b * *inner_b), &**part_b, skins);
+                    depth = touch.ok().flatten().map_or(depth, |touch| depth.max(skins - touch.dist));
+                }
+            }
+            let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
+            let (body, other) = ((&solids[inner], &start[inner].pose), (&solids[outer], &start[outer].pose));
+            let within = [swallowed(body, other, allowed), swallowed(other, body, allowed)];
+            depth = within.into_iter().flatten().fold(depth, f64::max);
+            if depth > allowed {
+                let help = cramped(body, &parts[inner], other, allowed);
+                let help = help.unwrap_or_else(|| {
+                    let less = if skins > 0.0 { "a skin thinner" } else { "it smaller" };
+                    let past = format!("{allowed:.5} m (0.05 dp) is let pass");
+                    format!("move one of them by that much or more, or make {less}; {past}")
+                });
+                let what = format!("\"{}\" starts {depth:.5} m inside \"{}\"", body.0.name, other.0.name);
+                let padded = if skins > 0.0 { ", contact skins counted" } else { "" };
+                return Err(Error::scene(what + padded).help(help).at("", None, format!("solid.{inner}.at")));
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::FreeBody;
+
+    /// What is said of a free box of this length and height (m) with its centre here (m), in a tank a metre long or such a basin.
+    fn refusal(length: f64, height: f64, at: f64, basin: bool) -> String {
+        let mut size = Vector::repeat(0.2);
+        (size[0], size[D - 1]) = (length, height);
+        let shape = Shape::Box { size };
+        let role = Role::Free(FreeBody::from_density(&shape, 500.0));
+        let solid = |name: &str, shape: Shape<D>, at: Vector<D>, role: Role<D>| {
+            let (name, pose) = (name.into(), Pose::at(at));
+            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
+        };
+        let point = |x: f64, up: f64| {
+            Vector::from_fn(|i, _| {
+                if i == 0 {
+                    x
+                } else if i == D - 1 {
+                    up
+                } else {
+                    0.5
+                }
+            })
+        };
+        let points = vec![point(0.0, 1.0), point(0.0, 0.0), point(1.0, 0.0), point(1.0, 1.0)];
+        let tank = Shape::Tank { size: Vector::repeat(1.0), thickness: 0.1 };
+        let outer = if basin { Shape::Polyline { points, thickness: 0.1 } } else { tank };
+        let solids = [solid("tank", outer, Vector::zeros(), Role::Fixed), solid("box", shape, point(0.5, at), role)];
+        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+        let parts: Vec<Parts> = solids
+            .iter()
+            .map(|solid| {
+                let mut parts = Parts::new();
+                collect(&solid.shape, &Pose::identity(), true, &mut parts).map(|()| parts).unwrap_or_default()
+            })
+            .collect();
+        let refused = refuse_overlap(&solids, &start, &parts, &Links::default(), 0.001);
+        refused.err().map(|e| e.to_string()).unwrap_or_default()
+    }
+
+    #[test]
+    fn a_body_without_room_is_named_with_what_there_is() {
+        for basin in [false, true] {
+            if basin && D == 3 {
+                continue; // a polyline is flat
+            }
+            assert_eq!(refusal(0.9, 0.3, 0.5, basin), "");
+            let long = refusal(1.05, 0.3, 0.5, basin);
+            assert!(long.contains("is 1.0500 m long along x and \"tank\" has room for 1.0000 m"), "{long}");
+            let high = refusal(0.9, 0.3, 0.1, basin);
+            assert!(high.contains("is 0.3000 m high and reaches 0.0500 m below the floor of \"tank\""), "{high}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! What the engine's contacts did in the last step, compiled for each dimension with the world that they are in.
+//!
+//! A contact along the normal n, from the first solid to the second, gives the second the impulse λ n − Σ τ t and the first the
+//! opposite; λ and τ are the engine's sums over its iterations, t its tangents for the direction −n.
+
+use std::collections::BTreeMap;
+
+use super::{
+    super::{friction, rapier::geometry::ContactData},
+    D, Met, PhysicsWorld, Point, RigidBody, RigidBodyHandle, from_point,
+};
+use crate::{
+    math::Vector,
+    solid::{Contact, Load},
+};
+
+/// The pairs that pressed on each other, in order of their numbers.
+pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[Met]) -> Vec<Contact<D>> {
+    let mut pairs = Pairs(BTreeMap::new());
+    let rate = 1.0 / world.integration_parameters.dt;
+    for met in met {
+        let (at, force) = (from_point(met.at), from_point(met.impulse) * rate);
+        pairs.add(met.between, met.along * rate, &at, met.arms.map(from_point), force);
+    }
+    for pair in world.narrow_phase.contact_pairs() {
+        let between = [pair.collider1, pair.collider2].map(|c| world.colliders[c].user_data as usize);
+        let [first, second] = between.map(|solid| &world.bodies[bodies[solid]]);
+        for manifold in pair.solver_manifolds() {
+            let normal = manifold.data.normal;
+            for contact in manifold.data.solver_contacts.iter() {
+                let data = &manifold.points[contact.contact_indices()[0] as usize].data;
+                if data.impulse > 0.0 {
+                    let force = from_point(impulse(normal, data)) * rate;
+                    let (at, other) = (place(first, data.solver_dp1), place(second, data.solver_dp2));
+                    let arms = [(first, at), (second, other)].map(|(body, at)| from_point(at - body.center_of_mass()));
+                    // The engine pushes at the second's face, the first's skin and its own before it: it is told where they meet.
+                    let meet = at - normal * world.colliders[pair.collider2].contact_skin();
+                    pairs.add(between, data.impulse * rate, &from_point(meet), arms, force);
+                }
+            }
+        }
+    }
+    let mean = |(between, mut contact): ([usize; 2], Contact<D>)| {
+        contact.at /= contact.pressing;
+        Contact { between, ..contact }
+    };
+    pairs.0.into_iter().map(mean).collect()
+}
+
+/// Where a contact is whose `arm` of `body` the engine keeps (m): of what is fixed it keeps the place itself.
+fn place(body: &RigidBody, arm: Point) -> Point {
+    if body.is_fixed() { arm } else { body.center_of_mass() + arm }
+}
+
+/// The impulse of a contact on its second solid, N s.
+fn impulse(normal: Point, data: &ContactData) -> Point {
+    normal * data.impulse - friction(-normal, data)
+}
+
+struct Pairs(BTreeMap<[usize; 2], Contact<D>>);
+
+impl Pairs {
+    /// Adds a contact of the solids `between`: `pressing` (N) along the normal, `force` (N) on the second, at `arms` (m) from their
+    /// centres.
+    fn add(&mut self, between: [usize; 2], pressing: f64, at: &Vector<D>, arms: [Vector<D>; 2], force: Vector<D>) {
+        let [first, second] = arms;
+        let mut loads = [Load::at(&first, -force), Load::at(&second, force)];
+        let [a, b] = between;
+        if a > b {
+            loads.reverse();
+        }
+        let none = Contact { between, pressing: 0.0, at: Vector::zeros(), loads: [Load::zero(); 2] };
+        let sum = self.0.entry([a.min(b), a.max(b)]).or_insert(none);
+        sum.pressing += pressing;
+        sum.at += at * pressing;
+        sum.loads.iter_mut().zip(loads).for_each(|(sum, load)| *sum += load);
+    }
+}

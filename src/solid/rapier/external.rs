@@ -1,0 +1,135 @@
+//! Bodies of a rapier world of the user's own: as solids, under the water's loads, and where they are; compiled for each dimension
+//! with its engine.
+
+use super::rapier::{
+    dynamics::{LockedAxes, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType},
+    geometry::{ColliderSet, Shape as Geometry, TypedShape},
+};
+use super::{D, arc, from_angular, inertia, of_this_dimension, to_angular, world};
+use crate::{
+    error::{Error, Result},
+    geometry::Shape,
+    math::{Pose, Vector},
+    solid::{FreeBody, Kinematics, Load, Role, SolidSpec},
+};
+
+/// The solid that a body is: fixed if that is, else free, with its shape, place, mass, inertia, velocity and locks. Give it to a setup
+/// for [`Simulation::hosted`](crate::simulation::Simulation::hosted).
+///
+/// Its shape is that of the body's colliders, sensors left out. The water feels it at its true faces, whatever contact skin it has.
+///
+/// # Errors
+/// `Scene` if there is no such body, it has no collider, one with a shape that water cannot feel (a half-space, a height field, a cone,
+/// a round shape: make the solid's shape by hand then), it is kinematic, or has no mass yet.
+pub fn solid(
+    name: impl Into<String>,
+    body: RigidBodyHandle,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+) -> Result<SolidSpec<D>> {
+    let name = name.into();
+    let refuse = |what: &str, help: &str| Err(Error::scene(format!("body {name:?} {what}")).help(help));
+    let Some(body) = bodies.get(body) else {
+        return refuse("is not in this set", "give the set that the handle comes from");
+    };
+    let mut parts = Vec::new();
+    for collider in body.colliders().iter().filter_map(|&handle| colliders.get(handle)).filter(|c| !c.is_sensor()) {
+        let place = collider.position_wrt_parent().map_or_else(Pose::identity, world::from_frame);
+        parts.push((place, shape(collider.shape()).map_err(|e| Error { what: format!("{name}: {}", e.what), ..e })?));
+    }
+    let own = |place: &Pose<D>| *place == Pose::identity();
+    let shape = match parts.pop() {
+        None => return refuse("has no collider", "the water needs a shape: insert one, or make the solid by hand"),
+        Some((place, only)) if parts.is_empty() && own(&place) => only,
+        Some(last) => {
+            parts.push(last);
+            Shape::Compound(parts)
+        }
+    };
+    let role = match body.body_type() {
+        RigidBodyType::Fixed => Role::Fixed,
+        RigidBodyType::Dynamic => Role::Free(free(body)),
+        _ => {
+            let help = "let a law of pontoon's drive it, Role::Driven, and take its pose from step.solids";
+            return refuse("is kinematic", help);
+        }
+    };
+    if body.is_dynamic() && body.mass() == 0.0 {
+        let help = "rapier has it after a step, or after recompute_mass_properties_from_colliders; a body without any cannot float";
+        return refuse("has no mass yet", help);
+    }
+    let pose = world::from_frame(body.position());
+    Ok(SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 })
+}
+
+/// Gives a body the water's load in place of all forces and torques of the step before. Rapier keeps forces until it is told
+/// otherwise, so add yours after this.
+pub fn give(body: &mut RigidBody, load: &Load<D>) {
+    body.reset_forces(false);
+    body.reset_torques(false);
+    body.add_force(world::to_point(&load.force), true);
+    body.add_torque(to_angular(&load.torque), true);
+}
+
+/// Where a body is and how it moves, for `step.solids`.
+pub fn kinematics(body: &RigidBody) -> Kinematics<D> {
+    Kinematics {
+        pose: world::from_frame(body.position()),
+        centre: world::from_point(body.center_of_mass()),
+        velocity: world::from_point(body.linvel()),
+        spin: from_angular(body.angvel()),
+    }
+}
+
+/// Moves a body to where a solid is at the end of the step: for a kinematic body that stands for a driven solid.
+pub fn follow(body: &mut RigidBody, solid: &Kinematics<D>) {
+    body.set_next_kinematic_position(world::to_frame(&solid.pose));
+}
+
+fn free(body: &RigidBody) -> FreeBody<D> {
+    let (own, locks) = (&body.mass_properties().local_mprops, body.locked_axes());
+    let straight =
+        [LockedAxes::TRANSLATION_LOCKED_X, LockedAxes::TRANSLATION_LOCKED_Y, LockedAxes::TRANSLATION_LOCKED_Z];
+    let turns = [LockedAxes::ROTATION_LOCKED_X, LockedAxes::ROTATION_LOCKED_Y, LockedAxes::ROTATION_LOCKED_Z];
+    // A plane turns about z.
+    let turns: Vec<bool> = turns[if D == 2 { 2 } else { 0 }..].iter().map(|&axis| locks.contains(axis)).collect();
+    FreeBody {
+        mass: own.mass(),
+        centre: world::from_point(own.local_com),
+        inertia: inertia(own),
+        velocity: world::from_point(body.linvel()),
+        spin: from_angular(body.angvel()),
+        locked_translations: std::array::from_fn(|i| locks.contains(straight[i])),
+        locked_rotations: std::array::from_fn(|i| turns.get(i).is_some_and(|locked| *locked)),
+    }
+}
+
+/// The shape of a collider, in its frame.
+fn shape(geometry: &dyn Geometry) -> Result<Shape<D>> {
+    Ok(match geometry.as_typed_shape() {
+        TypedShape::Ball(ball) => Shape::Ball { radius: ball.radius },
+        TypedShape::Cuboid(cuboid) => Shape::Box { size: world::from_point(cuboid.half_extents) * 2.0 },
+        TypedShape::Capsule(capsule) => {
+            let (a, b) = (world::from_point(capsule.segment.a), world::from_point(capsule.segment.b));
+            let (length, along): (f64, Vector<D>) = ((b - a).norm(), b - a);
+            let upright = Shape::Capsule { length, radius: capsule.radius, axis: 0 };
+            let pose = Pose { position: 0.5 * (a + b), rotation: arc(&along) };
+            Shape::Compound(vec![(pose, upright)])
+        }
+        TypedShape::Compound(compound) => {
+            let part = |(place, part): &(_, super::rapier::geometry::SharedShape)| {
+                Ok((world::from_frame(place), shape(&**part)?))
+            };
+            Shape::Compound(compound.shapes().iter().map(part).collect::<Result<_>>()?)
+        }
+        other => of_this_dimension(&other)?,
+    })
+}
+
+/// The error of a shape that water cannot feel.
+pub(super) fn unfelt(what: &TypedShape) -> Error {
+    let name = format!("{what:?}");
+    let name = name.split(['(', ' ']).next().unwrap_or_default();
+    Error::scene(format!("a collider of the kind {name} has no shape that the water can feel"))
+        .help("make the solid by hand: SolidSpec { shape, .. }, with its shape as a box, polygon, mesh or a compound of these")
+}

@@ -1,0 +1,151 @@
+//! Joints and ropes of the engine, compiled for each dimension with the world that they are in.
+//!
+//! A rope is a limit on the distance of two points, held to the end of each step along the line between them as it is at its
+//! start. What moves at u, on bodies that turn at ω about centres r away, may come out further by (u² + L Σ ω² r) Δt²/2L: the limit
+//! of a step is that much shorter.
+
+use super::super::rapier::{
+    dynamics::{
+        GenericJoint, ImpulseJointHandle, JointAxesMask, JointLimits, RigidBodyBuilder, RigidBodyHandle,
+        SpringCoefficients,
+    },
+    geometry::{ColliderHandle, ColliderSet, SolverFlags},
+    math::Pose as Frame,
+    pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld},
+};
+use super::{super::align, D, from_angular, to_frame};
+use crate::{
+    math::Pose,
+    solid::{
+        Kinematics,
+        constraint::{
+            joint::turns_first,
+            lines::{Line, start_length},
+            links::{ContactSpec, Contacts, Links},
+        },
+    },
+};
+
+/// Frequency of a lock as a spring, Hz: rigid at any step, by 1/(2π f Δt)².
+const LOCK: f64 = 1e9;
+
+/// Joints and ropes by their handles, in order, and the pairs with a contact of their own.
+pub(super) struct Ties {
+    joints: Vec<ImpulseJointHandle>,
+    /// With the longest that each can be, m.
+    ropes: Vec<(ImpulseJointHandle, f64)>,
+    pub(super) pairs: Pairs,
+}
+
+impl Ties {
+    /// Puts the joints and ropes of `links` into `world`, where the solids are `bodies` and start as `start`.
+    pub(super) fn new(
+        world: &mut PhysicsWorld,
+        bodies: &[RigidBodyHandle],
+        links: &Links<D>,
+        start: &[Kinematics<D>],
+    ) -> Self {
+        let on_ground = links.joints.iter().any(|joint| joint.between.contains(&None))
+            || links.ropes.iter().any(|rope| rope.ends.iter().any(|end| end.solid.is_none()));
+        let ground = on_ground.then(|| world.insert_body(RigidBodyBuilder::fixed()));
+        // Whoever has no body is on the ground, which is there then.
+        let body = |end: Option<usize>| end.map(|solid| bodies[solid]).or(ground).unwrap_or_default();
+        let mut joints = Vec::new();
+        for spec in &links.joints {
+            let frames = spec.frames(start).each_ref().map(to_frame);
+            let bits = turns_first::<D>().filter(|&mode| spec.locks(mode)).fold(0, |bits, mode| bits | 1 << mode);
+            let mut joint = GenericJoint::new(JointAxesMask::from_bits_truncate(bits));
+            (joint.local_frame1, joint.local_frame2, joint.contacts_enabled) = (frames[0], frames[1], spec.contacts);
+            joint.softness = SpringCoefficients::new(LOCK, 1.0);
+            for (mode, limits) in spec.stops() {
+                joint.limit_axes |= JointAxesMask::from_bits_truncate(1 << mode);
+                joint.limits[mode] = JointLimits::from(limits);
+            }
+            let [first, second] = spec.between.map(body);
+            joints.push(world.insert_impulse_joint(first, second, joint));
+        }
+        let mut ropes = Vec::new();
+        for spec in &links.ropes {
+            let longest = spec.length.unwrap_or_else(|| start_length(&spec.ends));
+            let local = Line::new(&spec.ends, start).local;
+            let mut joint = GenericJoint::new(JointAxesMask::empty());
+            (joint.coupled_axes, joint.limit_axes) = (JointAxesMask::LIN_AXES, JointAxesMask::LIN_X);
+            joint.limits[0] = JointLimits::from([0.0, longest]);
+            joint.softness = SpringCoefficients::new(LOCK, 1.0);
+            [joint.local_frame1, joint.local_frame2] = local.each_ref().map(|x| to_frame(&Pose::at(*x)));
+            let [first, second] = spec.ends.map(|end| body(end.solid));
+            ropes.push((world.insert_impulse_joint(first, second, joint), longest));
+        }
+        Self { joints, ropes, pairs: Pairs(links.contacts.clone()) }
+    }
+
+    /// Sets the limit of each rope for a step of `dt` (s).
+    pub(super) fn tighten(&self, world: &mut PhysicsWorld, dt: f64) {
+        for (handle, longest) in &self.ropes {
+            let Some(rope) = world.impulse_joints.get_mut(*handle, false) else { continue };
+            let end = |body: RigidBodyHandle, frame: &Frame| {
+                let body = &world.bodies[body];
+                let x = *body.position() * frame.translation;
+                let turned = from_angular(body.angvel()).0.norm_squared() * 0.5 * (x - body.center_of_mass()).length();
+                (body.velocity_at_point(x), turned)
+            };
+            let (va, turned_a) = end(rope.body1(), &rope.data.local_frame1);
+            let (vb, turned_b) = end(rope.body2(), &rope.data.local_frame2);
+            let further = ((vb - va).length_squared() + longest * (turned_a + turned_b)) * dt * dt;
+            rope.data.limits[0].max = (longest * longest - further).max(0.0).sqrt();
+        }
+    }
+
+    /// Impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in order, then of its end stops.
+    pub(super) fn impulses(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> Vec<f64> {
+        let Some(joint) = world.impulse_joints.get(self.joints[i]) else { return Vec::new() };
+        let (locked, limited) = (joint.data.locked_axes.bits(), joint.data.limit_axes.bits());
+        let locks = turns_first::<D>().filter(|i| locked >> i & 1 == 1).map(|i| joint.impulses[i]);
+        let stops = turns_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
+        // The engine keeps those of the last of its iterations.
+        locks.chain(stops).map(|impulse| -impulse * iterations as f64).collect()
+    }
+
+    /// Impulse (N s) of rope number `i` in the last step.
+    pub(super) fn rope(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
+        world.impulse_joints.get(self.ropes[i].0).map_or(0.0, |rope| rope.data.limits[0].impulse * iterations as f64)
+    }
+}
+
+/// Pairs of solids that touch in their own way.
+pub(super) struct Pairs(Contacts);
+
+impl Pairs {
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Restitution and friction of two solids, of which each has a `restitution` of its own and `friction` is the mean.
+    pub(super) fn bounce(&self, a: usize, b: usize, restitution: &[f64], friction: f64) -> (f64, f64) {
+        let own = self.0.find(a, b);
+        let usual = 0.5 * (restitution[a] + restitution[b]);
+        (own.and_then(|spec| spec.restitution).unwrap_or(usual), own.and_then(|spec| spec.friction).unwrap_or(friction))
+    }
+
+    /// That of the solids of two colliders.
+    fn of(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<&ContactSpec> {
+        let [a, b] = pair.map(|collider| colliders[collider].user_data as usize);
+        self.0.find(a, b)
+    }
+}
+
+impl PhysicsHooks for Pairs {
+    fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
+        let own = self.of(context.colliders, [context.collider1, context.collider2]);
+        own.is_none_or(|spec| spec.touch).then(SolverFlags::default)
+    }
+
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let own = self.of(context.colliders, [context.collider1, context.collider2]).and_then(|spec| spec.friction);
+        if let (Some(friction), Some(contact)) = (own, context.rigid_mut()) {
+            *contact.friction = friction;
+        }
+        align(context);
+    }
+}

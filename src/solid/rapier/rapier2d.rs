@@ -1,0 +1,181 @@
+//! The engine in two dimensions, rapier2d; what of it is yours: bodies of a world of your own, in a hosted simulation.
+//!
+//! ```no_run
+//! # use pontoon::{solid::rapier2d::{self, rapier::prelude::*}, simulation::Simulation};
+//! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<2>) -> pontoon::Result<()> {
+//! water.step_with(1.0, |step| {
+//!     rapier2d::give(&mut world.bodies[hull], &step.loads()[1]);
+//!     world.integration_parameters.dt = step.dt();
+//!     world.step();
+//!     step.solids[1] = rapier2d::kinematics(&world.bodies[hull]);
+//!     Ok(())
+//! })
+//! # }
+//! ```
+//!
+//! `examples/own_world.rs` is a whole program.
+
+/// The engine itself, in the version that this crate is made with.
+pub use rapier2d as rapier;
+
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "external.rs"]
+mod external;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "world.rs"]
+mod world;
+
+pub use external::{follow, give, kinematics, solid};
+pub(super) use world::World;
+
+use nalgebra::SMatrix;
+use rapier::{
+    dynamics::{IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
+    geometry::{ContactData, SharedShape, TriMesh, TypedShape},
+    math::{Pose as Frame, Rotation, Vector as Point},
+    parry::{mass_properties::MassProperties, transformation::hertel_mehlhorn},
+    pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
+    utils::OrthonormalBasis,
+};
+
+use crate::{
+    error::{Error, Result},
+    geometry::Shape,
+    math::{Matrix, Vector, Wedge},
+    solid::FreeBody,
+};
+
+const D: usize = 2;
+
+/// A spin in the engine's terms.
+type Angular = f64;
+
+/// Names the engine that wrote a state.
+const ENGINE: &str = "rapier2d-f64 0.36.1";
+
+fn to_angular(wedge: &Wedge<D>) -> f64 {
+    wedge.0[(1, 0)]
+}
+
+fn from_angular(angular: f64) -> Wedge<D> {
+    Wedge::from_axial(&[angular])
+}
+
+fn to_rotation(matrix: &Matrix<D>) -> Rotation {
+    Rotation { re: matrix[(0, 0)], im: matrix[(1, 0)] }
+}
+
+fn from_rotation(rotation: &Rotation) -> Matrix<D> {
+    Matrix::from_row_slice(&[rotation.re, -rotation.im, rotation.im, rotation.re])
+}
+
+/// An inverse inertia as a matrix: its one number at the first place.
+fn inverse_inertia(inverse: &f64) -> SMatrix<f64, 3, 3> {
+    SMatrix::from_fn(|i, j| if (i, j) == (0, 0) { *inverse } else { 0.0 })
+}
+
+/// Mass properties in the solid's frame; a plane has one inertia, whatever is locked.
+fn mass_properties(body: &FreeBody<D>, _start: &Matrix<D>) -> MassProperties {
+    MassProperties::new(world::to_point(&body.centre), body.mass, body.inertia[(0, 0)])
+}
+
+fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
+    let [x, y] = body.locked_translations;
+    let builder = builder.enabled_translations(!x, !y);
+    if body.locked_rotations[0] { builder.lock_rotations() } else { builder }
+}
+
+/// Friction impulse (N s) of a contact on its first solid, which is pushed along `direction`.
+fn friction(direction: Point, data: &ContactData) -> Point {
+    direction.orthonormal_vector() * data.tangent_impulse[0]
+}
+
+/// What the engine asks about each contact by default: nothing.
+const HOOKS: ActiveHooks = ActiveHooks::empty();
+
+/// Nothing: in a plane friction has one direction.
+fn align(_context: &mut ContactModificationContext) {}
+
+/// Nothing: a plane's bodies do not tumble.
+struct Turning;
+
+fn wind(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _dt: f64) -> Turning {
+    Turning
+}
+
+fn unwind(
+    _world: &mut PhysicsWorld,
+    _bodies: &[RigidBodyHandle],
+    _turning: Turning,
+    _spins: &[Angular],
+    _dt: f64,
+) -> Vec<Option<Wedge<D>>> {
+    Vec::new()
+}
+
+/// Settings that only this dimension has: none.
+fn tune(_parameters: &mut IntegrationParameters) {}
+
+/// The turn that takes the first axis along a vector.
+fn arc(along: &Vector<D>) -> Matrix<D> {
+    let [x, y] = along.normalize().into();
+    Matrix::from_row_slice(&[x, -y, y, x])
+}
+
+/// The inertia of mass properties, as a free body has it.
+fn inertia(own: &MassProperties) -> Matrix<D> {
+    Matrix::from_row_slice(&[own.principal_inertia(), 0.0, 0.0, 0.0])
+}
+
+/// The shape of a collider that only a plane has.
+fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
+    let points = |points: &[Point]| Shape::Polygon { points: points.iter().copied().map(world::from_point).collect() };
+    match geometry {
+        TypedShape::ConvexPolygon(polygon) => Ok(points(polygon.points())),
+        TypedShape::Triangle(triangle) => Ok(points(&[triangle.a, triangle.b, triangle.c])),
+        other => Err(external::unfelt(other)),
+    }
+}
+
+/// Convex parts of the shapes that only a plane has, in the shape's frame.
+fn parts(shape: &Shape<D>, _fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
+    let convex = match shape {
+        Shape::Polygon { points } => convex_parts(points),
+        Shape::Polyline { points, thickness } => strip(points, *thickness),
+        Shape::Cylinder { .. } => {
+            return Err(Error::scene("a cylinder has no plane counterpart").help("use a box or a ball"));
+        }
+        _ => return Err(Error::scene("this shape has no collider in 2-D")),
+    };
+    let convex = convex.ok_or_else(|| {
+        Error::scene("the polygon or line cannot be cut into convex parts")
+            .help("its points must be distinct, and its sides must not cross")
+    })?;
+    Ok(convex.into_iter().map(|part| (Frame::IDENTITY, part)).collect())
+}
+
+/// Cuts a simple polygon into convex ones (ear clipping, then Hertel & Mehlhorn); for contacts only.
+fn convex_parts(points: &[Vector<D>]) -> Option<Vec<SharedShape>> {
+    let points: Vec<Point> = points.iter().map(world::to_point).collect();
+    let mesh = TriMesh::from_polygon(points)?;
+    hertel_mehlhorn(mesh.vertices(), mesh.indices()).iter().map(|part| SharedShape::convex_hull(part)).collect()
+}
+
+/// One convex quadrilateral for each side of a wall, mitred at the corners, on the right of the line.
+fn strip(points: &[Vector<D>], thickness: f64) -> Option<Vec<SharedShape>> {
+    let right = |a: &Vector<D>, b: &Vector<D>| Vector::from([b[1] - a[1], a[0] - b[0]]).normalize();
+    let last = points.len().checked_sub(1).filter(|&n| n > 0)?;
+    let back = |i: usize| {
+        let before = right(&points[i.max(1) - 1], &points[i.max(1)]);
+        let after = right(&points[i.min(last - 1)], &points[i.min(last - 1) + 1]);
+        // A mitre reaches thickness/cos(half the turn); a hairpin's is cut off at three thicknesses.
+        let middle = before + after;
+        points[i] + middle * (2.0 * thickness / middle.norm_squared().max(4.0 / 9.0))
+    };
+    (0..last)
+        .map(|i| {
+            let corners = [points[i], back(i), back(i + 1), points[i + 1]];
+            SharedShape::convex_hull(&corners.each_ref().map(world::to_point))
+        })
+        .collect()
+}

@@ -1,0 +1,316 @@
+//! The engine in three dimensions, rapier3d; what of it is yours: bodies of a world of your own, in a hosted simulation.
+//!
+//! ```no_run
+//! # use pontoon::{solid::rapier3d::{self, rapier::prelude::*}, simulation::Simulation};
+//! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<3>) -> pontoon::Result<()> {
+//! water.step_with(1.0, |step| {
+//!     rapier3d::give(&mut world.bodies[hull], &step.loads()[1]);
+//!     world.integration_parameters.dt = step.dt();
+//!     world.step();
+//!     step.solids[1] = rapier3d::kinematics(&world.bodies[hull]);
+//!     Ok(())
+//! })
+//! # }
+//! ```
+//!
+//! `examples/own_world.rs` is a whole program.
+
+/// The engine itself, in the version that this crate is made with.
+pub use rapier3d as rapier;
+
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "external.rs"]
+mod external;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "world.rs"]
+mod world;
+
+pub use external::{follow, give, kinematics, solid};
+pub(super) use world::World;
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
+};
+
+use rapier::{
+    dynamics::{FrictionModel, IntegrationParameters, LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle},
+    geometry::{ContactData, SharedShape, TriMeshFlags, TypedShape},
+    math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
+    parry::{
+        mass_properties::MassProperties,
+        transformation::vhacd::{VHACD, VHACDParameters},
+    },
+    pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
+    utils::OrthonormalBasis,
+};
+
+use crate::{
+    error::{Error, Result},
+    geometry::{Mesh, Shape, Touchable},
+    math::{Matrix, Vector, Wedge},
+    solid::FreeBody,
+};
+
+const D: usize = 3;
+
+/// A spin in the engine's terms.
+type Angular = Point;
+
+/// Names the engine that wrote a state.
+const ENGINE: &str = "rapier3d-f64 0.36.1";
+
+/// Up to so much of a mesh's volume its hull stands for it in contacts, –.
+const NEARLY_CONVEX: f64 = 1.01;
+
+fn to_angular(wedge: &Wedge<D>) -> Point {
+    Point::new(wedge.0[(2, 1)], wedge.0[(0, 2)], wedge.0[(1, 0)])
+}
+
+fn from_angular(angular: Point) -> Wedge<D> {
+    Wedge::from_axial(&angular.to_array())
+}
+
+fn to_rotation(matrix: &Matrix<D>) -> Rotation {
+    Rotation::from_mat3(&square(matrix)).normalize()
+}
+
+fn from_rotation(rotation: &Rotation) -> Matrix<D> {
+    Matrix::from_column_slice(&Square::from_quat(*rotation).to_cols_array())
+}
+
+/// The same matrix in rapier's type; both store columns.
+fn square(matrix: &Matrix<D>) -> Square {
+    Square::from_cols_array(&std::array::from_fn(|i| matrix.as_slice()[i]))
+}
+
+/// An inverse inertia as a matrix.
+fn inverse_inertia(inverse: &AngularInertia) -> Matrix<3> {
+    let AngularInertia { m11, m12, m13, m22, m23, m33 } = *inverse;
+    Matrix::from_row_slice(&[m11, m12, m13, m12, m22, m23, m13, m23, m33])
+}
+
+/// Mass properties in the solid's frame. With a rotation locked, the products of inertia about the world's
+/// axes at the start are dropped: rapier would turn them into spurious rates of the free axes.
+fn mass_properties(body: &FreeBody<D>, start: &Matrix<D>) -> MassProperties {
+    let inertia = if body.locked_rotations.contains(&true) {
+        let world = start * body.inertia * start.transpose();
+        start.transpose() * Matrix::from_diagonal(&world.diagonal()) * start
+    } else {
+        body.inertia
+    };
+    MassProperties::with_inertia_matrix(world::to_point(&body.centre), body.mass, square(&inertia))
+}
+
+/// Locks what is locked. The gyroscopic torque is ours.
+fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
+    let ([x, y, z], [about_x, about_y, about_z]) = (body.locked_translations, body.locked_rotations);
+    builder
+        .enabled_translations(!x, !y, !z)
+        .enabled_rotations(!about_x, !about_y, !about_z)
+        .gyroscopic_forces_enabled(false)
+}
+
+/// Friction impulse (N s) of a contact on its first solid, which is pushed along `direction`.
+fn friction(direction: Point, data: &ContactData) -> Point {
+    let tangent = direction.orthonormal_vector();
+    tangent * data.tangent_impulse[0] + direction.cross(tangent) * data.tangent_impulse[1]
+}
+
+/// What the engine asks about each contact by default: how its friction is to be.
+const HOOKS: ActiveHooks = ActiveHooks::MODIFY_SOLVER_CONTACTS;
+
+/// Lets the friction of a contact act against its sliding. At a point that slides at v the engine takes K⁻¹ v off the impulse, K the
+/// speeds that impulses in the plane of contact give there, and cuts it to μ N: it pushes along K⁻¹ v, and not along v, where K is
+/// not the same in all directions, as at the corner of a box. With a belt's speed of K v/k̄ − v, k̄ the mean of K, it takes off v/k̄.
+/// v is what the last step left: none where it sticks, so that no belt moves that.
+fn align(context: &mut ContactModificationContext) {
+    let bodies = context.bodies;
+    let pair = [context.rigid_body1, context.rigid_body2].map(|body| body.and_then(|body| bodies.get(body)));
+    let ([Some(first), Some(second)], Some(contact)) = (pair, context.rigid_mut()) else { return };
+    let normal = *contact.normal;
+    let tangent = normal.orthonormal_vector();
+    let within = |x: Point| x - normal * normal.dot(x);
+    for point in contact.solver_contacts.iter_mut() {
+        let data = &contact.manifold.points[point.contact_indices()[0] as usize].data;
+        let arms = [data.solver_dp1, data.solver_dp2];
+        let gives = |impulse| within(gained(first, arms[0], impulse) + gained(second, arms[1], impulse));
+        let mean = 0.5 * (tangent.dot(gives(tangent)) + normal.cross(tangent).dot(gives(normal.cross(tangent))));
+        // What only now comes to touch may be stopped at once.
+        if data.warmstart_impulse > 0.0 && mean > 0.0 {
+            let velocity = |body: &RigidBody, arm| body.linvel() + body.angvel().cross(arm);
+            let sliding = within(velocity(first, arms[0]) - velocity(second, arms[1]));
+            point.tangent_velocity = gives(sliding) / mean - sliding;
+        }
+    }
+}
+
+/// The velocity (m/s) that an impulse (N s) on a body gives it where it acts, an `arm` (m) from its centre.
+fn gained(body: &RigidBody, arm: Point, impulse: Point) -> Point {
+    let mass = body.mass_properties();
+    mass.effective_inv_mass * impulse + (mass.effective_world_inv_inertia * arm.cross(impulse)).cross(arm)
+}
+
+/// How a free body is turned in a step.
+enum Turning {
+    /// By its angular momentum, kg m²/s: with the spin that it turns by, and its principal axes before the step.
+    Loose { momentum: Point, spin: Point, axes: Rotation },
+    /// By its spin: with its inertia (kg m², the world's axes before the step, none about what is locked) and gyroscopic torque, N m.
+    Bound { inertia: Matrix<D>, torque: Point },
+}
+
+/// Gives each body that turns as it likes the spin that it has in the middle of the step by Euler's equations, I ω̇ = −ω ∧ I ω, to turn
+/// by, and each that is in a joint or locked, whose spin the engine has to fit to that, its gyroscopic torque over the step.
+fn wind(world: &mut PhysicsWorld, bodies: &[RigidBodyHandle], dt: f64) -> Vec<Option<Turning>> {
+    let PhysicsWorld { bodies: all, impulse_joints, .. } = world;
+    let one = |&handle: &RigidBodyHandle| {
+        let body = all.get_mut(handle).filter(|body| body.is_dynamic() && body.is_enabled())?;
+        if !body.locked_axes().is_empty() || impulse_joints.attached_joints(handle).next().is_some() {
+            let inertia = about_unlocked(&inverse_inertia(&body.mass_properties().effective_world_inv_inertia));
+            let torque = gyroscopic(body, dt);
+            body.add_torque(torque, false);
+            return Some(Turning::Bound { inertia, torque });
+        }
+        let own = &body.mass_properties().local_mprops;
+        let (axes, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
+        let spin = axes.inverse() * body.angvel();
+        let momentum = inertia * spin;
+        let middle = axes * (spin - 0.5 * dt * (spin.cross(momentum) / inertia));
+        body.set_angvel(middle, false);
+        Some(Turning::Loose { momentum: axes * momentum, spin: middle, axes })
+    };
+    bodies.iter().map(one).collect()
+}
+
+/// The inertia of its inverse, which is 0 about what is locked; it stays so.
+fn about_unlocked(inverse: &Matrix<D>) -> Matrix<D> {
+    let locked = Matrix::from_diagonal(&inverse.diagonal().map(|x| if x == 0.0 { 1.0 } else { 0.0 }));
+    (inverse + locked).try_inverse().map_or_else(Matrix::zeros, |inertia| inertia - locked)
+}
+
+/// The gyroscopic torque (N m) on a body in a step: −ω ∧ I ω at the spin that it has after the loads on it, held to what leaves the
+/// size of I ω as it is. That is rapier's, which gives it in each iteration and does not tell it. None if a turn is locked.
+fn gyroscopic(body: &RigidBody, dt: f64) -> Point {
+    let (all, own) = (body.mass_properties(), &body.mass_properties().local_mprops);
+    let axes = *body.rotation() * own.principal_inertia_local_frame;
+    let loaded = body.angvel() + dt * (all.effective_world_inv_inertia * body.user_torque());
+    let spin = axes.inverse() * loaded;
+    let momentum = own.principal_inertia() * spin;
+    let turned = momentum - dt * spin.cross(momentum);
+    if turned == Point::ZERO || body.locked_axes().intersects(LockedAxes::ROTATION_LOCKED) {
+        return Point::ZERO;
+    }
+    axes * ((turned * (momentum.length() / turned.length()) - momentum) / dt)
+}
+
+/// Adds the angular impulse that each loose one got in the step to its angular momentum, and gives it the spin that this is now. Tells
+/// what the bound ones did, whose spins before were `spins`: I(R₀) ΔΩ/Δt less the gyroscopic torque, N m.
+fn unwind(
+    world: &mut PhysicsWorld,
+    bodies: &[RigidBodyHandle],
+    turnings: Vec<Option<Turning>>,
+    spins: &[Angular],
+    dt: f64,
+) -> Vec<Option<Wedge<D>>> {
+    let one = |((&handle, turning), before): ((&RigidBodyHandle, Option<Turning>), &Angular)| {
+        let body = world.bodies.get_mut(handle)?;
+        match turning? {
+            Turning::Loose { momentum, spin, axes } => {
+                let own = &body.mass_properties().local_mprops;
+                let (now, inertia) = (*body.rotation() * own.principal_inertia_local_frame, own.principal_inertia());
+                let impulse = axes * (inertia * (axes.inverse() * (body.angvel() - spin)));
+                let spin = now * ((now.inverse() * (momentum + impulse)) / inertia);
+                body.set_angvel(spin, false);
+                None
+            }
+            Turning::Bound { inertia, torque } => {
+                let turned = inertia * world::from_point(body.angvel() - *before) / dt - world::from_point(torque);
+                Some(Wedge::from_axial(turned.as_slice()))
+            }
+        }
+    };
+    bodies.iter().zip(turnings).zip(spins).map(one).collect()
+}
+
+/// Settings that only this dimension has: Coulomb's law at every contact point.
+fn tune(parameters: &mut IntegrationParameters) {
+    parameters.friction_model = FrictionModel::Coulomb;
+}
+
+/// The turn that takes the first axis along a vector.
+fn arc(along: &Vector<D>) -> Matrix<D> {
+    from_rotation(&Rotation::from_rotation_arc(Point::X, world::to_point(&along.normalize())))
+}
+
+/// The inertia of mass properties, as a free body has it.
+fn inertia(own: &MassProperties) -> Matrix<D> {
+    Matrix::from_column_slice(&own.reconstruct_inertia_matrix().to_cols_array())
+}
+
+/// The shape of a collider that only space has.
+fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
+    let mesh = |points: &[Point], facets: &[[u32; 3]]| {
+        let points: Vec<Vector<D>> = points.iter().copied().map(world::from_point).collect();
+        Ok(Shape::Mesh { mesh: Arc::new(Mesh::new(&points, facets)?), contact: Touchable::None })
+    };
+    match geometry {
+        TypedShape::Cylinder(c) => Ok(Shape::Cylinder { length: 2.0 * c.half_height, radius: c.radius, axis: 1 }),
+        TypedShape::TriMesh(surface) => mesh(surface.vertices(), surface.indices()),
+        TypedShape::ConvexPolyhedron(hull) => {
+            let (points, facets) = hull.to_trimesh();
+            mesh(&points, &facets)
+        }
+        other => Err(external::unfelt(other)),
+    }
+}
+
+/// Parts of the shapes that only space has, in the shape's frame.
+fn parts(shape: &Shape<D>, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
+    match shape {
+        Shape::Cylinder { length, radius, axis } => {
+            let turn = Rotation::from_rotation_arc(Point::Y, Point::AXES[*axis]);
+            Ok(vec![(Frame::from_rotation(turn), SharedShape::cylinder(0.5 * length, *radius))])
+        }
+        Shape::Mesh { mesh, contact } => mesh_parts(mesh, *contact, fixed),
+        _ => Err(Error::scene("polygons and polylines are shapes of the plane")
+            .help("use a box, ball, capsule, cylinder, tank, mesh or a compound of these in 3-D")),
+    }
+}
+
+/// What other bodies touch of a mesh.
+fn mesh_parts(mesh: &Mesh, contact: Touchable, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
+    let points: Vec<Point> = mesh.points().iter().map(world::to_point).collect();
+    let solid = mesh.volume().volume;
+    let hull = || SharedShape::convex_hull(&points).map(|part| vec![(Frame::IDENTITY, part)]);
+    let convex = |hull: &[(Frame, SharedShape)]| {
+        hull.iter().map(|(_, part)| part.mass_properties(1.0).mass()).sum::<f64>() <= NEARLY_CONVEX * solid
+    };
+    let make = || match contact {
+        Touchable::None => Some(Vec::new()),
+        Touchable::Surface => surface(&points, mesh),
+        Touchable::Fitting if fixed => surface(&points, mesh),
+        Touchable::Hull => hull(),
+        Touchable::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
+        Touchable::Decomposition => cut(&points, mesh),
+    };
+    // parry asserts what it hopes of points that lie nearly in a plane.
+    catch_unwind(AssertUnwindSafe(make)).ok().flatten().ok_or_else(|| {
+        Error::scene("the mesh cannot be made touchable: parry finds no hull or parts of it")
+            .help("write  contact = \"none\"  beside the file's name if nothing is to touch it, or thin the mesh out")
+    })
+}
+
+/// Every facet, smooth across their edges.
+fn surface(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+    let all = SharedShape::trimesh_with_flags(points.to_vec(), mesh.facets().to_vec(), flags).ok()?;
+    Some(vec![(Frame::IDENTITY, all)])
+}
+
+/// Convex parts (V-HACD), each the hull of the surface that it holds.
+fn cut(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
+    let parts = VHACD::decompose(&VHACDParameters::default(), points, mesh.facets(), true);
+    let corners = parts.voxel_parts().iter().map(|part| part.compute_primitive_intersections(points, mesh.facets()));
+    let hulls: Vec<_> = corners.filter_map(|part| SharedShape::convex_hull(&part)).collect();
+    (!hulls.is_empty()).then(|| hulls.into_iter().map(|part| (Frame::IDENTITY, part)).collect())
+}

@@ -1,0 +1,119 @@
+//! Who takes part: bodies and colliders made from solids, also while the world runs, and taken out; compiled for each dimension
+//! with the world.
+
+use super::super::rapier::{
+    dynamics::{RigidBodyBuilder, RigidBodyHandle},
+    geometry::ColliderBuilder,
+    math::Vector as Point,
+    parry::query::contact,
+    pipeline::{ActiveHooks, PhysicsWorld},
+};
+use super::{
+    D, HOOKS, World,
+    colliders::{Parts, collect, thickness},
+    lock, mass_properties, to_angular, to_frame, to_point,
+};
+use crate::{
+    error::Result,
+    math::{Pose, Wedge},
+    solid::{Kinematics, Role, SolidSpec, rapier::engine::iterations as for_masses},
+};
+
+impl World {
+    /// With which solid, and how deep (m), `solid` would overlap most, contact skins counted.
+    pub(super) fn overlap_of(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
+        let (parts, frame) = (parts(solid)?, to_frame(&start.pose));
+        let mut deepest: Option<(usize, f64)> = None;
+        for (_, other) in self.world.colliders.iter() {
+            let owner = other.user_data as usize;
+            let still = |role: &Role<D>| !matches!(role, Role::Free(_));
+            if self.gone[owner] || (still(&solid.role) && !self.body(owner).is_dynamic()) {
+                continue;
+            }
+            for (inner, part) in &parts {
+                let skins = solid.contact_skin + other.contact_skin();
+                let touch = contact(&(frame * *inner), &**part, other.position(), other.shape(), skins);
+                let depth = touch.ok().flatten().map_or(0.0, |touch| skins - touch.dist);
+                if depth > deepest.map_or(0.0, |(_, depth)| depth) {
+                    deepest = Some((owner, depth));
+                }
+            }
+        }
+        Ok(deepest)
+    }
+
+    /// Lets a solid come, behind all others.
+    pub(super) fn admit_one(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+        let parts = parts(solid)?;
+        let hooks = if self.ties.pairs.is_empty() { HOOKS } else { ActiveHooks::all() };
+        let body = insert(&mut self.world, self.bodies.len(), solid, start, &parts, hooks);
+        if let Role::Free(_) = solid.role {
+            self.reach = self.reach.min(0.1 * thickness(&parts));
+        }
+        self.bodies.push(body);
+        self.locks.push(self.world.bodies[body].locked_axes());
+        self.restitution.push(solid.restitution);
+        self.gone.push(false);
+        self.when_near = iterations(&self.world);
+        Ok(())
+    }
+
+    /// Takes a solid out.
+    pub(super) fn oust_one(&mut self, solid: usize) {
+        let body = &mut self.world.bodies[self.bodies[solid]];
+        if body.is_dynamic() {
+            body.set_linvel(Point::ZERO, false);
+            body.set_angvel(to_angular(&Wedge::zero()), false);
+        }
+        body.set_enabled(false);
+        self.gone[solid] = true;
+        self.pushes.retain(|push| push.0 != solid);
+        self.when_near = iterations(&self.world);
+    }
+}
+
+/// The parts of `solid` that others touch.
+fn parts(solid: &SolidSpec<D>) -> Result<Parts> {
+    let mut parts = Parts::new();
+    collect(&solid.shape, &Pose::identity(), matches!(solid.role, Role::Fixed), &mut parts)?;
+    Ok(parts)
+}
+
+/// Iterations for the masses that take part.
+pub(super) fn iterations(world: &PhysicsWorld) -> usize {
+    let free = world.bodies.iter().filter(|(_, body)| body.is_dynamic() && body.is_enabled());
+    for_masses(free.map(|(_, body)| body.mass()))
+}
+
+/// Puts solid number `index` into `world`.
+pub(super) fn insert(
+    world: &mut PhysicsWorld,
+    index: usize,
+    solid: &SolidSpec<D>,
+    start: &Kinematics<D>,
+    parts: &Parts,
+    hooks: ActiveHooks,
+) -> RigidBodyHandle {
+    let builder = match &solid.role {
+        Role::Fixed => RigidBodyBuilder::fixed(),
+        Role::Driven(_) => RigidBodyBuilder::kinematic_position_based(),
+        Role::Free(body) => lock(RigidBodyBuilder::dynamic(), body)
+            .additional_mass_properties(mass_properties(body, &start.pose.rotation))
+            .linvel(to_point(&start.velocity))
+            .angvel(to_angular(&start.spin)),
+    };
+    let handle = world.insert_body(builder.pose(to_frame(&start.pose)).can_sleep(false));
+    for (frame, part) in parts {
+        let collider = ColliderBuilder::new(part.clone())
+            .position(*frame)
+            .density(0.0)
+            .contact_skin(solid.contact_skin)
+            .friction(solid.friction)
+            .restitution(0.0)
+            .active_hooks(hooks)
+            .user_data(index as u128);
+        world.insert_collider(collider, Some(handle));
+    }
+    world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
+    handle
+}

@@ -1,0 +1,397 @@
+//! The world of rigid bodies, written once and compiled for each dimension: `super` names the engine
+//! (`rapier`) and gives what differs.
+//!
+//! Settings after measurements with this version: one solver iteration, because more of them freeze the
+//! load over sub-steps and feed energy into what oscillates, but where bodies of unlike mass are about to touch,
+//! whose contacts more of them stiffen; contacts as critically damped springs of min(0.05/dt, 1000) Hz for each
+//! iteration, which sink g/(2πf)² under the lighter body's weight; no contact recycling, which leaves small
+//! bodies hanging on ledges; no sleep; no continuous detection, since a step of the water moves no body
+//! through a wall. Bodies rebound in `restitution`, not by the springs. Colliders have the true faces, and others
+//! touch them there or at the contact skin that the solid asks for; friction and restitution of a pair are the means of
+//! both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh nothing.
+
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "colliders.rs"]
+mod colliders;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "restitution.rs"]
+mod restitution;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "registry.rs"]
+mod registry;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "joints.rs"]
+mod joints;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "contact_forces.rs"]
+mod contact_forces;
+
+use super::rapier::{
+    dynamics::{LockedAxes, RigidBody, RigidBodyHandle, SpringCoefficients},
+    math::{Pose as Frame, Vector as Point},
+    pipeline::{ActiveHooks, PhysicsWorld},
+};
+use super::{
+    Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular,
+    to_rotation, tune, unwind, wind,
+};
+use crate::{
+    error::Result,
+    math::{Pose, Vector, Wedge},
+    solid::{
+        Kinematics, Links, Load, Mobility, Role, SolidSpec,
+        rapier::engine::{Contact, Engine, EngineFault, restart},
+    },
+};
+use colliders::{Parts, collect, refuse_overlap, thickness};
+use joints::Ties;
+use restitution::Met;
+
+/// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
+const OVERLAP_MAX: f64 = 0.05;
+
+/// Damping ratio of a contact, –: critical.
+const CONTACT_DAMPING: f64 = 1.0;
+
+/// What may be missing of the speed that weight alone gives, over speeds, –: round-off.
+const ALONE: f64 = 1e-12;
+
+/// A world of rigid bodies in this dimension.
+pub(in crate::solid) struct World {
+    world: PhysicsWorld,
+    bodies: Vec<RigidBodyHandle>,
+    restitution: Vec<f64>,
+    /// Iterations of a step in which bodies may touch.
+    when_near: usize,
+    /// Those of the last step.
+    iterations: usize,
+    /// Who bounced in the last step, with the impulse, N s.
+    met: Vec<Met>,
+    /// A tenth of the thinnest free body, m: contacts are foreseen from there.
+    reach: f64,
+    /// The time of an iteration for which the contacts' stiffness was last set, s; 0 before the first step.
+    tuned_for: f64,
+    pushes: Vec<Push>,
+    ties: Ties,
+    /// What of each solid is locked when it is not held.
+    locks: Vec<LockedAxes>,
+    /// Which of them have been taken out.
+    gone: Vec<bool>,
+    /// What those did in the last step that the engine turns by their spin, N m.
+    turned: Vec<Option<Wedge<D>>>,
+}
+
+/// A load on a solid in the next step.
+type Push = (usize, Load<D>);
+
+impl World {
+    pub(in crate::solid) fn new(
+        solids: &[SolidSpec<D>],
+        start: &[Kinematics<D>],
+        links: &Links<D>,
+        gravity: &Vector<D>,
+        dp: f64,
+    ) -> Result<Self> {
+        assert_eq!(solids.len(), start.len(), "every solid needs a start");
+        links.check(solids)?;
+        let mut all_parts = Vec::new();
+        for solid in solids {
+            solid.check_role()?;
+            let mut parts = Parts::new();
+            let fixed = matches!(solid.role, Role::Fixed);
+            collect(&solid.shape, &Pose::identity(), fixed, &mut parts)?;
+            all_parts.push(parts);
+        }
+        refuse_overlap(solids, start, &all_parts, links, OVERLAP_MAX * dp)?;
+        let mut world = PhysicsWorld { gravity: to_point(gravity), ..PhysicsWorld::default() };
+        let free = solids.iter().zip(&all_parts).filter(|(solid, _)| matches!(solid.role, Role::Free(_)));
+        let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
+        settle(&mut world, reach);
+        let hooks = if links.contacts.is_empty() { HOOKS } else { ActiveHooks::all() };
+        let insert = |i: usize| registry::insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
+        let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
+        let ties = Ties::new(&mut world, &bodies, links, start);
+        let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
+        let restitution = solids.iter().map(|solid| solid.restitution).collect();
+        let (when_near, met, pushes) = (registry::iterations(&world), Vec::new(), Vec::new());
+        let gone = vec![false; bodies.len()];
+        Ok(Self {
+            world,
+            bodies,
+            restitution,
+            when_near,
+            iterations: 1,
+            met,
+            reach,
+            tuned_for: 0.0,
+            pushes,
+            ties,
+            locks,
+            gone,
+            turned: Vec::new(),
+        })
+    }
+
+    fn body(&self, solid: usize) -> &RigidBody {
+        &self.world.bodies[self.bodies[solid]]
+    }
+
+    /// Sets the step, and what of the contacts depends on it.
+    fn pace(&mut self, dt: f64) {
+        assert!(dt > 0.0 && dt.is_finite(), "a step takes time");
+        let fastest = self.world.bodies.iter().map(|(_, body)| body.linvel().length()).fold(0.0, f64::max);
+        let parameters = &mut self.world.integration_parameters;
+        parameters.dt = dt;
+        parameters.normalized_prediction_distance = self.reach.max(2.0 * fastest * dt);
+        let iterations = parameters.num_solver_iterations as f64;
+        if !(0.5..=2.0).contains(&(dt / iterations / self.tuned_for)) {
+            let softness = SpringCoefficients::new((0.05 / dt).min(1000.0) * iterations, CONTACT_DAMPING);
+            parameters.contact_softness = softness;
+            parameters.static_contact_softness = softness;
+            self.tuned_for = dt / iterations;
+        }
+    }
+
+    /// Chooses the next step's iterations: a change of them jolts what presses, so it comes while nothing touches yet.
+    fn foresee(&mut self) {
+        let near =
+            self.world.narrow_phase.contact_pairs().any(|pair| pair.manifolds().iter().any(|m| !m.points.is_empty()));
+        self.world.integration_parameters.num_solver_iterations = if near { self.when_near } else { 1 };
+    }
+
+    /// Replaces the forces on the free bodies by `loads` and the pushes.
+    fn load(&mut self, loads: &[Load<D>]) -> std::result::Result<(), EngineFault<D>> {
+        assert_eq!(loads.len(), self.bodies.len(), "every solid needs a load");
+        let mut total = loads.to_vec();
+        for (solid, push) in self.pushes.drain(..) {
+            total[solid] += push;
+        }
+        for (solid, load) in total.iter().enumerate() {
+            if !self.body(solid).is_dynamic() {
+                continue;
+            }
+            if !(load.force.norm_squared() + load.torque.0.norm_squared()).is_finite() {
+                let cause = "a pressure or velocity nearby blew up: try a smaller CFL number, a higher speed of \
+                             sound or a finer dp; or a push was not finite";
+                return Err(self.fault(solid, "load not finite", cause));
+            }
+            let body = &mut self.world.bodies[self.bodies[solid]];
+            body.reset_forces(false);
+            body.reset_torques(false);
+            body.add_force(to_point(&load.force), true);
+            body.add_torque(to_angular(&load.torque), true);
+        }
+        Ok(())
+    }
+
+    /// Tells rapier where the driven bodies will be.
+    fn drive(&mut self, driven: &[Option<Kinematics<D>>]) -> std::result::Result<(), EngineFault<D>> {
+        for (solid, kinematics) in driven.iter().enumerate() {
+            let Some(Kinematics { pose, .. }) = kinematics else { continue };
+            if !(pose.position.norm_squared() + pose.rotation.norm_squared()).is_finite() {
+                let cause = "its law of motion is not finite at this time: check the formula or table";
+                return Err(self.fault(solid, "prescribed position not finite", cause));
+            }
+            self.world.bodies[self.bodies[solid]].set_next_kinematic_position(to_frame(pose));
+        }
+        Ok(())
+    }
+
+    /// Puts what had only its weight in the step, `dt` (s) long, where the mean of its velocities before and after leads, which is on
+    /// the parabola: rapier leads it by that after, in each of its iterations.
+    fn fall(&mut self, dt: f64, before: &[Point]) {
+        let gained = self.world.gravity * dt;
+        let ahead = gained * (0.5 * dt / self.iterations as f64);
+        for (&handle, velocity) in self.bodies.iter().zip(before) {
+            let body = &self.world.bodies[handle];
+            let other = (body.linvel() - *velocity - gained).length();
+            if body.is_dynamic() && other <= ALONE * (velocity.length() + gained.length()) {
+                let place = body.translation() - ahead;
+                self.world.bodies[handle].set_translation(place, false);
+            }
+        }
+    }
+
+    /// Whether all solids came out of the step whole. Rapier disables what went astray and puts it back to
+    /// where it last was.
+    fn examine(&self, before: &[Point]) -> std::result::Result<(), EngineFault<D>> {
+        for (solid, velocity) in before.iter().enumerate().filter(|(solid, _)| !self.gone[*solid]) {
+            let body = self.body(solid);
+            let whole = body.is_enabled() && body.colliders().iter().all(|&c| self.world.colliders[c].is_enabled());
+            if !(whole && body.position().is_finite() && body.linvel().length_squared().is_finite()) {
+                let cause = "a load or a contact was too strong for the step: try a smaller CFL number or dt_max, \
+                             and look for bodies pressed into one another";
+                let fault = self.fault(solid, "position or velocity not finite", cause);
+                return Err(EngineFault { velocity: from_point(*velocity), ..fault });
+            }
+        }
+        Ok(())
+    }
+
+    fn fault(&self, solid: usize, reason: &str, cause: &'static str) -> EngineFault<D> {
+        let body = self.body(solid);
+        EngineFault {
+            solid,
+            reason: reason.into(),
+            cause,
+            position: from_point(body.translation()),
+            velocity: from_point(body.linvel()),
+        }
+    }
+}
+
+impl Engine<D> for World {
+    fn kinematics(&self, solid: usize) -> Kinematics<D> {
+        let body = self.body(solid);
+        Kinematics {
+            pose: from_frame(body.position()),
+            centre: from_point(body.center_of_mass()),
+            velocity: from_point(body.linvel()),
+            spin: from_angular(body.angvel()),
+        }
+    }
+
+    fn step(
+        &mut self,
+        dt: f64,
+        loads: &[Load<D>],
+        driven: &[Option<Kinematics<D>>],
+    ) -> std::result::Result<(), EngineFault<D>> {
+        self.pace(dt);
+        self.load(loads)?;
+        self.drive(driven)?;
+        let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
+        let spins: Vec<Angular> = (0..self.bodies.len()).map(|i| self.body(i).angvel()).collect();
+        self.met =
+            restitution::rebound(&mut self.world, dt, |a, b, mu| self.ties.pairs.bounce(a, b, &self.restitution, mu));
+        self.ties.tighten(&mut self.world, dt);
+        let turnings = wind(&mut self.world, &self.bodies, dt);
+        self.world.step_with_events(&self.ties.pairs, &());
+        self.turned = unwind(&mut self.world, &self.bodies, turnings, &spins, dt);
+        self.iterations = self.world.integration_parameters.num_solver_iterations;
+        self.fall(dt, &before);
+        self.foresee();
+        self.examine(&before)
+    }
+
+    fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>) {
+        let torque = Wedge::torque(&(at - from_point(self.body(solid).center_of_mass())), force);
+        self.pushes.push((solid, Load { force: *force, torque }));
+    }
+
+    fn burden(&mut self, solid: usize, load: &Load<D>) {
+        self.pushes.push((solid, *load));
+    }
+
+    fn pushed(&self, solid: usize) -> Load<D> {
+        self.pushes.iter().filter(|push| push.0 == solid).map(|push| push.1).sum()
+    }
+
+    fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
+        let body = &mut self.world.bodies[self.bodies[solid]];
+        body.set_linvel(to_point(velocity), true);
+        body.set_angvel(to_angular(spin), true);
+    }
+
+    fn overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
+        self.overlap_of(solid, start)
+    }
+
+    fn admit(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+        self.admit_one(solid, start)
+    }
+
+    fn oust(&mut self, solid: usize) {
+        self.oust_one(solid);
+    }
+
+    fn contacts(&self) -> Vec<Contact<D>> {
+        contact_forces::contacts(&self.world, &self.bodies, &self.met)
+    }
+
+    fn hold(&mut self, solid: usize, held: bool) {
+        let body = &mut self.world.bodies[self.bodies[solid]];
+        if held {
+            body.set_linvel(Point::ZERO, true);
+            body.set_angvel(to_angular(&Wedge::zero()), true);
+        }
+        body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
+    }
+
+    fn turned(&self, solid: usize) -> Option<Wedge<D>> {
+        self.turned.get(solid).copied().flatten()
+    }
+
+    fn mobility(&self, solid: usize) -> Mobility<D> {
+        let mass = self.body(solid).mass_properties();
+        Mobility {
+            linear: from_point(mass.effective_inv_mass),
+            angular: inverse_inertia(&mass.effective_world_inv_inertia),
+        }
+    }
+
+    fn iterations(&self) -> usize {
+        self.iterations
+    }
+
+    fn impulses(&self, joint: usize) -> Vec<f64> {
+        self.ties.impulses(&self.world, joint, self.iterations)
+    }
+
+    fn rope_impulse(&self, rope: usize) -> f64 {
+        self.ties.rope(&self.world, rope, self.iterations)
+    }
+
+    fn save(&self) -> Result<Vec<u8>> {
+        postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.met, &self.pushes)).map_err(restart)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let (engine, rest): (&str, &[u8]) = postcard::take_from_bytes(bytes).map_err(restart)?;
+        if engine != ENGINE {
+            return Err(restart(format!("they were written by {engine}, this is {ENGINE}")));
+        }
+        let (world, tuned_for, met, pushes): (PhysicsWorld, f64, Vec<Met>, Vec<Push>) =
+            postcard::from_bytes(rest).map_err(restart)?;
+        let same = world.bodies.len() == self.world.bodies.len()
+            && world.impulse_joints.len() == self.world.impulse_joints.len()
+            && self.bodies.iter().all(|&h| world.bodies.contains(h))
+            && pushes.iter().all(|push| push.0 < self.bodies.len());
+        if !same {
+            return Err(restart(format!("{} solids, where the scene has {}", world.bodies.len(), self.bodies.len())));
+        }
+        (self.world, self.tuned_for, self.met, self.pushes) = (world, tuned_for, met, pushes);
+        Ok(())
+    }
+}
+
+/// Settings that hold for the whole run.
+fn settle(world: &mut PhysicsWorld, reach: f64) {
+    let parameters = &mut world.integration_parameters;
+    parameters.num_solver_iterations = 1;
+    parameters.num_internal_pgs_iterations = 4;
+    parameters.num_internal_stabilization_iterations = 4;
+    parameters.contact_recycling = false;
+    parameters.length_unit = 1.0;
+    parameters.normalized_prediction_distance = reach;
+    parameters.normalized_max_corrective_velocity = 100.0;
+    parameters.normalized_max_linear_velocity = f64::MAX;
+    parameters.max_ccd_substeps = 0;
+    tune(parameters);
+}
+
+pub(super) fn to_point(x: &Vector<D>) -> Point {
+    Point::from_array((*x).into())
+}
+
+pub(super) fn from_point(x: Point) -> Vector<D> {
+    Vector::from(x.to_array())
+}
+
+pub(super) fn to_frame(pose: &Pose<D>) -> Frame {
+    Frame::from_parts(to_point(&pose.position), to_rotation(&pose.rotation))
+}
+
+pub(super) fn from_frame(frame: &Frame) -> Pose<D> {
+    Pose { position: from_point(frame.translation), rotation: from_rotation(&frame.rotation) }
+}

@@ -1,0 +1,40 @@
+//! The barrier: what keeps water out of a face when pressure alone does not, as in a film that a heavy body squeezes.
+//!
+//! Water nearer than r₀ = ¾ dp to a boundary particle is pushed away from it with (A c₀²/dp²)(1 − r²/r₀²)² r, at any pressure. Water
+//! before a face comes nearer only if it is pressed a quarter of dp into it: first rows are dp from the boundary particles, and
+//! half of that from the face.
+
+use crate::sph::{Medium, Num, Pair, Term, kernel::Kernel};
+
+/// r₀/dp, –.
+const RANGE: f64 = 0.75;
+
+/// A, –: holds back water that comes with a third of the speed of sound, or is pressed with a tenth of ρ₀ c₀², and is
+/// no stiffer in a step than sound is.
+const STRENGTH: f64 = 2.0;
+
+/// The barrier of one kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Barrier {
+    /// 1/r₀², 1/m².
+    inv_range2: f64,
+    /// A c₀²/dp² over −V₀ ∂W at half of r₀, m²/s².
+    strength: f64,
+}
+
+impl Barrier {
+    /// The barrier under `kernel`.
+    pub fn new<K: Kernel, const D: usize>(kernel: K, medium: &Medium<D>) -> Self {
+        let range2 = (RANGE * medium.dp).powi(2);
+        let slope: f64 = kernel.on_lattice(medium).slope(0.25 * range2);
+        Self { inv_range2: 1.0 / range2, strength: STRENGTH * (medium.c0 / medium.dp).powi(2) / -slope }
+    }
+}
+
+impl<const D: usize> Term<D> for Barrier {
+    #[inline(always)]
+    fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
+        let inside = ab.r2.fma(ab.of(-self.inv_range2), ab.of(1.0)).max(ab.of(0.0));
+        (inside * inside).fma(ab.of(-self.strength), sum)
+    }
+}

@@ -1,0 +1,45 @@
+//! Slip: how the water is held along a face.
+//!
+//! Partial: boundary particles show the water their solid's velocity v_w. No slip: where the water near a boundary particle, which
+//! lies d below the face, moves on the mean with ⟨v⟩ at a height d̄ above it, the particle shows along the face
+//!
+//!   u_t = v_w − (d/d̄)(⟨v⟩ − v_w)_t,
+//!
+//! which continues a shear that is linear from the face on exactly. Free slip: no viscous force between water and solid.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Fit;
+use crate::math::Vector;
+
+/// How the water is held along solids. Scene word `model.slip`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Slip {
+    /// The water sticks to the boundary particles, half a dp and more behind the face.
+    Partial,
+    /// The water sticks to the face [@morris1997].
+    None,
+    /// Nothing holds it.
+    Free,
+}
+
+/// Most d/d̄: at the rim of the support the mean of few particles says little.
+const MOST: f64 = 4.0;
+
+/// The velocity (m/s) without slip of a boundary particle whose solid moves there with `v` (m/s), `depth` (m) below the face with
+/// outward normal `normal`, with sums `fit` over the water. Where the water is not before that face, its solid's.
+pub fn sticking<const D: usize>(fit: &Fit<f64, D>, v: Vector<D>, normal: &Vector<D>, depth: f64) -> Vector<D> {
+    if fit.weight < 1e-9 {
+        return v;
+    }
+    // r_wf points from the water to the wall.
+    let height = -normal.dot(&Vector::from(fit.arm)) / fit.weight - depth;
+    if height <= 0.0 {
+        return v;
+    }
+    let past = Vector::from(fit.flow) / fit.weight - v;
+    let along = past - normal * normal.dot(&past);
+    v - along * (depth / height).min(MOST)
+}

@@ -1,0 +1,21 @@
+//! The equations: numbers in, numbers out. One law a file; no index, slice, loop or thread.
+//!
+//! A law says what one neighbour b contributes to a particle a ([`Term`]) and, where a sum needs it, how
+//! the finished sum becomes a value (`close`). It is generic over its number, so that the same text serves
+//! the f64 oracle and SIMD lanes.
+
+pub mod continuity;
+pub mod density_diffusion;
+pub mod gradient_correction;
+pub mod kernel;
+mod simd;
+mod fluid_properties;
+mod pair;
+pub mod pressure;
+pub mod particle_shifting;
+pub mod equation_of_state;
+pub mod viscosity;
+pub mod boundary;
+
+pub use fluid_properties::{Medium, Units};
+pub use pair::{Extra, Num, Pair, Side, Term};

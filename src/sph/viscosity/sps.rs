@@ -1,0 +1,82 @@
+//! Sub-particle-scale stress:  dv_a/dt += Σ m_b (τ_a/ρ_a² + τ_b/ρ_b²)·∇_a W,
+//! τ_ij = ρ[ν_t(2 S_ij − ⅔ S_kk δ_ij) − ⅔ C_I Δ² |S|² δ_ij],  ν_t = (C_s Δ)² |S|,  |S| = √(2 S_ij S_ij),  Δ = dp/√D.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Laminar, LaminarTerm};
+use crate::sph::{Extra, Medium, Num, Pair, Term, Units};
+
+/// Laminar viscosity with a Smagorinsky stress [@dalrymple2006]; eqs. (6)–(8) of [@pirkhalili2023]. The
+/// paper's k is the trace S_kk: only so do its units agree with 2 S_ij beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sps {
+    /// Kinematic viscosity ν₀, m²/s.
+    pub nu0: f64,
+    /// Smagorinsky constant C_s, –.
+    pub smagorinsky: f64,
+    /// Constant C_I of the isotropic part, –.
+    pub isotropic: f64,
+}
+
+impl Default for Sps {
+    /// Water with the constants of [@dalrymple2006].
+    fn default() -> Self {
+        Self { nu0: 1e-6, smagorinsky: 0.12, isotropic: 0.0066 }
+    }
+}
+
+impl Sps {
+    /// The laws, in those units: laminar part, as [`Laminar::term`], and stress.
+    pub fn terms(&self, units: &Units, damped: f64) -> (LaminarTerm, SpsTerm) {
+        (Laminar { nu0: self.nu0 }.term(units, damped), SpsTerm)
+    }
+
+    /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
+    /// a particle.
+    pub fn close<const D: usize>(&self, strain: &[[f64; D]; D], s: f64, medium: &Medium<D>) -> [[f64; D]; D] {
+        let strain: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
+        let length2 = medium.dp * medium.dp / D as f64;
+        let norm2: f64 = 2.0 * strain.iter().flatten().map(|x| x * x).sum::<f64>();
+        let nu_t = self.smagorinsky * self.smagorinsky * length2 * norm2.sqrt();
+        let trace: f64 = (0..D).map(|i| strain[i][i]).sum();
+        let isotropic = 2.0 / 3.0 * (nu_t * trace + self.isotropic * length2 * norm2);
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| s * (2.0 * nu_t * strain[i][j] - if i == j { isotropic } else { 0.0 }))
+        })
+    }
+}
+
+/// The stress of [`Sps`], and the strain rate for the next pass: S_ij = ½(∂_j v_i + ∂_i v_j) with
+/// ∂_j v_i = Σ V_b (v_b − v_a)_i ∂_j W. The stress that acts is that of the pass before.
+#[derive(Clone, Copy, Debug)]
+pub struct SpsTerm;
+
+impl<const D: usize> Term<D> for SpsTerm {
+    const STRESS: bool = true;
+
+    #[inline(always)]
+    fn vector<N: Num>(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
+        for (i, sum) in sum.iter_mut().enumerate() {
+            for j in 0..D {
+                let (row, column) = (i.max(j), i.min(j));
+                *sum = (ab.a.stress[row][column] + ab.b.stress[row][column]).fma(ab.r_ab[j], *sum);
+            }
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
+        let half = ab.of(-0.5) * factor;
+        let (of_b, of_a) = (half * ab.b.s, half * ab.a.s);
+        for i in 0..D {
+            for j in 0..=i {
+                let s = ab.v_ab[i].fma(ab.r_ab[j], ab.v_ab[j] * ab.r_ab[i]);
+                a.strain[i][j] = of_b.fma(s, a.strain[i][j]);
+                b.strain[i][j] = of_a.fma(s, b.strain[i][j]);
+            }
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! A paddle that takes the waves which come back to it: it goes on making its own, and yields to the rest.
+//!
+//! A gauge δ before the face reads η; what the paddle's own wave does not explain, e = η − η₀, moves it off its way by x:
+//!
+//!   T x″ + x′ + x/τ = −F e
+//!
+//! By linear theory a wave of amplitude a that comes in, and x = Re X e^{iωt}, are at the gauge and far out
+//!
+//!   η = a (e^{ikδ} + e^{−ikδ}) + (ic e^{−ikδ} + s) X,   a_out = a + icX
+//!
+//! c is the paddle's transfer function, s = Σ sⱼ e^{−κⱼδ} that of the standing waves at its face. Nothing goes out if
+//! X = i η/(c e^{ikδ} + is), and F and T make that so at one period. τ brings the paddle home; it is the longer for not being
+//! seen at that period. The lag T stands for δ and s: so does the law hold back the gauge's noise. In shallow water it is that of
+//! long waves, x′ = −√(g/d) e. [@schaffer2000], [@altomare2017]
+
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Component, Course, Maker, Paddle, STEEPEST, Train, Wave, smooth,
+    train::{evanescent, wave_number},
+};
+use crate::error::{Error, Result};
+
+/// τ over the period that it is tuned to.
+const HOME: f64 = 5.0;
+
+/// The stroke that is let to a paddle over that of its own wave: as much again for what comes back, and as much to spare.
+const ROOM: f64 = 4.0;
+
+/// Standing waves that are counted: those left out are below 1e-4 of the paddle's motion.
+const MODES: usize = 30;
+
+/// kδ beyond which the gauge stands too far off for a wave.
+const FARTHEST: f64 = 1.0;
+
+/// Periods of the own motion that are looked at for its extent, and samples of each.
+const PERIODS: u32 = 100;
+const SAMPLES: u32 = 40;
+
+/// i.
+const I: Complex<f64> = Complex::new(0.0, 1.0);
+
+/// How a paddle absorbs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// The period (s) whose waves it takes whole; none: that of its own wave.
+    pub period: Option<f64>,
+    /// From the face at rest to the gauge at least, m. A flap's stands as much further off as makes T as long as a wave takes to
+    /// the piston's: what stays at a flap runs ahead of what leaves it.
+    pub gauge: f64,
+    /// Height of the still water, m.
+    pub level: f64,
+    /// How far (m) its face may go from end to end at the still level; none: four times what its own wave takes.
+    pub stroke: Option<f64>,
+    /// How fast (m/s) that may go; none: four times as fast as its own wave, without one as a sine of that stroke and period.
+    pub speed: Option<f64>,
+}
+
+/// What makes a paddle absorb.
+#[derive(Clone, Debug)]
+pub struct Absorber {
+    maker: Maker,
+    train: Train,
+    gauge: f64,
+    level: f64,
+    /// How far (m) it may go to each side of its place, and how fast, m/s.
+    reach: f64,
+    speed: f64,
+    /// F, 1/s; T and τ, s.
+    gain: f64,
+    lag: f64,
+    home: f64,
+    /// What its own components do at the gauge, in their order.
+    own: Vec<Own>,
+    /// Amplitude (m) of the bound wave of twice the frequency.
+    bound: f64,
+}
+
+/// A component at the gauge: a cos(ωt − kx + φ) + s sin(ωt + φ).
+#[derive(Clone, Copy, Debug)]
+struct Own {
+    k: f64,
+    leaving: f64,
+    staying: f64,
+}
+
+/// How far a paddle has yielded, from one step to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Yielding {
+    /// When this held, s.
+    since: f64,
+    /// x, m, and its first and second rate.
+    x: f64,
+    rate: f64,
+    change: f64,
+}
+
+impl Yielding {
+    /// x (m) and x′ (m/s) at time `t` (s).
+    pub fn at(&self, t: f64) -> (f64, f64) {
+        let s = t - self.since;
+        (self.x + s * (self.rate + 0.5 * s * self.change), self.rate + s * self.change)
+    }
+
+    /// Whether it can be meant.
+    pub(crate) fn is_finite(&self) -> bool {
+        (self.since + self.x + self.rate + self.change).is_finite()
+    }
+}
+
+impl Absorber {
+    /// What makes the paddle of `maker`, which makes `wave`, absorb.
+    ///
+    /// # Errors
+    /// `Scene` if the gauge is too far off for so short a wave, or the stroke is less than the paddle's own wave takes.
+    pub fn new(maker: &Maker, wave: &Wave, tuning: &Tuning) -> Result<Self> {
+        let Tuning { gauge, level, .. } = *tuning;
+        let train = match tuning.period {
+            Some(period) => maker.train(period)?,
+            None => wave.peak(maker.g),
+        };
+        let (stroke, speed) = limits(maker, wave, &train, tuning)?;
+        let mut absorber = Self {
+            maker: *maker,
+            train,
+            gauge,
+            level,
+            reach: 0.5 * stroke,
+            speed,
+            gain: 0.0,
+            lag: 0.0,
+            home: HOME * train.period(),
+            own: Vec::new(),
+            bound: 0.0,
+        };
+        let least = gauge / (maker.g * maker.depth).sqrt();
+        absorber.tune();
+        while absorber.lag < least && train.k * absorber.gauge < FARTHEST {
+            absorber.gauge += 0.25 * gauge;
+            absorber.tune();
+        }
+        if absorber.lag < least || train.k * absorber.gauge > FARTHEST {
+            let what = format!(
+                "waves of {:.3} s, {:.3} m long, cannot be absorbed by a gauge {:.3} m before this paddle",
+                train.period(),
+                train.length(),
+                absorber.gauge
+            );
+            return Err(Error::scene(what).help("a smaller dp brings the gauge nearer; a flap needs a lower hinge"));
+        }
+        absorber.learn(wave);
+        Ok(absorber)
+    }
+
+    /// F and T for the period: −ω²T + iω + 1/τ = F i (c e^{ikδ} + is).
+    fn tune(&mut self) {
+        let (omega, turn) = (self.train.omega, (I * self.train.k * self.gauge).exp());
+        let (c, s) = self.answer(&self.train);
+        let wanted = I * (turn * c + I * s);
+        self.gain = omega / wanted.im;
+        self.lag = (1.0 / self.home - self.gain * wanted.re) / (omega * omega);
+    }
+
+    /// What its own `wave` is at the gauge.
+    fn learn(&mut self, wave: &Wave) {
+        let Course::Tones(tones) = &wave.course else { return };
+        let facts = &wave.facts;
+        // The second tone of order 2 makes no wave: it keeps one from being made.
+        let real = if facts.order == 2 { &tones[..1] } else { &tones[..] };
+        let own = |tone: &Component| {
+            let train = Train::of(tone.omega, self.maker.depth, self.maker.g);
+            let (c, s) = self.answer(&train);
+            Own { k: train.k, leaving: c * tone.amplitude, staying: s * tone.amplitude }
+        };
+        self.own = real.iter().map(own).collect();
+        if let (2, Some(train)) = (facts.order, facts.train) {
+            self.bound = 0.5 * facts.height * train.second(facts.height);
+        }
+    }
+
+    /// c and s of a wave, –.
+    fn answer(&self, train: &Train) -> (f64, f64) {
+        let Maker { depth, g, paddle } = self.maker;
+        let stays = evanescent(train.omega, depth, g, MODES).into_iter().map(|kappa| {
+            let k = Complex::new(0.0, -kappa);
+            let whole = k * 4.0 * (k * depth).sinh() * paddle.projected(k, depth);
+            let norm = (k * depth * 2.0).sinh() + k * depth * 2.0;
+            -(whole / norm).im * (-kappa * self.gauge).exp()
+        });
+        (paddle.transfer(train), stays.sum())
+    }
+
+    /// Period (s) whose waves it takes whole.
+    pub fn period(&self) -> f64 {
+        self.train.period()
+    }
+
+    /// From the face at rest to the gauge, m.
+    pub fn gauge(&self) -> f64 {
+        self.gauge
+    }
+
+    /// How far (m) the face may go from end to end, and how fast, m/s.
+    pub fn limits(&self) -> (f64, f64) {
+        (2.0 * self.reach, self.speed)
+    }
+
+    /// The share of the amplitude of a wave of `period` (s) that goes out again, by linear theory, –.
+    pub fn reflection(&self, period: f64) -> f64 {
+        let omega = std::f64::consts::TAU / period;
+        let train = Train { omega, k: wave_number(omega, self.maker.depth, self.maker.g), ..self.train };
+        let (c, s) = self.answer(&train);
+        let phase = train.k * self.gauge;
+        let law = Complex::from(-self.gain) / Complex::new(1.0 / self.home - omega * omega * self.lag, omega);
+        let seen = I * c * (I * -phase).exp() + s;
+        let x = law * 2.0 * phase.cos() / (Complex::from(1.0) - law * seen);
+        (Complex::from(1.0) + I * c * x).norm()
+    }
+
+    /// What the gauge would read of the paddle's own `wave` alone at `x` (m) before the face at rest and time `t` (s), m.
+    fn wanted(&self, wave: &Wave, x: f64, t: f64) -> f64 {
+        match &wave.course {
+            Course::Tones(tones) => {
+                let parts = tones.iter().zip(&self.own).map(|(tone, own)| {
+                    let phase = tone.omega * t + tone.phase;
+                    own.leaving * (phase - own.k * x).cos() + own.staying * phase.sin()
+                });
+                let sum: f64 = parts.sum();
+                let double = match (tones.first(), self.own.first()) {
+                    (Some(tone), Some(own)) => (2.0 * (tone.omega * t + tone.phase - own.k * x)).cos(),
+                    _ => 0.0,
+                };
+                let end = if wave.end.is_finite() { smooth(wave.end - t, wave.ramp).0 } else { 1.0 };
+                (sum + self.bound * double) * smooth(t, wave.ramp).0 * end
+            }
+            Course::Solitary(own) => {
+                let theta = own.kappa * own.celerity * (t - own.crest_at(x));
+                own.height / theta.cosh().powi(2)
+            }
+        }
+    }
+
+    /// How the paddle, which makes `wave` and has yielded `before`, goes on from time `t` (s): `level` is the height (m) of the
+    /// water at the gauge; none: there is none.
+    pub(crate) fn steer(&self, wave: &Wave, before: &Yielding, t: f64, level: Option<f64>) -> Yielding {
+        let (x, rate) = before.at(t);
+        let (own, own_rate) = wave.displacement(t);
+        let place = own + x;
+        let excess = level.map_or(0.0, |z| z - self.level - self.wanted(wave, place + self.gauge, t));
+        // Slow enough before the end of the stroke that the lag does not carry it further.
+        let room = |left: f64| self.speed.min(left.max(0.0) / (4.0 * self.lag));
+        let asked = own_rate - x / self.home - self.gain * excess;
+        let allowed = asked.clamp(-room(self.reach + place), room(self.reach - place)) - own_rate;
+        Yielding { since: t, x, rate, change: (allowed - rate) / self.lag }
+    }
+}
+
+/// How far (m) the face of a paddle may go from end to end, and how fast, m/s: as was asked, or as is usual.
+fn limits(maker: &Maker, wave: &Wave, train: &Train, tuning: &Tuning) -> Result<(f64, f64)> {
+    let (own, own_speed) = extent(wave, train);
+    let most = if let Paddle::Flap { arm } = maker.paddle { 2.0 * STEEPEST * arm } else { f64::INFINITY };
+    let usual = if own > 0.0 { ROOM * own } else { train.highest() / maker.paddle.transfer(train) };
+    let stroke = tuning.stroke.unwrap_or(usual).min(most);
+    let usual = if own > 0.0 { ROOM * own_speed } else { 0.5 * train.omega * stroke };
+    let speed = tuning.speed.unwrap_or(usual);
+    match stroke >= 2.0 * own && speed >= own_speed {
+        true => Ok((stroke, speed)),
+        false => {
+            let what = format!("the paddle's own wave takes {own:.3} m to and fro, and {own_speed:.3} m/s");
+            let least = format!("a stroke of {:.3} m and a speed of {own_speed:.3} m/s are the least", 2.0 * own);
+            Err(Error::scene(what).help(format!("{least}: twice as far, so that it can yield; or leave both out")))
+        }
+    }
+}
+
+/// How far (m) the own motion of a paddle goes from end to end if as far to both sides, and how fast, m/s.
+fn extent(wave: &Wave, train: &Train) -> (f64, f64) {
+    let step = train.period() / f64::from(SAMPLES);
+    let motion = (0..PERIODS * SAMPLES).map(|i| wave.displacement(f64::from(i) * step));
+    motion.fold((0.0, 0.0), |most, (x, v)| (most.0.max(2.0 * x.abs()), most.1.max(v.abs())))
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/wavemaker/absorption.rs"]
+mod tests;

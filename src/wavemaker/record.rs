@@ -1,0 +1,51 @@
+//! A measured elevation as a sum of components: Fourier's, of the record's length.
+
+use std::f64::consts::TAU;
+
+use super::{Component, MOST_COMPONENTS};
+use crate::{
+    error::{Error, Result},
+    math::time_series::Series,
+};
+
+/// Share of the energy, at either end of the spectrum, that is left out: drift and noise.
+const LEFT_OUT: f64 = 0.005;
+
+/// The components η = a cos(ω t + φ) of `series` (m over s).
+///
+/// # Errors
+/// `Scene` if it has fewer than eight samples or is still.
+pub(super) fn components(series: &Series) -> Result<Vec<Component>> {
+    let count = series.times().len();
+    if count < 8 {
+        return Err(Error::scene(format!("the record has {count} samples; waves need eight and more")));
+    }
+    let (first, last) = series.span();
+    let (span, step) = (last - first, (last - first) / (count - 1) as f64);
+    let samples: Vec<f64> = (0..count - 1).map(|i| series.at(first + step * i as f64)).collect();
+    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
+    let many = samples.len();
+    let circle: Vec<(f64, f64)> = (0..many).map(|i| (TAU * i as f64 / many as f64).sin_cos()).collect();
+    let part = |n: usize| {
+        let (sine, cosine) = samples.iter().enumerate().fold((0.0, 0.0), |(sine, cosine), (i, x)| {
+            let (s, c) = circle[n * i % many];
+            (sine + (x - mean) * s, cosine + (x - mean) * c)
+        });
+        let omega = TAU * n as f64 / span;
+        let amplitude = 2.0 * cosine.hypot(sine) / many as f64;
+        Component { amplitude, omega, phase: -sine.atan2(cosine) - omega * first }
+    };
+    let most = ((many - 1) / 2).min(MOST_COMPONENTS);
+    let parts: Vec<Component> = (1..=most).map(part).collect();
+    let energy: f64 = parts.iter().map(|c| c.amplitude.powi(2)).sum();
+    if energy.is_nan() || energy <= 0.0 {
+        return Err(Error::scene("nothing moves in this record"));
+    }
+    let mut below = 0.0;
+    let within = |c: &Component| {
+        let before = below;
+        below += c.amplitude.powi(2) / energy;
+        below > LEFT_OUT && before < 1.0 - LEFT_OUT
+    };
+    Ok(parts.into_iter().filter(within).collect())
+}
