@@ -76,7 +76,7 @@ where
     /// Afloat at `level` (m).
     fn afloat(&self, mut position: Vector<D>, level: f64) -> Result<Pose<D>> {
         position += Vector::repeat(self.shift * self.dp());
-        let mut pose = Pose::turned(position, &[0.0, self.tilt][3 - D..]);
+        let mut pose = Pose::rotated(position, &[0.0, self.tilt][3 - D..]);
         pose.position[D - 1] += equilibrium_height(&self.shape, &pose, self.body().mass, RHO0, level)?;
         Ok(pose)
     }
@@ -203,11 +203,11 @@ fn spatial(n: f64, ratio: f64, asked: &Asked) -> Result<()> {
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let (mut asked, mut grids) =
-        (Asked { walls: Walls::Settling, wide: WIDE, ratios: vec![], bodies: vec![] }, Vec::<(Study, f64)>::new());
+        (Asked { walls: Walls::RelaxedAdami, wide: WIDE, ratios: vec![], bodies: vec![] }, Vec::<(Study, f64)>::new());
     for word in &words {
         match (word.as_str(), word.parse()) {
-            ("dbc", _) => asked.walls = Walls::Dbc,
-            ("settling", _) => asked.walls = Walls::Settling,
+            ("dbc", _) => asked.walls = Walls::Dynamic,
+            ("settling", _) => asked.walls = Walls::RelaxedAdami,
             ("narrow", _) => asked.wide = NARROW,
             (_, Ok(ratio)) => asked.ratios.push(ratio),
             (body, _) if BODIES.contains(&body) => asked.bodies.push(body.into()),

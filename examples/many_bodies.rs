@@ -35,7 +35,7 @@ fn main() -> Result<()> {
         let total = |sim: &Simulation<2>| energy.look(sim)[column];
         let (start, mut least, mut made) = (total(&free), f64::INFINITY, 0.0_f64);
         let mut cost = [0.0; 2];
-        let before = free.spent();
+        let before = free.time_spent();
         // In turns, as a shared machine changes its speed.
         for step in 0..steps {
             for (cost, sim) in cost.iter_mut().zip([&mut free, &mut fixed]) {
@@ -50,7 +50,7 @@ fn main() -> Result<()> {
             }
         }
         // Both of the wall clock, which others on the machine move alike.
-        let spent = free.spent();
+        let spent = free.time_spent();
         let share = (spent.bodies - before.bodies).as_secs_f64() / (spent.steps - before.steps).as_secs_f64();
         let (part, share, fallen) = (100.0 * (1.0 - cost[1] / cost[0]), 100.0 * share, start - least);
         println!(

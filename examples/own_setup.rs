@@ -33,7 +33,7 @@ fn main() -> Result<()> {
         let (up, along) = ((k * r[1]).sinh(), (k * r[1]).cosh());
         Vector::from([-(k * r[0]).sin() * along, (k * r[0]).cos() * up]) * (top / (k * SIZE[1]).sinh())
     });
-    sim.refresh();
+    sim.update_rates();
 
     // Where the level at the left passes its start on the way down, half a period is over.
     let gauge = Elevation::new(sim.system(), &[0.1])?;

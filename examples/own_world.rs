@@ -33,7 +33,7 @@ fn main() -> Result<()> {
             world.bodies[load].set_enabled(true);
         }
         water.step_with(until, |step| {
-            rapier2d::give(&mut world.bodies[raft], &step.loads()[1]);
+            rapier2d::apply_load(&mut world.bodies[raft], &step.loads()[1]);
             world.integration_parameters.dt = step.dt();
             world.step();
             step.solids[1] = rapier2d::kinematics(&world.bodies[raft]);

@@ -76,7 +76,7 @@ fn main() -> Result<()> {
 
 /// Takes the oak out, lets a beam come on the water between the others, and holds the level against that `before` (m).
 fn exchange(mut sim: Simulation<2>, before: f64) -> Result<()> {
-    let oak = sim.system().solid("oak").unwrap_or_default();
+    let oak = sim.system().find_solid("oak").unwrap_or_default();
     sim.remove_solid(oak)?;
     let (size, density) = BEAM;
     let shape = Shape::Box { size: Vector::from(size) };

@@ -77,7 +77,7 @@ fn main() -> Result<()> {
             let wanted = turning * (2.0 * sim.time()).min(1.0);
             let motor =
                 Motor { velocity: Some(Law::constant(wanted)), damping: Law::constant(20.0), ..Motor::default() };
-            sim.drive(axle, Some(motor.at(0.0)));
+            sim.set_motor(axle, Some(motor.at(0.0)));
             sim.step_to(UNTIL)?;
             work -= sim.joint(axle).power() * sim.dt();
             if sim.time() > UNTIL - 1.0 {

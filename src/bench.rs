@@ -17,7 +17,7 @@ use crate::{
     model::Dimension,
     run::{looks, outputs, pool},
     scene::{Built, Scene},
-    simulation::{Simulation, Spent},
+    simulation::{Simulation, TimeSpent},
     solid::Dim,
 };
 
@@ -233,9 +233,9 @@ where
         for (i, r) in system.fluid().r.iter().enumerate() {
             system.water_near(r, &mut |j, _, _| pairs += usize::from(j != i));
             // A pair with a boundary particle is seen from it as well.
-            system.solid_near(r, &mut |_, _, _| pairs += 2);
+            system.boundary_near(r, &mut |_, _, _| pairs += 2);
         }
-        let pairs = pairs as f64 / (system.fluid().len() + system.wet()) as f64;
+        let pairs = pairs as f64 / (system.fluid().len() + system.boundary_near_fluid_count()) as f64;
         Ok(Self { sim, outputs, name: work.name.clone(), setup_s, peak, pairs })
     }
 }
@@ -250,7 +250,7 @@ impl<const D: usize> Timed for Ready<D> {
     }
 
     fn time(&mut self, threads: usize) -> Result<Timing> {
-        let (before, cpu, start) = (self.sim.spent(), ProcessTime::try_now().ok(), Instant::now());
+        let (before, cpu, start) = (self.sim.time_spent(), ProcessTime::try_now().ok(), Instant::now());
         let mut steps = 0;
         while start.elapsed().as_secs_f64() < LASTS || steps < 3 {
             self.step()?;
@@ -259,12 +259,12 @@ impl<const D: usize> Timed for Ready<D> {
         let wall = start.elapsed().as_secs_f64();
         let spent = cpu.and_then(|cpu| cpu.try_elapsed().ok());
         let cpu = spent.map_or(wall * threads as f64, |spent| spent.as_secs_f64());
-        let Spent { steps: all, lists, pairs, bodies } = self.sim.spent();
+        let TimeSpent { steps: all, lists, pairs, bodies } = self.sim.time_spent();
         let all = (all - before.steps).as_secs_f64();
         let (lists, bodies) = ((lists - before.lists).as_secs_f64(), (bodies - before.bodies).as_secs_f64());
         let pairs = (pairs - before.pairs).as_secs_f64();
         let system = self.sim.system();
-        let (water, wet) = (system.fluid().len(), system.wet());
+        let (water, wet) = (system.fluid().len(), system.boundary_near_fluid_count());
         let particle_steps = (steps * (water + wet)) as f64;
         Ok(Timing {
             work: self.name.clone(),
@@ -272,7 +272,7 @@ impl<const D: usize> Timed for Ready<D> {
             threads,
             water,
             wet,
-            dry: system.skin().len() - wet,
+            dry: system.boundary().len() - wet,
             steps,
             step_s: wall / steps as f64,
             particle_steps_per_s: particle_steps / wall,

@@ -6,19 +6,19 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    interaction::{self, Sweep},
+    interaction::{self, PairLoop},
     math::Vector,
     math::simd::{self, Level},
-    neighbours::Near,
+    neighbours::NeighbourLists,
     solid::{Dim, HasEngine},
     sph::{
-        Medium, Term, Units,
-        boundary::Barrier,
+        FluidProperties, Term, Units,
+        boundary::Repulsion,
         continuity::Continuity,
         density_diffusion::{Fourtakas, Molteni},
-        gradient_correction::{Corrected, Moments},
-        kernel::{self, Kernel as _, REACH},
-        particle_shifting::{HeldTerm, Shift, ShiftTerm},
+        gradient_correction::{CorrectedGradient, RenormalizationMatrix},
+        kernel::{self, Kernel as _, SUPPORT_RATIO},
+        particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
         viscosity::{Artificial, Laminar, Sps},
     },
@@ -96,7 +96,7 @@ pub enum Shifting {
 /// Which sweep adds up the pairs. Scene word `model.sweep`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Sweeping {
+pub enum PairLoopKind {
     /// Eight pairs at a time in single precision, where the processor can (x86-64 with AVX2, ARM); else the oracle.
     #[default]
     Fast,
@@ -104,11 +104,11 @@ pub enum Sweeping {
     Reference,
 }
 
-impl Sweeping {
+impl PairLoopKind {
     /// The instructions that its lanes use, if it has lanes.
-    pub fn level(self) -> Option<Level> {
+    pub fn instruction_set(self) -> Option<Level> {
         match self {
-            Self::Fast => simd::level(),
+            Self::Fast => simd::best_instruction_set(),
             Self::Reference => None,
         }
     }
@@ -119,9 +119,11 @@ impl Sweeping {
 #[serde(rename_all = "snake_case")]
 pub enum Walls {
     /// Dynamic boundary particles: they obey continuity, and their density never falls below ρ₀.
-    Dbc,
+    #[serde(rename = "dbc")]
+    Dynamic,
     /// The same, but their density settles to that of the pressure that the water near them would have at their place.
-    Settling,
+    #[serde(alias = "settling")]
+    RelaxedAdami,
 }
 
 /// Which scheme advances time. Scene word `time.scheme`.
@@ -174,7 +176,7 @@ pub struct Model {
     pub slip: Slip,
     /// Which sweep adds up the pairs.
     #[serde(default)]
-    pub sweep: Sweeping,
+    pub pair_loop: PairLoopKind,
     /// Time scheme.
     pub scheme: Scheme,
     /// Courant number, –.
@@ -208,9 +210,9 @@ impl Model {
             viscosity: Viscosity::Artificial(Artificial::default()),
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
-            walls: Walls::Settling,
+            walls: Walls::RelaxedAdami,
             slip: Slip::Free,
-            sweep: Sweeping::Fast,
+            pair_loop: PairLoopKind::Fast,
             scheme: Scheme::Symplectic,
             cfl: 0.4,
             dt_max: f64::INFINITY,
@@ -218,19 +220,19 @@ impl Model {
     }
 
     /// The kernel's support radius 2h, m.
-    pub fn reach(&self) -> f64 {
-        REACH * self.h
+    pub fn support_radius(&self) -> f64 {
+        SUPPORT_RATIO * self.h
     }
 
     /// Layers of boundary particles, dp apart, that fill the kernel's support.
-    pub fn layers(&self) -> usize {
+    pub fn boundary_layers(&self) -> usize {
         // A support of 3.0 dp needs three layers, also where rounding makes it 3 + 1e-16.
-        (self.reach() / self.dp - 1e-9).ceil().max(1.0) as usize
+        (self.support_radius() / self.dp - 1e-9).ceil().max(1.0) as usize
     }
 
     /// The constants that the laws share.
-    pub fn medium<const D: usize>(&self) -> Medium<D> {
-        Medium {
+    pub fn fluid_properties<const D: usize>(&self) -> FluidProperties<D> {
+        FluidProperties {
             h: self.h,
             dp: self.dp,
             rho0: self.rho0,
@@ -249,15 +251,19 @@ impl Model {
     }
 
     /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::stiffness`].
-    pub fn stiffness<const D: usize>(&self) -> f64 {
+    pub fn lattice_stiffness<const D: usize>(&self) -> f64 {
         match self.kernel {
-            Kernel::Cubic { .. } => kernel::lattice::stiffness(kernel::Cubic::new(self.h, D), &self.medium::<D>()),
-            Kernel::Wendland => kernel::lattice::stiffness(kernel::Wendland::new(self.h, D), &self.medium::<D>()),
+            Kernel::Cubic { .. } => {
+                kernel::lattice::lattice_stiffness(kernel::Cubic::new(self.h, D), &self.fluid_properties::<D>())
+            }
+            Kernel::Wendland => {
+                kernel::lattice::lattice_stiffness(kernel::Wendland::new(self.h, D), &self.fluid_properties::<D>())
+            }
         }
     }
 
     /// What of the choices does not go together, if anything.
-    pub fn clash(&self) -> Option<&'static str> {
+    pub fn conflict(&self) -> Option<&'static str> {
         let alone = matches!(self.kernel, Kernel::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
         (self.gradient == Gradient::Corrected && !alone).then_some(clash)
@@ -272,28 +278,30 @@ impl Model {
     }
 
     /// The one sweep that does what this model names, and nothing else.
-    fn sweep_in<const D: usize>(&self) -> Box<dyn Sweep<D>> {
-        let level = self.sweep.level();
+    fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
+        let level = self.pair_loop.instruction_set();
         let units = match level {
-            Some(_) => Units { length: Near::<D>::unit(self.reach()), time: self.h / self.c0 },
+            Some(_) => {
+                Units { length: NeighbourLists::<D>::length_unit(self.support_radius()), time: self.h / self.c0 }
+            }
             None => Units::SI,
         };
-        let make = Make { model: self, medium: self.medium::<D>().counted_in(&units), units, level };
-        let Medium { h, dp, .. } = make.medium;
+        let make = PairLoopBuilder { model: self, medium: self.fluid_properties::<D>().in_units(&units), units, level };
+        let FluidProperties { h, dp, .. } = make.medium;
         let plain = (Pressure, Continuity);
         match self.kernel {
             Kernel::Wendland => match self.gradient {
                 Gradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
                 Gradient::Corrected => make.with_viscosity(
                     kernel::Wendland::new(h, D),
-                    ((Pressure, Corrected), Continuity),
-                    ((Pressure, Moments), Continuity),
+                    ((Pressure, CorrectedGradient), Continuity),
+                    ((Pressure, RenormalizationMatrix), Continuity),
                 ),
             },
             Kernel::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
             Kernel::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
-                let tensile = Tensile { inv_w_dp: 1.0 / kernel.on_lattice(&make.medium).w(dp * dp) };
+                let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.medium).w(dp * dp) };
                 make.with_shifting(kernel, ((Pressure, tensile), Continuity))
             }
         }
@@ -303,40 +311,40 @@ impl Model {
 /// Dimensions in which sweeps are compiled, here and once.
 pub trait Dimension<const D: usize>: HasEngine<D> {
     /// The sweep that does what `model` names, and nothing else.
-    fn sweep(model: &Model) -> Box<dyn Sweep<D>>;
+    fn pair_loop(model: &Model) -> Box<dyn PairLoop<D>>;
 }
 
 #[cfg(feature = "dim2")]
 impl Dimension<2> for Dim<2> {
-    fn sweep(model: &Model) -> Box<dyn Sweep<2>> {
-        model.sweep_in()
+    fn pair_loop(model: &Model) -> Box<dyn PairLoop<2>> {
+        model.build_pair_loop()
     }
 }
 
 #[cfg(feature = "dim3")]
 impl Dimension<3> for Dim<3> {
-    fn sweep(model: &Model) -> Box<dyn Sweep<3>> {
-        model.sweep_in()
+    fn pair_loop(model: &Model) -> Box<dyn PairLoop<3>> {
+        model.build_pair_loop()
     }
 }
 
 /// The making of a sweep, choice by choice, in the units in which it counts.
-struct Make<'a, const D: usize> {
+struct PairLoopBuilder<'a, const D: usize> {
     model: &'a Model,
-    medium: Medium<D>,
+    medium: FluidProperties<D>,
     units: Units,
     level: Option<Level>,
 }
 
-impl<const D: usize> Make<'_, D> {
+impl<const D: usize> PairLoopBuilder<'_, D> {
     fn with_shifting<K: kernel::Kernel + 'static, P: Term<D> + 'static>(
         &self,
         kernel: K,
         base: P,
-    ) -> Box<dyn Sweep<D>> {
+    ) -> Box<dyn PairLoop<D>> {
         match self.model.shifting {
             Shifting::None => self.with_viscosity(kernel, base, base),
-            _ => self.with_viscosity(kernel, (base, ShiftTerm), ((base, ShiftTerm), HeldTerm)),
+            _ => self.with_viscosity(kernel, (base, ShiftTerm), ((base, ShiftTerm), ShiftingSuppressionTerm)),
         }
     }
 
@@ -345,9 +353,9 @@ impl<const D: usize> Make<'_, D> {
         kernel: K,
         base: T,
         wall: W,
-    ) -> Box<dyn Sweep<D>> {
-        let damped = || kernel.damped(&self.medium);
-        let held = (wall, Barrier::new(kernel, &self.medium));
+    ) -> Box<dyn PairLoop<D>> {
+        let damped = || kernel.viscous_sum(&self.medium);
+        let held = (wall, Repulsion::new(kernel, &self.medium));
         // Which part of the viscosity acts between water and solids.
         let beside = if self.model.slip == Slip::Free { 0.0 } else { 1.0 };
         match self.model.viscosity {
@@ -380,7 +388,7 @@ impl<const D: usize> Make<'_, D> {
         kernel: K,
         inner: T,
         wall: W,
-    ) -> Box<dyn Sweep<D>> {
+    ) -> Box<dyn PairLoop<D>> {
         let term = match self.model.diffusion {
             Diffusion::None => return interaction::compile(kernel, inner, wall, &self.medium, self.units, self.level),
             Diffusion::Molteni(d) => d.term(&self.medium),

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::math::Vector;
 
 /// Particles that a thread takes at a time where each costs little.
-pub(crate) const PER_TASK: usize = 4096;
+pub(crate) const PARTICLES_PER_TASK: usize = 4096;
 
 /// Particles of one kind: index `i` of every array is the same particle. All carry the mass ρ₀ dpᴰ.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -32,8 +32,8 @@ impl<const D: usize> Particles<D> {
     }
 
     /// The first `n` of them.
-    pub fn first(&self, n: usize) -> View<'_, D> {
-        View { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
+    pub fn first(&self, n: usize) -> ParticlesView<'_, D> {
+        ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
     }
 
     /// Adds a particle at rest at `r` (m) of density `rho` (kg/m³); its id is its number.
@@ -47,7 +47,7 @@ impl<const D: usize> Particles<D> {
 
 /// Some of the particles of one kind, to look at: as [`Particles`].
 #[derive(Clone, Copy, Debug)]
-pub struct View<'a, const D: usize> {
+pub struct ParticlesView<'a, const D: usize> {
     /// Position, m.
     pub r: &'a [Vector<D>],
     /// Velocity, m/s.
@@ -58,7 +58,7 @@ pub struct View<'a, const D: usize> {
     pub id: &'a [u32],
 }
 
-impl<const D: usize> View<'_, D> {
+impl<const D: usize> ParticlesView<'_, D> {
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.r.len()
@@ -70,7 +70,7 @@ impl<const D: usize> View<'_, D> {
     }
 
     /// Those of these numbers, in this order.
-    pub fn chosen(&self, numbers: impl IntoIterator<Item = usize>) -> Particles<D> {
+    pub fn select(&self, numbers: impl IntoIterator<Item = usize>) -> Particles<D> {
         let mut chosen = Particles::default();
         for i in numbers {
             chosen.r.push(self.r[i]);

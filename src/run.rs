@@ -39,7 +39,7 @@ use crate::{
     model::Dimension,
     output::{Checkpoint, Manifest, manifest::Status},
     scene::Scene,
-    simulation::Rescued,
+    simulation::Rollback,
     solid::Dim,
 };
 
@@ -90,7 +90,7 @@ pub trait Watch: Send {
     }
 
     /// Told when the run goes back to a good state after an alarm.
-    fn rescued(&mut self, how: &Rescued) {
+    fn rescued(&mut self, how: &Rollback) {
         let _ = how;
     }
 

@@ -10,25 +10,25 @@ use std::time::{Duration, Instant};
 
 pub use crate::{
     coupling::BodyStep,
-    system::{Escape, Limits, Lost, Setup},
+    system::{Escape, Limits, RemovedParticle, Setup},
 };
 pub use change::Added;
-pub use rescue::Rescued;
+pub use rescue::Rollback;
 pub(crate) use tied::find;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use rescue::Rescue;
+use rescue::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
     error::{Error, Fault, Kind, Result},
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     model::Dimension,
     solid::{
         Contact, Dim, HasEngine as _, Role, SolidSpec,
-        constraint::assembly::{Rig, RigState},
+        constraint::assembly::{Assembly, AssemblyState},
     },
     system::{System, SystemState},
     time_integration::{Stepper, step_size},
@@ -40,15 +40,15 @@ pub struct Simulation<const D: usize> {
     stepper: Stepper<D>,
     bodies: Bodies<D>,
     clock: Clock,
-    rescue: Rescue,
+    rollback: RollbackControl,
     /// Particles taken out, and when, s.
-    lost: Vec<(f64, Lost<D>)>,
+    removed: Vec<(f64, RemovedParticle<D>)>,
     stepping: Duration,
 }
 
 /// Where the time went, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spent {
+pub struct TimeSpent {
     /// All steps.
     pub steps: Duration,
     /// Lists and sorting.
@@ -68,18 +68,18 @@ struct Clock {
 
 /// What of a simulation must be kept to go on to the same bits.
 #[derive(Serialize, Deserialize)]
-struct Kept<const D: usize> {
+struct SimulationState<const D: usize> {
     system: SystemState<D>,
     stepper: Stepper<D>,
     clock: Clock,
     engine: Option<Vec<u8>>,
     added_masses: Vec<AddedMassState>,
-    rig: RigState<D>,
-    rescued: Vec<Rescued>,
-    lost: Vec<(f64, Lost<D>)>,
+    constraints: AssemblyState<D>,
+    rollbacks: Vec<Rollback>,
+    removed: Vec<(f64, RemovedParticle<D>)>,
     accounting: Option<Accounting<D>>,
     /// Numbers of the solids that have been removed.
-    gone: Vec<u32>,
+    removed_solids: Vec<u32>,
 }
 
 impl<const D: usize> Simulation<D> {
@@ -100,24 +100,24 @@ impl<const D: usize> Simulation<D> {
         Dim<D>: Dimension<D>,
     {
         setup.check()?;
-        let (medium, solids, dp) = (setup.model.medium::<D>(), &setup.solids, setup.model.dp);
+        let (medium, solids, dp) = (setup.model.fluid_properties::<D>(), &setup.solids, setup.model.dp);
         for solid in solids {
             solid.check()?;
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
         let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
         let engine = if !external && solids.iter().any(|s| free(&s)) {
-            Some(Dim::<D>::engine(solids, &start, &setup.links, &medium.gravity, dp)?)
+            Some(Dim::<D>::engine(solids, &start, &setup.constraints, &medium.gravity, dp)?)
         } else {
             None
         };
-        let rig = Rig::new(&setup.links, start);
+        let rig = Assembly::new(&setup.constraints, start);
         let stepper = Stepper::new(&setup.model);
         let mut system = System::new(setup)?;
         let bodies = Bodies::new(engine, AcousticAddedMass::find(&mut system), rig, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
-        let (rescue, lost, stepping) = (Rescue::default(), Vec::new(), Duration::ZERO);
-        let simulation = Self { system, stepper, bodies, clock, rescue, lost, stepping };
+        let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
+        let simulation = Self { system, stepper, bodies, clock, rollback: rescue, removed: lost, stepping };
         simulation.guard()?;
         Ok(simulation)
     }
@@ -136,31 +136,31 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_to(&mut self, end: f64) -> Result<()> {
-        self.stride(end, &mut |_| Ok(()))
+        self.step_with_hook(end, &mut |_| Ok(()))
     }
 
     /// Goes one step on, calling `hook` when the water has moved and the bodies have not.
-    fn stride(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
+    fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         let start = Instant::now();
-        if self.keeps() {
-            self.rescue.make_room();
-            self.rescue.keep(self.clock.steps, self.clock.time, self.save()?);
+        if self.needs_rollback_state() {
+            self.rollback.make_room();
+            self.rollback.store(self.clock.steps, self.clock.time, self.save()?);
         }
-        let outcome = self.advance(end, hook).or_else(|error| self.go_back(error));
+        let outcome = self.advance(end, hook).or_else(|error| self.roll_back(error));
         self.stepping += start.elapsed();
         outcome
     }
 
     /// Goes back to a good state after the alarm `error`, or gives it on if that is no use.
-    fn go_back(&mut self, error: Error) -> Result<()> {
+    fn roll_back(&mut self, error: Error) -> Result<()> {
         if error.kind != Kind::Fault {
             return Err(error);
         }
-        match self.rescue.answer(&error.what, self.clock.steps, self.clock.time) {
+        match self.rollback.state_before(&error.what, self.clock.steps, self.clock.time) {
             Some(good) => {
-                let rescue = std::mem::take(&mut self.rescue);
+                let rescue = std::mem::take(&mut self.rollback);
                 self.restore(&good)?;
-                self.rescue = rescue;
+                self.rollback = rescue;
                 Ok(())
             }
             None => Err(error),
@@ -168,41 +168,41 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Never goes back: the first alarm ends the run.
-    pub fn without_rescue(mut self) -> Self {
-        self.rescue = Rescue::off();
+    pub fn without_rollback(mut self) -> Self {
+        self.rollback = RollbackControl::off();
         self
     }
 
     /// Whether the next step first keeps the state of now, to go back to after an alarm.
-    pub(crate) fn keeps(&self) -> bool {
-        self.rescue.due(self.clock.steps)
+    pub(crate) fn needs_rollback_state(&self) -> bool {
+        self.rollback.needs_state(self.clock.steps)
     }
 
     /// Whether a state of `time` (s) is kept.
-    pub(crate) fn holds(&self, time: f64) -> bool {
-        self.rescue.holds(time)
+    pub(crate) fn has_rollback_state(&self, time: f64) -> bool {
+        self.rollback.has_state_at(time)
     }
 
     /// When and why the run went back to a good state and took half the step for a while.
-    pub fn rescued(&self) -> &[Rescued] {
-        &self.rescue.log
+    pub fn rollbacks(&self) -> &[Rollback] {
+        &self.rollback.log
     }
 
     /// The particles that left the domain and were taken out ([`Escape::Remove`]), and when that was seen (s).
-    pub fn lost(&self) -> &[(f64, Lost<D>)] {
-        &self.lost
+    pub fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] {
+        &self.removed
     }
 
     fn advance(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         if let Some(reordering) = self.system.rebuild_neighbours() {
-            self.stepper.reorder(&reordering, self.system.medium().rho0);
+            self.stepper.reorder(&reordering, self.system.properties().rho0);
             if let Some(accounting) = &mut self.bodies.accounting {
                 accounting.add_removed(&self.system, &reordering.lost);
             }
-            self.lost.extend(reordering.lost.into_iter().map(|lost| (self.clock.time, lost)));
+            self.removed.extend(reordering.lost.into_iter().map(|lost| (self.clock.time, lost)));
         }
         self.system.update_rates();
-        let allowed = self.limit();
+        let allowed = self.step_limit();
         let left = end - self.clock.time;
         // The last two steps share what is left, so that none is far shorter than the others.
         let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
@@ -221,11 +221,11 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The longest step (s) that the present rates, the springs and the model allow.
-    pub fn limit(&self) -> f64 {
+    pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
-        let water = step_size::water(&self.system.peaks(), self.system.medium(), model.cfl);
-        let ties = self.spring_limit().min(self.bodies.constraints().let_go(self.clock.time));
-        water.min(step_size::viscous(model)).min(model.dt_max).min(ties) * self.rescue.share(self.clock.time)
+        let water = step_size::water(&self.system.step_limits(), self.system.properties(), model.cfl);
+        let ties = self.spring_limit().min(self.bodies.constraints().next_release(self.clock.time));
+        water.min(step_size::viscous(model)).min(model.dt_max).min(ties) * self.rollback.step_factor(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -252,7 +252,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Makes the rates anew after the state was changed by hand.
-    pub fn refresh(&mut self) {
+    pub fn update_rates(&mut self) {
         self.system.update_rates();
     }
 
@@ -262,9 +262,9 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Where the time went; what is left of the steps went into moving particles and packing them.
-    pub fn spent(&self) -> Spent {
-        let (lists, pairs) = self.system.spent();
-        Spent { steps: self.stepping, lists, pairs, bodies: self.bodies.spent() }
+    pub fn time_spent(&self) -> TimeSpent {
+        let (lists, pairs) = self.system.time_spent();
+        TimeSpent { steps: self.stepping, lists, pairs, bodies: self.bodies.spent() }
     }
 
     /// Simulated time, s.
@@ -302,7 +302,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
-    pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
+    pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
         if let Some(engine) = self.bodies.engine_mut() {
             engine.set_velocity(solid, velocity, spin);
             let kinematics = &mut self.system.solids[solid].kinematics;
@@ -333,28 +333,39 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
-        self.save_rescued(self.rescue.log.len())
+        self.save_with_rollbacks(self.rollback.log.len())
     }
 
     /// As [`Simulation::save`], of a run that has been rescued the first `times` times only.
-    pub(crate) fn save_rescued(&self, times: usize) -> Result<Vec<u8>> {
+    pub(crate) fn save_with_rollbacks(&self, times: usize) -> Result<Vec<u8>> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
-        let rescued = self.rescue.log[..times].to_vec();
+        let rescued = self.rollback.log[..times].to_vec();
         let (added_masses, rig) = (self.bodies.added_mass_state(), self.bodies.constraints().save());
-        let lost = self.lost.clone();
-        let (accounting, gone) = (self.bodies.accounting.as_ref().map(Accounting::state), self.gone());
-        let kept = Kept { system, stepper, clock, engine, added_masses, rig, rescued, lost, accounting, gone };
+        let lost = self.removed.clone();
+        let (accounting, gone) = (self.bodies.accounting.as_ref().map(Accounting::state), self.removed_solids());
+        let kept = SimulationState {
+            system,
+            stepper,
+            clock,
+            engine,
+            added_masses,
+            constraints: rig,
+            rollbacks: rescued,
+            removed: lost,
+            accounting,
+            removed_solids: gone,
+        };
         postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
     }
 
     /// Numbers of the solids that have been removed.
-    fn gone(&self) -> Vec<u32> {
+    fn removed_solids(&self) -> Vec<u32> {
         let solids = self.system.solids().iter().enumerate();
-        solids.filter(|(_, solid)| solid.skin.is_empty()).map(|(i, _)| i as u32).collect()
+        solids.filter(|(_, solid)| solid.boundary.is_empty()).map(|(i, _)| i as u32).collect()
     }
 
-    fn read(bytes: &[u8]) -> Result<Kept<D>> {
+    fn read(bytes: &[u8]) -> Result<SimulationState<D>> {
         postcard::from_bytes(bytes)
             .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint's state is damaged: {e}")))
     }
@@ -365,7 +376,7 @@ impl<const D: usize> Simulation<D> {
     /// `Restart` if the bytes are damaged or belong to another setup.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
-        if kept.gone != self.gone() {
+        if kept.removed_solids != self.removed_solids() {
             return Err(Error::new(Kind::Restart, "solids had been removed from the simulation whose state this is")
                 .help("restore_with takes it up in a simulation made from the same setup"));
         }
@@ -375,7 +386,7 @@ impl<const D: usize> Simulation<D> {
             _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
-            || !self.bodies.constraints_mut().restore(kept.rig)
+            || !self.bodies.constraints_mut().restore(kept.constraints)
         {
             return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
         }
@@ -388,8 +399,8 @@ impl<const D: usize> Simulation<D> {
         if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {
             accounting.restore(state);
         }
-        (self.stepper, self.clock, self.lost) = (kept.stepper, kept.clock, kept.lost);
-        self.rescue.begin_again(kept.rescued);
+        (self.stepper, self.clock, self.removed) = (kept.stepper, kept.clock, kept.removed);
+        self.rollback.restart(kept.rollbacks);
         Ok(())
     }
 }

@@ -60,7 +60,7 @@ where
         sim.step().unwrap();
     }
     let (mut hash, system) = (Hash::new(), sim.system());
-    for particles in [system.fluid(), system.skin()] {
+    for particles in [system.fluid(), system.boundary()] {
         particles.r.iter().chain(particles.v).flat_map(|x| x.iter()).for_each(|&x| hash.number(x));
         particles.rho.iter().for_each(|&x| hash.number(x));
         particles.id.iter().for_each(|id| hash.bytes(&id.to_le_bytes()));

@@ -95,6 +95,6 @@ pub fn best_delay(sim: &Series, reference: &Series) -> Option<f64> {
 /// `reference` as much later as the run is late, where the run covers it; none if it covers too little.
 fn moved(sim: &Series, reference: &Series, delay: f64) -> Option<Series> {
     let (first, last) = sim.span();
-    let moved = reference.moved(delay).within(first, last).ok()?;
+    let moved = reference.shifted(delay).within(first, last).ok()?;
     (moved.times().len() as f64 >= KEPT * reference.times().len() as f64).then_some(moved)
 }

@@ -132,7 +132,7 @@ pub(super) fn transforms(series: &[&Series], cut: usize) -> Option<(f64, Vec<Vec
     let hann = |i: usize| 0.5 - 0.5 * (std::f64::consts::TAU * i as f64 / length as f64).cos();
     let mut all = Vec::new();
     for series in series {
-        let samples: Vec<f64> = (0..count).map(|i| series.smooth(from + i as f64 * dt).0).collect();
+        let samples: Vec<f64> = (0..count).map(|i| series.value_and_rate(from + i as f64 * dt).0).collect();
         let mean = samples.iter().sum::<f64>() / count as f64;
         let mut parts = Vec::new();
         for start in (0..=count - length).step_by(length / 2) {

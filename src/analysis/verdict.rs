@@ -203,7 +203,7 @@ impl Check {
         let path: PathBuf = folder.join(format!("{probe}.csv"));
         let mut sim = reference_table::read(&path, "t_s", column, 0.0)?;
         if let Some(at) = self.words.zero {
-            sim = sim.less(sim.at(at));
+            sim = sim.minus(sim.at(at));
         }
         let meaned = self.words.mean.map(|seconds| sim.running_mean(seconds));
         Ok((sim, meaned))
@@ -227,7 +227,7 @@ impl Check {
         let (from, until) = window(&self.words, start);
         match &self.reference {
             Known::Table(whole) => {
-                let whole = whole.moved(start);
+                let whole = whole.shifted(start);
                 let common = whole.within(first, last).map_err(|_| {
                     let (from, to) = whole.span();
                     Error::scene(format!(

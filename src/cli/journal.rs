@@ -13,7 +13,7 @@ use pontoon::{
     error::Error,
     output::manifest::Status,
     run::{Drift, Outcome, Progress, Start, Watch},
-    simulation::Rescued,
+    simulation::Rollback,
 };
 use serde_json::{Value, json};
 
@@ -64,7 +64,7 @@ impl Watch for Journal {
         manifest.warnings.iter().for_each(|text| warn(text));
     }
 
-    fn rescued(&mut self, how: &Rescued) {
+    fn rescued(&mut self, how: &Rollback) {
         self.warnings += 1;
         if !self.quiet {
             warn(&how.to_string());

@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon::{
     preflight::three,
     run::{Progress, Start, Watch},
-    simulation::Rescued,
+    simulation::Rollback,
 };
 
 use super::{complain, report};
@@ -122,7 +122,7 @@ impl Watch for Follow {
         }
     }
 
-    fn rescued(&mut self, how: &Rescued) {
+    fn rescued(&mut self, how: &Rollback) {
         self.warnings += 1;
         if !self.quiet {
             self.bar.suspend(|| complain(&format!("warning: {how}\n")));

@@ -23,9 +23,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     geometry::Shape,
-    math::{Matrix, Vector, Wedge},
+    math::{Bivector, Matrix, Vector},
     solid::{FreeBody, Kinematics, Load, Role, Solid},
-    sph::Medium,
+    sph::FluidProperties,
     system::System,
 };
 
@@ -80,15 +80,15 @@ impl<const D: usize> AcousticAddedMass<D> {
     }
 
     fn if_light(system: &System<D>, i: usize) -> Option<Self> {
-        let (medium, solid) = (system.medium(), &system.solids()[i]);
+        let (medium, solid) = (system.properties(), &system.solids()[i]);
         let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
         let Role::Free(body) = &solid.spec.role else { return None };
         if (stiffest_frequency(shape, body, medium) * medium.h / medium.c0).powi(2) <= STIFFEST {
             return None;
         }
-        let of = |i: usize| (i as u32, pose.local(&system.skin().r[i]));
+        let of = |i: usize| (i as u32, pose.local(&system.boundary().r[i]));
         let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
-        let all = solid.skin.clone().map(of).filter(near_face);
+        let all = solid.boundary.clone().map(of).filter(near_face);
         let outer = all.map(|(i, r)| (i, shape.outward(&r, 0.05 * medium.dp))).collect();
         let state = AddedMassState { pending: Six::zeros(), contacts: Six::zeros(), stiffness_sum: 0.0 };
         Some(Self { solid: i, outer, state, given: Six::zeros() })
@@ -139,7 +139,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         let fresh =
             if stiffness_sum > self.state.stiffness_sum { 1.0 - self.state.stiffness_sum / stiffness_sum } else { 0.0 };
         let left = self.release(stiffness_sum);
-        let time2 = (system.medium().h / system.medium().c0).powi(2);
+        let time2 = (system.properties().h / system.properties().c0).powi(2);
         let (mass, water) = (mass(solid, body), springs * time2);
         let theta = theta(&mass, &water);
         let both = (mass + water * theta).cholesky();
@@ -156,7 +156,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         }
         self.state.pending += total * dt - impulse;
         // The moment of the pending momentum about the origin must not change while the body moves.
-        let carried = Wedge::torque(&solid.kinematics.velocity, &linear(&pending)) * -dt;
+        let carried = Bivector::torque(&solid.kinematics.velocity, &linear(&pending)) * -dt;
         self.state.pending += to_six(&Load { force: Vector::zeros(), torque: carried });
         lock(body, |i| self.state.pending[i] = 0.0);
         self.given = (impulse + join) / dt - self.state.contacts;
@@ -213,14 +213,14 @@ impl<const D: usize> AcousticAddedMass<D> {
     fn for_each_wet(&self, system: &System<D>, mut visit: impl FnMut(f64, &Vector<D>, &Vector<D>, Six)) {
         let solid = &system.solids()[self.solid];
         let turn = &solid.kinematics.pose.rotation;
-        let wet = system.neighbours.wet();
+        let wet = system.neighbours.boundary_near_fluid();
         let wetness = system.boundary.wetness.as_deref().unwrap_or_default();
-        let mut k = wet.partition_point(|&i| (i as usize) < solid.skin.start);
+        let mut k = wet.partition_point(|&i| (i as usize) < solid.boundary.start);
         for (i, normal) in &self.outer {
             k += wet[k..].iter().take_while(|w| *w < i).count();
             if wet.get(k) == Some(i) {
                 let (x, normal) = (&system.boundary.particles.r[*i as usize], turn * normal);
-                let torque = Wedge::torque(&(x - solid.kinematics.centre), &normal);
+                let torque = Bivector::torque(&(x - solid.kinematics.centre), &normal);
                 visit((wetness[k] / FULL).min(1.0), x, &normal, to_six(&Load { force: normal, torque }));
             }
         }
@@ -229,7 +229,7 @@ impl<const D: usize> AcousticAddedMass<D> {
 
 /// k of one spring, N/m.
 fn stiffness<const D: usize>(system: &System<D>) -> f64 {
-    let medium = system.medium();
+    let medium = system.properties();
     medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2)
 }
 
@@ -242,7 +242,7 @@ fn theta(mass: &Square, water: &Square) -> f64 {
 
 /// The share (–) of the pending impulse that a step `dt` (s) applies.
 fn applied_share<const D: usize>(system: &System<D>, dt: f64) -> f64 {
-    let medium = system.medium();
+    let medium = system.properties();
     1.0 - (-dt * medium.c0 / (TIME * medium.h)).exp()
 }
 
@@ -254,8 +254,8 @@ fn mass<const D: usize>(solid: &Solid<D>, body: &FreeBody<D>) -> Square {
     for i in 0..D {
         all[(i, i)] = body.mass;
     }
-    for i in 0..Wedge::<D>::COMPONENTS {
-        for j in 0..Wedge::<D>::COMPONENTS {
+    for i in 0..Bivector::<D>::COMPONENTS {
+        for j in 0..Bivector::<D>::COMPONENTS {
             all[(D + i, D + j)] = inertia[(i, j)];
         }
     }
@@ -264,7 +264,7 @@ fn mass<const D: usize>(solid: &Solid<D>, body: &FreeBody<D>) -> Square {
 
 /// Calls `visit` with the indices of the locked motions.
 fn lock<const D: usize>(body: &FreeBody<D>, mut visit: impl FnMut(usize)) {
-    let turns = body.locked_rotations.iter().take(Wedge::<D>::COMPONENTS);
+    let turns = body.locked_rotations.iter().take(Bivector::<D>::COMPONENTS);
     body.locked_translations.iter().chain(turns).enumerate().filter(|(_, locked)| **locked).for_each(|(i, _)| visit(i));
 }
 
@@ -279,24 +279,24 @@ fn linear<const D: usize>(six: &Six) -> Vector<D> {
     Vector::from_fn(|i, _| six[i])
 }
 
-fn angular<const D: usize>(six: &Six) -> Wedge<D> {
-    Wedge::from_axial(&six.as_slice()[D..D + Wedge::<D>::COMPONENTS])
+fn angular<const D: usize>(six: &Six) -> Bivector<D> {
+    Bivector::from_axial(&six.as_slice()[D..D + Bivector::<D>::COMPONENTS])
 }
 
 /// ω_b (1/s), the highest frequency of a body on the compressibility of water all around: the larger of the largest
 /// translational and the largest rotational one. Every boundary particle of the outer layer is a spring of stiffness
 /// ρ₀ c₀² dpᴰ⁻² (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
-pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &Medium<D>) -> f64 {
+pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 {
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
     for point in shape.skin(medium.dp, 1) {
         let normal = shape.outward(&point.r, 0.05 * medium.dp);
         along += normal.component_mul(&normal) * spring;
-        for (sum, arm) in about.iter_mut().zip(Wedge::torque(&(point.r - body.centre), &normal).axial()) {
+        for (sum, arm) in about.iter_mut().zip(Bivector::torque(&(point.r - body.centre), &normal).axial()) {
             *sum += arm * arm * spring;
         }
     }
     let inertia = |i: usize| if D == 2 { body.inertia[(0, 0)] } else { body.inertia[(i, i)] };
-    let turning = (0..Wedge::<D>::COMPONENTS).map(|i| about[i] / inertia(i));
+    let turning = (0..Bivector::<D>::COMPONENTS).map(|i| about[i] / inertia(i));
     turning.fold(along.max() / body.mass, f64::max).sqrt()
 }

@@ -10,10 +10,10 @@ use super::{
 };
 use crate::{
     error::{Error, Fault, Kind, Result},
-    math::{Pose, Vector, Wedge},
+    math::{Bivector, Pose, Vector},
     solid::{
         Contact, Engine, EngineFault, Kinematics, Load, Role, Solid,
-        constraint::assembly::{Rig, Tied},
+        constraint::assembly::{Assembly, ConstraintLoads},
     },
     system::{MomentumTransfer, System},
 };
@@ -22,7 +22,7 @@ use crate::{
 pub(crate) struct Bodies<const D: usize> {
     engine: Option<Box<dyn Engine<D>>>,
     added_masses: Vec<AcousticAddedMass<D>>,
-    constraints: Rig<D>,
+    constraints: Assembly<D>,
     pub(crate) accounting: Option<Accounting<D>>,
     /// Whether an external program moves the free bodies.
     external: bool,
@@ -36,7 +36,7 @@ impl<const D: usize> Bodies<D> {
     pub(crate) fn new(
         engine: Option<Box<dyn Engine<D>>>,
         added_masses: Vec<AcousticAddedMass<D>>,
-        constraints: Rig<D>,
+        constraints: Assembly<D>,
         external: bool,
     ) -> Self {
         Self { engine, added_masses, constraints, accounting: None, external, steps: 0, spent: Duration::ZERO }
@@ -48,19 +48,19 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// The constraints.
-    pub(crate) fn constraints(&self) -> &Rig<D> {
+    pub(crate) fn constraints(&self) -> &Assembly<D> {
         &self.constraints
     }
 
     /// The constraints, to be changed.
-    pub(crate) fn constraints_mut(&mut self) -> &mut Rig<D> {
+    pub(crate) fn constraints_mut(&mut self) -> &mut Assembly<D> {
         &mut self.constraints
     }
 
     /// The longest step (s) that springs and motors allow at time `t` (s).
     pub(crate) fn step_limit(&self, system: &System<D>, t: f64) -> f64 {
         match self.engine.as_deref().filter(|_| !self.constraints.is_empty()) {
-            Some(engine) => self.constraints.limit(engine, &self.kinematics(system, t, true), t),
+            Some(engine) => self.constraints.step_limit(engine, &self.kinematics(system, t, true), t),
             None => f64::INFINITY,
         }
     }
@@ -70,7 +70,7 @@ impl<const D: usize> Bodies<D> {
         let Some(engine) = self.engine.as_deref().filter(|_| wanted) else { return Vec::new() };
         let one = |(i, solid): (usize, &Solid<D>)| match &solid.spec.role {
             Role::Fixed => solid.kinematics,
-            Role::Driven(motion) => solid.driven(motion, t),
+            Role::Driven(motion) => solid.prescribed_kinematics(motion, t),
             Role::Free(_) => engine.kinematics(i),
         };
         system.solids.iter().enumerate().map(one).collect()
@@ -96,14 +96,14 @@ impl<const D: usize> Bodies<D> {
     /// Adds a solid that starts as `start`, with its added mass if it is light.
     pub(crate) fn add_body(&mut self, added_mass: Option<AcousticAddedMass<D>>, start: Kinematics<D>) {
         self.added_masses.extend(added_mass);
-        self.constraints.admit(start);
+        self.constraints.add_body(start);
         self.accounting.iter_mut().for_each(Accounting::add_body);
     }
 
     /// Removes a solid with `count` boundary particles.
     pub(crate) fn remove_body(&mut self, solid: usize, count: u32) {
         if let Some(engine) = &mut self.engine {
-            engine.oust(solid);
+            engine.remove_body(solid);
         }
         self.added_masses.retain(|added_mass| added_mass.solid != solid);
         self.added_masses.iter_mut().for_each(|added_mass| added_mass.renumber(solid, count));
@@ -154,7 +154,7 @@ impl<const D: usize> Bodies<D> {
         let external = self.external;
         let at_end = |solid: &Solid<D>| match &solid.spec.role {
             Role::Fixed => solid.kinematics,
-            Role::Driven(motion) => solid.driven(motion, end),
+            Role::Driven(motion) => solid.prescribed_kinematics(motion, end),
             Role::Free(_) if external => unset(),
             Role::Free(_) => solid.kinematics,
         };
@@ -213,7 +213,7 @@ impl<const D: usize> BodyStep<'_, D> {
     /// Without effect where the bodies are external: there your program applies forces.
     pub fn push(&mut self, solid: usize, load: &Load<D>) {
         if let Some(engine) = &mut self.bodies.engine {
-            engine.burden(solid, load);
+            engine.add_load(solid, load);
         }
     }
 
@@ -236,13 +236,18 @@ impl<const D: usize> BodyStep<'_, D> {
         }
         let Interval { t, dt } = self.over;
         let constrained = !self.bodies.constraints.is_empty();
-        let accounted = self.bodies.accounting.is_some() || self.bodies.constraints.pulls_on_any();
+        let accounted = self.bodies.accounting.is_some() || self.bodies.constraints.has_reactions();
         let start = self.bodies.kinematics(self.system, t, constrained || accounted);
         let mut pushes = Vec::new();
         if let Some(engine) = &mut self.bodies.engine {
-            pushes.extend((0..if accounted { start.len() } else { 0 }).map(|i| engine.pushed(i)));
+            pushes.extend((0..if accounted { start.len() } else { 0 }).map(|i| engine.applied_push(i)));
             if constrained {
-                self.bodies.constraints.act(&mut **engine, &start, &self.system.around(&self.loads), [t, dt]);
+                self.bodies.constraints.apply_loads(
+                    &mut **engine,
+                    &start,
+                    &self.system.load_context(&self.loads),
+                    [t, dt],
+                );
             }
         }
         self.apply_added_mass();
@@ -272,26 +277,26 @@ impl<const D: usize> BodyStep<'_, D> {
         }
         let contacts = if accounted { contact_sums(&engine.contacts(), start.len()) } else { Vec::new() };
         let iterated = engine.iterations() > 1;
-        let body_loads = |i: usize, constraints: Tied<D>| BodyLoads {
+        let body_loads = |i: usize, constraints: ConstraintLoads<D>| BodyLoads {
             water: self.loads[i],
             pushes: pushes[i],
             contacts: contacts[i],
             constraints,
             before: &start[i],
             after: &self.solids[i],
-            gyroscopic: engine.turned(i),
+            gyroscopic: engine.gyroscopic_rate(i),
             dt,
             iterated,
         };
-        let of = |i: usize| LoadBreakdown::of(self.system, i, &body_loads(i, constraints.tied(i)));
+        let of = |i: usize| LoadBreakdown::of(self.system, i, &body_loads(i, constraints.loads_on(i)));
         let breakdowns: Vec<_> = (0..contacts.len()).map(of).collect();
         if constrained {
             let unexplained: Vec<_> = breakdowns.iter().map(LoadBreakdown::residual).collect();
-            constraints.learn(&**engine, [&start, &self.solids], dt, Some(&unexplained));
+            constraints.update_reactions(&**engine, [&start, &self.solids], dt, Some(&unexplained));
         }
         if let Some(accounting) = accounting {
             for (i, breakdown) in breakdowns.into_iter().enumerate() {
-                accounting.add_body_step(self.system, i, breakdown, &body_loads(i, constraints.tied(i)));
+                accounting.add_body_step(self.system, i, breakdown, &body_loads(i, constraints.loads_on(i)));
             }
         }
         Ok(())
@@ -303,7 +308,7 @@ impl<const D: usize> BodyStep<'_, D> {
         let mut returned = Vec::new();
         for added_mass in &mut self.bodies.added_masses {
             let solid = added_mass.solid;
-            let push = engine.as_ref().map_or_else(Load::zero, |engine| engine.pushed(solid));
+            let push = engine.as_ref().map_or_else(Load::zero, |engine| engine.applied_push(solid));
             returned.push((solid, added_mass.apply(self.system, self.over.dt, &push, &mut self.loads[solid])));
         }
         for (solid, impulse) in returned {
@@ -343,7 +348,7 @@ impl<const D: usize> BodyStep<'_, D> {
 /// Kinematics that an external program has not set yet.
 fn unset<const D: usize>() -> Kinematics<D> {
     let none = Vector::repeat(f64::NAN);
-    Kinematics { pose: Pose::at(none), centre: none, velocity: none, spin: Wedge::zero() }
+    Kinematics { pose: Pose::at(none), centre: none, velocity: none, spin: Bivector::zero() }
 }
 
 /// The fault of solid number `solid` outside the domain.

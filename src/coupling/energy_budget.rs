@@ -15,7 +15,7 @@ use crate::{
     math::Vector,
     model::Dimension,
     solid::{Dim, Kinematics, Load, Role},
-    system::{Lost, System},
+    system::{RemovedParticle, System},
 };
 
 /// Energies since the start, J (J/m in 2-D): positive where water and bodies have gained.
@@ -201,7 +201,7 @@ impl<const D: usize> Accounting<D> {
     }
 
     /// Subtracts the energy of removed particles.
-    pub(crate) fn add_removed(&mut self, system: &System<D>, lost: &[Lost<D>]) {
+    pub(crate) fn add_removed(&mut self, system: &System<D>, lost: &[RemovedParticle<D>]) {
         self.add_displaced(lost.iter().map(|p| system.particle_energy(&p.r, &p.v, p.rho)).sum());
     }
 

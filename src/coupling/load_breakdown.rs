@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    math::{Matrix, Vector, Wedge},
-    solid::{Contact, FreeBody, Kinematics, Load, Role, constraint::assembly::Tied},
+    math::{Bivector, Matrix, Vector},
+    solid::{Contact, FreeBody, Kinematics, Load, Role, constraint::assembly::ConstraintLoads},
     system::System,
 };
 
@@ -110,7 +110,7 @@ impl<const D: usize> LoadBreakdown<D> {
         Self {
             pressure: solid.load,
             delayed: water - solid.load,
-            weight: Load { force: system.gravity() * body.mass, torque: Wedge::zero() },
+            weight: Load { force: system.gravity() * body.mass, torque: Bivector::zero() },
             contacts,
             springs: constraints.springs,
             motors: constraints.motors,
@@ -128,11 +128,11 @@ pub(super) struct BodyLoads<'a, const D: usize> {
     pub(super) water: Load<D>,
     pub(super) pushes: Load<D>,
     pub(super) contacts: Load<D>,
-    pub(super) constraints: Tied<D>,
+    pub(super) constraints: ConstraintLoads<D>,
     pub(super) before: &'a Kinematics<D>,
     pub(super) after: &'a Kinematics<D>,
     /// I₀ΔΩ/Δt minus the gyroscopic torque, if the engine integrates the angular velocity.
-    pub(super) gyroscopic: Option<Wedge<D>>,
+    pub(super) gyroscopic: Option<Bivector<D>>,
     pub(super) dt: f64,
     /// Whether the engine took the step in several iterations.
     pub(super) iterated: bool,
@@ -156,12 +156,12 @@ fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<
 }
 
 /// I Ω in the world's axes, with the inertia in the body's.
-fn angular_momentum<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &Wedge<D>) -> Wedge<D> {
+fn angular_momentum<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &Bivector<D>) -> Bivector<D> {
     if D == 2 {
         return *spin * inertia[(0, 0)];
     }
     let world = rotation * inertia * rotation.transpose() * Vector::<D>::from_iterator(spin.axial());
-    Wedge::from_axial(world.as_slice())
+    Bivector::from_axial(world.as_slice())
 }
 
 /// The part of `load` along the locked motions of `body`: all of it if it is `held`.
@@ -169,5 +169,5 @@ pub(super) fn locked<const D: usize>(body: &FreeBody<D>, held: bool, load: &Load
     let force = Vector::from_fn(|i, _| if held || body.locked_translations[i] { load.force[i] } else { 0.0 });
     let turns = load.torque.axial().into_iter().enumerate();
     let torque: Vec<f64> = turns.map(|(i, t)| if held || body.locked_rotations[i] { t } else { 0.0 }).collect();
-    Load { force, torque: Wedge::from_axial(&torque) }
+    Load { force, torque: Bivector::from_axial(&torque) }
 }

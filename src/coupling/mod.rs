@@ -34,7 +34,7 @@ pub(crate) fn drift_half_step<const D: usize>(system: &mut System<D>, over: Inte
     let half = 0.5 * over.dt;
     place(system, None, |_, solid| match &solid.spec.role {
         Role::Fixed => None,
-        Role::Driven(motion) => Some(solid.driven(motion, over.t + half)),
+        Role::Driven(motion) => Some(solid.prescribed_kinematics(motion, over.t + half)),
         Role::Free(_) => Some(drifted(&solid.kinematics, half)),
     });
 }
@@ -49,7 +49,7 @@ fn place<const D: usize>(
     for i in 0..system.solids.len() {
         if let Some(kinematics) = to(i, &system.solids[i]) {
             match over {
-                Some(dt) => system.solids[i].go(kinematics, dt),
+                Some(dt) => system.solids[i].advance(kinematics, dt),
                 None => system.solids[i].kinematics = kinematics,
             }
             system.place_boundary(i);

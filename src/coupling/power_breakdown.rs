@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    interaction::{Sums, Sweep},
+    interaction::{PairLoop, PairSums},
     math::Vector,
     model::{Diffusion, Dimension, Gradient, Model, Shifting, Viscosity},
     neighbours::CHUNK,
@@ -39,11 +39,11 @@ pub(super) struct PowerBreakdown {
 
 /// The force passes with the pressure alone.
 pub(super) struct PowerMeter<const D: usize> {
-    pressure: Box<dyn Sweep<D>>,
+    pressure: Box<dyn PairLoop<D>>,
     /// With plain gradients, if those of the model are corrected.
-    plain: Option<Box<dyn Sweep<D>>>,
-    fluid_sums: Vec<Sums<D>>,
-    boundary_sums: Vec<Sums<D>>,
+    plain: Option<Box<dyn PairLoop<D>>>,
+    fluid_sums: Vec<PairSums<D>>,
+    boundary_sums: Vec<PairSums<D>>,
 }
 
 impl<const D: usize> PowerMeter<D> {
@@ -55,18 +55,18 @@ impl<const D: usize> PowerMeter<D> {
         let pressure =
             Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };
         let plain = Model { gradient: Gradient::Plain, ..pressure.clone() };
-        let plain = (model.gradient != Gradient::Plain).then(|| Dim::<D>::sweep(&plain));
+        let plain = (model.gradient != Gradient::Plain).then(|| Dim::<D>::pair_loop(&plain));
         let (fluid_sums, boundary_sums) = (Vec::new(), Vec::new());
-        Self { pressure: Dim::<D>::sweep(&pressure), plain, fluid_sums, boundary_sums }
+        Self { pressure: Dim::<D>::pair_loop(&pressure), plain, fluid_sums, boundary_sums }
     }
 
     /// The powers at the last force pass, and the loads of the pressure alone on the solids; the state of `system` must be that
     /// of the pass.
     pub(super) fn decompose(&mut self, system: &System<D>) -> (PowerBreakdown, Vec<Load<D>>) {
         let Self { pressure, plain, fluid_sums, boundary_sums } = self;
-        fluid_sums.resize(system.rates.fluid.len(), Sums::zero());
-        boundary_sums.resize(system.rates.boundary.len(), Sums::zero());
-        let mut pass = |pair_loop: &mut dyn Sweep<D>| {
+        fluid_sums.resize(system.rates.fluid.len(), PairSums::zero());
+        boundary_sums.resize(system.rates.boundary.len(), PairSums::zero());
+        let mut pass = |pair_loop: &mut dyn PairLoop<D>| {
             let loads = system.pass_of(pair_loop, fluid_sums, boundary_sums);
             (gains(system, fluid_sums), loads)
         };
@@ -93,13 +93,13 @@ pub(super) fn total_power<const D: usize>(system: &System<D>) -> f64 {
 }
 
 /// The powers (W) on motion and on compression of the water by the rates `sums`, without its weight, added up in chunks in order.
-fn gains<const D: usize>(system: &System<D>, sums: &[Sums<D>]) -> [f64; 2] {
-    let (water, rho0, g) = (system.fluid(), system.medium().rho0, system.gravity());
+fn gains<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> [f64; 2] {
+    let (water, rho0, g) = (system.fluid(), system.properties().rho0, system.gravity());
     let particles = water.v.par_chunks(CHUNK).zip(water.rho.par_chunks(CHUNK));
-    let chunk = |((v, rho), sums): ((&[Vector<D>], &[f64]), &[Sums<D>])| {
+    let chunk = |((v, rho), sums): ((&[Vector<D>], &[f64]), &[PairSums<D>])| {
         v.iter().zip(rho).zip(sums).fold([0.0; 2], |[motion, compression], ((v, rho), s)| {
             let pressed = system.pressure(*rho) / (rho * rho);
-            [motion + v.dot(&(s.dv - g)), compression + pressed * s.dx * rho0]
+            [motion + v.dot(&(s.acceleration - g)), compression + pressed * s.compression_rate * rho0]
         })
     };
     let parts: Vec<[f64; 2]> = particles.zip(sums[..water.len()].par_chunks(CHUNK)).map(chunk).collect();

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::{
     math::{Bounds, Vector},
-    particles::PER_TASK,
+    particles::PARTICLES_PER_TASK,
 };
 
 /// Points sorted into cubic cells.
@@ -37,7 +37,7 @@ impl<const D: usize> Cells<D> {
         }
         grid.count = cells(grid.size).map(|n| n as usize).into();
         let home = |x: &Vector<D>| grid.index(&grid.place(x).map(|c| c as usize)) as u32;
-        let home: Vec<u32> = points.par_iter().with_min_len(PER_TASK).map(home).collect();
+        let home: Vec<u32> = points.par_iter().with_min_len(PARTICLES_PER_TASK).map(home).collect();
         grid.start = vec![0; grid.count.iter().product::<usize>() + 1];
         home.iter().for_each(|&c| grid.start[c as usize + 1] += 1);
         for c in 1..grid.start.len() {
@@ -50,7 +50,9 @@ impl<const D: usize> Cells<D> {
             grid.order[*place as usize] = i as u32;
             *place += 1;
         }
-        let sorted = |axis: usize| grid.order.par_iter().with_min_len(PER_TASK).map(move |&i| points[i as usize][axis]);
+        let sorted = |axis: usize| {
+            grid.order.par_iter().with_min_len(PARTICLES_PER_TASK).map(move |&i| points[i as usize][axis])
+        };
         grid.along = std::array::from_fn(|axis| sorted(axis).collect());
         grid
     }

@@ -239,7 +239,7 @@ mod tests {
     fn boxes_off_the_lattice_or_tilted_have_no_gap() {
         let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
         for (x, y, turn) in [(2.03, 2.0, 0.0), (2.05, 2.05, 0.0), (2.03, 1.98, 0.3), (2.0, 3.93, 0.0)] {
-            let at = Pose::turned(Vector::from([x, y]), &[turn]);
+            let at = Pose::rotated(Vector::from([x, y]), &[turn]);
             let filled = fill(&[pool([4.0, 4.0])], &[(&block, &at)], 0.1).unwrap();
             let (wet, _) = block.submerged(&at, 4.0);
             // Half a cell for each of the four sides, not half a row.

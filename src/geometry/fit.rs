@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::{Shape, fill::Lattice, packing};
 use crate::{
     math::{Bounds, Pose, Vector},
-    particles::PER_TASK,
+    particles::PARTICLES_PER_TASK,
 };
 
 /// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
@@ -165,7 +165,7 @@ pub(super) fn fit<const D: usize>(
         near.map(|o| o.distance(x)).fold(f64::INFINITY, f64::min) / dp
     };
     let (mut movable, mut held) = (Vec::new(), Vec::new());
-    let far: Vec<f64> = water.par_iter().with_min_len(PER_TASK).map(to_misfit).collect();
+    let far: Vec<f64> = water.par_iter().with_min_len(PARTICLES_PER_TASK).map(to_misfit).collect();
     for (i, (x, far)) in water.iter().zip(far).enumerate() {
         match far {
             d if d < ZONE => movable.push(i),

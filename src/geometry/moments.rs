@@ -195,7 +195,7 @@ mod tests {
     fn a_turned_box_of_two_halves_is_the_box() {
         let half = Shape::Box { size: Vector::from([1.0, 2.0]) };
         let whole = Shape::Box { size: Vector::from([2.0, 2.0]) }.volume();
-        let at = |x: f64| Pose::turned(Vector::from([x, 3.0]), &[std::f64::consts::PI]);
+        let at = |x: f64| Pose::rotated(Vector::from([x, 3.0]), &[std::f64::consts::PI]);
         let joined = Shape::Compound(vec![(at(0.5), half.clone()), (at(1.5), half)]).volume();
         near(joined.volume, whole.volume);
         near(joined.centroid[0], 1.0);

@@ -78,7 +78,7 @@ mod tests {
     }
 
     fn bar(at: [f64; 3], turn: f64) -> (Pose<3>, Shape<3>) {
-        (Pose::turned(at.into(), &[0.0, 0.0, turn]), Shape::Box { size: [1.0, 0.02, 0.02].into() })
+        (Pose::rotated(at.into(), &[0.0, 0.0, turn]), Shape::Box { size: [1.0, 0.02, 0.02].into() })
     }
 
     #[test]
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn parts_that_touch_pass() {
         let block = |at: [f64; 3], turn: f64| {
-            (Pose::turned(at.into(), &[0.0, turn, 0.0]), Shape::Box { size: [0.5, 0.4, 0.3].into() })
+            (Pose::rotated(at.into(), &[0.0, turn, 0.0]), Shape::Box { size: [0.5, 0.4, 0.3].into() })
         };
         assert_eq!(refusal(vec![block([0.0; 3], 0.0), block([0.5, 0.1, 0.0], 0.0)]), "");
         let (up, along) = 0.7f64.sin_cos();

@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn a_shape_under_water_displaces_its_volume_about_its_centroid() {
-        let pose = Pose::turned(Vector::from([1.0, 2.0, 3.0]), &[0.3, -0.4, 0.5]);
+        let pose = Pose::rotated(Vector::from([1.0, 2.0, 3.0]), &[0.3, -0.4, 0.5]);
         for shape in [
             Shape::Box { size: Vector::from([1.0, 2.0, 0.5]) },
             Shape::Ball { radius: 0.7 },

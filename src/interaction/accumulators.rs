@@ -1,20 +1,20 @@
 //! Running sums, and in which rows they lie in memory.
 
-use crate::sph::{Extra, Num, Term};
+use crate::sph::{AuxiliarySums, Num, Term};
 
 /// What a set of laws reads and sums beside acceleration and density rate.
 #[derive(Clone, Copy, Debug)]
-pub struct Needs {
+pub struct RequiredSums {
     /// The sums of shifting.
     pub shift: bool,
     /// Tensile repulsions.
     pub repulsion: bool,
     /// Marks, and the sum that holds shifting back.
-    pub mark: bool,
+    pub suppression: bool,
     /// Stress, and the sum of strain.
     pub stress: bool,
     /// Corrected gradients.
-    pub form: bool,
+    pub gradient_correction: bool,
     /// The moment of the neighbours.
     pub moment: bool,
 }
@@ -24,22 +24,22 @@ const fn entries(dimension: usize) -> usize {
     dimension * (dimension + 1) / 2
 }
 
-impl Needs {
+impl RequiredSums {
     /// Those of the laws `Y`.
     pub const fn of<Y: Term<D>, const D: usize>() -> Self {
         Self {
             shift: Y::SHIFT,
             repulsion: Y::REPULSION,
-            mark: Y::MARK,
+            suppression: Y::MARK,
             stress: Y::STRESS,
-            form: Y::FORM,
+            gradient_correction: Y::FORM,
             moment: Y::MOMENT,
         }
     }
 
     /// Whether there are sums.
     pub const fn any(self) -> bool {
-        self.shift || self.mark || self.stress || self.moment
+        self.shift || self.suppression || self.stress || self.moment
     }
 
     const fn held_at(self, dimension: usize) -> usize {
@@ -47,7 +47,7 @@ impl Needs {
     }
 
     const fn strain_at(self, dimension: usize) -> usize {
-        self.held_at(dimension) + if self.mark { 1 } else { 0 }
+        self.held_at(dimension) + if self.suppression { 1 } else { 0 }
     }
 
     const fn moment_at(self, dimension: usize) -> usize {
@@ -61,7 +61,7 @@ impl Needs {
 
     /// The row of repulsion among the inputs beside places, velocities and densities; before it is the mark.
     pub(super) const fn repulsion_at(self) -> usize {
-        if self.mark { 1 } else { 0 }
+        if self.suppression { 1 } else { 0 }
     }
 
     /// The first row of stress, after the repulsion.
@@ -76,40 +76,40 @@ impl Needs {
 
     /// Rows of such inputs.
     pub(super) const fn inputs(self, dimension: usize) -> usize {
-        self.form_at(dimension) + if self.form { entries(dimension) } else { 0 }
+        self.form_at(dimension) + if self.gradient_correction { entries(dimension) } else { 0 }
     }
 }
 
 /// Running sums of a particle, or of eight.
 #[derive(Clone, Copy)]
-pub(super) struct Running<N, const D: usize> {
+pub(super) struct Accumulators<N, const D: usize> {
     pub(super) dv: [N; D],
     pub(super) dx: N,
-    pub(super) extra: Extra<N, D>,
+    pub(super) extra: AuxiliarySums<N, D>,
 }
 
-impl<N: Num, const D: usize> Running<N, D> {
+impl<N: Num, const D: usize> Accumulators<N, D> {
     /// All `zero`.
     #[inline(always)]
     pub(super) fn all(zero: N) -> Self {
-        Self { dv: [zero; D], dx: zero, extra: Extra::all(zero) }
+        Self { dv: [zero; D], dx: zero, extra: AuxiliarySums::all(zero) }
     }
 
     /// Calls `visit` with each sum that laws of needs `own` make and its row, where laws of needs `all` share the rows.
     #[inline(always)]
-    pub(super) fn each(&mut self, own: Needs, all: Needs, mut visit: impl FnMut(usize, &mut N)) {
+    pub(super) fn each(&mut self, own: RequiredSums, all: RequiredSums, mut visit: impl FnMut(usize, &mut N)) {
         for (k, dv) in self.dv.iter_mut().enumerate() {
             visit(k, dv);
         }
         visit(D, &mut self.dx);
         if own.shift {
-            for (k, grad) in self.extra.grad_c.iter_mut().enumerate() {
+            for (k, grad) in self.extra.concentration_gradient.iter_mut().enumerate() {
                 visit(D + 1 + k, grad);
             }
-            visit(2 * D + 1, &mut self.extra.div_r);
+            visit(2 * D + 1, &mut self.extra.position_divergence);
         }
-        if own.mark {
-            visit(all.held_at(D), &mut self.extra.held);
+        if own.suppression {
+            visit(all.held_at(D), &mut self.extra.shifting_suppressed);
         }
         if own.stress {
             triangle(&mut self.extra.strain, all.strain_at(D), &mut visit);

@@ -3,81 +3,99 @@
 use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
 
 use super::{
-    reference::Node,
-    simd_layout::{Cluster, Packed},
+    reference::ReferenceParticle,
+    simd_layout::{PackedCluster, PackedParticles},
 };
 use crate::{
-    math::simd::{self, LANES, Level, Row, Simd, Work, f32x8, i32x8},
-    neighbours::{Chunk, Slab},
-    sph::{Num, boundary::Fit, kernel::Kernel},
+    math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
+    neighbours::{ParticleListChunk, Slab},
+    sph::{Num, boundary::WallExtrapolation, kernel::Kernel},
 };
 
 /// The sums under one kernel.
-pub(super) trait Fits<const D: usize>: Send + Sync {
+pub(super) trait BoundarySums<const D: usize>: Send + Sync {
     /// By the oracle, of the boundary particles `wet`, whose neighbours `lists` hold; with the flow if `flow`.
-    fn skin(&self, nodes: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, flow: bool, fits: &mut [Fit<f64, D>]);
+    fn sum_reference(
+        &self,
+        nodes: [&[ReferenceParticle<D>]; 2],
+        wet: &[u32],
+        lists: &ParticleListChunk,
+        flow: bool,
+        fits: &mut [WallExtrapolation<f64, D>],
+    );
 
     /// In lanes, of a slab and the one after it; with the flow if `flow`.
-    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, flow: bool, sums: &mut [Row]);
+    fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]);
 }
 
 /// A kernel, weighed with a particle's volume at ρ₀.
-pub(super) struct Weighed<K>(pub(super) K);
+pub(super) struct KernelSums<K>(pub(super) K);
 
 /// Rows of sums, with the flow or without.
 pub(super) const fn rows(dimension: usize, flow: bool) -> usize {
     dimension + 2 + if flow { dimension } else { 0 }
 }
 
-impl<K: Kernel, const D: usize> Fits<D> for Weighed<K> {
-    fn skin(&self, [water, skin]: [&[Node<D>]; 2], wet: &[u32], lists: &Chunk, flow: bool, fits: &mut [Fit<f64, D>]) {
+impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
+    fn sum_reference(
+        &self,
+        [water, skin]: [&[ReferenceParticle<D>]; 2],
+        wet: &[u32],
+        lists: &ParticleListChunk,
+        flow: bool,
+        fits: &mut [WallExtrapolation<f64, D>],
+    ) {
         for (k, (out, &i)) in fits.iter_mut().zip(wet).enumerate() {
-            let mut fit = Fit::all(0.0);
+            let mut fit = WallExtrapolation::all(0.0);
             for &j in lists.of(k).0 {
                 let (wall, water) = (&skin[i as usize], &water[j as usize]);
                 let r: [f64; D] = std::array::from_fn(|k| wall.r[k] - water.r[k]);
                 let r2 = r.iter().map(|x| x * x).sum();
                 let w = self.0.w(r2);
-                fit.add(w, water.side.p, water.side.s, r);
+                fit.add(w, water.side.p, water.side.specific_volume, r);
                 if flow {
-                    fit.add_flow(w, water.side.s, water.v);
+                    fit.add_velocity(w, water.side.specific_volume, water.v);
                 }
             }
             *out = fit;
         }
     }
 
-    fn slab(&self, level: Level, packed: &Packed<D>, slab: &Slab, flow: bool, sums: &mut [Row]) {
+    fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]) {
         match flow {
-            true => simd::with(level, OfSlab::<_, true, D> { kernel: self.0, packed, slab, sums }),
-            false => simd::with(level, OfSlab::<_, false, D> { kernel: self.0, packed, slab, sums }),
+            true => simd::dispatch(level, BoundarySlabTask::<_, true, D> { kernel: self.0, packed, slab, sums }),
+            false => simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel: self.0, packed, slab, sums }),
         }
     }
 }
 
 /// The sums in `rows` and as a fit.
 #[inline(always)]
-pub(super) fn each<N: Num, const D: usize>(fit: &mut Fit<N, D>, flow: bool, mut visit: impl FnMut(usize, &mut N)) {
+pub(super) fn for_each_row<N: Num, const D: usize>(
+    fit: &mut WallExtrapolation<N, D>,
+    flow: bool,
+    mut visit: impl FnMut(usize, &mut N),
+) {
     visit(0, &mut fit.weight);
     visit(1, &mut fit.head);
     for (k, arm) in fit.arm.iter_mut().enumerate() {
         visit(2 + k, arm);
     }
     if flow {
-        for (k, flow) in fit.flow.iter_mut().enumerate() {
+        for (k, flow) in fit.velocity.iter_mut().enumerate() {
             visit(2 + D + k, flow);
         }
     }
 }
 
-struct OfSlab<'a, K, const FLOW: bool, const D: usize> {
+struct BoundarySlabTask<'a, K, const FLOW: bool, const D: usize> {
     kernel: K,
-    packed: &'a Packed<D>,
+    packed: &'a PackedParticles<D>,
     slab: &'a Slab,
-    sums: &'a mut [Row],
+    sums: &'a mut [LaneRow],
 }
 
-impl<K: Kernel, const FLOW: bool, const D: usize> Work for OfSlab<'_, K, FLOW, D> {
+impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<'_, K, FLOW, D> {
     type Output = ();
 
     #[inline(always)]
@@ -85,23 +103,23 @@ impl<K: Kernel, const FLOW: bool, const D: usize> Work for OfSlab<'_, K, FLOW, D
         let Self { kernel, packed, slab, sums } = self;
         let Slab { first, middle, end, spans, index } = slab;
         let (rows, zero) = (rows(D, FLOW), f32x8::splat(simd, 0.0));
-        sums.fill(Row::default());
+        sums.fill(LaneRow::default());
         for c in *first..*end {
             for l in 0..LANES {
                 let [start, skin, end] = spans[(c - first) * LANES + l];
                 let is_water = c < *middle;
                 let others = &index[if is_water { skin } else { start } as usize..end as usize];
-                let Cluster { x, v, s } = &packed.clusters[c];
+                let PackedCluster { x, v, s } = &packed.clusters[c];
                 let all = |x: f32| f32x8::splat(simd, x);
                 let (p, volume) = (all(s[2][l]), all(s[3][l]));
                 let moves: [f32x8<S>; D] = std::array::from_fn(|k| all(v[k][l]));
                 let mine: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, x[k][l]));
-                let mut sum = Fit::all(zero);
+                let mut sum = WallExtrapolation::all(zero);
                 for &j in others {
-                    let Cluster { x, v, s } = &packed.clusters[j as usize];
+                    let PackedCluster { x, v, s } = &packed.clusters[j as usize];
                     let mut r = [zero; D];
                     for k in 0..D {
-                        r[k] = f32x8::float_from(mine[k] - simd::load_whole(simd, &x[k]));
+                        r[k] = f32x8::float_from(mine[k] - simd::load_integers(simd, &x[k]));
                     }
                     let mut r2 = r[0] * r[0];
                     for d in &r[1..] {
@@ -111,24 +129,24 @@ impl<K: Kernel, const FLOW: bool, const D: usize> Work for OfSlab<'_, K, FLOW, D
                     if is_water {
                         // One water particle beside eight of a wall, which take it.
                         let theirs = &mut sums[(j as usize - first) * rows..][..rows];
-                        let mut fit = Fit::all(zero);
-                        each(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));
+                        let mut fit = WallExtrapolation::all(zero);
+                        for_each_row(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));
                         fit.add(w, p, volume, r.map(|x| -x));
                         if FLOW {
-                            fit.add_flow(w, volume, moves);
+                            fit.add_velocity(w, volume, moves);
                         }
-                        each(&mut fit, FLOW, |row, x| x.store_array(&mut theirs[row].0));
+                        for_each_row(&mut fit, FLOW, |row, x| x.store_array(&mut theirs[row].0));
                     } else {
                         let volume = simd::load(simd, &s[3]);
                         sum.add(w, simd::load(simd, &s[2]), volume, r);
                         if FLOW {
-                            sum.add_flow(w, volume, std::array::from_fn(|k| simd::load(simd, &v[k])));
+                            sum.add_velocity(w, volume, std::array::from_fn(|k| simd::load(simd, &v[k])));
                         }
                     }
                 }
                 if !is_water {
                     let mine = &mut sums[(c - first) * rows..][..rows];
-                    each(&mut sum, FLOW, |row, sum| mine[row].0[l] += simd::total(*sum));
+                    for_each_row(&mut sum, FLOW, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
                 }
             }
         }

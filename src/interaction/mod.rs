@@ -15,83 +15,91 @@ use std::time::Duration;
 use crate::{
     math::simd::Level,
     math::{Matrix, Vector},
-    neighbours::Near,
+    neighbours::NeighbourLists,
     particles::Particles,
-    sph::{Extra, Medium, Term, Units, boundary::Fit, equation_of_state::State, kernel::Kernel},
+    sph::{
+        AuxiliarySums, FluidProperties, Term, Units, boundary::WallExtrapolation, equation_of_state::EquationOfState,
+        kernel::Kernel,
+    },
 };
 
 /// What a sweep reads.
-pub struct Input<'a, const D: usize> {
+pub struct PairLoopInput<'a, const D: usize> {
     /// Which particles meet.
-    pub near: &'a Near<D>,
+    pub neighbours: &'a NeighbourLists<D>,
     /// The water.
-    pub water: &'a Particles<D>,
+    pub fluid: &'a Particles<D>,
     /// The boundary particles.
-    pub skin: &'a Particles<D>,
+    pub boundary: &'a Particles<D>,
     /// The velocities that they show, m/s.
-    pub shown: &'a [Vector<D>],
+    pub boundary_velocity: &'a [Vector<D>],
     /// Stress of the water, m²/s²; empty unless a law reads it.
     pub stress: &'a [Matrix<D>],
     /// B − 1 of the water's corrected gradients, –; empty unless a law reads it.
-    pub forms: &'a [Matrix<D>],
+    pub gradient_correction: &'a [Matrix<D>],
     /// Beside which boundary particles water is not shifted; empty unless a law reads it.
-    pub marks: &'a [bool],
+    pub shifting_suppressed: &'a [bool],
     /// Constants of the water.
-    pub medium: &'a Medium<D>,
+    pub properties: &'a FluidProperties<D>,
     /// Its equation of state.
-    pub state: &'a State,
+    pub equation_of_state: &'a EquationOfState,
 }
 
 /// Where a sweep writes.
-pub struct Output<'a, const D: usize> {
+pub struct PairLoopOutput<'a, const D: usize> {
     /// One for each water particle; gravity is in it.
-    pub water: &'a mut [Sums<D>],
+    pub fluid: &'a mut [PairSums<D>],
     /// One for each wet boundary particle, in the order of [`Near::wet`].
-    pub skin: &'a mut [Sums<D>],
+    pub boundary: &'a mut [PairSums<D>],
     /// One for each water particle, or none if no law needs it.
-    pub extra: &'a mut [Extra<f64, D>],
+    pub auxiliary: &'a mut [AuxiliarySums<f64, D>],
 }
 
 /// The sums of one particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sums<const D: usize> {
+pub struct PairSums<const D: usize> {
     /// Acceleration, m/s²; for a boundary particle, force over m = ρ₀ dpᴰ.
-    pub dv: Vector<D>,
+    pub acceleration: Vector<D>,
     /// Rate of x = ρ/ρ₀ − 1, 1/s.
-    pub dx: f64,
+    pub compression_rate: f64,
 }
 
-impl<const D: usize> Sums<D> {
+impl<const D: usize> PairSums<D> {
     /// No neighbour.
     pub fn zero() -> Self {
-        Self { dv: Vector::zeros(), dx: 0.0 }
+        Self { acceleration: Vector::zeros(), compression_rate: 0.0 }
     }
 }
 
 /// The largest values that limit a time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peaks {
+pub struct StepLimits {
     /// Largest acceleration of a water particle, m/s².
     pub acceleration: f64,
     /// Largest |v_ab·r_ab|/(r² + η²), 1/s.
-    pub closing: f64,
+    pub approach_rate: f64,
 }
 
 /// A sweep with its laws compiled in. One call a pass goes through the trait object; inside there is no branch
 /// on a choice of law.
-pub trait Sweep<const D: usize>: Send + Sync {
+pub trait PairLoop<const D: usize>: Send + Sync {
     /// Whether [`Extra`] sums are made.
-    fn extra(&self) -> bool;
+    fn has_auxiliary_sums(&self) -> bool;
 
     /// Time spent on pairs so far.
-    fn spent(&self) -> Duration;
+    fn time_spent(&self) -> Duration;
 
     /// Sums of the wet boundary particles over the water, for walls that settle or that it sticks to (with its `flow`); the
     /// lists must hold, and [`Sweep::rates`] comes next, with the same water.
-    fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]);
+    fn extrapolate_to_boundary(
+        &mut self,
+        input: &PairLoopInput<'_, D>,
+        flow: bool,
+        fits: &mut [WallExtrapolation<f64, D>],
+    );
 
     /// Sums over all pairs; the lists must hold.
-    fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks;
+    fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits;
 }
 
 /// The sweep of the laws `inner` among water and `wall` between water and solids, made for `medium`, which is counted
@@ -100,19 +108,19 @@ pub fn compile<K, T, W, const D: usize>(
     kernel: K,
     inner: T,
     wall: W,
-    medium: &Medium<D>,
+    medium: &FluidProperties<D>,
     units: Units,
     level: Option<Level>,
-) -> Box<dyn Sweep<D>>
+) -> Box<dyn PairLoop<D>>
 where
     K: Kernel + 'static,
     T: Term<D> + 'static,
     W: Term<D> + 'static,
 {
-    let laws = Box::new(compiled::Compiled::new(kernel, inner, wall, medium));
-    let fits = Box::new(boundary_sums::Weighed(kernel.on_lattice(medium)));
+    let laws = Box::new(compiled::CompiledTerms::new(kernel, inner, wall, medium));
+    let fits = Box::new(boundary_sums::KernelSums(kernel.normalised_on_lattice(medium)));
     match level {
-        Some(level) => Box::new(simd::Lanes::new(laws, fits, units, level)),
-        None => Box::new(reference::Gather::new(laws, fits)),
+        Some(level) => Box::new(simd::SimdPairLoop::new(laws, fits, units, level)),
+        None => Box::new(reference::ReferencePairLoop::new(laws, fits)),
     }
 }

@@ -12,40 +12,40 @@ use fearless_simd::{Select, SimdBase, SimdCvtFloat, SimdFloat};
 use rayon::prelude::*;
 
 use super::{
-    Input, Output, Peaks, Sums, Sweep,
-    accumulators::{Needs, Running, triangle},
-    boundary_sums::{self, Fits},
-    compiled::{Compiled, Laws},
-    simd_layout::{Cluster, Packed},
+    PairLoop, PairLoopInput, PairLoopOutput, PairSums, StepLimits,
+    accumulators::{Accumulators, RequiredSums, triangle},
+    boundary_sums::{self, BoundarySums},
+    compiled::{CompiledTerms, PairTerms},
+    simd_layout::{PackedCluster, PackedParticles},
 };
 use crate::{
     math::Vector,
-    math::simd::{self, LANES, Level, Row, Simd, Work, f32x8, i32x8},
+    math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
     neighbours::{Clusters, Pairs, Slab},
-    particles::PER_TASK,
-    sph::{Extra, Pair, Side, Term, Units, boundary::Fit, kernel::Kernel},
+    particles::PARTICLES_PER_TASK,
+    sph::{AuxiliarySums, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
 /// The sweep in lanes with its laws.
-pub(super) struct Lanes<const D: usize> {
-    laws: Box<dyn Laws<D>>,
-    fits: Box<dyn Fits<D>>,
+pub(super) struct SimdPairLoop<const D: usize> {
+    laws: Box<dyn PairTerms<D>>,
+    fits: Box<dyn BoundarySums<D>>,
     units: Units,
     level: Level,
-    packed: Packed<D>,
+    packed: PackedParticles<D>,
     /// Whether the water lies packed for this pass already.
     has_water: bool,
     /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
-    sums: Vec<Row>,
+    sums: Vec<LaneRow>,
     /// Where in `sums` the rows of a cluster begin: its own slab's, and those of the slab before.
     at: Vec<[u32; 2]>,
     spent: Duration,
 }
 
-impl<const D: usize> Lanes<D> {
+impl<const D: usize> SimdPairLoop<D> {
     /// The sweep of those laws, made in `units`.
-    pub(super) fn new(laws: Box<dyn Laws<D>>, fits: Box<dyn Fits<D>>, units: Units, level: Level) -> Self {
-        let (packed, sums, at) = (Packed::default(), Vec::new(), Vec::new());
+    pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>, units: Units, level: Level) -> Self {
+        let (packed, sums, at) = (PackedParticles::default(), Vec::new(), Vec::new());
         Self { laws, fits, units, level, packed, has_water: false, sums, at, spent: Duration::ZERO }
     }
 
@@ -67,8 +67,8 @@ impl<const D: usize> Lanes<D> {
         }
         // The first slab has none before it: rows of zeros stand for them.
         self.at.iter_mut().take_while(|at| at[1] == u32::MAX).for_each(|at| at[1] = offset as u32);
-        self.sums.resize(offset + rows, Row::default());
-        self.sums[offset..].fill(Row::default());
+        self.sums.resize(offset + rows, LaneRow::default());
+        self.sums[offset..].fill(LaneRow::default());
         lengths
     }
 
@@ -83,7 +83,7 @@ impl<const D: usize> Lanes<D> {
 
     /// Acceleration and density rate of the particle in `slot`, in SI.
     #[inline(always)]
-    fn sums_of(&self, slot: u32) -> Sums<D> {
+    fn sums_of(&self, slot: u32) -> PairSums<D> {
         let rate = 1.0 / self.units.time;
         let acceleration = self.units.length * rate * rate;
         let sum = self.of_slot(slot, D + 1);
@@ -91,29 +91,36 @@ impl<const D: usize> Lanes<D> {
         for (k, dv) in dv.iter_mut().enumerate() {
             *dv = sum(k) * acceleration;
         }
-        Sums { dv, dx: sum(D) * rate }
+        PairSums { acceleration: dv, compression_rate: sum(D) * rate }
     }
 
     /// The extra sums of the particle in `slot`, in SI.
-    fn extra_of(&self, slot: u32, needs: Needs) -> Extra<f64, D> {
-        let (sum, mut sums) = (self.of_slot(slot, needs.sums(D)), Running::all(0.0));
+    fn extra_of(&self, slot: u32, needs: RequiredSums) -> AuxiliarySums<f64, D> {
+        let (sum, mut sums) = (self.of_slot(slot, needs.sums(D)), Accumulators::all(0.0));
         sums.each(needs, needs, |row, x| *x = sum(row));
         let Units { length, time } = self.units;
-        let Extra { grad_c, div_r, held, strain, moment } = sums.extra;
+        let AuxiliarySums { concentration_gradient, position_divergence, shifting_suppressed, strain, moment } =
+            sums.extra;
         let strain = strain.map(|row| row.map(|x| x / time));
-        Extra { grad_c: grad_c.map(|x| x / length), div_r, held, strain, moment }
+        AuxiliarySums {
+            concentration_gradient: concentration_gradient.map(|x| x / length),
+            position_divergence: position_divergence,
+            shifting_suppressed: shifting_suppressed,
+            strain,
+            moment,
+        }
     }
 
     /// Sums over all slabs; gives the largest |v_ab·r_ab|/(r² + η²), 1/s.
     fn pairs(&mut self, clusters: &Clusters) -> f64 {
-        let lengths = self.lay_out(clusters, self.laws.needs().sums(D));
+        let lengths = self.lay_out(clusters, self.laws.required_sums().sums(D));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let (laws, level, packed) = (&self.laws, self.level, &self.packed);
         let closing = works
             .into_par_iter()
             .with_max_len(1)
-            .map(|(slab, sums)| laws.slab(level, packed, slab, sums))
+            .map(|(slab, sums)| laws.sum_slab(level, packed, slab, sums))
             .reduce(|| 0.0, |a, b| if b > a { b } else { a });
         self.spent += start.elapsed();
         f64::from(closing) / self.units.time
@@ -121,7 +128,7 @@ impl<const D: usize> Lanes<D> {
 }
 
 /// The slabs, each with the rows of `sums` that it writes.
-fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [Row]) -> Vec<(&'a Slab, &'a mut [Row])> {
+fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [LaneRow]) -> Vec<(&'a Slab, &'a mut [LaneRow])> {
     let mut rest = sums;
     let mut works = Vec::with_capacity(lengths.len());
     for (slab, &length) in clusters.slabs.iter().zip(lengths) {
@@ -132,113 +139,124 @@ fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [Row]) -> 
     works
 }
 
-impl<const D: usize> Sweep<D> for Lanes<D> {
-    fn extra(&self) -> bool {
-        self.laws.needs().any()
+impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
+    fn has_auxiliary_sums(&self) -> bool {
+        self.laws.required_sums().any()
     }
 
-    fn spent(&self) -> Duration {
+    fn time_spent(&self) -> Duration {
         self.spent
     }
 
-    fn fits(&mut self, input: &Input<'_, D>, flow: bool, fits: &mut [Fit<f64, D>]) {
-        let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
+    fn extrapolate_to_boundary(
+        &mut self,
+        input: &PairLoopInput<'_, D>,
+        flow: bool,
+        extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
+    ) {
+        let Pairs::Clusters(clusters, _) = input.neighbours.pairs() else {
+            unreachable!("lanes have lists of clusters")
+        };
         self.packed.pack(input, clusters, &self.units, false);
         self.has_water = true;
         let lengths = self.lay_out(clusters, boundary_sums::rows(D, flow));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let (sums, level, packed) = (&self.fits, self.level, &self.packed);
-        works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.slab(level, packed, slab, flow, rows));
+        works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.sum_slab(level, packed, slab, flow, rows));
         self.spent += start.elapsed();
         let Units { length, time } = self.units;
-        fits.par_iter_mut().zip(&clusters.wet).with_min_len(PER_TASK).for_each(|(fit, &slot)| {
-            let sum = self.of_slot(slot, boundary_sums::rows(D, flow));
-            boundary_sums::each(fit, flow, |row, x| *x = sum(row));
-            fit.head *= (length / time).powi(2);
-            fit.arm = fit.arm.map(|x| x * length);
-            fit.flow = fit.flow.map(|x| x * (length / time));
-        });
+        extrapolate_to_boundary.par_iter_mut().zip(&clusters.wet).with_min_len(PARTICLES_PER_TASK).for_each(
+            |(fit, &slot)| {
+                let sum = self.of_slot(slot, boundary_sums::rows(D, flow));
+                boundary_sums::for_each_row(fit, flow, |row, x| *x = sum(row));
+                fit.head *= (length / time).powi(2);
+                fit.arm = fit.arm.map(|x| x * length);
+                fit.velocity = fit.velocity.map(|x| x * (length / time));
+            },
+        );
     }
 
-    fn rates(&mut self, input: &Input<'_, D>, output: &mut Output<'_, D>) -> Peaks {
-        let Pairs::Clusters(clusters, _) = input.near.pairs() else { unreachable!("lanes have lists of clusters") };
-        let needs = self.laws.needs();
+    fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits {
+        let Pairs::Clusters(clusters, _) = input.neighbours.pairs() else {
+            unreachable!("lanes have lists of clusters")
+        };
+        let needs = self.laws.required_sums();
         self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
         if needs.inputs(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
         let closing = self.pairs(clusters);
-        let g = input.medium.gravity;
-        let water = output.water.par_iter_mut().zip(&clusters.water).with_min_len(PER_TASK);
+        let g = input.properties.gravity;
+        let water = output.fluid.par_iter_mut().zip(&clusters.water).with_min_len(PARTICLES_PER_TASK);
         let a2 = water
             .map(|(out, &slot)| {
                 *out = self.sums_of(slot);
-                out.dv += g;
-                out.dv.norm_squared()
+                out.acceleration += g;
+                out.acceleration.norm_squared()
             })
             .reduce(|| 0.0, f64::max);
-        let skin = output.skin.par_iter_mut().zip(&clusters.wet).with_min_len(PER_TASK);
+        let skin = output.boundary.par_iter_mut().zip(&clusters.wet).with_min_len(PARTICLES_PER_TASK);
         skin.for_each(|(out, &slot)| *out = self.sums_of(slot));
-        let extra = output.extra.par_iter_mut().zip(&clusters.water).with_min_len(PER_TASK);
+        let extra = output.auxiliary.par_iter_mut().zip(&clusters.water).with_min_len(PARTICLES_PER_TASK);
         extra.for_each(|(out, &slot)| *out = self.extra_of(slot, needs));
-        Peaks { acceleration: a2.sqrt(), closing }
+        StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
     }
 }
 
 /// The sums of a slab by the laws `laws`.
 pub(super) fn slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
-    laws: &Compiled<K, T, W>,
+    laws: &CompiledTerms<K, T, W>,
     level: Level,
-    packed: &Packed<D>,
+    packed: &PackedParticles<D>,
     slab: &Slab,
-    sums: &mut [Row],
+    sums: &mut [LaneRow],
 ) -> f32 {
-    simd::with(level, OfSlab { laws: *laws, packed, slab, sums })
+    simd::dispatch(level, SlabTask { laws: *laws, packed, slab, sums })
 }
 
-struct OfSlab<'a, K, T, W, const D: usize> {
+struct SlabTask<'a, K, T, W, const D: usize> {
     /// By value: so the compiler sees that no sum written changes it.
-    laws: Compiled<K, T, W>,
-    packed: &'a Packed<D>,
+    laws: CompiledTerms<K, T, W>,
+    packed: &'a PackedParticles<D>,
     slab: &'a Slab,
-    sums: &'a mut [Row],
+    sums: &'a mut [LaneRow],
 }
 
 /// One particle in all lanes.
-struct One<S: Simd, const D: usize> {
+struct LoneParticle<S: Simd, const D: usize> {
     cluster: usize,
     x: [i32x8<S>; D],
     v: [f32x8<S>; D],
-    side: Side<f32x8<S>, D>,
+    side: PairSide<f32x8<S>, D>,
 }
 
 /// What every pair of a slab needs.
 #[derive(Clone, Copy)]
-struct Given<'a, S: Simd, K, const D: usize> {
+struct SlabInput<'a, S: Simd, K, const D: usize> {
     simd: S,
     kernel: K,
     eta2: f32x8<S>,
     reach2: f32x8<S>,
     zero: f32x8<S>,
-    clusters: &'a [Cluster<D>],
+    clusters: &'a [PackedCluster<D>],
     /// Rows of input.
-    rows: &'a [Row],
+    rows: &'a [LaneRow],
     /// The slab's first cluster.
     first: usize,
     /// What all laws together need.
-    needs: Needs,
+    needs: RequiredSums,
 }
 
-impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> Work for OfSlab<'_, K, T, W, D> {
+impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_, K, T, W, D> {
     type Output = f32;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> f32 {
         let Self { laws, packed, slab, sums } = self;
         let Slab { first, middle, end, spans, index } = slab;
-        let needs = const { Needs::of::<(T, W), D>() };
-        let given = Given {
+        let needs = const { RequiredSums::of::<(T, W), D>() };
+        let given = SlabInput {
             simd,
             kernel: laws.kernel,
             eta2: f32x8::splat(simd, laws.eta2 as f32),
@@ -249,7 +267,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> Work for OfSlab<'_, K, T
             first: *first,
             needs,
         };
-        sums.fill(Row::default());
+        sums.fill(LaneRow::default());
         let mut closing = given.zero;
         for c in *first..*end {
             for l in 0..LANES {
@@ -260,24 +278,24 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> Work for OfSlab<'_, K, T
                 }
                 // Water meets water first; a boundary particle meets water only, by the laws of walls.
                 let skin = if c < *middle { skin } else { start };
-                let (one, mut sum) = (given.one(c, l), Running::all(given.zero));
+                let (one, mut sum) = (given.one(c, l), Accumulators::all(given.zero));
                 given.meet(&laws.inner, &one, &index[start..skin], sums, &mut sum, &mut closing);
                 given.meet(&laws.wall, &one, &index[skin..end], sums, &mut sum, &mut closing);
                 let mine = &mut sums[(c - first) * needs.sums(D)..][..needs.sums(D)];
-                sum.each(needs, needs, |row, sum| mine[row].0[l] += simd::total(*sum));
+                sum.each(needs, needs, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
             }
         }
-        simd::largest(closing)
+        simd::max_lane(closing)
     }
 }
 
-impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
+impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
     /// The particle in lane `l` of cluster `c`.
     #[inline(always)]
-    fn one(&self, c: usize, l: usize) -> One<S, D> {
-        let Cluster { x, v, s } = &self.clusters[c];
+    fn one(&self, c: usize, l: usize) -> LoneParticle<S, D> {
+        let PackedCluster { x, v, s } = &self.clusters[c];
         let all = |x: f32| f32x8::splat(self.simd, x);
-        let mut one = One {
+        let mut one = LoneParticle {
             cluster: c,
             x: [i32x8::splat(self.simd, 0); D],
             v: [self.zero; D],
@@ -292,15 +310,24 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
 
     /// A side of a pair from densities, pressure and volume `s` and what `read` makes of the rows beside cluster `c`.
     #[inline(always)]
-    fn side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> Side<f32x8<S>, D> {
+    fn side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> PairSide<f32x8<S>, D> {
         let [x, low, p, s] = s;
         let (repulsion, mark, none) = (self.zero, self.zero, [[self.zero; D]; D]);
-        let mut side = Side { x, low, p, s, repulsion, mark, stress: none, form: none };
+        let mut side = PairSide {
+            compression: x,
+            compression_lo: low,
+            p,
+            specific_volume: s,
+            repulsion,
+            shifting_suppressed: mark,
+            stress: none,
+            gradient_correction: none,
+        };
         let inputs = self.needs.inputs(D);
         if inputs > 0 {
             let rows = &self.rows[c * inputs..][..inputs];
-            if self.needs.mark {
-                side.mark = read(&rows[0].0);
+            if self.needs.suppression {
+                side.shifting_suppressed = read(&rows[0].0);
             }
             if self.needs.repulsion {
                 side.repulsion = read(&rows[self.needs.repulsion_at()].0);
@@ -309,8 +336,8 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
             if self.needs.stress {
                 triangle(&mut side.stress, self.needs.stress_at(), &mut entry);
             }
-            if self.needs.form {
-                triangle(&mut side.form, self.needs.form_at(D), &mut entry);
+            if self.needs.gradient_correction {
+                triangle(&mut side.gradient_correction, self.needs.form_at(D), &mut entry);
             }
         }
         side
@@ -322,21 +349,21 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
     fn meet<L: Term<D>>(
         &self,
         law: &L,
-        one: &One<S, D>,
+        one: &LoneParticle<S, D>,
         others: &[u32],
-        sums: &mut [Row],
-        sum: &mut Running<f32x8<S>, D>,
+        sums: &mut [LaneRow],
+        sum: &mut Accumulators<f32x8<S>, D>,
         closing: &mut f32x8<S>,
     ) {
-        let (simd, zero, own) = (self.simd, self.zero, const { Needs::of::<L, D>() });
+        let (simd, zero, own) = (self.simd, self.zero, const { RequiredSums::of::<L, D>() });
         let rows = self.needs.sums(D);
         let nowhere = sums.len() - rows;
         for &j in others {
             let j = j as usize;
-            let Cluster { x, v, s } = &self.clusters[j];
+            let PackedCluster { x, v, s } = &self.clusters[j];
             let (mut r_ab, mut v_ab, mut force) = ([zero; D], [zero; D], [zero; D]);
             for k in 0..D {
-                r_ab[k] = f32x8::float_from(one.x[k] - simd::load_whole(simd, &x[k]));
+                r_ab[k] = f32x8::float_from(one.x[k] - simd::load_integers(simd, &x[k]));
                 v_ab[k] = one.v[k] - simd::load(simd, &v[k]);
             }
             let mut r2 = r_ab[0] * r_ab[0];
@@ -364,12 +391,12 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
                 }
             }
             let (rate_a, rate_b) = law.rate(&ab, (zero, zero));
-            let near = r2.simd_lt(self.reach2).select(ab.vr.abs() * ab.inv_r2, zero);
+            let near = r2.simd_lt(self.reach2).select(ab.velocity_along_r.abs() * ab.inv_r2, zero);
             *closing = SimdBase::max(*closing, near);
 
             let at = if j == one.cluster { nowhere } else { (j - self.first) * rows };
             let theirs = &mut sums[at..][..rows];
-            let mut b = Running::all(zero);
+            let mut b = Accumulators::all(zero);
             b.each(own, self.needs, |row, b| *b = load(&theirs[row].0));
             for (k, force) in force.into_iter().enumerate() {
                 sum.dv[k] += force;
@@ -378,7 +405,7 @@ impl<S: Simd, K: Kernel, const D: usize> Given<'_, S, K, D> {
             sum.dx = factor.mul_add(rate_a, sum.dx);
             b.dx = factor.mul_add(rate_b, b.dx);
             if L::EXTRA {
-                law.extra(&ab, factor, &mut sum.extra, &mut b.extra);
+                law.auxiliary(&ab, factor, &mut sum.extra, &mut b.extra);
             }
             b.each(own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
         }

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::{Input, accumulators::Needs};
+use super::{PairLoopInput, accumulators::RequiredSums};
 use crate::{
-    math::simd::{LANES, Row},
+    math::simd::{LANES, LaneRow},
     math::{Matrix, Vector},
     neighbours::{self, Clusters},
     sph::{Units, pressure::repulsion},
@@ -13,7 +13,7 @@ use crate::{
 /// Eight particles of one kind as a pair needs them, in the sweep's units.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Cluster<const D: usize> {
+pub(super) struct PackedCluster<const D: usize> {
     /// Position in whole units.
     pub(super) x: [[i32; LANES]; D],
     /// Velocity.
@@ -22,29 +22,32 @@ pub(super) struct Cluster<const D: usize> {
     pub(super) s: [[f32; LANES]; 4],
 }
 
-impl<const D: usize> Cluster<D> {
+impl<const D: usize> PackedCluster<D> {
     const EMPTY: Self =
         Self { x: [[0; LANES]; D], v: [[0.0; LANES]; D], s: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]] };
 }
 
 /// What every cluster needs, and rows more where laws read a mark or a stress.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Packed<const D: usize> {
-    pub(super) clusters: Vec<Cluster<D>>,
-    pub(super) rows: Vec<Row>,
+pub(super) struct PackedParticles<const D: usize> {
+    pub(super) clusters: Vec<PackedCluster<D>>,
+    pub(super) rows: Vec<LaneRow>,
 }
 
-impl<const D: usize> Packed<D> {
+impl<const D: usize> PackedParticles<D> {
     /// Packs all particles that may meet; only the boundary particles if the water has not changed since.
-    pub(super) fn pack(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
-        self.clusters.resize(clusters.len(), Cluster::EMPTY);
+    pub(super) fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
+        self.clusters.resize(clusters.len(), PackedCluster::EMPTY);
         let inv_unit = 1.0 / units.length;
         clusters.by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
             let skip = if water_stays { slab.middle - slab.first } else { 0 };
             for (c, cluster) in (slab.first..).zip(packed).skip(skip) {
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
-                let (particles, v) =
-                    if c < slab.middle { (input.water, &input.water.v[..]) } else { (input.skin, input.shown) };
+                let (particles, v) = if c < slab.middle {
+                    (input.fluid, &input.fluid.v[..])
+                } else {
+                    (input.boundary, input.boundary_velocity)
+                };
                 neighbours::fill(&mut cluster.x, source, &particles.r, inv_unit);
                 state(cluster, source, (&particles.rho, v), input, units);
             }
@@ -52,10 +55,16 @@ impl<const D: usize> Packed<D> {
     }
 
     /// Packs the rows of input that the laws need: marks of the skin, stress and corrected gradients of the water, repulsion of both.
-    pub(super) fn pack_rows(&mut self, input: &Input<'_, D>, clusters: &Clusters, units: &Units, needs: Needs) {
-        let (mark, count) = (needs.mark, needs.inputs(D));
+    pub(super) fn pack_rows(
+        &mut self,
+        input: &PairLoopInput<'_, D>,
+        clusters: &Clusters,
+        units: &Units,
+        needs: RequiredSums,
+    ) {
+        let (mark, count) = (needs.suppression, needs.inputs(D));
         self.rows.clear();
-        self.rows.resize(clusters.len() * count, Row::default());
+        self.rows.resize(clusters.len() * count, LaneRow::default());
         let scale = (units.time / units.length).powi(2);
         let packed = &self.clusters;
         clusters.by_slab(&mut self.rows, count).into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
@@ -63,13 +72,13 @@ impl<const D: usize> Packed<D> {
                 if needs.repulsion {
                     let [_, _, p, s] = packed[c].s;
                     let of = |l: usize| repulsion(f64::from(p[l]), f64::from(s[l])) as f32;
-                    rows[needs.repulsion_at()] = Row(std::array::from_fn(of));
+                    rows[needs.repulsion_at()] = LaneRow(std::array::from_fn(of));
                 }
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
                 for (l, &i) in source[..neighbours::filled(source)].iter().enumerate() {
                     let i = i as usize;
                     if mark && c >= slab.middle {
-                        rows[0].0[l] = f32::from(u8::from(input.marks[i]));
+                        rows[0].0[l] = f32::from(u8::from(input.shifting_suppressed[i]));
                     }
                     let mut tensor = |tensor: &Matrix<D>, mut k: usize, scale: f64| {
                         for row in 0..D {
@@ -82,8 +91,8 @@ impl<const D: usize> Packed<D> {
                     if needs.stress && c < slab.middle {
                         tensor(&input.stress[i], needs.stress_at(), scale);
                     }
-                    if needs.form && c < slab.middle {
-                        tensor(&input.forms[i], needs.form_at(D), 1.0);
+                    if needs.gradient_correction && c < slab.middle {
+                        tensor(&input.gradient_correction[i], needs.form_at(D), 1.0);
                     }
                 }
             }
@@ -94,17 +103,17 @@ impl<const D: usize> Packed<D> {
 /// Velocity, density and pressure of a cluster.
 #[inline(always)]
 fn state<const D: usize>(
-    cluster: &mut Cluster<D>,
+    cluster: &mut PackedCluster<D>,
     source: &[u32],
     (rho, v): (&[f64], &[Vector<D>]),
-    input: &Input<'_, D>,
+    input: &PairLoopInput<'_, D>,
     units: &Units,
 ) {
     let speed = units.time / units.length;
-    let (rho0, inv_rho0) = (input.medium.rho0, 1.0 / input.medium.rho0);
+    let (rho0, inv_rho0) = (input.properties.rho0, 1.0 / input.properties.rho0);
     let n = neighbours::filled(source);
     if n < LANES {
-        (cluster.v, cluster.s) = (Cluster::<D>::EMPTY.v, Cluster::<D>::EMPTY.s);
+        (cluster.v, cluster.s) = (PackedCluster::<D>::EMPTY.v, PackedCluster::<D>::EMPTY.s);
     }
     for (l, &i) in source[..n].iter().enumerate() {
         let i = i as usize;
@@ -114,7 +123,7 @@ fn state<const D: usize>(
         let x = (rho[i] - rho0) * inv_rho0;
         cluster.s[0][l] = x as f32;
         cluster.s[1][l] = (x - f64::from(x as f32)) as f32;
-        cluster.s[2][l] = (input.state.pressure(x) * (speed * speed)) as f32;
+        cluster.s[2][l] = (input.equation_of_state.pressure(x) * (speed * speed)) as f32;
         cluster.s[3][l] = (1.0 / (1.0 + x)) as f32;
     }
 }

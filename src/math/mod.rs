@@ -6,4 +6,4 @@ pub mod simd;
 pub mod time_series;
 mod vector;
 
-pub use vector::{Bounds, Matrix, Pose, Vector, Wedge};
+pub use vector::{Bivector, Bounds, Matrix, Pose, Vector};

@@ -13,11 +13,11 @@ pub const LANES: usize = 8;
 /// Eight numbers in a row, aligned so that none is split between cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
-pub struct Row(pub [f32; LANES]);
+pub struct LaneRow(pub [f32; LANES]);
 
 /// The instructions for lanes that this processor has, the fastest first: AVX-512 and AVX2 on x86-64, whatever there
 /// is elsewhere. A processor of 2012 has none.
-pub fn levels() -> Vec<Level> {
+pub fn instruction_sets() -> Vec<Level> {
     #[cfg(target_arch = "x86_64")]
     {
         let all = Level::new();
@@ -30,8 +30,8 @@ pub fn levels() -> Vec<Level> {
 }
 
 /// The first of [`levels`].
-pub fn level() -> Option<Level> {
-    levels().first().copied()
+pub fn best_instruction_set() -> Option<Level> {
+    instruction_sets().first().copied()
 }
 
 /// The name of a level, for people.
@@ -40,7 +40,7 @@ pub fn name(level: Level) -> String {
 }
 
 /// Work to be done with the instructions of some level; everything below `run` must be `#[inline(always)]`.
-pub trait Work {
+pub trait SimdTask {
     /// What it gives.
     type Output;
     /// Does it.
@@ -48,7 +48,7 @@ pub trait Work {
 }
 
 /// Does `work` with the instructions of `level`, one that [`levels`] gave.
-pub fn with<W: Work>(level: Level, work: W) -> W::Output {
+pub fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
         // Two instruction sets are compiled and not four: the sweeps are most of the program's compile time.
@@ -78,19 +78,19 @@ pub fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> {
 
 /// The whole numbers of a row.
 #[inline(always)]
-pub fn load_whole<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> {
+pub fn load_integers<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> {
     i32x8::simd_from(simd, *from)
 }
 
 /// The sum of all lanes, always in the same order.
 #[inline(always)]
-pub fn total<S: Simd>(x: f32x8<S>) -> f32 {
+pub fn sum_lanes<S: Simd>(x: f32x8<S>) -> f32 {
     let x = x.as_slice();
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }
 
 /// The largest of all lanes.
 #[inline(always)]
-pub fn largest<S: Simd>(x: f32x8<S>) -> f32 {
+pub fn max_lane<S: Simd>(x: f32x8<S>) -> f32 {
     x.as_slice().iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
 }

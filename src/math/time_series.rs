@@ -62,7 +62,7 @@ impl Series {
     /// Value and rate at time `t` (s) of the smooth curve through the samples: a cubic Hermite spline
     /// with the slopes of the parabola through each sample and its neighbours, so both are continuous.
     /// Outside the span the end value, at rest.
-    pub fn smooth(&self, t: f64) -> (f64, f64) {
+    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         let (first, last) = self.span();
         if t <= first || t >= last {
             return (self.at(t), 0.0);
@@ -93,12 +93,12 @@ impl Series {
     }
 
     /// The same `by` seconds later.
-    pub fn moved(&self, by: f64) -> Self {
+    pub fn shifted(&self, by: f64) -> Self {
         Self { t: self.t.iter().map(|t| t + by).collect(), x: self.x.clone() }
     }
 
     /// The same with `offset` taken off every value.
-    pub fn less(&self, offset: f64) -> Self {
+    pub fn minus(&self, offset: f64) -> Self {
         Self { t: self.t.clone(), x: self.x.iter().map(|x| x - offset).collect() }
     }
 

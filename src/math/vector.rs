@@ -18,9 +18,9 @@ pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
 /// In 2-D the one number is `m[(1, 0)]`, positive counter-clockwise; in 3-D the axial vector is
 /// (m₂₁, m₀₂, m₁₀).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Wedge<const D: usize>(pub Matrix<D>);
+pub struct Bivector<const D: usize>(pub Matrix<D>);
 
-impl<const D: usize> Wedge<D> {
+impl<const D: usize> Bivector<D> {
     /// Number of independent components: 1 in 2-D, 3 in 3-D.
     pub const COMPONENTS: usize = D * (D - 1) / 2;
 
@@ -35,7 +35,7 @@ impl<const D: usize> Wedge<D> {
     }
 
     /// The velocity that this spin gives at the arm `r` (m): Ω r.
-    pub fn at(&self, r: &Vector<D>) -> Vector<D> {
+    pub fn velocity_at(&self, r: &Vector<D>) -> Vector<D> {
         self.0 * r
     }
 
@@ -64,7 +64,7 @@ impl<const D: usize> Wedge<D> {
     }
 
     /// The same turning, carried along by `rotation`: R Ω Rᵀ.
-    pub fn turned(&self, rotation: &Matrix<D>) -> Self {
+    pub fn rotated(&self, rotation: &Matrix<D>) -> Self {
         match D {
             2 => *self,
             _ => Self::from_axial((rotation * Vector::<D>::from_iterator(self.axial())).as_slice()),
@@ -86,14 +86,14 @@ impl<const D: usize> Wedge<D> {
     }
 }
 
-impl<const D: usize> std::ops::Add for Wedge<D> {
+impl<const D: usize> std::ops::Add for Bivector<D> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
 }
 
-impl<const D: usize> std::ops::Mul<f64> for Wedge<D> {
+impl<const D: usize> std::ops::Mul<f64> for Bivector<D> {
     type Output = Self;
     fn mul(self, factor: f64) -> Self {
         Self(self.0 * factor)
@@ -121,8 +121,8 @@ impl<const D: usize> Pose<D> {
     }
 
     /// Turned by the axial angles `turn` (rad; one in 2-D, a rotation vector in 3-D), at `position`.
-    pub fn turned(position: Vector<D>, turn: &[f64]) -> Self {
-        Self { position, rotation: Wedge::from_axial(turn).exp() }
+    pub fn rotated(position: Vector<D>, turn: &[f64]) -> Self {
+        Self { position, rotation: Bivector::from_axial(turn).exp() }
     }
 
     /// World position of the local point `x` (m).
@@ -141,7 +141,7 @@ impl<const D: usize> Pose<D> {
     }
 
     /// The axial angle of the rotation (rad): one component in 2-D, a rotation vector in 3-D.
-    pub fn turn(&self) -> Vec<f64> {
+    pub fn rotation_vector(&self) -> Vec<f64> {
         let m = &self.rotation;
         if D == 2 {
             return vec![m[(1, 0)].atan2(m[(0, 0)])];
@@ -209,19 +209,19 @@ mod tests {
     fn a_turn_is_orthogonal_and_comes_back_as_its_angle() {
         // In release this is also the guard against the compiler's fault that `exp` is written around.
         for turn in [[0.0, 0.0, 1.5], [0.3, -0.4, 0.5], [1e-5, 0.0, -1e-9], [-1.0, 2.0, 0.7]] {
-            let r = Wedge::<3>::from_axial(&turn).exp();
+            let r = Bivector::<3>::from_axial(&turn).exp();
             assert!((r * r.transpose() - Matrix::identity()).norm() < 1e-14, "{r}");
-            let back = Pose { position: Vector::<3>::zeros(), rotation: r }.turn();
+            let back = Pose { position: Vector::<3>::zeros(), rotation: r }.rotation_vector();
             assert!(back.iter().zip(&turn).all(|(a, b)| (a - b).abs() < 1e-13), "{back:?}");
         }
-        let quarter = Wedge::<2>::from_axial(&[std::f64::consts::FRAC_PI_2]).exp();
+        let quarter = Bivector::<2>::from_axial(&[std::f64::consts::FRAC_PI_2]).exp();
         assert!((quarter * Vector::from([1.0, 0.0]) - Vector::from([0.0, 1.0])).norm() < 1e-15);
     }
 
     #[test]
     fn a_force_upward_on_the_right_turns_counter_clockwise() {
-        let torque = Wedge::torque(&Vector::from([1.0, 0.0]), &Vector::from([0.0, 1.0]));
+        let torque = Bivector::torque(&Vector::from([1.0, 0.0]), &Vector::from([0.0, 1.0]));
         assert_eq!(torque.axial(), vec![1.0]);
-        assert_eq!(torque.power(&Wedge::from_axial(&[3.0])), 3.0);
+        assert_eq!(torque.power(&Bivector::from_axial(&[3.0])), 3.0);
     }
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::{
     columns::{Columns, Sorted},
     search::{self, Sizes},
-    whole,
+    to_integer,
 };
 use crate::{
     math::Vector,
@@ -22,7 +22,7 @@ pub const PAD: u32 = u32::MAX;
 
 /// Where a pad lies: half the range of whole numbers from its cluster, so far that no kernel reaches it and
 /// so near that no difference overflows.
-pub const AWAY: i32 = 1 << 30;
+pub const FAR_POSITION: i32 = 1 << 30;
 
 /// Widths of a column that a cluster may span.
 const SPAN: f64 = 2.0;
@@ -190,11 +190,11 @@ pub fn fill<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vect
     let n = filled(source);
     for (l, &i) in source[..n].iter().enumerate() {
         for (x, r) in x.iter_mut().zip(r[i as usize].iter()) {
-            x[l] = whole(*r, inv_unit);
+            x[l] = to_integer(*r, inv_unit);
         }
     }
     for x in x {
-        let away = x[0].wrapping_add(AWAY);
+        let away = x[0].wrapping_add(FAR_POSITION);
         x[n..].fill(away);
     }
 }

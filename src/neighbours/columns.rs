@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::{
     math::{Bounds, Vector},
-    particles::PER_TASK,
+    particles::PARTICLES_PER_TASK,
 };
 
 /// Most columns per particle: where particles lie far apart the columns are made wider.
@@ -115,7 +115,7 @@ impl<const D: usize> Columns<D> {
     /// Sorts the particles `which` of those at `r` (m) by column, height and index.
     pub(super) fn sort(&self, r: &[Vector<D>], which: &[u32]) -> Sorted {
         let columns: Vec<u32> =
-            which.par_iter().with_min_len(PER_TASK).map(|&i| self.column(&r[i as usize]) as u32).collect();
+            which.par_iter().with_min_len(PARTICLES_PER_TASK).map(|&i| self.column(&r[i as usize]) as u32).collect();
         let mut start = vec![0u32; self.len() + 1];
         for &c in &columns {
             start[c as usize + 1] += 1;
@@ -144,17 +144,21 @@ impl<const D: usize> Columns<D> {
                 keys[(start[c] - first) as usize..(start[c + 1] - first) as usize].sort_unstable();
             }
         });
-        Sorted { order: keys.into_par_iter().with_min_len(PER_TASK).map(|key| key as u32).collect(), start }
+        Sorted { order: keys.into_par_iter().with_min_len(PARTICLES_PER_TASK).map(|key| key as u32).collect(), start }
     }
 
     /// Which of the places `skin` may be within `reach` of the sorted water, in ascending order.
-    pub(super) fn beside(&self, water: &[Vector<D>], sorted: &Sorted, skin: &[Vector<D>], reach: f64) -> Vec<u32> {
+    pub(super) fn near_water(&self, water: &[Vector<D>], sorted: &Sorted, skin: &[Vector<D>], reach: f64) -> Vec<u32> {
         let heights = self.heights(water, sorted, reach);
         let may = |x: &Vector<D>| {
             let within = |(low, high)| low <= x[self.up] && x[self.up] <= high;
             self.around.contains(x) && heights[self.column(x)].is_some_and(within)
         };
-        (0..skin.len() as u32).into_par_iter().with_min_len(PER_TASK).filter(|&i| may(&skin[i as usize])).collect()
+        (0..skin.len() as u32)
+            .into_par_iter()
+            .with_min_len(PARTICLES_PER_TASK)
+            .filter(|&i| may(&skin[i as usize]))
+            .collect()
     }
 
     /// For each column, between which heights (m) lie the places within `reach` of the sorted water: a box around

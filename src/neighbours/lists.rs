@@ -21,14 +21,14 @@ pub struct Span {
 
 /// The neighbours of [`CHUNK`] particles.
 #[derive(Clone, Debug, Default)]
-pub struct Chunk {
+pub struct ParticleListChunk {
     /// One span a particle.
     pub spans: Vec<Span>,
     /// Neighbours, one particle after the other.
     pub index: Vec<u32>,
 }
 
-impl Chunk {
+impl ParticleListChunk {
     /// Neighbours of both kinds of the chunk's `i`-th particle.
     #[inline(always)]
     pub fn of(&self, i: usize) -> (&[u32], &[u32]) {
@@ -39,17 +39,17 @@ impl Chunk {
 
 /// The lists of all particles.
 #[derive(Clone, Debug, Default)]
-pub struct Lists {
+pub struct ParticleLists {
     /// For water: first kind water, second kind skin.
-    pub water: Vec<Chunk>,
+    pub water: Vec<ParticleListChunk>,
     /// For the wet boundary particles: first kind water; no second.
-    pub skin: Vec<Chunk>,
+    pub skin: Vec<ParticleListChunk>,
 }
 
-impl Lists {
+impl ParticleLists {
     /// Memory of the lists, B.
     pub(super) fn bytes(&self) -> usize {
-        let chunk = |chunk: &Chunk| 12 * chunk.spans.len() + 4 * chunk.index.len();
+        let chunk = |chunk: &ParticleListChunk| 12 * chunk.spans.len() + 4 * chunk.index.len();
         self.water.iter().chain(&self.skin).map(chunk).sum()
     }
 
@@ -62,7 +62,7 @@ impl Lists {
         near: &[u32],
         reach: f64,
     ) -> Vec<u32> {
-        self.water.resize_with(water_r.len().div_ceil(CHUNK), Chunk::default);
+        self.water.resize_with(water_r.len().div_ceil(CHUNK), ParticleListChunk::default);
         self.water.par_iter_mut().enumerate().for_each(|(c, chunk)| {
             chunk.clear();
             for i in c * CHUNK..water_r.len().min((c + 1) * CHUNK) {
@@ -82,7 +82,7 @@ impl Lists {
             }
         }
         let wet: Vec<u32> = near.iter().copied().filter(|&i| beside[i as usize]).collect();
-        self.skin.resize_with(wet.len().div_ceil(CHUNK), Chunk::default);
+        self.skin.resize_with(wet.len().div_ceil(CHUNK), ParticleListChunk::default);
         self.skin.par_iter_mut().zip(wet.par_chunks(CHUNK)).for_each(|(chunk, wet)| {
             chunk.clear();
             for &i in wet {
@@ -95,7 +95,7 @@ impl Lists {
     }
 }
 
-impl Chunk {
+impl ParticleListChunk {
     fn clear(&mut self) {
         self.spans.clear();
         self.index.clear();

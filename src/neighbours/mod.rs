@@ -10,9 +10,9 @@ mod grid;
 mod lists;
 mod search;
 
-pub use clusters::{AWAY, Clusters, PAD, Slab, fill, filled};
+pub use clusters::{Clusters, FAR_POSITION, PAD, Slab, fill, filled};
 pub use grid::Grid;
-pub use lists::{CHUNK, Chunk, Lists, Span};
+pub use lists::{CHUNK, ParticleListChunk, ParticleLists, Span};
 
 use std::sync::OnceLock;
 
@@ -35,85 +35,95 @@ const UNITS: f64 = (1 << 24) as f64;
 #[derive(Clone, Debug)]
 pub enum Pairs {
     /// Each with its list of single neighbours.
-    Lists(Lists),
+    Lists(ParticleLists),
     /// Each with its list of later clusters, searched with the instructions of that level.
     Clusters(Clusters, Level),
 }
 
 /// The neighbours of the water and of the skin, and the positions for which they were found.
 #[derive(Clone, Debug)]
-pub struct Near<const D: usize> {
+pub struct NeighbourLists<const D: usize> {
     /// Kernel support, m.
-    reach: f64,
+    support_radius: f64,
     /// Particle spacing, m.
     dp: f64,
     pairs: Pairs,
     /// Boundary particles with water within the lists' reach, in ascending order.
-    wet: Vec<u32>,
+    boundary_near_fluid: Vec<u32>,
     /// Positions of water and skin at the last build, m.
-    built: (Vec<Vector<D>>, Vec<Vector<D>>),
+    positions_at_build: (Vec<Vector<D>>, Vec<Vector<D>>),
     /// The same in grids, for those who ask what is near a place; made when one asks.
     grids: OnceLock<(Grid<D>, Grid<D>)>,
 }
 
-impl<const D: usize> Near<D> {
+impl<const D: usize> NeighbourLists<D> {
     /// No lists yet, for a kernel of support `reach` (m) and particles `dp` (m) apart: of clusters, searched with
     /// the instructions of `level`, or else of single neighbours.
     pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self {
         let pairs = match level {
             Some(level) => Pairs::Clusters(Clusters::default(), level),
-            None => Pairs::Lists(Lists::default()),
+            None => Pairs::Lists(ParticleLists::default()),
         };
-        Self { reach, dp, pairs, wet: Vec::new(), built: (Vec::new(), Vec::new()), grids: OnceLock::new() }
+        Self {
+            support_radius: reach,
+            dp,
+            pairs,
+            boundary_near_fluid: Vec::new(),
+            positions_at_build: (Vec::new(), Vec::new()),
+            grids: OnceLock::new(),
+        }
     }
 
     /// The unit of length in which positions are whole numbers, m.
-    pub fn unit(reach: f64) -> f64 {
+    pub fn length_unit(reach: f64) -> f64 {
         reach / UNITS
     }
 
     /// Forgets the boundary particles `gone`, whose places the later ones take.
-    pub(crate) fn shift_wet(&mut self, gone: std::ops::Range<usize>) {
-        self.wet.retain(|&i| !gone.contains(&(i as usize)));
-        let later = self.wet.partition_point(|&i| (i as usize) < gone.start);
-        self.wet[later..].iter_mut().for_each(|i| *i -= gone.len() as u32);
+    pub(crate) fn remove_boundary(&mut self, gone: std::ops::Range<usize>) {
+        self.boundary_near_fluid.retain(|&i| !gone.contains(&(i as usize)));
+        let later = self.boundary_near_fluid.partition_point(|&i| (i as usize) < gone.start);
+        self.boundary_near_fluid[later..].iter_mut().for_each(|i| *i -= gone.len() as u32);
     }
 
     /// How far the lists look beyond the support, m.
     pub fn margin(&self) -> f64 {
-        MARGIN * self.reach
+        MARGIN * self.support_radius
     }
 
     /// The order in which water at `r` lies along the columns: `order[new] = old`.
     pub fn order(&self, r: &[Vector<D>]) -> Vec<u32> {
-        let columns = Columns::new(r, WIDTH * self.dp, self.look());
-        columns.sort(r, &all(r.len())).order
+        let columns = Columns::new(r, WIDTH * self.dp, self.list_radius());
+        columns.sort(r, &all_indices(r.len())).order
     }
 
     /// How far the lists look, m.
-    fn look(&self) -> f64 {
-        self.reach + self.margin()
+    fn list_radius(&self) -> f64 {
+        self.support_radius + self.margin()
     }
 
     /// Makes the lists for these positions of water and skin.
     pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
-        self.built.0.clear();
-        self.built.0.extend_from_slice(water);
-        self.built.1.clear();
-        self.built.1.extend_from_slice(skin);
+        self.positions_at_build.0.clear();
+        self.positions_at_build.0.extend_from_slice(water);
+        self.positions_at_build.1.clear();
+        self.positions_at_build.1.extend_from_slice(skin);
         self.grids = OnceLock::new();
-        let look = self.look();
+        let look = self.list_radius();
         let columns = Columns::new(water, WIDTH * self.dp, look);
-        let water_sorted = columns.sort(water, &all(water.len()));
-        let near = columns.beside(water, &water_sorted, skin, look);
-        self.wet = match &mut self.pairs {
+        let water_sorted = columns.sort(water, &all_indices(water.len()));
+        let near = columns.near_water(water, &water_sorted, skin, look);
+        self.boundary_near_fluid = match &mut self.pairs {
             Pairs::Lists(lists) => {
                 let (grid, skin_grid) = (Grid::new(water, look), Grid::new(skin, look));
                 lists.build((&grid, water), (&skin_grid, skin), &near, look)
             }
             Pairs::Clusters(clusters, level) => {
-                let sizes =
-                    search::Sizes { reach: look, width: WIDTH * self.dp, inv_unit: 1.0 / Self::unit(self.reach) };
+                let sizes = search::Sizes {
+                    reach: look,
+                    width: WIDTH * self.dp,
+                    inv_unit: 1.0 / Self::length_unit(self.support_radius),
+                };
                 let skin_sorted = columns.sort(skin, &near);
                 clusters.build(&columns, (water, &water_sorted), (skin, &skin_sorted), &sizes, *level)
             }
@@ -121,8 +131,8 @@ impl<const D: usize> Near<D> {
     }
 
     /// The positions of the water for which the lists were made, m.
-    pub fn built(&self) -> &[Vector<D>] {
-        &self.built.0
+    pub fn positions_at_build(&self) -> &[Vector<D>] {
+        &self.positions_at_build.0
     }
 
     /// Which particles meet which.
@@ -131,14 +141,16 @@ impl<const D: usize> Near<D> {
     }
 
     /// The boundary particles that have water within the lists' reach, in ascending order.
-    pub fn wet(&self) -> &[u32] {
-        &self.wet
+    pub fn boundary_near_fluid(&self) -> &[u32] {
+        &self.boundary_near_fluid
     }
 
     /// Memory of the lists, and of the particles as the sweep packs them, B.
     pub fn bytes(&self) -> usize {
         match &self.pairs {
-            Pairs::Lists(lists) => lists.bytes() + (self.built.0.len() + self.wet.len()) * 8 * (2 * D + 6),
+            Pairs::Lists(lists) => {
+                lists.bytes() + (self.positions_at_build.0.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
+            }
             // Eight particles packed in single precision: places, velocities, four numbers; and two rows of sums.
             Pairs::Clusters(clusters, _) => clusters.bytes() + clusters.source.len() * 4 * (2 * D + 4 + 2 * (D + 1)),
         }
@@ -164,23 +176,28 @@ impl<const D: usize> Near<D> {
     }
 
     fn grids(&self) -> &(Grid<D>, Grid<D>) {
-        self.grids.get_or_init(|| (Grid::new(&self.built.0, self.look()), Grid::new(&self.built.1, self.look())))
+        self.grids.get_or_init(|| {
+            (
+                Grid::new(&self.positions_at_build.0, self.list_radius()),
+                Grid::new(&self.positions_at_build.1, self.list_radius()),
+            )
+        })
     }
 
     fn around(&self, grid: &Grid<D>, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        let box_ = Bounds { min: *x, max: *x }.grown(self.look());
+        let box_ = Bounds { min: *x, max: *x }.grown(self.list_radius());
         grid.rows(&box_, |row| row.iter().for_each(|&i| visit(i as usize)));
     }
 }
 
-fn all(n: usize) -> Vec<u32> {
+fn all_indices(n: usize) -> Vec<u32> {
     (0..n as u32).collect()
 }
 
 /// `x` (m) in whole units of which `inv_unit` are a metre, modulo 2³²: differences of places near one another are
 /// exact wherever they are, up to 2⁵¹ units from the origin.
 #[inline(always)]
-pub fn whole(x: f64, inv_unit: f64) -> i32 {
+pub fn to_integer(x: f64, inv_unit: f64) -> i32 {
     // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.
     (x * inv_unit + 6_755_399_441_055_744.0).to_bits() as i32
 }

@@ -8,7 +8,7 @@ use super::{
     clusters::{Extent, PAD, Ranges, Slab},
     columns::Columns,
 };
-use crate::math::simd::{self, LANES, Level, Simd, Work, f32x8, i32x8};
+use crate::math::simd::{self, LANES, Level, Simd, SimdTask, f32x8, i32x8};
 
 /// The sizes that a search needs.
 pub(super) struct Sizes {
@@ -52,7 +52,7 @@ pub(super) fn find<const D: usize>(
         .par_iter_mut()
         .enumerate()
         .with_max_len(1)
-        .map(|(s, slab)| simd::with(level, OfSlab { search: &search, s, slab }))
+        .map(|(s, slab)| simd::dispatch(level, OfSlab { search: &search, s, slab }))
         .collect();
     // A slab's part covers itself and the next.
     let mut touched = vec![0; x.len()];
@@ -69,7 +69,7 @@ struct OfSlab<'a, 'b, const D: usize> {
     slab: &'a mut Slab,
 }
 
-impl<const D: usize> Work for OfSlab<'_, '_, D> {
+impl<const D: usize> SimdTask for OfSlab<'_, '_, D> {
     type Output = Vec<u8>;
 
     #[inline(always)]
@@ -176,7 +176,7 @@ impl<const D: usize> Search<'_, D> {
             let x = &self.x[j as usize];
             let mut r2 = f32x8::splat(simd, 0.0);
             for k in 0..D {
-                let d: f32x8<S> = f32x8::float_from(at[k] - simd::load_whole(simd, &x[k]));
+                let d: f32x8<S> = f32x8::float_from(at[k] - simd::load_integers(simd, &x[k]));
                 r2 += d * d;
             }
             let near = r2.simd_lt(reach2).to_bitmask() as u8;

@@ -18,7 +18,7 @@ use super::{cannot_write, settle, write_whole};
 use crate::{
     error::{Error, Kind, Result, nearest},
     math::Vector,
-    particles::View,
+    particles::ParticlesView,
     plan::FrameWords,
     system::System,
 };
@@ -128,16 +128,16 @@ impl Frames {
         let water = system.fluid();
         let kept = self.crop.as_ref().map(|[min, max]| {
             let inside = |i: &usize| (0..D).all(|k| (min[k]..=max[k]).contains(&water.r[*i][k]));
-            water.chosen((0..water.len()).filter(inside))
+            water.select((0..water.len()).filter(inside))
         });
         let water = kept.as_ref().map_or(water, |kept| kept.first(kept.len()));
         let [wet, dry] = names(number);
         let mut bytes = self.picture(&wet, system, water, None)?;
-        let mut owner = vec![0.0; system.skin().len()];
+        let mut owner = vec![0.0; system.boundary().len()];
         for (i, solid) in system.solids().iter().enumerate() {
-            owner[solid.skin.clone()].fill(i as f32);
+            owner[solid.boundary.clone()].fill(i as f32);
         }
-        bytes += self.picture(&dry, system, system.skin(), Some(owner))?;
+        bytes += self.picture(&dry, system, system.boundary(), Some(owner))?;
         self.bytes += bytes;
         self.times.push(t);
         self.list()
@@ -166,7 +166,7 @@ impl Frames {
         &self,
         name: &str,
         system: &System<D>,
-        particles: View<'_, D>,
+        particles: ParticlesView<'_, D>,
         owner: Option<Vec<f32>>,
     ) -> Result<u64> {
         let mut fields: Vec<Attribute> = self.fields.iter().map(|name| attribute(name, system, particles)).collect();
@@ -187,7 +187,7 @@ fn names(number: usize) -> [String; 2] {
 }
 
 /// The chosen field of all particles.
-fn attribute<const D: usize>(field: &str, system: &System<D>, particles: View<'_, D>) -> Attribute {
+fn attribute<const D: usize>(field: &str, system: &System<D>, particles: ParticlesView<'_, D>) -> Attribute {
     let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
     let all = |f: &dyn Fn(usize) -> f64| (0..particles.len()).map(|i| f(i) as f32).collect();
     match field {

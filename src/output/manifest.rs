@@ -142,7 +142,7 @@ impl Machine {
             os: std::env::consts::OS.into(),
             arch: std::env::consts::ARCH.into(),
             processor: model.unwrap_or_default().trim().into(),
-            instructions: simd::level().map(simd::name),
+            instructions: simd::best_instruction_set().map(simd::name),
             cpus: std::thread::available_parallelism().map_or(1, |n| n.get()),
         }
     }

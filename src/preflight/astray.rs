@@ -63,7 +63,7 @@ impl<const D: usize> Look<'_, D> {
 
     /// Ends of joints, lines and forces that are further off their free body than that is large.
     fn far_ties(&self, findings: &mut Vec<Finding>) {
-        let links = self.system.links();
+        let links = self.system.constraints();
         let joints = links.joints.iter().flat_map(|j| j.between.map(|end| ("joint", &j.name, end, j.at)));
         let springs = links.springs.iter().flat_map(|s| s.ends.map(|end| ("spring", &s.name, end.solid, end.at)));
         let ropes = links.ropes.iter().flat_map(|r| r.ends.map(|end| ("rope", &r.name, end.solid, end.at)));

@@ -20,7 +20,7 @@ use super::{
     thickness::thinnest,
 };
 use crate::{
-    math::{Pose, Vector, Wedge},
+    math::{Bivector, Pose, Vector},
     scene::world_bounds,
     solid::{
         FreeBody, Role, Solid,
@@ -105,7 +105,7 @@ impl<const D: usize> Look<'_, D> {
 
     /// Bodies through which water does not see, but whose middle sees the water of both sides.
     fn slender(&self, bodies: &[Body], findings: &mut Vec<Finding>) {
-        let reach = self.system.model().reach() * (1.0 - 1e-6);
+        let reach = self.system.model().support_radius() * (1.0 - 1e-6);
         let thin: Vec<&Body> = bodies.iter().filter(|b| (reach..2.0 * reach).contains(&b.thinnest_m)).collect();
         let Some(thinnest) = thin.iter().map(|b| b.thinnest_m).reduce(f64::min) else { return };
         let names: Vec<String> = thin.iter().map(|b| format!("\"{}\"", b.name)).collect();
@@ -156,9 +156,9 @@ impl<const D: usize> Look<'_, D> {
 
     /// Whether a joint to what is not free holds a point of the solid.
     fn pinned(&self, solid: &Solid<D>) -> bool {
-        let number = self.system.solid(&solid.spec.name);
+        let number = self.system.find_solid(&solid.spec.name);
         let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
-        self.system.links().joints.iter().any(|joint| {
+        self.system.constraints().joints.iter().any(|joint| {
             let [one, other] = joint.between;
             (0..D).all(|mode| joint.locks(mode))
                 && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
@@ -176,7 +176,7 @@ impl<const D: usize> Look<'_, D> {
         let tilts = self.tilts(solid, body, pose);
         let mut up = Vector::zeros();
         up[D - 1] = 1.0;
-        let lever = Wedge::torque(&(shape.submerged(pose, level).1 - pose.point(&body.centre)), &up).axial();
+        let lever = Bivector::torque(&(shape.submerged(pose, level).1 - pose.point(&body.centre)), &up).axial();
         let along = |axis: &[f64]| lever.iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
         // A body of revolution on its side has no GM; nor does it list.
         let heel = |t: &Tilt| if t.gm_m > 0.0 { along(&t.axis) / t.gm_m } else { 0.0 };
@@ -261,7 +261,7 @@ impl<const D: usize> Look<'_, D> {
     fn carried(&self, body: &Body, findings: &mut Vec<Finding>) {
         let (model, name) = (self.system.model(), &body.name);
         let density = body.density_ratio * model.rho0;
-        let reach = model.reach();
+        let reach = model.support_radius();
         if body.thinnest_m < reach * (1.0 - 1e-6) {
             let what = format!(
                 "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water sees through it",

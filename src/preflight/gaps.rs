@@ -62,7 +62,7 @@ impl<const D: usize> Look<'_, D> {
     /// one another, if it is narrower than the kernel reaches.
     fn between(&self, a: usize, b: usize) -> (f64, Option<Gap<D>>) {
         // What is as far as the kernel reaches, but for round-off, is far enough.
-        let (dp, reach) = (self.dp(), self.system.model().reach() * (1.0 - 1e-6));
+        let (dp, reach) = (self.dp(), self.system.model().support_radius() * (1.0 - 1e-6));
         let [one, other] = [a, b].map(|i| &self.solids()[i]);
         let around = world_bounds(&other.spec.shape, &other.kinematics.pose).grown(reach);
         let near = |face: &Face<D>| {
@@ -82,7 +82,7 @@ impl<const D: usize> Look<'_, D> {
     }
 
     fn said(&self, gap: Gap<D>, a: usize, b: usize) -> Finding {
-        let (dp, reach) = (self.dp(), self.system.model().reach());
+        let (dp, reach) = (self.dp(), self.system.model().support_radius());
         let name = |i: usize| &self.solids()[i].spec.name;
         let what = format!(
             "\"{}\" and \"{}\" are {} m apart at {}, {} dp, and the kernel reaches {} dp",

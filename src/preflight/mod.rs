@@ -180,7 +180,7 @@ impl<const D: usize> Look<'_, D> {
 
     /// The kernel's support over dp.
     fn reach_dp(&self) -> f64 {
-        self.system.model().reach() / self.dp()
+        self.system.model().support_radius() / self.dp()
     }
 
     fn solids(&self) -> &[Solid<D>] {

@@ -63,7 +63,7 @@ impl<const D: usize> Look<'_, D> {
     /// How large the run is; `columns`: how many each probe writes beside the time.
     pub(super) fn size(&self, step: &Step, columns: &[usize], removed: usize, findings: &mut Vec<Finding>) -> Size {
         let (system, model) = (self.system, self.system.model());
-        let (fluid, boundary) = (system.fluid().len(), system.skin().len());
+        let (fluid, boundary) = (system.fluid().len(), system.boundary().len());
         let disk = self.disk(step, columns);
         let share = removed as f64 / (removed + fluid) as f64;
         if share > TAKEN[0] {
@@ -85,8 +85,8 @@ impl<const D: usize> Look<'_, D> {
             dimension: D,
             fluid,
             boundary,
-            wet: system.wet(),
-            layers: model.layers(),
+            wet: system.boundary_near_fluid_count(),
+            layers: model.boundary_layers(),
             depth_m: self.still.depth,
             depth_dp: self.still.depth / model.dp,
             removed,
@@ -98,7 +98,7 @@ impl<const D: usize> Look<'_, D> {
     /// Memory (B) of a run: the arrays of the particles, their lists, what a step and a frame take for a while.
     fn memory(&self) -> f64 {
         let system = self.system;
-        let (fluid, boundary) = (system.fluid().len() as f64, system.skin().len() as f64);
+        let (fluid, boundary) = (system.fluid().len() as f64, system.boundary().len() as f64);
         let (d, number) = (D as f64, 8.0);
         let particle = 2.0 * d * number + number + 4.0;
         let tensor = |needed: bool| if needed { 3.0 * d * d * number } else { 0.0 };
@@ -116,7 +116,7 @@ impl<const D: usize> Look<'_, D> {
     }
 
     fn disk(&self, step: &Step, columns: &[usize]) -> Disk {
-        let (fluid, boundary) = (self.system.fluid().len() as f64, self.system.skin().len() as f64);
+        let (fluid, boundary) = (self.system.fluid().len() as f64, self.system.boundary().len() as f64);
         // An output comes at every step at most.
         let count = |every: f64| (self.until() / every.max(step.dt_s)).floor() + 1.0;
         let tables = self.plan.probes.iter().zip(columns);

@@ -119,7 +119,7 @@ impl<const D: usize> Look<'_, D> {
             for face in faces::some(&self.faces[i], PLACES_SEEN) {
                 let x = now.pose.point(&face.x);
                 if x[D - 1] <= self.still.level {
-                    let v = now.velocity + now.spin.at(&(x - now.centre));
+                    let v = now.velocity + now.spin.velocity_at(&(x - now.centre));
                     fastest = fastest.max(if slips { (now.pose.rotation * face.n).dot(&v) } else { v.norm() });
                 }
             }

@@ -102,7 +102,7 @@ impl<const D: usize> Look<'_, D> {
 
     /// Depth (m) of the water before a paddle; none if it is dry there. A step of the bed below one dp is none.
     pub(super) fn depth(&self, stand: &Stand<D>) -> Option<f64> {
-        let (dp, reach) = (self.dp(), self.system.model().reach());
+        let (dp, reach) = (self.dp(), self.system.model().support_radius());
         let water = self.system.fluid().r;
         let beside = |r: &&Vector<D>| stand.before(r).is_some_and(|ahead| (-dp..reach).contains(&ahead));
         let lowest = |least: f64, r: &Vector<D>| least.min(r[D - 1]);

@@ -59,7 +59,7 @@ impl<const D: usize> Look<'_, D> {
     /// Fixed and driven solids against the kernel's support. Fixed ones that lie against one another are one wall; tanks
     /// and polylines have as many layers as are needed, whatever they say.
     pub(super) fn walls(&self, findings: &mut Vec<Finding>) {
-        let (dp, reach) = (self.dp(), self.system.model().reach());
+        let (dp, reach) = (self.dp(), self.system.model().support_radius());
         for (solid, faces) in self.solids().iter().zip(&self.faces) {
             let pose = &solid.kinematics.pose;
             let fixed = matches!(solid.spec.role, Role::Fixed);

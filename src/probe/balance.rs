@@ -28,7 +28,7 @@ impl Balance {
             return Err(Error::scene(format!("\"{solid}\" is not free: what it weighs and carries is not known"))
                 .help("the water's load on any solid is  force = \"...\""));
         };
-        let links = system.links();
+        let links = system.constraints();
         let held = links.holds.iter().any(|hold| hold.solid == index);
         let locked = body.locked_translations.iter().chain(&body.locked_rotations).any(|locked| *locked);
         let absent = [

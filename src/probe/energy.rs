@@ -25,10 +25,10 @@ impl Energy {
     /// Motion, height and compression of the water, motion and height of the bodies.
     fn parts<const D: usize>(&self, system: &System<D>) -> [f64; 5] {
         let (mass, fluid) = (system.particle_mass(), system.fluid());
-        let compressed = mass * fluid.rho.iter().map(|&rho| system.compression(rho)).sum::<f64>();
-        let moving = system.solids().iter().map(Solid::kinetic).sum::<f64>();
+        let compressed = mass * fluid.rho.iter().map(|&rho| system.compression_energy(rho)).sum::<f64>();
+        let moving = system.solids().iter().map(Solid::kinetic_energy).sum::<f64>();
         let (water, bodies) = (water_potential(system) - self.water, bodies_potential(system) - self.bodies);
-        [system.kinetic(), water, compressed, moving, bodies]
+        [system.kinetic_energy(), water, compressed, moving, bodies]
     }
 
     /// Their sum.
@@ -61,5 +61,5 @@ fn water_potential<const D: usize>(system: &System<D>) -> f64 {
 
 /// −Σ M g·R₀ of the free bodies (J).
 fn bodies_potential<const D: usize>(system: &System<D>) -> f64 {
-    system.solids().iter().map(|solid| solid.potential(&system.gravity())).sum()
+    system.solids().iter().map(|solid| solid.potential_energy(&system.gravity())).sum()
 }

@@ -25,7 +25,7 @@ impl Joint {
     /// # Errors
     /// `Scene` if there is no such joint.
     pub fn new<const D: usize>(system: &System<D>, joint: &str) -> Result<Self> {
-        let joints = &system.links().joints;
+        let joints = &system.constraints().joints;
         let joint = find("joint", joint, joints.iter().map(|joint| joint.name.as_str()))?;
         let free = joints[joint].free.iter().map(|free| free.mode).collect();
         Ok(Self { joint, kind: joints[joint].kind, free })

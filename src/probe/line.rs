@@ -19,7 +19,7 @@ impl Line {
     /// # Errors
     /// `Scene` if there is no such spring.
     pub fn spring<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
-        let springs = system.links().springs.iter();
+        let springs = system.constraints().springs.iter();
         Ok(Self { line: find("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
     }
 
@@ -28,7 +28,7 @@ impl Line {
     /// # Errors
     /// `Scene` if there is no such rope.
     pub fn rope<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
-        let ropes = system.links().ropes.iter();
+        let ropes = system.constraints().ropes.iter();
         Ok(Self { line: find("rope", name, ropes.map(|rope| rope.name.as_str()))?, rope: true })
     }
 }

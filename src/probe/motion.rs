@@ -95,12 +95,12 @@ mod tests {
         for (axis, angle) in [(0, 0.3), (1, -0.4), (2, 2.0)] {
             let mut turn = [0.0; 3];
             turn[axis] = angle;
-            let found = turned(&Pose::<3>::turned(Vector::zeros(), &turn).rotation);
+            let found = turned(&Pose::<3>::rotated(Vector::zeros(), &turn).rotation);
             for i in 0..3 {
                 assert!((found[i] - turn[i]).abs() < 1e-14, "round-off of sin and asin; got {found:?}");
             }
         }
-        assert!((turned(&Pose::<2>::turned(Vector::zeros(), &[-1.2]).rotation)[0] + 1.2).abs() < 1e-14);
+        assert!((turned(&Pose::<2>::rotated(Vector::zeros(), &[-1.2]).rotation)[0] + 1.2).abs() < 1e-14);
     }
 
     #[test]

@@ -33,9 +33,9 @@ impl<const D: usize> Patch<D> {
         let (of, dp) = (&system.solids()[number], system.model().dp);
         let (shape, pose) = (&of.spec.shape, &of.kinematics.pose);
         // A place on an edge of the box belongs to it; no boundary particle lies deeper than the kernel reaches.
-        let (inside, near) = (part.grown(1e-9), part.grown(system.model().reach() + dp));
+        let (inside, near) = (part.grown(1e-9), part.grown(system.model().support_radius() + dp));
         let (mut behind, mut places) = (Vec::new(), Vec::new());
-        for r in &system.skin().r[of.skin.clone()] {
+        for r in &system.boundary().r[of.boundary.clone()] {
             let local = pose.local(r);
             let depth = -shape.signed_distance(&local);
             let foot = local + shape.outward(&local, 0.05 * dp) * depth;
@@ -65,7 +65,7 @@ impl<const D: usize> Probe<D> for Patch<D> {
         let solid = &system.solids()[self.solid];
         let mut force = Vector::<D>::zeros();
         system.forces_on(self.solid, &mut |i, f| {
-            if self.behind[i - solid.skin.start] {
+            if self.behind[i - solid.boundary.start] {
                 force += f;
             }
         });

@@ -35,7 +35,7 @@ pub(super) fn pressure<const D: usize>(system: &System<D>, at: &Vector<D>) -> f6
     let (fluid, gravity) = (system.fluid(), system.gravity());
     let read = |b: usize, r: &Vector<D>| {
         let head = gravity.dot(&(at - r));
-        [system.acting_pressure(fluid.rho[b]) + system.medium().rho0 * head]
+        [system.lattice_pressure(fluid.rho[b]) + system.properties().rho0 * head]
     };
     interpolate(system, at, read).unwrap_or([0.0])[0]
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{
     blob::Blob,
     figures::series,
-    format::{bare, unit},
+    format::{name_without_unit, unit},
     kept::{Kept, Table},
 };
 use crate::{analysis, analysis::Verdict, math::time_series::Series, run::Answer};
@@ -150,7 +150,7 @@ pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
     let t = blob.floats(rows.iter().map(|&i| table.t[i] as f32));
     let columns = table.columns.iter().zip(&table.x).map(|(name, x)| Column {
         name: name.clone(),
-        label: bare(name),
+        label: name_without_unit(name),
         unit: unit(name),
         x: blob.floats(rows.iter().map(|&i| x[i] as f32)),
     });
@@ -191,7 +191,7 @@ pub fn answered<'a>(answers: &'a [Answer], blob: &mut Blob) -> Vec<Answered<'a>>
         let mut put = |x: fn(&Answer) -> f64| blob.floats(rows.iter().map(|row| x(row) as f32));
         Answered {
             name: &rows[0].name,
-            label: format!("{probe} {}", bare(column)),
+            label: format!("{probe} {}", name_without_unit(column)),
             unit: &rows[0].unit,
             rows: rows.len(),
             f: put(|row| row.band.frequency),
@@ -229,7 +229,8 @@ fn thinned(table: &Table) -> Vec<usize> {
 /// The columns as charts: those that belong together, then every other one by itself.
 fn charts(columns: &[String]) -> Vec<Chart> {
     // A row of gauges is one chart, wherever they stand.
-    let names: Vec<String> = columns.iter().map(|name| bare(name.split("_at_").next().unwrap_or(name))).collect();
+    let names: Vec<String> =
+        columns.iter().map(|name| name_without_unit(name.split("_at_").next().unwrap_or(name))).collect();
     let mut left: Vec<usize> = (0..columns.len()).collect();
     let mut charts = Vec::new();
     for (family, folded) in FAMILIES {
@@ -254,7 +255,7 @@ fn books(table: &Table) -> (Vec<Chart>, Vec<String>) {
     let mut charts: Vec<Chart> = Vec::new();
     let mut kinds: Vec<(String, bool)> = Vec::new();
     for (i, name) in table.columns.iter().enumerate() {
-        let (label, idle) = (bare(name), table.idle(i));
+        let (label, idle) = (name_without_unit(name), table.idle(i));
         let (kind, way) = label.rsplit_once(' ').unwrap_or((&label, ""));
         match kinds.iter_mut().find(|known| known.0 == kind) {
             Some(known) => known.1 &= idle,
@@ -301,7 +302,7 @@ pub fn held(run: &Kept, caption: impl Fn(&Verdict) -> String, blob: &mut Blob) -
         let series = check.words().label();
         let column = series.split_once('.').map_or(series.as_str(), |(_, column)| column);
         held.push(Held {
-            label: bare(column.split(',').next().unwrap_or(column)),
+            label: name_without_unit(column.split(',').next().unwrap_or(column)),
             unit: unit(column),
             sim: line(&curves.sim),
             meaned: curves.meaned.as_ref().map(&mut line),

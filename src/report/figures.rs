@@ -28,7 +28,8 @@ pub fn rows(tables: &[Table]) -> Vec<Vec<String>> {
             }
             let Some(series) = series(&table.t, x) else { continue };
             let f = moments(&series);
-            let mut row = vec![format!("{} · {}", table.name, format::bare(name)), format::unit(name).into()];
+            let mut row =
+                vec![format!("{} · {}", table.name, format::name_without_unit(name)), format::unit(name).into()];
             row.extend([digits(f.least.0), time(f.least.1), digits(f.largest.0), time(f.largest.1)]);
             row.extend([digits(f.mean), digits(f.deviation), digits(f.last)]);
             row.extend(waves(&series).map_or_else(
@@ -52,11 +53,11 @@ pub fn energy(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     let heads = head.iter().map(|h| if *h == "part" { h.to_string() } else { format!("{h}, {unit}") });
     let mut rows = vec![heads.collect::<Vec<String>>()];
     let digits = format::digits;
-    let find = |part: &str| table.columns.iter().position(|name| format::bare(name) == part);
+    let find = |part: &str| table.columns.iter().position(|name| format::name_without_unit(name) == part);
     for (name, x) in table.columns.iter().zip(&table.x) {
         let (first, f) = (*x.first()?, moments(&series(&table.t, x)?));
         let cells = [first, f.last, f.last - first, f.least.0, f.largest.0];
-        rows.push(std::iter::once(format::bare(name)).chain(cells.map(digits)).collect());
+        rows.push(std::iter::once(format::name_without_unit(name)).chain(cells.map(digits)).collect());
     }
     let total = &table.x[find("total")?];
     let change = total.last()? - total.first()?;
@@ -83,7 +84,7 @@ pub fn budget(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
     let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
     let row = |(name, energy): (&String, &f64)| {
-        vec![format::bare(name), format::digits(*energy), format::minus(&format!("{:.2}", share(*energy)))]
+        vec![format::name_without_unit(name), format::digits(*energy), format::minus(&format!("{:.2}", share(*energy)))]
     };
     let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
     let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();

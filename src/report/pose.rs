@@ -68,8 +68,8 @@ mod tests {
         let local: Vec<Vector<3>> =
             (0..40).map(|i| Vector::from([f64::from(i % 4), f64::from(i / 4 % 3), f64::from(i / 12)]) * 0.1).collect();
         let (start, end) = (
-            Pose::<3>::turned(Vector::from([1.0, 2.0, 3.0]), &[0.1, 0.2, 0.3]),
-            Pose::<3>::turned(Vector::from([1.5, 2.0, 2.0]), &[-1.0, 2.0, 0.7]),
+            Pose::<3>::rotated(Vector::from([1.0, 2.0, 3.0]), &[0.1, 0.2, 0.3]),
+            Pose::<3>::rotated(Vector::from([1.5, 2.0, 2.0]), &[-1.0, 2.0, 0.7]),
         );
         let points = |pose: &Pose<3>| local.iter().map(|x| single(pose.point(x))).collect::<Vec<_>>();
         let found = Placement::of(&start).moved(&points(&start), &points(&end));
@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn a_flat_solid_turns_in_its_plane() {
         let start = Pose::<2>::at(Vector::from([1.0, 0.0]));
-        let end = Pose::<2>::turned(Vector::from([1.0, 0.0]), &[0.5]);
+        let end = Pose::<2>::rotated(Vector::from([1.0, 0.0]), &[0.5]);
         let points = |pose: &Pose<2>| {
             [[0.1, 0.0], [0.0, 0.2], [-0.1, 0.0], [0.0, -0.2]]
                 .map(|x| spread(&pose.point(&Vector::from(x))).map(|c| c as f32))

@@ -92,7 +92,7 @@ where
         // The list of a killed run may be ahead of its checkpoint.
         let listed = if resumed && folder.join(removed::REMOVED).exists() { usize::MAX } else { 0 };
         warnings.extend(warning);
-        warnings.extend(sim.rescued().iter().map(ToString::to_string));
+        warnings.extend(sim.rollbacks().iter().map(ToString::to_string));
         let (name, version) = Dim::<D>::VERSION;
         let engine = format!("{name} {version}");
         let manifest = Manifest { engine, warnings, values, scene: text, ..first_manifest(&sim, &plan, &checkpoint) };
@@ -131,7 +131,7 @@ impl<const D: usize> Course<D> {
                 self.judge();
                 if status == Status::Finished {
                     late = statistics::write(&self.folder, &self.plan)?;
-                    late.extend(self.sim.torn());
+                    late.extend(self.sim.violated_joints());
                     self.manifest.warnings.extend(late.iter().cloned());
                 }
                 self.update();
@@ -150,15 +150,15 @@ impl<const D: usize> Course<D> {
         let until = self.manifest.until_s;
         let mut going = watch.step(&self.progress());
         while going && self.sim.time() < until {
-            if self.sim.keeps() {
-                self.marks.retain(|(time, _)| self.sim.holds(*time));
+            if self.sim.needs_rollback_state() {
+                self.marks.retain(|(time, _)| self.sim.has_rollback_state(*time));
                 self.marks.push((self.sim.time(), self.outputs.extent()));
             }
-            let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rescued().len());
+            let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rollbacks().len());
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not moved on and do not count.
-            let moved = self.sim.system().fluid().len() + self.sim.system().wet();
+            let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
             // A run that went back has made fewer passes than before.
             self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
             stepped?;
@@ -189,7 +189,7 @@ impl<const D: usize> Course<D> {
     /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
     /// manifest, and takes back what was written of the course that ended in the alarm.
     fn follow(&mut self, known: usize, watch: &mut dyn Watch) -> Result<()> {
-        let Some(how) = self.sim.rescued().get(known).cloned() else {
+        let Some(how) = self.sim.rollbacks().get(known).cloned() else {
             return Ok(());
         };
         watch.rescued(&how);
@@ -203,7 +203,7 @@ impl<const D: usize> Course<D> {
         // knows of no alarm yet: it is met again, or another guard is set.
         self.good = false;
         self.outputs.sync()?;
-        let state = self.sim.save_rescued(known)?;
+        let state = self.sim.save_with_rollbacks(known)?;
         self.keep(state.clone(), extent.clone())?;
         self.keep(state, extent.clone())?;
         self.outputs.cut(&extent)
@@ -211,7 +211,7 @@ impl<const D: usize> Course<D> {
 
     /// Lists the particles that were removed, if that is news.
     fn list_removed(&mut self) -> Result<()> {
-        let lost = self.sim.lost();
+        let lost = self.sim.removed_particles();
         if lost.len() != self.listed {
             removed::write(&self.folder, lost)?;
             self.listed = lost.len();
@@ -274,7 +274,7 @@ impl<const D: usize> Course<D> {
     /// Brings the manifest's figures up to date.
     fn update(&mut self) {
         let now = self.progress();
-        self.manifest.removed = self.sim.lost().len();
+        self.manifest.removed = self.sim.removed_particles().len();
         self.manifest.steps = now.steps;
         self.manifest.simulated_s = now.time;
         self.manifest.wall_s = now.wall;
@@ -337,7 +337,7 @@ fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: 
         commit: option_env!("PONTOON_COMMIT").map(String::from),
         engine: String::new(),
         threads: rayon::current_num_threads(),
-        particles: Count { fluid: sim.system().fluid().len(), boundary: sim.system().skin().len() },
+        particles: Count { fluid: sim.system().fluid().len(), boundary: sim.system().boundary().len() },
         removed: 0,
         steps: 0,
         simulated_s: 0.0,
@@ -372,7 +372,7 @@ fn bodies<const D: usize>(sim: &Simulation<D>) -> Vec<Body> {
         name: s.spec.name.clone(),
         position: s.kinematics.centre.iter().copied().collect(),
         speed: s.kinematics.velocity.norm(),
-        turn_deg: s.kinematics.pose.turn().into_iter().map(f64::to_degrees).collect(),
+        turn_deg: s.kinematics.pose.rotation_vector().into_iter().map(f64::to_degrees).collect(),
     })
     .collect()
 }

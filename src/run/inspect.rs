@@ -137,7 +137,7 @@ where
     let values: Vec<InForce> = scene.resolve()?.into_iter().map(InForce::from).collect();
     let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
     // The timing tells the first alarm, which a run would answer by going back.
-    let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?.without_rescue();
+    let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?.without_rollback();
     let probes = looks::probes(&plan, &mut sim)?;
     looks::checks(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
@@ -145,7 +145,7 @@ where
     let solids = sim.system().solids().iter().map(|s| SolidCount {
         name: s.spec.name.clone(),
         role: preflight::role(&s.spec.role),
-        particles: s.skin.len(),
+        particles: s.boundary.len(),
         mesh: MeshFacts::of(&s.spec.shape),
     });
     let solids = solids.collect();

@@ -13,7 +13,7 @@ use crate::{
     error::Result,
     math::Vector,
     solid::Motion,
-    wavemaker::{Absorber, Maker, Tuning, Wave},
+    wavemaker::{Absorber, Tuning, Wave, Wavemaker},
 };
 
 /// From the paddle's face to its gauge, in smoothing lengths: so far the kernel sees.
@@ -92,7 +92,7 @@ impl Scene {
         &self,
         key: &str,
         words: &AbsorbWords,
-        maker: &Maker,
+        maker: &Wavemaker,
         site: &Site<D>,
         motion: Motion<D>,
     ) -> Result<Motion<D>> {
@@ -105,7 +105,7 @@ impl Scene {
     }
 
     /// The still paddle's own wave: none, before those that it absorbs.
-    pub(super) fn silence(&self, key: &str, words: Option<AbsorbWords>, maker: &Maker) -> Result<Wave> {
+    pub(super) fn silence(&self, key: &str, words: Option<AbsorbWords>, maker: &Wavemaker) -> Result<Wave> {
         match words.and_then(|words| words.period) {
             Some(period) => maker.silent(period).map_err(|e| self.origin.place(e, key)),
             None => Err(self.wrong(key, "which wave?")),

@@ -145,8 +145,19 @@ impl Scene {
         }
         let (limits, water) = (scene.limits(), filled.r);
         let damping = scene.zones(&still);
-        let setup =
-            Setup { model, water, levels, velocity, pressure, solids, links, domain, periodic, limits, damping };
+        let setup = Setup {
+            model,
+            water,
+            levels,
+            velocity,
+            pressure,
+            solids,
+            constraints: links,
+            domain,
+            periodic,
+            limits,
+            sponge_layers: damping,
+        };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
     }
 
@@ -235,7 +246,7 @@ impl Scene {
             shifting: words.shifting.ok_or_else(|| missing("model.shifting"))?,
             walls: words.walls.ok_or_else(|| missing("model.walls"))?,
             slip: words.slip.ok_or_else(|| missing("model.slip"))?,
-            sweep: words.sweep.unwrap_or_default(),
+            pair_loop: words.sweep.unwrap_or_default(),
             scheme: time.scheme.ok_or_else(|| missing("time.scheme"))?,
             cfl: time.cfl.ok_or_else(|| missing("time.cfl"))?,
             dt_max: time.dt_max.unwrap_or(f64::INFINITY),
@@ -282,14 +293,14 @@ impl Scene {
     /// Refuses laws that do not go together, and a kernel under which the lattice on which water starts gives way by its own
     /// pressure.
     fn steady<const D: usize>(&self, model: &Model) -> Result<()> {
-        if let Some(what) = model.clash() {
+        if let Some(what) = model.conflict() {
             let help = "write  kernel = \"wendland\"  and  shifting = \"none\", or  gradient = \"plain\"";
             return Err(self.wrong_with("model.gradient", what, help));
         }
         if model.gravity.iter().all(|g| *g == 0.0) {
             return Ok(());
         }
-        let (h, stiffness) = (model.h / model.dp, model.stiffness::<D>());
+        let (h, stiffness) = (model.h / model.dp, model.lattice_stiffness::<D>());
         if stiffness > SOFTEST {
             return Ok(());
         }
@@ -303,7 +314,7 @@ impl Scene {
 
     /// Refuses still water whose surface is so near its bed that no kernel is whole between them.
     fn deep_enough(&self, still: &Still, model: &Model) -> Result<()> {
-        let reach = model.reach();
+        let reach = model.support_radius();
         if model.gravity.last().is_none_or(|g| *g == 0.0) || still.depth > 0.999 * SHALLOW * reach {
             return Ok(());
         }

@@ -9,15 +9,15 @@ use super::{
 use crate::{
     error::{Error, Result},
     solid::{
-        ContactSpec, End, ForceSpec, FreeMode, Hold, JointKind, JointSpec, Law, Links, Motor, RopeSpec, SolidSpec,
-        SpringSpec,
+        Constraints, ContactSpec, End, ForceSpec, FreeMode, Hold, JointKind, JointSpec, Law, Motor, RopeSpec,
+        SolidSpec, SpringSpec,
         constraint::links::{check_force, check_rope, check_spring},
     },
 };
 
 impl Scene {
     /// The ties of `solids`, which are in the order of the scene.
-    pub(super) fn links<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Links<D>> {
+    pub(super) fn links<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let ends = |between: &[String], from: &[f64], to: &[f64]| {
             [(0, from), (1, to)].map(|(k, at)| End { solid: between.get(k).and_then(number), at: vector(at) })
@@ -26,7 +26,7 @@ impl Scene {
             let key = format!("{kind}.{i}");
             move |e: Error| self.origin.place(e, &key)
         };
-        let mut links = Links::default();
+        let mut links = Constraints::default();
         for (i, words) in self.joint.iter().enumerate() {
             // One solid moves against the world.
             let between = match &words.between[..] {

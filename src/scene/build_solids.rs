@@ -9,7 +9,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Matrix, Pose, Vector, Wedge, expression::Formula, time_series::Series},
+    math::{Bivector, Matrix, Pose, Vector, expression::Formula, time_series::Series},
     solid::{FreeBody, Law, Role, SolidSpec, hydrostatics::equilibrium_height},
 };
 
@@ -174,9 +174,9 @@ fn free<const D: usize>(words: &FreeWords, shape: &Shape<D>) -> FreeBody<D> {
     body.centre += given(&words.centre_offset);
     body.velocity = given(&words.velocity);
     body.spin = match &words.spin {
-        Some(Numbers::One(x)) => Wedge::from_axial(&[*x]),
-        Some(Numbers::List(list)) => Wedge::from_axial(list),
-        _ => Wedge::zero(),
+        Some(Numbers::One(x)) => Bivector::from_axial(&[*x]),
+        Some(Numbers::List(list)) => Bivector::from_axial(list),
+        _ => Bivector::zero(),
     };
     for mode in words.locked.iter().filter_map(|mode| mode.number(D)) {
         match mode.checked_sub(D) {

@@ -12,9 +12,9 @@ use super::{
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Bounds, Pose, Vector, Wedge, time_series::Series},
+    math::{Bivector, Bounds, Pose, Vector, time_series::Series},
     solid::{Law, Motion},
-    wavemaker::{Component, Maker, Paddle, Spectrum, Wave},
+    wavemaker::{Component, Paddle, Spectrum, Wave, Wavemaker},
 };
 
 /// The water at rest: what drafts and waves are measured in.
@@ -72,7 +72,7 @@ impl Scene {
         let own = world_bounds(shape, pose);
         let depth = wave.depth.unwrap_or(pool.still.depth);
         let g = self.gravity.as_ref().and_then(|g| g.last()).map_or(0.0, |g| -g);
-        let maker = Maker { depth, g, paddle: Paddle::Piston };
+        let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
         match &words.along {
             Some(along) => self.piston(key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
             None => self.flap(key, words, wave, &maker, (&own, pool)),
@@ -86,7 +86,7 @@ impl Scene {
         key: &str,
         wave: &WaveWords,
         along: Vector<D>,
-        maker: &Maker,
+        maker: &Wavemaker,
         (own, pool): (&Bounds<D>, &Pool<D>),
     ) -> Result<Motion<D>> {
         let refuse = |what: &str, help: &str| Err(self.wrong_with(&format!("{key}.along"), what, help));
@@ -117,7 +117,7 @@ impl Scene {
         key: &str,
         words: &DrivenWords,
         wave: &WaveWords,
-        maker: &Maker,
+        maker: &Wavemaker,
         (own, pool): (&Bounds<D>, &Pool<D>),
     ) -> Result<Motion<D>> {
         let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
@@ -135,11 +135,11 @@ impl Scene {
         }
         let mut up = Vector::zeros();
         up[D - 1] = 1.0;
-        let way = Wedge::<D>::from_axial(&axis).at(&up);
+        let way = Bivector::<D>::from_axial(&axis).velocity_at(&up);
         let middle = 0.5 * (pool.bounds.min + pool.bounds.max) - 0.5 * (own.min + own.max);
         let sense = if way.dot(&middle) < 0.0 { -1.0 } else { 1.0 };
         let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
-        let (key, maker) = (format!("{key}.wave"), Maker { paddle: Paddle::Flap { arm }, ..*maker });
+        let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
         let law = self.waving(&key, wave, &maker)?;
         let site = Site::of(own, way.normalize() * sense, pool.still.level);
         self.yielding(&key, wave, &maker, &site, Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
@@ -150,7 +150,7 @@ impl Scene {
         &self,
         key: &str,
         words: &WaveWords,
-        maker: &Maker,
+        maker: &Wavemaker,
         site: &Site<D>,
         motion: Motion<D>,
     ) -> Result<Motion<D>> {
@@ -161,7 +161,7 @@ impl Scene {
     }
 
     /// The wave that a paddle is to make.
-    fn waving(&self, key: &str, words: &WaveWords, maker: &Maker) -> Result<Wave> {
+    fn waving(&self, key: &str, words: &WaveWords, maker: &Wavemaker) -> Result<Wave> {
         let place = |word: &str| {
             let key = format!("{key}.{word}");
             move |e: Error| self.origin.place(e, &key)
@@ -247,6 +247,6 @@ impl Scene {
     }
 }
 
-fn sail(words: &SeaWords, spectrum: &Spectrum, maker: &Maker) -> Result<Wave> {
+fn sail(words: &SeaWords, spectrum: &Spectrum, maker: &Wavemaker) -> Result<Wave> {
     maker.sea(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
 }

@@ -19,7 +19,7 @@ use super::{
     statistics::StatisticEntry,
 };
 use crate::{
-    model::{Diffusion, Gradient, Kernel, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
+    model::{Diffusion, Gradient, Kernel, PairLoopKind, Scheme, Shifting, Slip, Viscosity, Walls},
     plan::{Align, Score},
 };
 
@@ -176,7 +176,7 @@ pub struct ModelWords {
     pub slip: Option<Slip>,
     /// Which sweep adds up the pairs.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub sweep: Option<Sweeping>,
+    pub sweep: Option<PairLoopKind>,
     /// Speed of sound, m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub c0: Option<f64>,

@@ -79,7 +79,7 @@ pub(super) fn pose<const D: usize>(at: &AtWords, shape: &Shape<D>, level: f64) -
         (None, Some(turn)) => turn.iter().map(|x| x.to_radians()).collect(),
         (None, None) => vec![0.0; 3],
     };
-    let mut pose = Pose::turned(position, &turn);
+    let mut pose = Pose::rotated(position, &turn);
     let bottom = match at.draft {
         Some(super::Draft::Metres(draft)) => Some(level - draft),
         Some(super::Draft::Equilibrium) => Some(level),

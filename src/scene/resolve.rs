@@ -127,7 +127,7 @@ impl Scene {
         let why = "no particle resolves the boundary layer, and artificial viscosity would make one many dp thick";
         filler.fill("model.slip", &mut model.slip, usual.slip, why);
         let why = "single precision where it is harmless; \"reference\" is double precision throughout";
-        filler.fill("model.sweep", &mut model.sweep, usual.sweep, why);
+        filler.fill("model.sweep", &mut model.sweep, usual.pair_loop, why);
         if model.c0.is_none() {
             let why =
                 "density varies by 1 %, a few in an impact; the depth is from the lowest water to the highest level";

@@ -5,7 +5,7 @@ use crate::{
     coupling::AcousticAddedMass,
     error::{Error, Kind, Result},
     model::Dimension,
-    solid::{Dim, HasEngine as _, Kinematics, Links, Role, Solid, SolidSpec, containment::swallowed},
+    solid::{Constraints, Dim, HasEngine as _, Kinematics, Role, Solid, SolidSpec, containment::depth_inside_mesh},
     system::Reordering,
 };
 
@@ -35,7 +35,7 @@ where
     /// says which and how deep. Nothing has changed then.
     pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<Added> {
         spec.check()?;
-        if self.system.solid(&spec.name).is_some() {
+        if self.system.find_solid(&spec.name).is_some() {
             return Err(Error::scene(format!("a solid is or was called {:?} already", spec.name))
                 .help("give each its own name, also after one was removed"));
         }
@@ -49,7 +49,7 @@ where
             Role::Fixed | Role::Free(_) => spec.start(),
         };
         self.refuse_overlap(&spec, &start)?;
-        self.join(spec, start)?;
+        self.insert_solid(spec, start)?;
         let (reordering, displaced, energy) = self.system.displace();
         let solid = self.system.solids().len() - 1;
         if let Some(accounting) = &mut self.bodies.accounting {
@@ -72,11 +72,11 @@ where
                 "they are numbered from 0, and there are {last}; find_solid tells the number of a name"
             )));
         };
-        if let Some(tie) = self.system.links().of(solid) {
+        if let Some(tie) = self.system.constraints().of(solid) {
             return Err(Error::new(Kind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
                 .help("only what nothing is tied to can be removed"));
         }
-        if there.skin.is_empty() {
+        if there.boundary.is_empty() {
             return Ok(());
         }
         let pending = self.bodies.pending_impulse(solid);
@@ -85,7 +85,7 @@ where
             accounting.add_returned(energy);
             accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.gravity()));
         }
-        self.leave(solid);
+        self.delete_solid(solid);
         let reordering = self.system.rebuild_neighbours();
         self.finish_change(reordering);
         Ok(())
@@ -99,14 +99,14 @@ where
     pub fn restore_with(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
         for spec in added {
             let start = spec.start();
-            self.join(spec, start)?;
+            self.insert_solid(spec, start)?;
         }
-        for solid in Self::read(bytes)?.gone {
+        for solid in Self::read(bytes)?.removed_solids {
             if solid as usize >= self.system.solids().len() {
                 return Err(Error::new(Kind::Restart, format!("the state says that solid number {solid} was removed"))
                     .help("give all solids that had been added, in their order"));
             }
-            self.leave(solid as usize);
+            self.delete_solid(solid as usize);
         }
         self.restore(bytes)
     }
@@ -116,7 +116,7 @@ where
         let Some(engine) = self.bodies.engine() else { return Ok(()) };
         let allowed = OVERLAP_MAX * self.system.model().dp;
         let touched = engine.overlap(spec, start)?.into_iter();
-        match touched.chain(self.swallowing(spec, start, allowed)).max_by(|a, b| a.1.total_cmp(&b.1)) {
+        match touched.chain(self.overlap_inside_mesh(spec, start, allowed)).max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((other, depth)) if depth > allowed => {
                 let other = &self.system.solids()[other].spec;
                 let what = format!("\"{}\" would come {depth:.5} m inside \"{}\"", spec.name, other.name);
@@ -129,30 +129,30 @@ where
     }
 
     /// With which solid, and how deep (m), one that comes would overlap most where it touches nothing: inside a mesh.
-    fn swallowing(&self, spec: &SolidSpec<D>, start: &Kinematics<D>, allowed: f64) -> Option<(usize, f64)> {
+    fn overlap_inside_mesh(&self, spec: &SolidSpec<D>, start: &Kinematics<D>, allowed: f64) -> Option<(usize, f64)> {
         let free = |role: &Role<D>| matches!(role, Role::Free(_));
         let depth = |(i, other): (usize, &Solid<D>)| {
-            let meets = !other.skin.is_empty() && (free(&spec.role) || free(&other.spec.role));
+            let meets = !other.boundary.is_empty() && (free(&spec.role) || free(&other.spec.role));
             let (new, old) = ((spec, &start.pose), (&other.spec, &other.kinematics.pose));
             let within = [(new, old), (old, new)].into_iter().filter(|_| meets);
-            Some((i, within.filter_map(|(inner, outer)| swallowed(inner, outer, allowed)).reduce(f64::max)?))
+            Some((i, within.filter_map(|(inner, outer)| depth_inside_mesh(inner, outer, allowed)).reduce(f64::max)?))
         };
         let depths = self.system.solids().iter().enumerate().filter_map(depth);
         depths.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Lets a solid come into water and world, unchecked and without making room for it.
-    fn join(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
+    fn insert_solid(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
         let free = matches!(spec.role, Role::Free(_));
         let founding = free && !self.bodies.external();
         match self.bodies.engine_mut() {
-            Some(engine) => engine.admit(&spec, &start)?,
+            Some(engine) => engine.add_body(&spec, &start)?,
             None if founding => {
                 let solids: Vec<_> =
                     self.system.solids().iter().map(|s| s.spec.clone()).chain([spec.clone()]).collect();
                 let starts: Vec<_> = self.system.solids().iter().map(|s| s.kinematics).chain([start]).collect();
                 let (gravity, dp) = (self.system.gravity(), self.system.model().dp);
-                self.bodies.set_engine(Dim::<D>::engine(&solids, &starts, &Links::default(), &gravity, dp)?);
+                self.bodies.set_engine(Dim::<D>::engine(&solids, &starts, &Constraints::default(), &gravity, dp)?);
             }
             None => {}
         }
@@ -163,8 +163,8 @@ where
     }
 
     /// Takes a solid out of water and world.
-    fn leave(&mut self, solid: usize) {
-        let skin = self.system.solids()[solid].skin.clone();
+    fn delete_solid(&mut self, solid: usize) {
+        let skin = self.system.solids()[solid].boundary.clone();
         self.bodies.remove_body(solid, skin.len() as u32);
         self.system.remove_body(solid);
     }
@@ -175,10 +175,10 @@ where
         if let (Some(accounting), Some(reordering)) = (&mut self.bodies.accounting, &reordering) {
             accounting.add_removed(&self.system, &reordering.lost);
         }
-        self.lost
+        self.removed
             .extend(reordering.into_iter().flat_map(|reordering| reordering.lost).map(|lost| (self.clock.time, lost)));
-        let log = std::mem::take(&mut self.rescue.log);
-        self.rescue.begin_again(log);
+        let log = std::mem::take(&mut self.rollback.log);
+        self.rollback.restart(log);
         self.system.update_rates();
     }
 }

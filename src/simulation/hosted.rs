@@ -21,13 +21,13 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        if !setup.links.is_empty() {
+        if !setup.constraints.is_empty() {
             return Err(Error::scene(
                 "joints, springs, ropes, forces and contacts of a simulation with external bodies",
             )
             .help("put them into the world that moves the bodies, and leave setup.links as Links::default()"));
         }
-        Ok(Self::with_bodies(setup, true)?.without_rescue())
+        Ok(Self::with_bodies(setup, true)?.without_rollback())
     }
 
     /// Goes one step on, and not past time `end` (s), and calls `hook` once, when the water has moved and the bodies have
@@ -60,7 +60,7 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::step`], the error that `hook` returns, and `Usage` if an external body was left without kinematics.
     pub fn step_with(&mut self, end: f64, mut hook: impl FnMut(&mut BodyStep<D>) -> Result<()>) -> Result<()> {
-        self.stride(end, &mut hook)
+        self.step_with_hook(end, &mut hook)
     }
 
     /// Whether an external program moves the free solids.

@@ -18,7 +18,7 @@ const MOST: usize = 3;
 
 /// One time that a run was rescued.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rescued {
+pub struct Rollback {
     /// What the guard said.
     pub alarm: String,
     /// When it said so, s.
@@ -29,7 +29,7 @@ pub struct Rescued {
     pub halved_until: f64,
 }
 
-impl fmt::Display for Rescued {
+impl fmt::Display for Rollback {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { alarm, back_to, halved_until, .. } = self;
         write!(f, "{alarm}: went back to {back_to:.6} s, and takes half the step until {halved_until:.6} s")
@@ -38,65 +38,65 @@ impl fmt::Display for Rescued {
 
 /// The states kept, and what came of them.
 #[derive(Default)]
-pub(super) struct Rescue {
+pub(super) struct RollbackControl {
     off: bool,
     /// The last two states, the older first: step, time, bytes.
-    kept: Vec<(u64, f64, Vec<u8>)>,
+    states: Vec<(u64, f64, Vec<u8>)>,
     /// What happened so far.
-    pub(super) log: Vec<Rescued>,
+    pub(super) log: Vec<Rollback>,
 }
 
-impl Rescue {
+impl RollbackControl {
     /// None, ever.
     pub(super) fn off() -> Self {
         Self { off: true, ..Self::default() }
     }
 
     /// Whether a state is to be kept after `steps` steps.
-    pub(super) fn due(&self, steps: u64) -> bool {
-        !self.off && (self.kept.is_empty() || steps.is_multiple_of(EVERY))
+    pub(super) fn needs_state(&self, steps: u64) -> bool {
+        !self.off && (self.states.is_empty() || steps.is_multiple_of(EVERY))
     }
 
     /// Whether a state of `time` (s) is kept.
-    pub(super) fn holds(&self, time: f64) -> bool {
-        self.kept.iter().any(|(_, at, _)| *at == time)
+    pub(super) fn has_state_at(&self, time: f64) -> bool {
+        self.states.iter().any(|(_, at, _)| *at == time)
     }
 
     /// Forgets the states kept, of another course of the run; `log` is what happened before.
-    pub(super) fn begin_again(&mut self, log: Vec<Rescued>) {
-        (self.kept, self.log) = (Vec::new(), log);
+    pub(super) fn restart(&mut self, log: Vec<Rollback>) {
+        (self.states, self.log) = (Vec::new(), log);
     }
 
     /// Makes room for another state: at most two are in memory at a time.
     pub(super) fn make_room(&mut self) {
-        if self.kept.len() == 2 {
-            self.kept.remove(0);
+        if self.states.len() == 2 {
+            self.states.remove(0);
         }
     }
 
     /// Keeps the state `bytes` of `steps` steps and `time` (s).
-    pub(super) fn keep(&mut self, steps: u64, time: f64, mut bytes: Vec<u8>) {
+    pub(super) fn store(&mut self, steps: u64, time: f64, mut bytes: Vec<u8>) {
         bytes.shrink_to_fit();
-        self.kept.push((steps, time, bytes));
+        self.states.push((steps, time, bytes));
     }
 
     /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run; none if that is no use.
-    pub(super) fn answer(&mut self, alarm: &str, steps: u64, time: f64) -> Option<Vec<u8>> {
+    pub(super) fn state_before(&mut self, alarm: &str, steps: u64, time: f64) -> Option<Vec<u8>> {
         let again = self.log.last().is_some_and(|last| time <= last.halved_until);
         if again || self.log.len() >= MOST {
             return None;
         }
-        let old = self.kept.iter().rposition(|(at, ..)| at + AGE <= steps).unwrap_or(0);
-        self.kept.truncate(old + 1);
-        let (_, back_to, bytes) = self.kept.pop()?;
+        let old = self.states.iter().rposition(|(at, ..)| at + AGE <= steps).unwrap_or(0);
+        self.states.truncate(old + 1);
+        let (_, back_to, bytes) = self.states.pop()?;
         // As long again beyond the alarm as the way back.
         let halved_until = time + (time - back_to);
-        self.log.push(Rescued { alarm: alarm.into(), at: time, back_to, halved_until });
+        self.log.push(Rollback { alarm: alarm.into(), at: time, back_to, halved_until });
         Some(bytes)
     }
 
     /// What part of the step is taken at `time` (s), –.
-    pub(super) fn share(&self, time: f64) -> f64 {
+    pub(super) fn step_factor(&self, time: f64) -> f64 {
         if self.log.last().is_some_and(|last| time < last.halved_until) { 0.5 } else { 1.0 }
     }
 }
@@ -107,22 +107,22 @@ mod tests {
 
     #[test]
     fn a_run_goes_back_far_enough_and_only_while_that_helps() {
-        let mut rescue = Rescue::default();
-        assert!(rescue.due(0));
+        let mut rescue = RollbackControl::default();
+        assert!(rescue.needs_state(0));
         for step in [0, 500, 1000] {
             rescue.make_room();
-            rescue.keep(step, step as f64 * 1e-3, vec![(step / 500) as u8]);
+            rescue.store(step, step as f64 * 1e-3, vec![(step / 500) as u8]);
         }
-        assert!(rescue.due(1500) && !rescue.due(1501));
+        assert!(rescue.needs_state(1500) && !rescue.needs_state(1501));
         // The state of step 1000 is too young.
-        assert_eq!(rescue.answer("speed", 1050, 1.05), Some(vec![1]));
+        assert_eq!(rescue.state_before("speed", 1050, 1.05), Some(vec![1]));
         let log = &rescue.log[0];
         assert_eq!((log.back_to, log.at), (0.5, 1.05));
         assert!((log.halved_until - 1.6).abs() < 1e-12);
-        assert_eq!((rescue.share(1.0), rescue.share(1.7)), (0.5, 1.0));
-        rescue.keep(900, 0.9, vec![9]);
-        assert_eq!(rescue.answer("speed", 1200, 1.2), None, "it returned while the step was halved");
-        assert!(rescue.answer("speed", 9000, 9.0).is_some(), "later trouble is other trouble");
-        assert_eq!(Rescue::off().answer("speed", 9000, 9.0), None);
+        assert_eq!((rescue.step_factor(1.0), rescue.step_factor(1.7)), (0.5, 1.0));
+        rescue.store(900, 0.9, vec![9]);
+        assert_eq!(rescue.state_before("speed", 1200, 1.2), None, "it returned while the step was halved");
+        assert!(rescue.state_before("speed", 9000, 9.0).is_some(), "later trouble is other trouble");
+        assert_eq!(RollbackControl::off().state_before("speed", 9000, 9.0), None);
     }
 }

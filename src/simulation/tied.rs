@@ -12,7 +12,7 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Scene` if there is none: says the nearest name, or all of them.
     pub fn find_joint(&self, name: &str) -> Result<usize> {
-        find("joint", name, self.system.links().joints.iter().map(|joint| joint.name.as_str()))
+        find("joint", name, self.system.constraints().joints.iter().map(|joint| joint.name.as_str()))
     }
 
     /// Number of the spring called `name`.
@@ -20,7 +20,7 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::find_joint`].
     pub fn find_spring(&self, name: &str) -> Result<usize> {
-        find("spring", name, self.system.links().springs.iter().map(|spring| spring.name.as_str()))
+        find("spring", name, self.system.constraints().springs.iter().map(|spring| spring.name.as_str()))
     }
 
     /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
@@ -34,10 +34,10 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
-    pub fn torn(&self) -> Vec<String> {
+    pub fn violated_joints(&self) -> Vec<String> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
         let said = |(i, joint): (usize, &JointSpec<D>)| {
-            let [apart, turned] = self.bodies.constraints().gap(i, &solids);
+            let [apart, turned] = self.bodies.constraints().joint_gap(i, &solids);
             (apart > 0.1 * self.system.model().dp || turned.to_degrees() > 1.0).then(|| {
                 format!(
                     "joint \"{}\" is torn by {apart:.4} m and {:.2} degrees: what else holds its solids (another joint, \
@@ -47,7 +47,7 @@ impl<const D: usize> Simulation<D> {
                 )
             })
         };
-        self.system.links().joints.iter().enumerate().filter_map(said).collect()
+        self.system.constraints().joints.iter().enumerate().filter_map(said).collect()
     }
 
     /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.
@@ -68,7 +68,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Drives joint number `joint`, a hinge or a slider, from now on, in place of the motor that it was made with; `None` gives
     /// it back to that. A checkpoint keeps it.
-    pub fn drive(&mut self, joint: usize, drive: Option<Drive>) {
+    pub fn set_motor(&mut self, joint: usize, drive: Option<Drive>) {
         self.bodies.constraints_mut().drive(joint, drive);
     }
 

@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Matrix, Vector, Wedge},
+    math::{Bivector, Matrix, Vector},
     solid::{FreeBody, Kinematics, Role, SolidSpec},
 };
 
@@ -15,8 +15,12 @@ impl<const D: usize> SolidSpec<D> {
     ///
     /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
     pub fn start(&self) -> Kinematics<D> {
-        let still =
-            Kinematics { pose: self.pose, centre: self.pose.position, velocity: Vector::zeros(), spin: Wedge::zero() };
+        let still = Kinematics {
+            pose: self.pose,
+            centre: self.pose.position,
+            velocity: Vector::zeros(),
+            spin: Bivector::zero(),
+        };
         match &self.role {
             Role::Fixed => still,
             Role::Driven(motion) => motion.kinematics(&self.pose, 0.0),
@@ -94,7 +98,7 @@ impl<const D: usize> FreeBody<D> {
             centre: volume.centroid,
             inertia: inertia * density,
             velocity: Vector::zeros(),
-            spin: Wedge::zero(),
+            spin: Bivector::zero(),
             locked_translations: [false; D],
             locked_rotations: [false; 3],
         }
@@ -149,14 +153,14 @@ mod tests {
             centre: Vector::from([0.1, 0.0, 0.0]),
             inertia: Matrix::from_diagonal(&Vector::from(inertia)),
             velocity: Vector::zeros(),
-            spin: Wedge::zero(),
+            spin: Bivector::zero(),
             locked_translations: [false; 3],
             locked_rotations: [false; 3],
         };
         SolidSpec {
             name: "buoy".into(),
             shape: Shape::Ball { radius: 0.1 },
-            pose: Pose::turned(Vector::from([1.0, 0.0, 0.0]), &[0.0, 0.0, std::f64::consts::FRAC_PI_2]),
+            pose: Pose::rotated(Vector::from([1.0, 0.0, 0.0]), &[0.0, 0.0, std::f64::consts::FRAC_PI_2]),
             role: Role::Free(body),
             friction: 0.3,
             restitution: 0.0,

@@ -20,23 +20,23 @@ pub fn place<const D: usize>(
     assert!(local.len() == r.len() && local.len() == v.len(), "a skin has one r and one v a particle");
     for ((local, r), v) in local.iter().zip(r).zip(v) {
         *r = kinematics.pose.point(local);
-        *v = kinematics.velocity + kinematics.spin.at(&(*r - kinematics.centre));
+        *v = kinematics.velocity + kinematics.spin.velocity_at(&(*r - kinematics.centre));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Pose, Wedge};
+    use crate::math::{Bivector, Pose};
 
     #[test]
     fn a_turning_solid_carries_its_skin() {
         let quarter = std::f64::consts::FRAC_PI_2;
         let kinematics = Kinematics {
-            pose: Pose::turned(Vector::from([1.0, 2.0]), &[quarter]),
+            pose: Pose::rotated(Vector::from([1.0, 2.0]), &[quarter]),
             centre: Vector::from([1.0, 2.0]),
             velocity: Vector::from([0.5, 0.0]),
-            spin: Wedge::from_axial(&[2.0]),
+            spin: Bivector::from_axial(&[2.0]),
         };
         let (mut r, mut v) = (vec![Vector::zeros()], vec![Vector::zeros()]);
         place(&kinematics, &[Vector::from([3.0, 0.0])], &mut r, &mut v);

@@ -20,7 +20,7 @@ fn touchable<'a, const D: usize>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut
 
 /// How deep (m) a place of one solid, more than `allowed` (m) inside, lies in a mesh of the other that is touched by its
 /// surface only: what is wholly inside is in touch with nothing there.
-pub(crate) fn swallowed<const D: usize>(
+pub(crate) fn depth_inside_mesh<const D: usize>(
     (one, here): Placed<D>,
     (other, there): Placed<D>,
     allowed: f64,

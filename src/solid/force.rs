@@ -1,7 +1,7 @@
 //! Forces and torques that a law puts on a free solid: wind, a thruster, a hand.
 
 use crate::{
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     solid::{Kinematics, Law, Load},
 };
 
@@ -28,12 +28,12 @@ impl<const D: usize> ForceSpec<D> {
         let value = |laws: &[Law], i: usize| laws.get(i).map_or(0.0, |law| law.at(t).0);
         let mut force = Vector::from_fn(|i, _| value(&self.force, i));
         let turns: Vec<f64> = (0..self.torque.len()).map(|i| value(&self.torque, i)).collect();
-        let mut torque = Wedge::from_axial(&turns);
+        let mut torque = Bivector::from_axial(&turns);
         if self.turns {
             let turn = now.pose.rotation * start.pose.rotation.transpose();
-            (force, torque) = (turn * force, Wedge(turn * torque.0 * turn.transpose()));
+            (force, torque) = (turn * force, Bivector(turn * torque.0 * turn.transpose()));
         }
         let at = self.at.map_or(now.centre, |at| now.pose.point(&start.pose.local(&at)));
-        Load { force, torque: torque + Wedge::torque(&(at - now.centre), &force) }
+        Load { force, torque: torque + Bivector::torque(&(at - now.centre), &force) }
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Bounds, Pose, Vector, Wedge},
+    math::{Bivector, Bounds, Pose, Vector},
     solid::FreeBody,
 };
 
@@ -75,12 +75,12 @@ pub fn metacentric_height<const D: usize>(
     let tilt = 1e-4;
     let righting = |angle: f64| -> Result<f64> {
         let mut tilted = *pose;
-        tilted.rotation = (Wedge::from_axial(axis) * angle).exp() * pose.rotation;
+        tilted.rotation = (Bivector::from_axial(axis) * angle).exp() * pose.rotation;
         tilted.position[D - 1] += equilibrium_height(shape, &tilted, body.mass, rho0, level)?;
         let buoyancy = shape.submerged(&tilted, level).1;
         let mut up = Vector::zeros();
         up[D - 1] = 1.0;
-        let lever = Wedge::torque(&(buoyancy - tilted.point(&body.centre)), &up);
+        let lever = Bivector::torque(&(buoyancy - tilted.point(&body.centre)), &up);
         Ok(-lever.axial().iter().zip(axis).map(|(t, a)| t * a).sum::<f64>())
     };
     Ok((righting(tilt)? - righting(-tilt)?) / (2.0 * tilt))

@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 use serde::{Deserialize, Serialize};
 
 use super::Kinematics;
-use crate::math::{Vector, Wedge};
+use crate::math::{Bivector, Vector};
 
 /// Force and torque on a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,18 +13,18 @@ pub struct Load<const D: usize> {
     /// Force, N (N/m in 2-D).
     pub force: Vector<D>,
     /// Torque about the solid's `centre`, N m (N m/m in 2-D).
-    pub torque: Wedge<D>,
+    pub torque: Bivector<D>,
 }
 
 impl<const D: usize> Load<D> {
     /// None.
     pub fn zero() -> Self {
-        Self { force: Vector::zeros(), torque: Wedge::zero() }
+        Self { force: Vector::zeros(), torque: Bivector::zero() }
     }
 
     /// `force` (N) alone, at the arm `r` (m) from the centre.
     pub fn at(r: &Vector<D>, force: Vector<D>) -> Self {
-        Self { force, torque: Wedge::torque(r, &force) }
+        Self { force, torque: Bivector::torque(r, &force) }
     }
 
     /// Power (W) on a solid that moves so: F·V + T·Ω.
@@ -34,7 +34,7 @@ impl<const D: usize> Load<D> {
 }
 
 /// What is around all solids in a step, beside what ties and contacts do.
-pub(crate) struct Around<const D: usize> {
+pub(crate) struct LoadContext<const D: usize> {
     /// Load of water and weight on each.
     pub(crate) loads: Vec<Load<D>>,
     /// Whether there is water at it.

@@ -14,12 +14,12 @@ pub mod rapier;
 mod tests;
 
 pub use constraint::{
-    ContactSpec, Contacts, Drive, Elastic, End, FreeMode, Hold, JointKind, JointReading, JointSpec, LineReading, Links,
-    Mobility, Motor, RopeSpec, SpringSpec,
+    Constraints, ContactSpec, Contacts, Drive, Elastic, End, FreeMode, Hold, JointKind, JointReading, JointSpec,
+    LineReading, Mobility, Motor, RopeSpec, SpringSpec,
 };
 pub use force::ForceSpec;
-pub(crate) use load::Around;
 pub use load::Load;
+pub(crate) use load::LoadContext;
 pub use prescribed_motion::{Law, Motion};
 #[cfg(feature = "dim2")]
 pub use rapier::rapier2d;
@@ -31,10 +31,10 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::wavemaker::Yielding;
+use crate::wavemaker::AbsorptionState;
 use crate::{
     geometry::Shape,
-    math::{Matrix, Pose, Vector, Wedge},
+    math::{Bivector, Matrix, Pose, Vector},
 };
 
 /// A solid as it is to be made.
@@ -80,7 +80,7 @@ pub struct FreeBody<const D: usize> {
     /// Velocity of the centre of mass, m/s.
     pub velocity: Vector<D>,
     /// Spin, rad/s.
-    pub spin: Wedge<D>,
+    pub spin: Bivector<D>,
     /// Which world translations are locked.
     pub locked_translations: [bool; D],
     /// Which world rotations (axial components, one in 2-D) are locked; entries past the last are unused.
@@ -98,7 +98,7 @@ pub struct Kinematics<const D: usize> {
     /// Velocity of `centre`, m/s.
     pub velocity: Vector<D>,
     /// Spin, rad/s.
-    pub spin: Wedge<D>,
+    pub spin: Bivector<D>,
 }
 
 /// A solid in a running system.
@@ -109,64 +109,65 @@ pub struct Solid<const D: usize> {
     /// Where it is and how it moves now.
     pub kinematics: Kinematics<D>,
     /// Its boundary particles' indices in the system's skin arrays.
-    pub skin: Range<usize>,
+    pub boundary: Range<usize>,
     /// Acceleration of `kinematics.centre`, a mean over the last few steps, m/s².
     pub acceleration: Vector<D>,
     /// Angular acceleration, such a mean, rad/s².
-    pub whirl: Wedge<D>,
+    pub angular_acceleration: Bivector<D>,
     /// The water's load on it at the last force pass (pressure and viscosity, no weight).
     pub load: Load<D>,
     /// How far it has yielded to waves, if it is a paddle that absorbs them.
-    pub(crate) yielding: Yielding,
+    pub(crate) absorption: AbsorptionState,
 }
 
 /// How far the accelerations of a solid follow its last step: a mean over five or so, so that a body lighter than the
 /// water that it drags is not driven to and fro.
-const FOLLOW: f64 = 0.2;
+const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {
     /// Moves it to `next` over `dt` (s).
-    pub(crate) fn go(&mut self, next: Kinematics<D>, dt: f64) {
+    pub(crate) fn advance(&mut self, next: Kinematics<D>, dt: f64) {
         let now = &self.kinematics;
-        self.acceleration += ((next.velocity - now.velocity) / dt - self.acceleration) * FOLLOW;
+        self.acceleration += ((next.velocity - now.velocity) / dt - self.acceleration) * ACCELERATION_FILTER;
         let whirl = (next.spin + now.spin * -1.0) * (1.0 / dt);
-        self.whirl = self.whirl * (1.0 - FOLLOW) + whirl * FOLLOW;
+        self.angular_acceleration =
+            self.angular_acceleration * (1.0 - ACCELERATION_FILTER) + whirl * ACCELERATION_FILTER;
         self.kinematics = next;
     }
 
     /// Where its `motion` has it at time `t` (s).
-    pub(crate) fn driven(&self, motion: &Motion<D>, t: f64) -> Kinematics<D> {
-        motion.beside(&self.spec.pose, t, &self.yielding)
+    pub(crate) fn prescribed_kinematics(&self, motion: &Motion<D>, t: f64) -> Kinematics<D> {
+        motion.kinematics_with_absorption(&self.spec.pose, t, &self.absorption)
     }
 
     /// Energy of its motion, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 of a solid that is not free.
-    pub fn kinetic(&self) -> f64 {
+    pub fn kinetic_energy(&self) -> f64 {
         let Role::Free(body) = &self.spec.role else { return 0.0 };
         let now = &self.kinematics;
-        let turning = turning(&body.inertia, &now.pose.rotation, &now.spin.axial());
+        let turning = rotational_energy_twice(&body.inertia, &now.pose.rotation, &now.spin.axial());
         0.5 * body.mass * now.velocity.norm_squared() + 0.5 * turning
     }
 
     /// Energy of its height under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 of a solid that is not free.
-    pub fn potential(&self, gravity: &Vector<D>) -> f64 {
+    pub fn potential_energy(&self, gravity: &Vector<D>) -> f64 {
         let Role::Free(body) = &self.spec.role else { return 0.0 };
         -body.mass * gravity.dot(&self.kinematics.centre)
     }
 
     /// Both energies, J (J/m in 2-D).
     pub fn energy(&self, gravity: &Vector<D>) -> f64 {
-        self.kinetic() + self.potential(gravity)
+        self.kinetic_energy() + self.potential_energy(gravity)
     }
 
     /// Acceleration (m/s²) of its point at the world position `x` (m).
     pub fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> {
         let (arm, spin) = (x - self.kinematics.centre, &self.kinematics.spin);
-        self.acceleration + self.whirl.at(&arm) + spin.at(&spin.at(&arm))
+        self.acceleration + self.angular_acceleration.velocity_at(&arm) + spin.velocity_at(&spin.velocity_at(&arm))
     }
 }
 
 /// Ω·I Ω with the inertia given in the body's frame, which is turned by `rotation`.
-fn turning<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &[f64]) -> f64 {
+fn rotational_energy_twice<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &[f64]) -> f64 {
     if D == 2 {
         return inertia[(0, 0)] * spin[0] * spin[0];
     }
@@ -181,8 +182,8 @@ mod energy {
     #[test]
     fn turning_energy_follows_the_body_frame() {
         let inertia = Matrix::<3>::from_diagonal(&Vector::<3>::new(1.0, 2.0, 3.0));
-        let quarter = Wedge::<3>::from_axial(&[0.0, 0.0, std::f64::consts::FRAC_PI_2]).exp();
-        let energy = turning(&inertia, &quarter, &[1.0, 0.0, 0.0]);
+        let quarter = Bivector::<3>::from_axial(&[0.0, 0.0, std::f64::consts::FRAC_PI_2]).exp();
+        let energy = rotational_energy_twice(&inertia, &quarter, &[1.0, 0.0, 0.0]);
         assert!((energy - 2.0).abs() < 1e-14, "the world's x is the body's −y; got {energy}");
     }
 }

@@ -7,10 +7,10 @@
 
 use crate::{
     error::{Error, Result},
-    math::{Pose, Vector, Wedge},
+    math::{Bivector, Pose, Vector},
     math::{expression::Formula, time_series::Series},
     solid::Kinematics,
-    wavemaker::{Absorber, Wave, Yielding},
+    wavemaker::{Absorber, AbsorptionState, Wave},
 };
 
 /// How a driven coordinate moves in time: a length (m) or an angle (rad) at a time (s).
@@ -33,7 +33,7 @@ impl Law {
     /// Value (m or rad) and its rate (m/s or rad/s) at time `t` (s).
     pub fn at(&self, t: f64) -> (f64, f64) {
         match self {
-            Self::Table(series) => series.smooth(t),
+            Self::Table(series) => series.value_and_rate(t),
             Self::Formula(formula) => formula.at(t),
             Self::Wave(wave) => wave.at(t),
         }
@@ -70,7 +70,7 @@ enum Path<const D: usize> {
     /// Along a unit vector.
     Slide(Vector<D>),
     /// About a world point, with a unit axis.
-    Hinge { centre: Vector<D>, axis: Wedge<D> },
+    Hinge { centre: Vector<D>, axis: Bivector<D> },
 }
 
 impl<const D: usize> Motion<D> {
@@ -84,7 +84,7 @@ impl<const D: usize> Motion<D> {
     /// `axis`: axial components of any length but zero: `[1.0]` in 2-D, where positive angles turn
     /// counter-clockwise (`[-1.0]`: clockwise); the three of the axis in 3-D, right-handed.
     pub fn hinge(centre: Vector<D>, axis: &[f64], law: Law) -> Self {
-        let axis = Wedge::<D>::from_axial(axis);
+        let axis = Bivector::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
         Self::of(Path::Hinge { centre, axis: axis * (1.0 / length) }, law)
     }
@@ -119,15 +119,15 @@ impl<const D: usize> Motion<D> {
     }
 
     /// Where the gauge of a paddle that absorbs is at time `t` (s); nowhere if it does not.
-    pub(crate) fn gauge(&self, yielding: &Yielding, t: f64) -> Option<Vector<D>> {
+    pub(crate) fn gauge(&self, yielding: &AbsorptionState, t: f64) -> Option<Vector<D>> {
         let (own, wave) = (self.absorbing.as_ref()?, self.wave()?);
         Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.at(t).0))
     }
 
     /// How it goes on yielding from time `t` (s), when the water at its gauge stands at `level` (m), if there is any.
-    pub(crate) fn steer(&self, before: &Yielding, t: f64, level: Option<f64>) -> Yielding {
+    pub(crate) fn update_absorption(&self, before: &AbsorptionState, t: f64, level: Option<f64>) -> AbsorptionState {
         match (&self.absorbing, self.wave()) {
-            (Some(own), Some(wave)) => own.absorber.steer(wave, before, t, level),
+            (Some(own), Some(wave)) => own.absorber.update(wave, before, t, level),
             _ => *before,
         }
     }
@@ -151,7 +151,7 @@ impl<const D: usize> Motion<D> {
         let way = |k: usize| {
             let alone = |i: usize, law: &Law| (law.at(0.0).0, if i == k { 1.0 } else { 0.0 });
             let now = self.moved(&Pose::identity(), alone);
-            (now.velocity + now.spin.at(&(x - now.centre))).try_normalize(0.0).unwrap_or_else(Vector::zeros)
+            (now.velocity + now.spin.velocity_at(&(x - now.centre))).try_normalize(0.0).unwrap_or_else(Vector::zeros)
         };
         (0..self.stages.len()).map(way).collect()
     }
@@ -164,7 +164,12 @@ impl<const D: usize> Motion<D> {
     }
 
     /// As [`Motion::kinematics`], of a paddle that has yielded.
-    pub(crate) fn beside(&self, start: &Pose<D>, t: f64, yielding: &Yielding) -> Kinematics<D> {
+    pub(crate) fn kinematics_with_absorption(
+        &self,
+        start: &Pose<D>,
+        t: f64,
+        yielding: &AbsorptionState,
+    ) -> Kinematics<D> {
         match (&self.absorbing, self.wave()) {
             (Some(_), Some(wave)) => self.moved(start, |_, _| wave.beside(t, yielding.at(t))),
             _ => self.kinematics(start, t),
@@ -173,7 +178,8 @@ impl<const D: usize> Motion<D> {
 
     /// Where a solid that starts at `start` is when the law of each stage has a value and a rate.
     fn moved(&self, start: &Pose<D>, values: impl Fn(usize, &Law) -> (f64, f64)) -> Kinematics<D> {
-        let still = Kinematics { pose: *start, centre: start.position, velocity: Vector::zeros(), spin: Wedge::zero() };
+        let still =
+            Kinematics { pose: *start, centre: start.position, velocity: Vector::zeros(), spin: Bivector::zero() };
         let stages = self.stages.iter().enumerate().rev();
         let moved = stages.fold(still, |inner, (i, stage)| stage.path.carry(&inner, values(i, &stage.law)));
         match self.hinged() {
@@ -220,8 +226,8 @@ impl<const D: usize> Path<D> {
                 Kinematics {
                     pose,
                     centre: pose.position,
-                    velocity: turn * inner.velocity + spin.at(&arm),
-                    spin: inner.spin.turned(&turn) + spin,
+                    velocity: turn * inner.velocity + spin.velocity_at(&arm),
+                    spin: inner.spin.rotated(&turn) + spin,
                 }
             }
         }
@@ -276,13 +282,13 @@ mod tests {
     fn a_hinge_keeps_its_centre_and_turns_at_its_rate() {
         let centre = Vector::from([0.2, 0.0, -0.1]);
         let motion = Motion::hinge(centre, &[0.0, 3.0, 4.0], formula("0.3*sin(2*t)"));
-        let start = Pose::turned(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
+        let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
         let (t, step) = (0.6, 1e-6);
         let now = motion.kinematics(&start, t);
         let (a, b) = (motion.kinematics(&start, t - step), motion.kinematics(&start, t + step));
         let local = Vector::from([0.05, -0.4, 0.7]);
         let difference = (b.pose.point(&local) - a.pose.point(&local)) / (2.0 * step);
-        let velocity = now.velocity + now.spin.at(&(now.pose.point(&local) - now.centre));
+        let velocity = now.velocity + now.spin.velocity_at(&(now.pose.point(&local) - now.centre));
         assert!((difference - velocity).norm() < 1e-9);
         let hinge = start.local(&centre);
         assert!((now.pose.point(&hinge) - centre).norm() < 1e-15);
@@ -304,7 +310,7 @@ mod tests {
         let point = |i: usize| {
             let local = Vector::from_fn(|k, _| if k == i { 0.7 } else { -0.2 });
             let difference = (b.pose.point(&local) - a.pose.point(&local)) / (2.0 * step);
-            (now.velocity + now.spin.at(&(now.pose.point(&local) - now.centre)) - difference).norm()
+            (now.velocity + now.spin.velocity_at(&(now.pose.point(&local) - now.centre)) - difference).norm()
         };
         (0..D).map(point).fold(0.0, f64::max)
     }
@@ -338,7 +344,7 @@ mod tests {
             Motion::hinge(centre(0.3), &[0.2, 0.0, 1.0], formula("0.3*t")),
             Motion::slide(Vector::from([0.0, 1.0, 0.0]), formula("0.2*cos(t)")),
         ]);
-        let start = Pose::turned(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
+        let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
         assert!(off(&motion, &start, 0.7) < 1e-8);
         let ways = motion.headings(&Vector::from([0.4, 0.5, 0.3]));
         assert!(ways.len() == 4 && ways.iter().all(|way| (way.norm() - 1.0).abs() < 1e-14), "{ways:?}");

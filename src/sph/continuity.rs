@@ -12,7 +12,10 @@ pub struct Continuity;
 impl<const D: usize> Term<D> for Continuity {
     #[inline(always)]
     fn rate<N: Num>(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
-        let one = ab.of(1.0);
-        (((one + ab.a.x) * ab.b.s).fma(ab.vr, sum.0), ((one + ab.b.x) * ab.a.s).fma(ab.vr, sum.1))
+        let one = ab.constant(1.0);
+        (
+            ((one + ab.a.compression) * ab.b.specific_volume).fma(ab.velocity_along_r, sum.0),
+            ((one + ab.b.compression) * ab.a.specific_volume).fma(ab.velocity_along_r, sum.1),
+        )
     }
 }

@@ -2,13 +2,13 @@
 
 /// Tait's equation in x = ρ/ρ₀ − 1 and P/ρ₀.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
+pub struct EquationOfState {
     /// b/ρ₀ = c₀²/γ, m²/s².
     stiffness: f64,
     gamma: f64,
 }
 
-impl State {
+impl EquationOfState {
     /// The state of water with speed of sound `c0` (m/s) and exponent `gamma` (–).
     pub fn new(c0: f64, gamma: f64) -> Self {
         Self { stiffness: c0 * c0 / gamma, gamma }
@@ -25,7 +25,7 @@ impl State {
     }
 
     /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`State::pressure`].
-    pub fn excess(&self, p: f64) -> f64 {
+    pub fn compression(&self, p: f64) -> f64 {
         ((p / self.stiffness).ln_1p() / self.gamma).exp_m1()
     }
 
@@ -33,12 +33,12 @@ impl State {
     ///
     /// Deep water is denser, but as many particles fill a metre of it: the volumes m/ρ that the pressure force takes are by x too
     /// small. It acts as P/(1 + x)², so that at rest P = ρ₀ g·depth (1 + 2x) to second order.
-    pub fn still(&self, head: f64) -> f64 {
-        self.excess(head * (1.0 + 2.0 * head / (self.stiffness * self.gamma)))
+    pub fn hydrostatic_compression(&self, head: f64) -> f64 {
+        self.compression(head * (1.0 + 2.0 * head / (self.stiffness * self.gamma)))
     }
 
     /// The part of the pressure (P/ρ₀, m²/s²) at excess density `x` (–) that acts where particles lie dp apart.
-    pub fn acting(&self, x: f64) -> f64 {
+    pub fn lattice_pressure(&self, x: f64) -> f64 {
         self.pressure(x) / ((1.0 + x) * (1.0 + x))
     }
 
@@ -59,30 +59,30 @@ mod tests {
 
     #[test]
     fn pressure_and_density_are_inverse_and_the_slope_is_the_speed_of_sound() {
-        let state = State::new(20.0, 7.0);
+        let state = EquationOfState::new(20.0, 7.0);
         for x in [-0.01, 1e-9, 1e-4, 0.003, 0.05] {
             // The inverse takes a logarithm and an exponential: a few ulp.
-            assert!((state.excess(state.pressure(x)) - x).abs() < 1e-15);
+            assert!((state.compression(state.pressure(x)) - x).abs() < 1e-15);
         }
         let slope = (state.pressure(1e-6) - state.pressure(-1e-6)) / 2e-6;
         assert!((slope / 400.0 - 1.0).abs() < 1e-9);
-        let general = State::new(20.0, 7.0 + 1e-12);
+        let general = EquationOfState::new(20.0, 7.0 + 1e-12);
         assert!((general.pressure(0.01) / state.pressure(0.01) - 1.0).abs() < 1e-9);
     }
 
     #[test]
     fn still_water_presses_with_its_weight() {
         // Third order in x is left: 1 % of compression leaves 1e-4 times a factor of a few.
-        let state = State::new(20.0, 7.0);
+        let state = EquationOfState::new(20.0, 7.0);
         for head in [0.0, 0.04, 0.4, 4.0] {
-            let acting = state.acting(state.still(head));
+            let acting = state.lattice_pressure(state.hydrostatic_compression(head));
             assert!((acting - head).abs() <= 10.0 * head * (head / 400.0).powi(2), "{head}: {acting}");
         }
     }
 
     #[test]
     fn compression_energy_is_the_integral_of_pressure() {
-        let state = State::new(20.0, 7.0);
+        let state = EquationOfState::new(20.0, 7.0);
         for x in [-0.02, 5e-4, 0.002, 0.05] {
             let n = 20_000;
             let sum: f64 = (0..n)

@@ -4,7 +4,7 @@ use crate::math::Vector;
 
 /// Constants of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Medium<const D: usize> {
+pub struct FluidProperties<const D: usize> {
     /// Smoothing length h, m.
     pub h: f64,
     /// Particle spacing dp, m.
@@ -33,9 +33,9 @@ impl Units {
     pub const SI: Self = Self { length: 1.0, time: 1.0 };
 }
 
-impl<const D: usize> Medium<D> {
+impl<const D: usize> FluidProperties<D> {
     /// The same constants, counted in `units` (ρ₀ in kg/m³ still: no law reads it).
-    pub fn counted_in(&self, units: &Units) -> Self {
+    pub fn in_units(&self, units: &Units) -> Self {
         let Units { length, time } = *units;
         Self {
             h: self.h / length,

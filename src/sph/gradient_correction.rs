@@ -13,13 +13,13 @@
 //! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) [@ren2023], by half at a flat free surface, where det M = 2⁻ᴰ. The B that acts is
 //! that of the pass before.
 
-use super::{Extra, Num, Pair, Term};
+use super::{AuxiliarySums, Num, Pair, Term};
 
 /// det M, –, below which there is nothing to tell a slope from.
-const NONE: f64 = 1e-9;
+const SINGULAR: f64 = 1e-9;
 
 /// C = B − 1 (–) from the `moment` M of a particle (`[i][j]` with j ≤ i is read).
-pub fn close<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
+pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
     // Gauss and Jordan without a search for pivots: M is symmetric and positive, or else there is no correction.
     let mut left: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| moment[i.max(j)][i.min(j)]));
     let mut inverse: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
@@ -27,7 +27,7 @@ pub fn close<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
     for k in 0..D {
         let pivot = left[k][k];
         det *= pivot;
-        if !(pivot > 0.0 && det > NONE) {
+        if !(pivot > 0.0 && det > SINGULAR) {
             return [[0.0; D]; D];
         }
         let (row, of) = (left[k].map(|x| x / pivot), inverse[k].map(|x| x / pivot));
@@ -45,13 +45,13 @@ pub fn close<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
 
 /// The moments between water and solids.
 #[derive(Clone, Copy, Debug)]
-pub struct Moments;
+pub struct RenormalizationMatrix;
 
-impl<const D: usize> Term<D> for Moments {
+impl<const D: usize> Term<D> for RenormalizationMatrix {
     const MOMENT: bool = true;
 
     #[inline(always)]
-    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
+    fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
         for i in 0..D {
             for j in 0..=i {
                 let share = -factor * ab.r_ab[i] * ab.r_ab[j];
@@ -64,20 +64,21 @@ impl<const D: usize> Term<D> for Moments {
 
 /// What the correction adds to the pressure among water, and the moments for the next pass.
 #[derive(Clone, Copy, Debug)]
-pub struct Corrected;
+pub struct CorrectedGradient;
 
-impl<const D: usize> Term<D> for Corrected {
+impl<const D: usize> Term<D> for CorrectedGradient {
     const FORM: bool = true;
     const MOMENT: bool = true;
 
     #[inline(always)]
     fn vector<N: Num>(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
-        let volumes = -(ab.a.s * ab.b.s);
+        let volumes = -(ab.a.specific_volume * ab.b.specific_volume);
         let (of_a, of_b) = (volumes * ab.a.p, volumes * ab.b.p);
         for (i, sum) in sum.iter_mut().enumerate() {
             for j in 0..D {
                 let (row, column) = (i.max(j), i.min(j));
-                let (a, b) = (of_a * ab.a.form[row][column], of_b * ab.b.form[row][column]);
+                let (a, b) =
+                    (of_a * ab.a.gradient_correction[row][column], of_b * ab.b.gradient_correction[row][column]);
                 *sum = (a + b).fma(ab.r_ab[j], *sum);
             }
         }
@@ -85,8 +86,8 @@ impl<const D: usize> Term<D> for Corrected {
     }
 
     #[inline(always)]
-    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
-        Moments.extra(ab, factor, a, b);
+    fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
+        RenormalizationMatrix.auxiliary(ab, factor, a, b);
     }
 }
 
@@ -97,7 +98,7 @@ mod tests {
 
     /// B of a moment given whole.
     fn b<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
-        let mut b = close(moment);
+        let mut b = correction(moment);
         (0..D).for_each(|i| b[i][i] += 1.0);
         b
     }
@@ -113,15 +114,15 @@ mod tests {
 
     #[test]
     fn it_fades_with_the_neighbours_and_never_exceeds_their_lack() {
-        assert_eq!(close(&[[0.0; 2]; 2]), [[0.0; 2]; 2]);
-        assert_eq!(close(&[[1.0, 0.0], [1.0, 1.0]]), [[0.0; 2]; 2], "a pair alone: no slope across it");
+        assert_eq!(correction(&[[0.0; 2]; 2]), [[0.0; 2]; 2]);
+        assert_eq!(correction(&[[1.0, 0.0], [1.0, 1.0]]), [[0.0; 2]; 2], "a pair alone: no slope across it");
         // w (1/λ − 1) with w = 2 λ μ is at most 2 μ, however small λ is.
         for small in [1e-12, 1e-6, 1e-3, 0.1, 0.3] {
-            let c = close(&[[small, 0.0], [0.0, 0.8]]);
+            let c = correction(&[[small, 0.0], [0.0, 0.8]]);
             assert!(c[0][0] <= 1.6 && c[0][0] >= 0.0, "{small}: {c:?}");
         }
         // A flat surface: half of everything, so w = ½ of C = 1.
-        let c = close(&[[0.5, 0.0], [0.0, 0.5]]);
+        let c = correction(&[[0.5, 0.0], [0.0, 0.5]]);
         assert!((c[0][0] - 0.5).abs() < 1e-15 && c[0][1] == 0.0);
     }
 }

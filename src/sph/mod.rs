@@ -17,5 +17,5 @@ pub mod equation_of_state;
 pub mod viscosity;
 pub mod boundary;
 
-pub use fluid_properties::{Medium, Units};
-pub use pair::{Extra, Num, Pair, Side, Term};
+pub use fluid_properties::{FluidProperties, Units};
+pub use pair::{AuxiliarySums, Num, Pair, PairSide, Term};

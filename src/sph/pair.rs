@@ -11,7 +11,7 @@ pub trait Num:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The constant `x`, in every lane of a number like this one.
-    fn of(self, x: f64) -> Self;
+    fn constant(self, x: f64) -> Self;
     /// self·b + c; lanes round once where the processor can.
     fn fma(self, b: Self, c: Self) -> Self;
     /// Square root.
@@ -21,12 +21,12 @@ pub trait Num:
     /// The smaller of two.
     fn min(self, other: Self) -> Self;
     /// `yes` where `self < limit`, else `no`.
-    fn if_below(self, limit: Self, yes: Self, no: Self) -> Self;
+    fn select_below(self, limit: Self, yes: Self, no: Self) -> Self;
 }
 
 impl Num for f64 {
     #[inline(always)]
-    fn of(self, x: f64) -> Self {
+    fn constant(self, x: f64) -> Self {
         x
     }
     #[inline(always)]
@@ -46,31 +46,31 @@ impl Num for f64 {
         if self < other { self } else { other }
     }
     #[inline(always)]
-    fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
+    fn select_below(self, limit: Self, yes: Self, no: Self) -> Self {
         if self < limit { yes } else { no }
     }
 }
 
 /// One particle of a pair.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<N, const D: usize> {
+pub struct PairSide<N, const D: usize> {
     /// Excess density x = ρ/ρ₀ − 1, –.
-    pub x: N,
+    pub compression: N,
     /// What single precision cuts off x, so that differences of x keep their digits in deep water; 0 in f64.
-    pub low: N,
+    pub compression_lo: N,
     /// Pressure P/ρ₀, m²/s².
     pub p: N,
     /// Specific volume ρ₀/ρ, –.
-    pub s: N,
+    pub specific_volume: N,
     /// Tensile repulsion, m²/s² (read by laws with [`Term::REPULSION`]).
     pub repulsion: N,
     /// Whether water beside it is not shifted: 1 or 0 (read by laws with [`Term::MARK`]).
-    pub mark: N,
+    pub shifting_suppressed: N,
     /// Sub-particle stress ρ₀ τ/ρ², m²/s²; symmetric, of which laws read `[i][j]` with j ≤ i (read by laws with
     /// [`Term::STRESS`]).
     pub stress: [[N; D]; D],
     /// B − 1 of the corrected gradient, –; symmetric, as above (read by laws with [`Term::FORM`]).
-    pub form: [[N; D]; D],
+    pub gradient_correction: [[N; D]; D],
 }
 
 /// Two particles a and b, and what their places give.
@@ -83,9 +83,9 @@ pub struct Pair<N, const D: usize> {
     /// |r_ab|², m².
     pub r2: N,
     /// v_ab · r_ab, m²/s.
-    pub vr: N,
+    pub velocity_along_r: N,
     /// x_b − x_a, –.
-    pub x_ba: N,
+    pub compression_difference: N,
     /// 1/(r² + η²), 1/m².
     pub inv_r2: N,
     /// ρ₀/(ρ̄_ab (r² + η²)) with ρ̄ the mean of both densities, 1/m².
@@ -93,53 +93,70 @@ pub struct Pair<N, const D: usize> {
     /// Kernel, weighed with a particle's volume at ρ₀: V₀ W_ab, –.
     pub w: N,
     /// Particle a.
-    pub a: Side<N, D>,
+    pub a: PairSide<N, D>,
     /// Particle b.
-    pub b: Side<N, D>,
+    pub b: PairSide<N, D>,
 }
 
 impl<N: Num, const D: usize> Pair<N, D> {
     /// The pair of `a` and `b` with r_ab, v_ab, |r_ab|² and kernel value as given; η² in m².
     #[inline(always)]
-    pub fn new(r_ab: [N; D], v_ab: [N; D], r2: N, w: N, eta2: N, a: Side<N, D>, b: Side<N, D>) -> Self {
+    pub fn new(r_ab: [N; D], v_ab: [N; D], r2: N, w: N, eta2: N, a: PairSide<N, D>, b: PairSide<N, D>) -> Self {
         let mut vr = r_ab[0] * v_ab[0];
         for i in 1..D {
             vr = r_ab[i].fma(v_ab[i], vr);
         }
         // One division gives both reciprocals.
-        let (away, twice_rho) = (r2 + eta2, (a.x + b.x) + r2.of(2.0));
-        let both = r2.of(1.0) / (away * twice_rho);
-        let x_ba = (b.x - a.x) + (b.low - a.low);
-        Self { r_ab, v_ab, r2, vr, x_ba, inv_r2: both * twice_rho, drag: both + both, w, a, b }
+        let (away, twice_rho) = (r2 + eta2, (a.compression + b.compression) + r2.constant(2.0));
+        let both = r2.constant(1.0) / (away * twice_rho);
+        let x_ba = (b.compression - a.compression) + (b.compression_lo - a.compression_lo);
+        Self {
+            r_ab,
+            v_ab,
+            r2,
+            velocity_along_r: vr,
+            compression_difference: x_ba,
+            inv_r2: both * twice_rho,
+            drag: both + both,
+            w,
+            a,
+            b,
+        }
     }
 
     /// The constant `x`.
     #[inline(always)]
-    pub fn of(&self, x: f64) -> N {
-        self.r2.of(x)
+    pub fn constant(&self, x: f64) -> N {
+        self.r2.constant(x)
     }
 }
 
 /// Sums beyond force and density rate, kept only for the laws that need them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extra<N, const D: usize> {
+pub struct AuxiliarySums<N, const D: usize> {
     /// Concentration gradient ∇C = Σ V_b ∇_a W, 1/m ([`Term::SHIFT`]).
-    pub grad_c: [N; D],
+    pub concentration_gradient: [N; D],
     /// ∇·r = −Σ V_b r_ab·∇_a W, – ([`Term::SHIFT`]).
-    pub div_r: N,
+    pub position_divergence: N,
     /// Above zero if a marked particle is within the support ([`Term::MARK`]).
-    pub held: N,
+    pub shifting_suppressed: N,
     /// Strain rate S_ij, symmetric, of which `[i][j]` with j ≤ i is kept, 1/s ([`Term::STRESS`]).
     pub strain: [[N; D]; D],
     /// Moment M_ij of the neighbours, symmetric, of which `[i][j]` with j ≤ i is kept, – ([`Term::MOMENT`]).
     pub moment: [[N; D]; D],
 }
 
-impl<N: Num, const D: usize> Extra<N, D> {
+impl<N: Num, const D: usize> AuxiliarySums<N, D> {
     /// All sums `zero`.
     #[inline(always)]
     pub fn all(zero: N) -> Self {
-        Self { grad_c: [zero; D], div_r: zero, held: zero, strain: [[zero; D]; D], moment: [[zero; D]; D] }
+        Self {
+            concentration_gradient: [zero; D],
+            position_divergence: zero,
+            shifting_suppressed: zero,
+            strain: [[zero; D]; D],
+            moment: [[zero; D]; D],
+        }
     }
 }
 
@@ -190,7 +207,14 @@ pub trait Term<const D: usize>: Copy + Send + Sync {
     }
     /// LoadBreakdown of the extra sums of a and b, without the factor V₀ ∂W.
     #[inline(always)]
-    fn extra<N: Num>(&self, _ab: &Pair<N, D>, _factor: N, _a: &mut Extra<N, D>, _b: &mut Extra<N, D>) {}
+    fn auxiliary<N: Num>(
+        &self,
+        _ab: &Pair<N, D>,
+        _factor: N,
+        _a: &mut AuxiliarySums<N, D>,
+        _b: &mut AuxiliarySums<N, D>,
+    ) {
+    }
 }
 
 /// No law.
@@ -227,8 +251,8 @@ macro_rules! tuple_of_terms {
                 sum
             }
             #[inline(always)]
-            fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
-                $(self.$index.extra(ab, factor, a, b);)+
+            fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
+                $(self.$index.auxiliary(ab, factor, a, b);)+
             }
         }
     };

@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Extra, Medium, Num, Pair, Term};
+use super::{AuxiliarySums, FluidProperties, Num, Pair, Term};
 use crate::math::Vector;
 
 /// Fickian shifting with a free-surface factor [@skillen2013], [@lee2008]; eqs. (16)–(22) of [@pirkhalili2023].
@@ -27,12 +27,18 @@ impl Default for Shift {
 impl Shift {
     /// Displacement (m) in a step `dt` (s) of a particle of speed `speed` (m/s), from its finished sums; each
     /// component is held to 0.1 dp, so that no shift can carry a particle past another.
-    pub fn close<const D: usize>(&self, sums: &Extra<f64, D>, speed: f64, dt: f64, medium: &Medium<D>) -> Vector<D> {
+    pub fn displacement<const D: usize>(
+        &self,
+        sums: &AuxiliarySums<f64, D>,
+        speed: f64,
+        dt: f64,
+        medium: &FluidProperties<D>,
+    ) -> Vector<D> {
         let threshold = if D == 2 { 1.5 } else { 2.75 };
-        let surface = ((sums.div_r - threshold) / (D as f64 - threshold)).clamp(0.0, 1.0);
+        let surface = ((sums.position_divergence - threshold) / (D as f64 - threshold)).clamp(0.0, 1.0);
         let factor = -self.a * medium.h * speed * dt * surface;
         let limit = 0.1 * medium.dp;
-        Vector::from_fn(|i, _| (factor * sums.grad_c[i]).clamp(-limit, limit))
+        Vector::from_fn(|i, _| (factor * sums.concentration_gradient[i]).clamp(-limit, limit))
     }
 }
 
@@ -44,27 +50,27 @@ impl<const D: usize> Term<D> for ShiftTerm {
     const SHIFT: bool = true;
 
     #[inline(always)]
-    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
-        let (of_b, of_a) = (factor * ab.b.s, factor * ab.a.s);
+    fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
+        let (of_b, of_a) = (factor * ab.b.specific_volume, factor * ab.a.specific_volume);
         for i in 0..D {
-            a.grad_c[i] = of_b.fma(ab.r_ab[i], a.grad_c[i]);
-            b.grad_c[i] = (-of_a).fma(ab.r_ab[i], b.grad_c[i]);
+            a.concentration_gradient[i] = of_b.fma(ab.r_ab[i], a.concentration_gradient[i]);
+            b.concentration_gradient[i] = (-of_a).fma(ab.r_ab[i], b.concentration_gradient[i]);
         }
-        a.div_r = (-of_b).fma(ab.r2, a.div_r);
-        b.div_r = (-of_a).fma(ab.r2, b.div_r);
+        a.position_divergence = (-of_b).fma(ab.r2, a.position_divergence);
+        b.position_divergence = (-of_a).fma(ab.r2, b.position_divergence);
     }
 }
 
 /// Notes which particles have a marked one within the support: there shifting is held back.
 #[derive(Clone, Copy, Debug)]
-pub struct HeldTerm;
+pub struct ShiftingSuppressionTerm;
 
-impl<const D: usize> Term<D> for HeldTerm {
+impl<const D: usize> Term<D> for ShiftingSuppressionTerm {
     const MARK: bool = true;
 
     #[inline(always)]
-    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
-        a.held = (-factor).fma(ab.b.mark, a.held);
-        b.held = (-factor).fma(ab.a.mark, b.held);
+    fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
+        a.shifting_suppressed = (-factor).fma(ab.b.shifting_suppressed, a.shifting_suppressed);
+        b.shifting_suppressed = (-factor).fma(ab.a.shifting_suppressed, b.shifting_suppressed);
     }
 }

@@ -9,7 +9,7 @@ pub struct Pressure;
 impl<const D: usize> Term<D> for Pressure {
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        (-(ab.a.p + ab.b.p)).fma(ab.a.s * ab.b.s, sum)
+        (-(ab.a.p + ab.b.p)).fma(ab.a.specific_volume * ab.b.specific_volume, sum)
     }
 }
 
@@ -25,7 +25,7 @@ pub struct Tensile {
 /// as ρ₀ R, m²/s² [@monaghan2000].
 #[inline(always)]
 pub fn repulsion<N: Num>(p: N, s: N) -> N {
-    p.if_below(p.of(0.0), p.of(-0.2), p.of(0.01)) * p * (s * s)
+    p.select_below(p.constant(0.0), p.constant(-0.2), p.constant(0.01)) * p * (s * s)
 }
 
 impl<const D: usize> Term<D> for Tensile {
@@ -33,7 +33,7 @@ impl<const D: usize> Term<D> for Tensile {
 
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        let f = ab.w * ab.of(self.inv_w_dp);
+        let f = ab.w * ab.constant(self.inv_w_dp);
         let f2 = f * f;
         (-(ab.a.repulsion + ab.b.repulsion)).fma(f2 * f2, sum)
     }

@@ -7,7 +7,7 @@ use crate::math::simd::{Simd, f32x8};
 
 impl<S: Simd> Num for f32x8<S> {
     #[inline(always)]
-    fn of(self, x: f64) -> Self {
+    fn constant(self, x: f64) -> Self {
         Self::splat(self.simd, x as f32)
     }
     #[inline(always)]
@@ -27,7 +27,7 @@ impl<S: Simd> Num for f32x8<S> {
         SimdBase::min(self, other)
     }
     #[inline(always)]
-    fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
+    fn select_below(self, limit: Self, yes: Self, no: Self) -> Self {
         self.simd_lt(limit).select(yes, no)
     }
 }

@@ -11,10 +11,10 @@ use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
     model::{Model, Shifting, Walls},
-    neighbours::Near,
-    particles::{PER_TASK, Particles},
+    neighbours::NeighbourLists,
+    particles::{PARTICLES_PER_TASK, Particles},
     solid::{Kinematics, Role, Solid, SolidSpec, boundary_motion},
-    sph::boundary::{Cover, Dbc, Fit, Slip, sticking},
+    sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, no_slip_velocity},
 };
 
 /// The boundary particles of all solids, one solid after the other.
@@ -34,7 +34,7 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) extrapolated_velocity: Option<Vec<Vector<D>>>,
     /// Beside which of them water is not shifted; `None` unless water is shifted.
     pub(super) shifting_suppressed: Option<Vec<bool>>,
-    coverage: Cover,
+    coverage: SupportCoverage,
     /// The box around the boundary particles of each solid, in its frame, m.
     pub(super) bounds: Vec<Bounds<D>>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
@@ -44,8 +44,8 @@ pub(crate) struct Boundary<const D: usize> {
 impl<const D: usize> Boundary<D> {
     /// No boundary particles yet.
     pub(super) fn new(model: &Model) -> Self {
-        let volume = model.medium::<D>().volume0();
-        let (sticks, relaxes) = (model.slip == Slip::None, model.walls == Walls::Settling);
+        let volume = model.fluid_properties::<D>().volume0();
+        let (sticks, relaxes) = (model.slip == Slip::None, model.walls == Walls::RelaxedAdami);
         Self {
             particles: Particles::default(),
             local: Vec::new(),
@@ -55,7 +55,12 @@ impl<const D: usize> Boundary<D> {
             target_density: None,
             extrapolated_velocity: None,
             shifting_suppressed: None,
-            coverage: Cover::new(|r2| model.kernel_value(r2, D) * volume, model.dp, model.reach(), D),
+            coverage: SupportCoverage::new(
+                |r2| model.kernel_value(r2, D) * volume,
+                model.dp,
+                model.support_radius(),
+                D,
+            ),
             bounds: Vec::new(),
             poses_at_rebuild: None,
         }
@@ -70,7 +75,8 @@ impl<const D: usize> Boundary<D> {
         extension: &[ExtensionParticle<D>],
     ) -> Result<Range<usize>> {
         let first = self.particles.len();
-        let mut faces = spec.shape.skin(model.dp, model.layers()).into_iter().map(|point| point.r).collect::<Vec<_>>();
+        let mut faces =
+            spec.shape.skin(model.dp, model.boundary_layers()).into_iter().map(|point| point.r).collect::<Vec<_>>();
         for r in faces.iter().chain(extension.iter().map(|particle| &particle.r)) {
             self.particles.push(kinematics.pose.point(r), model.rho0);
             self.local.push(*r);
@@ -106,7 +112,7 @@ impl<const D: usize> Boundary<D> {
     /// The positions `r` (m) of all boundary particles, with those of each solid as at its pose.
     pub(super) fn at_poses(&self, mut r: Vec<Vector<D>>, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
         for (solid, pose) in solids.iter().zip(poses) {
-            for i in solid.skin.clone() {
+            for i in solid.boundary.clone() {
                 r[i] = pose.point(&self.local[i]);
             }
         }
@@ -115,16 +121,16 @@ impl<const D: usize> Boundary<D> {
 
     /// Places the boundary particles of `solid` where its kinematics say.
     pub(super) fn place(&mut self, solid: &Solid<D>) {
-        let (range, Particles { r, v, .. }) = (solid.skin.clone(), &mut self.particles);
+        let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
         boundary_motion::place(&solid.kinematics, &self.local[range.clone()], &mut r[range.clone()], &mut v[range]);
     }
 
     /// Sets the target densities of the boundary particles near water.
-    fn set_targets(&mut self, neighbours: &Near<D>, targets: Vec<(f64, f64)>, rho0: f64) {
+    fn set_targets(&mut self, neighbours: &NeighbourLists<D>, targets: Vec<(f64, f64)>, rho0: f64) {
         let count = self.particles.len();
         let all = self.target_density.get_or_insert_default();
         all.resize(count, (rho0, 0.0));
-        for (&i, target) in neighbours.wet().iter().zip(targets) {
+        for (&i, target) in neighbours.boundary_near_fluid().iter().zip(targets) {
             all[i as usize] = target;
         }
     }
@@ -143,7 +149,7 @@ impl<const D: usize> System<D> {
         }
         let mut suppressed = vec![false; self.boundary.particles.len()];
         for solid in &self.solids {
-            suppressed[solid.skin.clone()].fill(suppresses_shifting(&self.model, solid));
+            suppressed[solid.boundary.clone()].fill(suppresses_shifting(&self.model, solid));
         }
         self.boundary.shifting_suppressed = Some(suppressed);
     }
@@ -153,7 +159,7 @@ impl<const D: usize> System<D> {
         let (water, boundary) = (&self.fluid.particles, &self.boundary.particles);
         let still: Vec<f64> = self
             .neighbours
-            .wet()
+            .boundary_near_fluid()
             .par_iter()
             .map(|&i| {
                 let x = &boundary.r[i as usize];
@@ -165,7 +171,7 @@ impl<const D: usize> System<D> {
                         nearest = (d, head + self.properties.gravity.dot(&(x - water.r[j])));
                     }
                 });
-                self.properties.rho0 * (1.0 + self.equation_of_state.excess(nearest.1.max(0.0)))
+                self.properties.rho0 * (1.0 + self.equation_of_state.compression(nearest.1.max(0.0)))
             })
             .collect();
         self.set_boundary_density(0.0, |k, i, rho| if range.contains(&i) { still[k] } else { rho });
@@ -176,13 +182,13 @@ impl<const D: usize> System<D> {
     /// towards its target. The others stay at ρ₀.
     pub(crate) fn set_boundary_density(&mut self, relaxation: f64, mut rho: impl FnMut(usize, usize, f64) -> f64) {
         let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
-        for (k, &i) in self.neighbours.wet().iter().enumerate() {
+        for (k, &i) in self.neighbours.boundary_near_fluid().iter().enumerate() {
             let i = i as usize;
             let bare = rho(k, i, particles.rho[i]);
             particles.rho[i] = match target_density.as_ref().and_then(|targets| targets.get(i)) {
-                None => Dbc.close(bare, rho0),
+                None => DynamicBoundary.limited_density(bare, rho0),
                 Some(&(target, fraction)) => {
-                    let own = Dbc.close(bare, target.min(rho0));
+                    let own = DynamicBoundary.limited_density(bare, target.min(rho0));
                     own + (target - own) * if target > own { relaxation * fraction } else { relaxation }
                 }
             };
@@ -192,15 +198,15 @@ impl<const D: usize> System<D> {
     /// Extrapolates the water to each boundary particle near it: the pressure there becomes its target density, if walls
     /// relax to that, and the velocity the one with which it acts, if water sticks to the face.
     pub(super) fn update_wall_state(&mut self) {
-        let (relaxes, sticks) = (self.model.walls == Walls::Settling, self.model.slip == Slip::None);
+        let (relaxes, sticks) = (self.model.walls == Walls::RelaxedAdami, self.model.slip == Slip::None);
         if !relaxes && !sticks && self.boundary.wetness.is_none() {
             return;
         }
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, .. } = self;
         let mut input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
-        input.shown = &boundary.particles.v;
-        let mut fits = vec![Fit::all(0.0); neighbours.wet().len()];
-        pair_loop.fits(&input, sticks, &mut fits);
+        input.boundary_velocity = &boundary.particles.v;
+        let mut fits = vec![WallExtrapolation::all(0.0); neighbours.boundary_near_fluid().len()];
+        pair_loop.extrapolate_to_boundary(&input, sticks, &mut fits);
         if let Some(wetness) = &mut self.boundary.wetness {
             *wetness = fits.iter().map(|fit| fit.weight).collect();
         }
@@ -213,32 +219,33 @@ impl<const D: usize> System<D> {
     }
 
     /// Makes target densities of the extrapolated pressures of `fits`, one for each boundary particle near water.
-    fn update_wall_pressure(&mut self, fits: &[Fit<f64, D>]) {
+    fn update_wall_pressure(&mut self, fits: &[WallExtrapolation<f64, D>]) {
         let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
         let depths = depths.as_deref().unwrap_or_default();
-        let target = |(&i, fit): (&u32, &Fit<f64, D>)| {
+        let target = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = i as usize;
             let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
-            let pressure = fit.close(&pull, &medium.gravity, depths[i]);
-            let density = medium.rho0 * (1.0 + self.equation_of_state.excess(pressure));
-            (density, coverage.part(fit.weight, depths[i]))
+            let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
+            let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
+            (density, coverage.fraction(fit.weight, depths[i]))
         };
-        let wet = self.neighbours.wet();
-        let targets = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(target).collect();
+        let wet = self.neighbours.boundary_near_fluid();
+        let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();
         self.boundary.set_targets(&self.neighbours, targets, medium.rho0);
     }
 
     /// Makes the velocities with which boundary particles act of `fits`, one for each boundary particle near water.
-    fn update_wall_velocity(&mut self, fits: &[Fit<f64, D>]) {
+    fn update_wall_velocity(&mut self, fits: &[WallExtrapolation<f64, D>]) {
         let Boundary { particles, depths, normals, .. } = &self.boundary;
         let (depths, normals) = (depths.as_deref().unwrap_or_default(), normals.as_deref().unwrap_or_default());
-        let velocity = |(&i, fit): (&u32, &Fit<f64, D>)| {
+        let velocity = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = i as usize;
             let normal = self.owner(i).kinematics.pose.rotation * normals[i];
-            sticking(fit, particles.v[i], &normal, depths[i])
+            no_slip_velocity(fit, particles.v[i], &normal, depths[i])
         };
-        let (wet, count) = (self.neighbours.wet(), particles.len());
-        let velocities: Vec<Vector<D>> = wet.par_iter().zip(fits).with_min_len(PER_TASK).map(velocity).collect();
+        let (wet, count) = (self.neighbours.boundary_near_fluid(), particles.len());
+        let velocities: Vec<Vector<D>> =
+            wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(velocity).collect();
         let all = self.boundary.extrapolated_velocity.get_or_insert_default();
         all.resize(count, Vector::zeros());
         for (&i, v) in wet.iter().zip(velocities) {
@@ -248,7 +255,7 @@ impl<const D: usize> System<D> {
 
     /// The solid of boundary particle `i`.
     fn owner(&self, i: usize) -> &Solid<D> {
-        &self.solids[self.solids.partition_point(|solid| solid.skin.end <= i)]
+        &self.solids[self.solids.partition_point(|solid| solid.boundary.end <= i)]
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn of_solid<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: 
     if fixed.is_empty() {
         return extension;
     }
-    for point in spec.shape.skin(dp, model.layers()) {
+    for point in spec.shape.skin(dp, model.boundary_layers()) {
         let x = pose.point(&point.r);
         for other in &fixed {
             let at = other.start().pose;
@@ -48,9 +48,9 @@ pub(super) fn of_solid<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: 
             if motion.headings(&x).iter().any(|way| way.dot(&out).abs() > ALONG) {
                 continue;
             }
-            let high = pose.local(&(x + out * (model.layers() as f64 * dp)));
+            let high = pose.local(&(x + out * (model.boundary_layers() as f64 * dp)));
             let behind_face = if outside(&high) < 0.0 { high } else { point.r };
-            let rows = (0..model.layers()).map(|k| x - out * (2.0 * apart + k as f64 * dp));
+            let rows = (0..model.boundary_layers()).map(|k| x - out * (2.0 * apart + k as f64 * dp));
             let rows = rows.filter(|r| other.shape.signed_distance(&at.local(r)) < 0.0).map(|r| pose.local(&r));
             extension.extend(rows.filter(|r| outside(r) > 0.0).map(|r| ExtensionParticle { r, behind_face }));
         }
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn a_piston_on_its_bed_is_carried_on_into_it_as_far_as_the_kernel_reaches() {
         let extension = paddle(0.0, along([1.0, 0.0]));
-        let layers = Model::water(2, 0.1, 1.0).layers();
+        let layers = Model::water(2, 0.1, 1.0).boundary_layers();
         // Four columns of a paddle four dp thick, in the lattice that its own rows have.
         assert_eq!(extension.len(), 4 * layers);
         for particle in &extension {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Reordering, System, boundary_extension::ExtensionParticle};
 use crate::{
     error::Result,
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     solid::{Kinematics, Load, Role, Solid, SolidSpec},
 };
 
@@ -18,9 +18,17 @@ impl<const D: usize> System<D> {
         extension: &[ExtensionParticle<D>],
     ) -> Result<()> {
         let skin = self.boundary.append(&self.model, &spec, &kinematics, extension)?;
-        let (acceleration, whirl, load) = (Vector::zeros(), Wedge::zero(), Load::zero());
+        let (acceleration, whirl, load) = (Vector::zeros(), Bivector::zero(), Load::zero());
         let yielding = Default::default();
-        self.solids.push(Solid { spec, kinematics, acceleration, whirl, skin, load, yielding });
+        self.solids.push(Solid {
+            spec,
+            kinematics,
+            acceleration,
+            angular_acceleration: whirl,
+            boundary: skin,
+            load,
+            absorption: yielding,
+        });
         Ok(())
     }
 
@@ -48,24 +56,24 @@ impl<const D: usize> System<D> {
         }
         let reordering = self.rebuild_neighbours();
         self.fluid.displaced = None;
-        self.init_hydrostatic(self.solids.last().map_or(0..0, |solid| solid.skin.clone()));
+        self.init_hydrostatic(self.solids.last().map_or(0..0, |solid| solid.boundary.clone()));
         self.check_water();
         (reordering, before - self.real_count(), energy)
     }
 
     /// Removes solid number `i`: it keeps its number, stays at rest at its position, and has no boundary particles.
     pub(crate) fn remove_body(&mut self, i: usize) {
-        let gone = self.solids[i].skin.clone();
+        let gone = self.solids[i].boundary.clone();
         self.boundary.cut(&gone, i);
-        self.neighbours.shift_wet(gone.clone());
+        self.neighbours.remove_boundary(gone.clone());
         let solid = &mut self.solids[i];
         solid.spec.role = Role::Fixed;
-        (solid.kinematics.velocity, solid.kinematics.spin) = (Vector::zeros(), Wedge::zero());
-        (solid.acceleration, solid.whirl) = (Vector::zeros(), Wedge::zero());
+        (solid.kinematics.velocity, solid.kinematics.spin) = (Vector::zeros(), Bivector::zero());
+        (solid.acceleration, solid.angular_acceleration) = (Vector::zeros(), Bivector::zero());
         solid.load = Load::zero();
-        solid.skin = gone.start..gone.start;
+        solid.boundary = gone.start..gone.start;
         for later in &mut self.solids[i + 1..] {
-            later.skin = later.skin.start - gone.len()..later.skin.end - gone.len();
+            later.boundary = later.boundary.start - gone.len()..later.boundary.end - gone.len();
         }
         self.update_shifting_suppression();
         self.boundary.poses_at_rebuild = None;

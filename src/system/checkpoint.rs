@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{Escape, System};
 use crate::{
     error::{Error, Kind, Result},
-    interaction::Sums,
-    math::{Matrix, Pose, Vector, Wedge},
+    interaction::PairSums,
+    math::{Bivector, Matrix, Pose, Vector},
     particles::Particles,
     solid::{Kinematics, Load, Solid},
-    wavemaker::Yielding,
+    wavemaker::AbsorptionState,
 };
 
 /// No boundary particle is so far away, m; a value that is not finite fails the comparison too.
@@ -24,8 +24,8 @@ pub(crate) struct SystemState<const D: usize> {
     skin: Particles<D>,
     kinematics: Vec<Kinematics<D>>,
     loads: Vec<Load<D>>,
-    accelerations: Vec<(Vector<D>, Wedge<D>)>,
-    yielding: Vec<Yielding>,
+    accelerations: Vec<(Vector<D>, Bivector<D>)>,
+    yielding: Vec<AbsorptionState>,
     stress: Vec<Matrix<D>>,
     gradient_correction: Vec<Matrix<D>>,
     /// Positions of the water and poses of the solids when the neighbour lists were built.
@@ -36,7 +36,7 @@ pub(crate) struct SystemState<const D: usize> {
 impl<const D: usize> System<D> {
     /// The state from which [`System::restore`] continues with the same bits.
     pub(crate) fn save(&self) -> SystemState<D> {
-        let of_solids = |solid: &Solid<D>| (solid.acceleration, solid.whirl);
+        let of_solids = |solid: &Solid<D>| (solid.acceleration, solid.angular_acceleration);
         SystemState {
             fluid: self.fluid.particles.clone(),
             images: self.fluid.images.of.clone(),
@@ -44,10 +44,13 @@ impl<const D: usize> System<D> {
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
             loads: self.solids.iter().map(|s| s.load).collect(),
             accelerations: self.solids.iter().map(of_solids).collect(),
-            yielding: self.solids.iter().map(|s| s.yielding).collect(),
+            yielding: self.solids.iter().map(|s| s.absorption).collect(),
             stress: self.fluid.stress.clone().unwrap_or_default(),
             gradient_correction: self.fluid.gradient_correction.clone().unwrap_or_default(),
-            built: (self.neighbours.built().to_vec(), self.boundary.poses_at_rebuild.clone().unwrap_or_default()),
+            built: (
+                self.neighbours.positions_at_build().to_vec(),
+                self.boundary.poses_at_rebuild.clone().unwrap_or_default(),
+            ),
             passes: self.status.passes,
         }
     }
@@ -68,7 +71,7 @@ impl<const D: usize> System<D> {
             && state.loads.len() == solids
             && state.accelerations.len() == solids
             && state.yielding.len() == solids
-            && state.yielding.iter().all(Yielding::is_finite)
+            && state.yielding.iter().all(AbsorptionState::is_finite)
             && tensors(&self.fluid.stress, &state.stress)
             && tensors(&self.fluid.gradient_correction, &state.gradient_correction)
             && state.built.0.len() == count
@@ -96,17 +99,17 @@ impl<const D: usize> System<D> {
         self.fluid.stress = self.fluid.stress.take().map(|_| state.stress);
         self.fluid.gradient_correction = self.fluid.gradient_correction.take().map(|_| state.gradient_correction);
         self.fluid.images.of = state.images;
-        self.rates.fluid.resize(self.fluid.particles.len(), Sums::zero());
+        self.rates.fluid.resize(self.fluid.particles.len(), PairSums::zero());
         let loads = state.kinematics.into_iter().zip(state.loads);
         for (solid, (kinematics, load)) in self.solids.iter_mut().zip(loads) {
             (solid.kinematics, solid.load) = (kinematics, load);
         }
         for ((solid, rates), yielding) in self.solids.iter_mut().zip(state.accelerations).zip(state.yielding) {
-            (solid.acceleration, solid.whirl) = rates;
-            solid.yielding = yielding;
+            (solid.acceleration, solid.angular_acceleration) = rates;
+            solid.absorption = yielding;
         }
         self.neighbours.build(&water, &boundary);
-        self.rates.boundary.resize(self.neighbours.wet().len(), Sums::zero());
+        self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
         self.boundary.poses_at_rebuild = Some(poses);
         self.check_water();
         Ok(())

@@ -6,7 +6,7 @@ use super::{Images, System};
 use crate::{
     math::{Matrix, Vector},
     model::{Gradient, Model, Viscosity},
-    particles::{PER_TASK, Particles},
+    particles::{PARTICLES_PER_TASK, Particles},
 };
 
 /// The water: particles, then the images of those near periodic sides, and what the laws keep of each.
@@ -62,6 +62,6 @@ impl<const D: usize> System<D> {
 /// Puts `array` into `order`: the new i-th is the old `order[i]`-th. An empty array stays empty.
 pub(crate) fn permute<T: Copy + Send + Sync>(array: &mut Vec<T>, order: &[u32]) {
     if !array.is_empty() {
-        *array = order.par_iter().with_min_len(PER_TASK).map(|&i| array[i as usize]).collect();
+        *array = order.par_iter().with_min_len(PARTICLES_PER_TASK).map(|&i| array[i as usize]).collect();
     }
 }

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::System;
-use crate::{math::Vector, particles::PER_TASK, solid::Role};
+use crate::{math::Vector, particles::PARTICLES_PER_TASK, solid::Role};
 
 impl<const D: usize> System<D> {
     /// Heights (m) of the surfaces above the horizontal place `at` (m; the last axis does not count), from the highest down, to
@@ -13,7 +13,8 @@ impl<const D: usize> System<D> {
         let (dp, h, up) = (self.model.dp, self.model.h, D - 1);
         let beside = |r: &Vector<D>| (0..up).map(|i| (r[i] - at[i]).powi(2)).sum::<f64>() < (2.0 * h).powi(2);
         let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
-        let heights = self.fluid().r.par_iter().with_min_len(PER_TASK).filter(|r| beside(r)).map(|r| (r[up], r[up]));
+        let heights =
+            self.fluid().r.par_iter().with_min_len(PARTICLES_PER_TASK).filter(|r| beside(r)).map(|r| (r[up], r[up]));
         let (low, high) = heights.reduce(nothing, |a, b| (a.0.min(b.0), a.1.max(b.1)));
         let at = *at;
         let filled = move |z: f64| {
@@ -31,9 +32,9 @@ impl<const D: usize> System<D> {
         for i in 0..self.solids.len() {
             let solid = &self.solids[i];
             let Role::Driven(motion) = &solid.spec.role else { continue };
-            let Some(gauge) = motion.gauge(&solid.yielding, t) else { continue };
+            let Some(gauge) = motion.gauge(&solid.absorption, t) else { continue };
             let level = self.surfaces(&gauge).next();
-            self.solids[i].yielding = motion.steer(&solid.yielding, t, level);
+            self.solids[i].absorption = motion.update_absorption(&solid.absorption, t, level);
         }
     }
 }

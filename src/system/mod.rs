@@ -22,9 +22,9 @@ pub use periodic::Periodic;
 pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
 pub(crate) use step_check::StepCheck;
-pub use step_check::{Escape, ExitPath, Limits, Lost};
+pub use step_check::{Escape, ExitPath, Limits, RemovedParticle};
 
-pub use crate::interaction::Peaks;
+pub use crate::interaction::StepLimits;
 
 use std::time::{Duration, Instant};
 
@@ -32,26 +32,26 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    interaction::{Input, Output, Sums, Sweep},
+    interaction::{PairLoop, PairLoopInput, PairLoopOutput, PairSums},
     math::{Bounds, Matrix, Pose, Vector},
     model::{Dimension, Model, Viscosity},
-    neighbours::{CHUNK, Near},
-    particles::PER_TASK,
-    solid::{Dim, Links, Load, Solid},
-    sph::{Extra, Medium, equation_of_state::State, gradient_correction},
+    neighbours::{CHUNK, NeighbourLists},
+    particles::PARTICLES_PER_TASK,
+    solid::{Constraints, Dim, Load, Solid},
+    sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
 
 /// Water and solids at one instant.
 pub struct System<const D: usize> {
     model: Model,
-    properties: Medium<D>,
-    equation_of_state: State,
-    pair_loop: Box<dyn Sweep<D>>,
-    pub(crate) neighbours: Near<D>,
+    properties: FluidProperties<D>,
+    equation_of_state: EquationOfState,
+    pair_loop: Box<dyn PairLoop<D>>,
+    pub(crate) neighbours: NeighbourLists<D>,
     pub(crate) fluid: Fluid<D>,
     pub(crate) boundary: Boundary<D>,
     pub(crate) solids: Vec<Solid<D>>,
-    constraints: Links<D>,
+    constraints: Constraints<D>,
     region: Region<D>,
     pub(crate) rates: Rates<D>,
     pub(crate) status: Status,
@@ -72,17 +72,17 @@ struct Region<const D: usize> {
 /// Sums over pairs from the last force pass.
 pub(crate) struct Rates<const D: usize> {
     /// One for each water particle.
-    pub(crate) fluid: Vec<Sums<D>>,
+    pub(crate) fluid: Vec<PairSums<D>>,
     /// One for each boundary particle near water.
-    pub(crate) boundary: Vec<Sums<D>>,
+    pub(crate) boundary: Vec<PairSums<D>>,
     /// One for each water particle, or none if no law needs it.
-    auxiliary: Vec<Extra<f64, D>>,
+    auxiliary: Vec<AuxiliarySums<f64, D>>,
 }
 
 /// Counters and extremes of the steps so far.
 pub(crate) struct Status {
     /// The largest values that limit the next step.
-    peaks: Peaks,
+    peaks: StepLimits,
     /// What the last step saw of the water particles.
     pub(crate) check: StepCheck,
     /// Force passes so far.
@@ -100,7 +100,7 @@ pub(crate) struct Reordering<const D: usize> {
     /// Boundary particles that have no water near them any more.
     pub(crate) dried: Vec<u32>,
     /// Particles that were removed.
-    pub(crate) lost: Vec<Lost<D>>,
+    pub(crate) lost: Vec<RemovedParticle<D>>,
 }
 
 /// An impulse that was shared equally by some water particles.
@@ -119,33 +119,44 @@ impl<const D: usize> System<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let Setup { model, water, levels, velocity, pressure, solids: specs, links, domain, periodic, limits, damping } =
-            setup;
-        if let Some(what) = model.clash() {
+        let Setup {
+            model,
+            water,
+            levels,
+            velocity,
+            pressure,
+            solids: specs,
+            constraints,
+            domain,
+            periodic,
+            limits,
+            sponge_layers,
+        } = setup;
+        if let Some(what) = model.conflict() {
             return Err(Error::scene(what));
         }
-        let (properties, support) = (model.medium::<D>(), model.reach());
-        let equation_of_state = State::new(properties.c0, properties.gamma);
+        let (properties, support) = (model.fluid_properties::<D>(), model.support_radius());
+        let equation_of_state = EquationOfState::new(properties.c0, properties.gamma);
         // Depth along g: the level is a height on the last axis.
         let depth = |(r, level): (&Vector<D>, &f64)| (level - r[D - 1]).max(0.0) * -properties.gravity[D - 1];
         let more = pressure.into_iter().chain(std::iter::repeat(0.0));
         let head = water.iter().zip(&levels).map(depth).zip(more).map(|(head, p)| head + p / properties.rho0);
-        let rho = head.map(|head| properties.rho0 * (1.0 + equation_of_state.still(head))).collect();
+        let rho = head.map(|head| properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head))).collect();
         drop(levels);
         let fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, support));
         let particles = &fluid.particles;
         let region = Region {
             domain: domain.unwrap_or_else(Bounds::empty),
             limits,
-            sponge_layers: damping,
+            sponge_layers: sponge_layers,
             initial_top: particles.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max),
             initial_count: particles.len(),
         };
         let mut system = Self {
-            pair_loop: Dim::<D>::sweep(&model),
-            neighbours: Near::new(support, model.dp, model.sweep.level()),
+            pair_loop: Dim::<D>::pair_loop(&model),
+            neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set()),
             rates: Rates {
-                fluid: vec![Sums::zero(); fluid.particles.len()],
+                fluid: vec![PairSums::zero(); fluid.particles.len()],
                 boundary: Vec::new(),
                 auxiliary: Vec::new(),
             },
@@ -155,10 +166,10 @@ impl<const D: usize> System<D> {
             equation_of_state,
             fluid,
             solids: Vec::new(),
-            constraints: links,
+            constraints: constraints,
             region,
             status: Status {
-                peaks: Peaks { acceleration: 0.0, closing: 0.0 },
+                peaks: StepLimits { acceleration: 0.0, approach_rate: 0.0 },
                 check: StepCheck::NOTHING,
                 passes: 0,
                 solids_added: false,
@@ -223,12 +234,12 @@ impl<const D: usize> System<D> {
     /// water near them before.
     fn rebuild_lists(&mut self) -> Vec<u32> {
         let start = Instant::now();
-        let mut dried = self.neighbours.wet().to_vec();
+        let mut dried = self.neighbours.boundary_near_fluid().to_vec();
         self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
         self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
         self.status.check.moved2 = 0.0;
-        self.rates.boundary.resize(self.neighbours.wet().len(), Sums::zero());
-        let mut wet = self.neighbours.wet().iter().copied().peekable();
+        self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
+        let mut wet = self.neighbours.boundary_near_fluid().iter().copied().peekable();
         dried.retain(|&i| {
             while wet.next_if(|&w| w < i).is_some() {}
             wet.peek() != Some(&i)
@@ -242,22 +253,22 @@ impl<const D: usize> System<D> {
 
     /// What the pair loop reads.
     fn pair_input<'a>(
-        neighbours: &'a Near<D>,
+        neighbours: &'a NeighbourLists<D>,
         fluid: &'a Fluid<D>,
         boundary: &'a Boundary<D>,
-        medium: &'a Medium<D>,
-        state: &'a State,
-    ) -> Input<'a, D> {
-        Input {
-            near: neighbours,
-            water: &fluid.particles,
-            skin: &boundary.particles,
-            shown: boundary.extrapolated_velocity.as_ref().unwrap_or(&boundary.particles.v),
+        medium: &'a FluidProperties<D>,
+        state: &'a EquationOfState,
+    ) -> PairLoopInput<'a, D> {
+        PairLoopInput {
+            neighbours: neighbours,
+            fluid: &fluid.particles,
+            boundary: &boundary.particles,
+            boundary_velocity: boundary.extrapolated_velocity.as_ref().unwrap_or(&boundary.particles.v),
             stress: fluid.stress.as_deref().unwrap_or_default(),
-            forms: fluid.gradient_correction.as_deref().unwrap_or_default(),
-            marks: boundary.shifting_suppressed.as_deref().unwrap_or_default(),
-            medium,
-            state,
+            gradient_correction: fluid.gradient_correction.as_deref().unwrap_or_default(),
+            shifting_suppressed: boundary.shifting_suppressed.as_deref().unwrap_or_default(),
+            properties: medium,
+            equation_of_state: state,
         }
     }
 
@@ -265,13 +276,14 @@ impl<const D: usize> System<D> {
     /// the neighbour lists must hold.
     pub(crate) fn update_rates(&mut self) {
         self.update_wall_state();
-        if self.pair_loop.extra() {
-            self.rates.auxiliary.resize(self.fluid.particles.len(), Extra::all(0.0));
+        if self.pair_loop.has_auxiliary_sums() {
+            self.rates.auxiliary.resize(self.fluid.particles.len(), AuxiliarySums::all(0.0));
         }
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, .. } = self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         let Rates { fluid, boundary, auxiliary } = rates;
-        self.status.peaks = pair_loop.rates(&input, &mut Output { water: fluid, skin: boundary, extra: auxiliary });
+        self.status.peaks =
+            pair_loop.rates(&input, &mut PairLoopOutput { fluid: fluid, boundary: boundary, auxiliary: auxiliary });
         self.copy_to_images();
         self.update_fluid_tensors();
         let loads = self.loads(&self.rates.boundary);
@@ -284,45 +296,47 @@ impl<const D: usize> System<D> {
         let (medium, auxiliary) = (&self.properties, &self.rates.auxiliary);
         if let (Viscosity::Sps(sps), Some(stress)) = (self.model.viscosity, &mut self.fluid.stress) {
             let rho = &self.fluid.particles.rho;
-            stress.par_iter_mut().enumerate().with_min_len(PER_TASK).for_each(|(i, stress)| {
-                let rows = sps.close(&auxiliary[i].strain, medium.rho0 / rho[i], medium);
+            stress.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, stress)| {
+                let rows = sps.stress(&auxiliary[i].strain, medium.rho0 / rho[i], medium);
                 *stress = Matrix::from_fn(|i, j| rows[i][j]);
             });
         }
         if let Some(corrections) = &mut self.fluid.gradient_correction {
-            corrections.par_iter_mut().zip(auxiliary).with_min_len(PER_TASK).for_each(|(correction, sums)| {
-                let rows = gradient_correction::close(&sums.moment);
-                *correction = Matrix::from_fn(|i, j| rows[i][j]);
-            });
+            corrections.par_iter_mut().zip(auxiliary).with_min_len(PARTICLES_PER_TASK).for_each(
+                |(correction, sums)| {
+                    let rows = gradient_correction::correction(&sums.moment);
+                    *correction = Matrix::from_fn(|i, j| rows[i][j]);
+                },
+            );
         }
     }
 
     /// Sums of another pair loop at the state of the last force pass, and the loads that they give on the solids.
     pub(crate) fn pass_of(
         &self,
-        pair_loop: &mut dyn Sweep<D>,
-        fluid: &mut [Sums<D>],
-        boundary: &mut [Sums<D>],
+        pair_loop: &mut dyn PairLoop<D>,
+        fluid: &mut [PairSums<D>],
+        boundary: &mut [PairSums<D>],
     ) -> Vec<Load<D>> {
         let (medium, state) = (&self.properties, &self.equation_of_state);
         let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
-        pair_loop.rates(&input, &mut Output { water: fluid, skin: boundary, extra: &mut [] });
+        pair_loop.rates(&input, &mut PairLoopOutput { fluid: fluid, boundary: boundary, auxiliary: &mut [] });
         self.loads(boundary)
     }
 
     /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order.
-    fn loads(&self, sums: &[Sums<D>]) -> Vec<Load<D>> {
-        let (mass, wet, r) = (self.particle_mass(), self.neighbours.wet(), &self.boundary.particles.r);
+    fn loads(&self, sums: &[PairSums<D>]) -> Vec<Load<D>> {
+        let (mass, wet, r) = (self.particle_mass(), self.neighbours.boundary_near_fluid(), &self.boundary.particles.r);
         let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
         let of = |solid: &Solid<D>| {
             let centre = solid.kinematics.centre;
-            let own = place(solid.skin.start)..place(solid.skin.end);
+            let own = place(solid.boundary.start)..place(solid.boundary.end);
             let chunks = wet[own.clone()].par_chunks(CHUNK).zip(sums[own].par_chunks(CHUNK));
-            let part = |(wet, sums): (&[u32], &[Sums<D>])| {
+            let part = |(wet, sums): (&[u32], &[PairSums<D>])| {
                 // Beyond a periodic side the water is an image, and its load has been counted.
                 let own = wet.iter().map(|&i| &r[i as usize]).zip(sums);
                 let own = own.filter(|(r, _)| self.fluid.images.between(r));
-                own.map(|(r, s)| Load::at(&(r - centre), s.dv * mass)).sum()
+                own.map(|(r, s)| Load::at(&(r - centre), s.acceleration * mass)).sum()
             };
             let parts: Vec<Load<D>> = chunks.map(part).collect();
             parts.into_iter().sum()
@@ -331,12 +345,12 @@ impl<const D: usize> System<D> {
     }
 
     /// The largest values that limit the next step.
-    pub fn peaks(&self) -> Peaks {
+    pub fn step_limits(&self) -> StepLimits {
         self.status.peaks
     }
 
     /// The sums of each water particle that only some laws need; empty if none does.
-    pub(crate) fn auxiliary_sums(&self) -> &[Extra<f64, D>] {
+    pub(crate) fn auxiliary_sums(&self) -> &[AuxiliarySums<f64, D>] {
         &self.rates.auxiliary
     }
 
@@ -346,9 +360,9 @@ impl<const D: usize> System<D> {
             return None;
         }
         let (real, mass) = (self.real_count(), self.particle_mass());
-        let own = Bounds::around(&self.boundary.particles.r[self.solids[solid].skin.clone()]);
+        let own = Bounds::around(&self.boundary.particles.r[self.solids[solid].boundary.clone()]);
         let water = &mut self.fluid.particles;
-        let mut distance = self.model.reach();
+        let mut distance = self.model.support_radius();
         loop {
             let around = own.grown(distance);
             let mut particles = self.neighbours.water_within(&around);

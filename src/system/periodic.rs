@@ -4,10 +4,10 @@
 //! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
 //! counts the water leaves images out. Solids have none: they reach beyond the sides as far as the images do.
 
-use super::{Fluid, Lost, Rates, System};
+use super::{Fluid, Rates, RemovedParticle, System};
 use crate::{
     error::{Error, Result},
-    interaction::{Peaks, Sums},
+    interaction::{PairSums, StepLimits},
     math::{Bounds, Vector},
     model::Model,
     solid::{Role, SolidSpec},
@@ -87,7 +87,7 @@ impl<const D: usize> Images<D> {
 impl<const D: usize> System<D> {
     /// Wraps the water round the periodic sides, removes what left the domain or is displaced, sorts it along the columns and
     /// puts new images at its end. Returns the order, `order[new] = old` (for an image that of its original), and what was removed.
-    pub(super) fn sort_water(&mut self) -> (Vec<u32>, Vec<Lost<D>>) {
+    pub(super) fn sort_water(&mut self) -> (Vec<u32>, Vec<RemovedParticle<D>>) {
         let real = self.real_count();
         let Fluid { particles, images, displaced, .. } = &mut self.fluid;
         images.wrap(&mut particles.r[..real]);
@@ -111,7 +111,7 @@ impl<const D: usize> System<D> {
             *r += away;
         }
         images.of = copies.into_iter().map(|(of, _)| of).collect();
-        self.rates.fluid.resize(particles.len(), Sums::zero());
+        self.rates.fluid.resize(particles.len(), PairSums::zero());
         (order, lost)
     }
 
@@ -126,8 +126,8 @@ impl<const D: usize> System<D> {
         }
         if images.any() {
             // The outermost images lack half their neighbours: their acceleration says nothing of the water.
-            let largest = fluid[..real].iter().map(|s| s.dv.norm_squared()).fold(0.0, f64::max);
-            self.status.peaks = Peaks { acceleration: largest.sqrt(), ..self.status.peaks };
+            let largest = fluid[..real].iter().map(|s| s.acceleration.norm_squared()).fold(0.0, f64::max);
+            self.status.peaks = StepLimits { acceleration: largest.sqrt(), ..self.status.peaks };
         }
     }
 }
@@ -137,7 +137,7 @@ impl<const D: usize> System<D> {
 /// # Errors
 /// `Scene` if a period is too short or no whole number of dp, or a solid is free or ends at a side.
 pub fn check<const D: usize>(periodic: &Periodic<D>, model: &Model, solids: &[SolidSpec<D>]) -> Result<()> {
-    let (dp, width) = (model.dp, WIDTH * model.reach());
+    let (dp, width) = (model.dp, WIDTH * model.support_radius());
     for (axis, side) in periodic.iter().enumerate() {
         let Some([from, to]) = *side else { continue };
         let (name, length) = (["x", "y", "z"][axis], to - from);

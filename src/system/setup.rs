@@ -9,7 +9,7 @@ use crate::{
     error::{Error, Result},
     math::{Bounds, Vector},
     model::Model,
-    solid::{Links, SolidSpec},
+    solid::{Constraints, SolidSpec},
 };
 
 /// What a simulation starts from.
@@ -28,7 +28,7 @@ pub struct Setup<const D: usize> {
     /// The solids.
     pub solids: Vec<SolidSpec<D>>,
     /// What ties them.
-    pub links: Links<D>,
+    pub constraints: Constraints<D>,
     /// Where particles may be; by default everything at the start, with its own largest extent around it.
     pub domain: Option<Bounds<D>>,
     /// Which sides are periodic.
@@ -36,15 +36,27 @@ pub struct Setup<const D: usize> {
     /// The valid range of a water particle.
     pub limits: Limits,
     /// Where water loses its motion.
-    pub damping: Vec<SpongeLayer<D>>,
+    pub sponge_layers: Vec<SpongeLayer<D>>,
 }
 
 impl<const D: usize> Setup<D> {
     /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
     pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
-        let (velocity, pressure, links, limits) = (Vec::new(), Vec::new(), Links::default(), Limits::default());
+        let (velocity, pressure, links, limits) = (Vec::new(), Vec::new(), Constraints::default(), Limits::default());
         let (domain, periodic, damping) = (None, [None; D], Vec::new());
-        Self { model, water, levels, solids, links, velocity, pressure, domain, periodic, limits, damping }
+        Self {
+            model,
+            water,
+            levels,
+            solids,
+            constraints: links,
+            velocity,
+            pressure,
+            domain,
+            periodic,
+            limits,
+            sponge_layers: damping,
+        }
     }
 
     /// Refuses a setup whose constants have no meaning.
@@ -65,7 +77,7 @@ impl<const D: usize> Setup<D> {
                 return Err(Error::scene(format!("{name} must be a positive number, not {value}")));
             }
         }
-        if m.reach() <= m.dp {
+        if m.support_radius() <= m.dp {
             return Err(Error::scene(format!("h must exceed dp/2 for particles to see one another, and is {} m", m.h)));
         }
         if m.gravity.len() != D || m.gravity.iter().any(|g| !g.is_finite()) {
@@ -81,8 +93,8 @@ impl<const D: usize> Setup<D> {
         if let Some(i) = self.water.iter().position(|r| r.iter().any(|x| !x.is_finite())) {
             return Err(Error::scene(format!("water particle {i} has no finite place")));
         }
-        self.damping.iter().try_for_each(SpongeLayer::check)?;
-        self.links.check(&self.solids)?;
+        self.sponge_layers.iter().try_for_each(SpongeLayer::check)?;
+        self.constraints.check(&self.solids)?;
         periodic::check(&self.periodic, m, &self.solids)
     }
 }

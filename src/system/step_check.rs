@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::System;
 use crate::{
     math::{Bounds, Vector},
-    particles::{PER_TASK, Particles},
+    particles::{PARTICLES_PER_TASK, Particles},
 };
 
 /// The valid range of a water particle. Scene words `[guard]`.
@@ -43,7 +43,7 @@ impl Default for Limits {
 
 /// A particle that left the domain and was taken out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Lost<const D: usize> {
+pub struct RemovedParticle<const D: usize> {
     /// Its number.
     pub id: u32,
     /// Its last place, m.
@@ -52,8 +52,8 @@ pub struct Lost<const D: usize> {
     pub v: Vector<D>,
     /// Its last density, kg/m³.
     pub rho: f64,
-    /// The side by which it left, and so its likely way: "over a wall".
-    pub way: ExitPath,
+    /// The side by which it left, and so its likely exit: "over a wall".
+    pub exit: ExitPath,
 }
 
 /// How a particle is likely to have left the domain.
@@ -139,7 +139,13 @@ impl<const D: usize> System<D> {
     /// Looks at all water now.
     pub(crate) fn check_water(&mut self) {
         let (guard, fluid) = (self.guard(), &self.fluid.particles);
-        let all = fluid.r.par_iter().zip(&fluid.v).zip(&fluid.rho).zip(self.neighbours.built()).with_min_len(PER_TASK);
+        let all = fluid
+            .r
+            .par_iter()
+            .zip(&fluid.v)
+            .zip(&fluid.rho)
+            .zip(self.neighbours.positions_at_build())
+            .with_min_len(PARTICLES_PER_TASK);
         self.status.check = all
             .map(|(((r, v), rho), then)| guard.check(then, r, v, *rho))
             .reduce(|| StepCheck::NOTHING, StepCheck::and);
@@ -166,13 +172,15 @@ impl<const D: usize> System<D> {
                 None
             }
         };
-        let i =
-            (0..self.fluid.particles.len()).into_par_iter().with_min_len(PER_TASK).find_first(|&i| bad(i).is_some())?;
+        let i = (0..self.fluid.particles.len())
+            .into_par_iter()
+            .with_min_len(PARTICLES_PER_TASK)
+            .find_first(|&i| bad(i).is_some())?;
         bad(i).map(|(what, cause)| (i, what, cause))
     }
 
     /// Takes those water particles out of `order` that have left the domain, if that is what becomes of them.
-    pub(super) fn remove_outside(&self, order: &mut Vec<u32>) -> Vec<Lost<D>> {
+    pub(super) fn remove_outside(&self, order: &mut Vec<u32>) -> Vec<RemovedParticle<D>> {
         let Particles { r, v, rho, id } = &self.fluid.particles;
         let mut lost = Vec::new();
         if self.region.limits.escape == Escape::Remove {
@@ -181,7 +189,7 @@ impl<const D: usize> System<D> {
                 let inside = self.region.domain.contains(&r[i]);
                 if !inside {
                     let way = self.exit_path(&r[i], &v[i]);
-                    lost.push(Lost { id: id[i], r: r[i], v: v[i], rho: rho[i], way });
+                    lost.push(RemovedParticle { id: id[i], r: r[i], v: v[i], rho: rho[i], exit: way });
                 }
                 inside
             });

@@ -6,9 +6,9 @@ use super::{Periodic, System};
 use crate::{
     math::{Bounds, Vector},
     model::Model,
-    particles::View,
-    solid::{Around, Links, Load, Role, Solid},
-    sph::Medium,
+    particles::ParticlesView,
+    solid::{Constraints, Load, LoadContext, Role, Solid},
+    sph::FluidProperties,
 };
 
 impl<const D: usize> System<D> {
@@ -18,17 +18,17 @@ impl<const D: usize> System<D> {
     }
 
     /// The constants that the laws share.
-    pub fn medium(&self) -> &Medium<D> {
+    pub fn properties(&self) -> &FluidProperties<D> {
         &self.properties
     }
 
     /// The water.
-    pub fn fluid(&self) -> View<'_, D> {
+    pub fn fluid(&self) -> ParticlesView<'_, D> {
         self.fluid.particles.first(self.real_count())
     }
 
     /// The boundary particles of all solids.
-    pub fn skin(&self) -> View<'_, D> {
+    pub fn boundary(&self) -> ParticlesView<'_, D> {
         self.boundary.particles.first(self.boundary.particles.len())
     }
 
@@ -38,12 +38,12 @@ impl<const D: usize> System<D> {
     }
 
     /// What ties the solids, as it was made.
-    pub fn links(&self) -> &Links<D> {
+    pub fn constraints(&self) -> &Constraints<D> {
         &self.constraints
     }
 
     /// Number of the solid of that name.
-    pub fn solid(&self, name: &str) -> Option<usize> {
+    pub fn find_solid(&self, name: &str) -> Option<usize> {
         self.solids.iter().position(|s| s.spec.name == name)
     }
 
@@ -69,12 +69,12 @@ impl<const D: usize> System<D> {
 
     /// Pressure (Pa) with which water of density `rho` (kg/m³) acts where its particles lie dp apart: a little less than
     /// [`System::pressure`].
-    pub fn acting_pressure(&self, rho: f64) -> f64 {
-        self.properties.rho0 * self.equation_of_state.acting(rho / self.properties.rho0 - 1.0)
+    pub fn lattice_pressure(&self, rho: f64) -> f64 {
+        self.properties.rho0 * self.equation_of_state.lattice_pressure(rho / self.properties.rho0 - 1.0)
     }
 
     /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
-    pub fn compression(&self, rho: f64) -> f64 {
+    pub fn compression_energy(&self, rho: f64) -> f64 {
         self.equation_of_state.energy(rho / self.properties.rho0 - 1.0)
     }
 
@@ -82,22 +82,22 @@ impl<const D: usize> System<D> {
     /// compression.
     pub(crate) fn particle_energy(&self, r: &Vector<D>, v: &Vector<D>, rho: f64) -> f64 {
         let height = self.height_gravity().dot(r);
-        self.particle_mass() * (0.5 * v.norm_squared() - height + self.compression(rho))
+        self.particle_mass() * (0.5 * v.norm_squared() - height + self.compression_energy(rho))
     }
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
     pub fn fluid_dv(&self, i: usize) -> Vector<D> {
-        self.rates.fluid[i].dv
+        self.rates.fluid[i].acceleration
     }
 
     /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
     pub fn fluid_drho(&self, i: usize) -> f64 {
-        self.rates.fluid[i].dx * self.properties.rho0
+        self.rates.fluid[i].compression_rate * self.properties.rho0
     }
 
     /// Number of boundary particles that have water near them; the others cost nothing.
-    pub fn wet(&self) -> usize {
-        self.neighbours.wet().len()
+    pub fn boundary_near_fluid_count(&self) -> usize {
+        self.neighbours.boundary_near_fluid().len()
     }
 
     /// Memory of the neighbour lists, B.
@@ -106,8 +106,8 @@ impl<const D: usize> System<D> {
     }
 
     /// Time spent so far on lists and sorting, and on pairs.
-    pub fn spent(&self) -> (Duration, Duration) {
-        (self.status.neighbour_time, self.pair_loop.spent())
+    pub fn time_spent(&self) -> (Duration, Duration) {
+        (self.status.neighbour_time, self.pair_loop.time_spent())
     }
 
     /// Force passes so far.
@@ -121,18 +121,18 @@ impl<const D: usize> System<D> {
     }
 
     /// What is around the solids that feel `loads` (N, N m) of the water.
-    pub(crate) fn around(&self, loads: &[Load<D>]) -> Around<D> {
+    pub(crate) fn load_context(&self, loads: &[Load<D>]) -> LoadContext<D> {
         let with_weight = |(load, solid): (&Load<D>, &Solid<D>)| match &solid.spec.role {
             Role::Free(body) => Load { force: load.force + self.gravity() * body.mass, ..*load },
             Role::Fixed | Role::Driven(_) => *load,
         };
         let loads = loads.iter().zip(&self.solids).map(with_weight).collect();
         let wet = self.solids.iter().map(|solid| solid.load != Load::zero()).collect();
-        Around { loads, wet, crossing: self.properties.h / self.properties.c0 }
+        LoadContext { loads, wet, crossing: self.properties.h / self.properties.c0 }
     }
 
     /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).
-    pub fn kinetic(&self) -> f64 {
+    pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.particle_mass() * self.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>()
     }
 
@@ -156,29 +156,35 @@ impl<const D: usize> System<D> {
         let real = self.real_count();
         self.neighbours.water_around(x, &mut |i| {
             let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.of[k] as usize);
-            self.weigh(&self.fluid.particles.r[i], x, own, visit);
+            self.visit_within_support(&self.fluid.particles.r[i], x, own, visit);
         });
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
-    pub fn solid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        self.neighbours.skin_around(x, &mut |i| self.weigh(&self.boundary.particles.r[i], x, i, visit));
+    pub fn boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+        self.neighbours.skin_around(x, &mut |i| self.visit_within_support(&self.boundary.particles.r[i], x, i, visit));
     }
 
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
     pub fn forces_on(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
-        let (mass, skin) = (self.particle_mass(), &self.solids[solid].skin);
-        for (&i, sums) in self.neighbours.wet().iter().zip(&self.rates.boundary) {
+        let (mass, skin) = (self.particle_mass(), &self.solids[solid].boundary);
+        for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
             if skin.contains(&(i as usize)) && self.fluid.images.between(&self.boundary.particles.r[i as usize]) {
-                visit(i as usize, sums.dv * mass);
+                visit(i as usize, sums.acceleration * mass);
             }
         }
     }
 
-    fn weigh(&self, r: &Vector<D>, x: &Vector<D>, i: usize, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+    fn visit_within_support(
+        &self,
+        r: &Vector<D>,
+        x: &Vector<D>,
+        i: usize,
+        visit: &mut dyn FnMut(usize, &Vector<D>, f64),
+    ) {
         let r2 = (r - x).norm_squared();
-        if r2 < self.model.reach().powi(2) {
+        if r2 < self.model.support_radius().powi(2) {
             visit(i, r, self.model.kernel_value(r2, D));
         }
     }

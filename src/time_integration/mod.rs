@@ -15,8 +15,8 @@ use crate::{
     coupling::{Accounting, Interval},
     math::Vector,
     model::{Model, Scheme},
-    particles::PER_TASK,
-    sph::boundary::settled,
+    particles::PARTICLES_PER_TASK,
+    sph::boundary::relaxation,
     system::{MomentumTransfer, Reordering, System},
 };
 
@@ -86,8 +86,12 @@ impl<const D: usize> Stepper<D> {
 fn shifts<const D: usize>(system: &System<D>, dt: f64) -> Option<Vec<Vector<D>>> {
     let shift = system.model().shift()?;
     let water = system.auxiliary_sums().par_iter().zip(&system.fluid.particles.v);
-    let shifts = water.with_min_len(PER_TASK).map(|(sums, v)| {
-        if sums.held > 0.0 { Vector::zeros() } else { shift.close(sums, v.norm(), dt, system.medium()) }
+    let shifts = water.with_min_len(PARTICLES_PER_TASK).map(|(sums, v)| {
+        if sums.shifting_suppressed > 0.0 {
+            Vector::zeros()
+        } else {
+            shift.displacement(sums, v.norm(), dt, system.properties())
+        }
     });
     Some(shifts.collect())
 }
@@ -100,16 +104,16 @@ fn apply_shifts<const D: usize>(
 ) {
     accounting.iter_mut().for_each(|accounting| accounting.add_shifting(system, shifts));
     let r = &mut system.fluid.particles.r;
-    r.par_iter_mut().zip(shifts).with_min_len(PER_TASK).for_each(|(r, shift)| *r += shift);
+    r.par_iter_mut().zip(shifts).with_min_len(PARTICLES_PER_TASK).for_each(|(r, shift)| *r += shift);
     system.check_water();
 }
 
 /// Sets the densities of boundary particles near water to what `rho` makes of their rate dx/dt (1/s), index and density, and
 /// relaxes them over `dt` (s).
 fn step_boundary_density<const D: usize>(system: &mut System<D>, dt: f64, mut rho: impl FnMut(f64, usize, f64) -> f64) {
-    let medium = system.medium();
-    let relaxation = settled(dt, medium.h, medium.c0);
+    let medium = system.properties();
+    let relaxation = relaxation(dt, medium.h, medium.c0);
     let rates = std::mem::take(&mut system.rates.boundary);
-    system.set_boundary_density(relaxation, |k, i, now| rho(rates[k].dx, i, now));
+    system.set_boundary_density(relaxation, |k, i, now| rho(rates[k].compression_rate, i, now));
     system.rates.boundary = rates;
 }

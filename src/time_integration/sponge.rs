@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::{math::Vector, particles::PER_TASK, system::System};
+use crate::{math::Vector, particles::PARTICLES_PER_TASK, system::System};
 
 /// Damps the water in the sponge layers over `dt` (s), and the velocities `before` from which a scheme continues. Returns the
 /// energy (J) that the water lost, if that is `measured`.
@@ -15,11 +15,11 @@ pub(super) fn absorb<const D: usize>(
     if system.sponge_layers().is_empty() {
         return 0.0;
     }
-    let energy = if measured { system.kinetic() } else { 0.0 };
+    let energy = if measured { system.kinetic_energy() } else { 0.0 };
     let mut v = std::mem::take(&mut system.fluid.particles.v);
     let (layers, r) = (system.sponge_layers(), &system.fluid.particles.r);
     for v in [Some(&mut v[..]), before].into_iter().flatten() {
-        v.par_iter_mut().zip(r).with_min_len(PER_TASK).for_each(|(v, r)| {
+        v.par_iter_mut().zip(r).with_min_len(PARTICLES_PER_TASK).for_each(|(v, r)| {
             let rate: f64 = layers.iter().map(|layer| layer.rate(r)).sum();
             if rate > 0.0 {
                 *v *= (-rate * dt).exp();
@@ -27,5 +27,5 @@ pub(super) fn absorb<const D: usize>(
         });
     }
     system.fluid.particles.v = v;
-    if measured { energy - system.kinetic() } else { 0.0 }
+    if measured { energy - system.kinetic_energy() } else { 0.0 }
 }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::{apply_shifts, shifts, step_boundary_density};
 use crate::{
     coupling::{Accounting, Interval, drift_half_step},
-    particles::PER_TASK,
+    particles::PARTICLES_PER_TASK,
     system::{StepCheck, System},
 };
 
@@ -28,18 +28,18 @@ impl Symplectic {
         mut accounting: Option<&mut Accounting<D>>,
     ) -> f64 {
         let (dt, half) = (over.dt, 0.5 * over.dt);
-        let rho0 = system.medium().rho0;
+        let rho0 = system.properties().rho0;
         let (start, boundary_start) = (system.fluid.particles.clone(), system.boundary.particles.rho.clone());
 
         let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
         system.status.check = now
-            .zip(system.neighbours.built())
-            .with_min_len(PER_TASK)
+            .zip(system.neighbours.positions_at_build())
+            .with_min_len(PARTICLES_PER_TASK)
             .map(|((((r, v), rho), s), then)| {
                 *r += *v * half;
-                *v += s.dv * half;
-                *rho += rho0 * s.dx * half;
+                *v += s.acceleration * half;
+                *rho += rho0 * s.compression_rate * half;
                 StepCheck::displacement(then, r)
             })
             .reduce(|| StepCheck::NOTHING, StepCheck::and);
@@ -59,13 +59,13 @@ impl Symplectic {
         let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
         system.status.check = now
-            .zip(system.neighbours.built())
+            .zip(system.neighbours.positions_at_build())
             .enumerate()
-            .with_min_len(PER_TASK)
+            .with_min_len(PARTICLES_PER_TASK)
             .map(|(i, ((((r, v), rho), s), then))| {
-                *v = start.v[i] + s.dv * dt;
+                *v = start.v[i] + s.acceleration * dt;
                 *r = start.r[i] + (start.v[i] + *v) * half;
-                *rho = whole(start.rho[i], *rho, s.dx);
+                *rho = whole(start.rho[i], *rho, s.compression_rate);
                 guard.check(then, r, v, *rho)
             })
             .reduce(|| StepCheck::NOTHING, StepCheck::and);

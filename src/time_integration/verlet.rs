@@ -20,7 +20,7 @@ use crate::{
     coupling::{Accounting, Interval},
     math::Vector,
     model::{Diffusion, Model, Viscosity},
-    particles::PER_TASK,
+    particles::PARTICLES_PER_TASK,
     system::{Reordering, StepCheck, System, permute},
 };
 
@@ -93,7 +93,7 @@ impl<const D: usize> Verlet<D> {
         mut accounting: Option<&mut Accounting<D>>,
     ) -> f64 {
         let dt = over.dt;
-        let rho0 = system.medium().rho0;
+        let rho0 = system.properties().rho0;
         let first = self.v_before.is_empty() && self.skin_rho_before.is_empty();
         let euler = first || self.steps >= self.euler_every || self.foldings > FOLDINGS;
         // An Euler step is a Verlet step whose step before had no length and ended here.
@@ -113,12 +113,12 @@ impl<const D: usize> Verlet<D> {
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
         system.status.check = now
             .zip(before)
-            .zip(system.neighbours.built())
-            .with_min_len(PER_TASK)
+            .zip(system.neighbours.positions_at_build())
+            .with_min_len(PARTICLES_PER_TASK)
             .map(|(((((r, v), rho), s), (v_before, rho_before)), then)| {
-                *r += *v * dt + s.dv * (0.5 * dt * dt);
-                (*v_before, *v) = (*v, *v_before + s.dv * span);
-                (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.dx * span);
+                *r += *v * dt + s.acceleration * (0.5 * dt * dt);
+                (*v_before, *v) = (*v, *v_before + s.acceleration * span);
+                (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.compression_rate * span);
                 guard.check(then, r, v, *rho)
             })
             .reduce(|| StepCheck::NOTHING, StepCheck::and);

@@ -17,7 +17,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Component, Course, Maker, Paddle, STEEPEST, Train, Wave, smooth,
+    Component, Course, Paddle, STEEPEST, Train, Wave, Wavemaker, smooth,
     train::{evanescent, wave_number},
 };
 use crate::error::{Error, Result};
@@ -60,7 +60,7 @@ pub struct Tuning {
 /// What makes a paddle absorb.
 #[derive(Clone, Debug)]
 pub struct Absorber {
-    maker: Maker,
+    maker: Wavemaker,
     train: Train,
     gauge: f64,
     level: f64,
@@ -87,7 +87,7 @@ struct Own {
 
 /// How far a paddle has yielded, from one step to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Yielding {
+pub struct AbsorptionState {
     /// When this held, s.
     since: f64,
     /// x, m, and its first and second rate.
@@ -96,7 +96,7 @@ pub struct Yielding {
     change: f64,
 }
 
-impl Yielding {
+impl AbsorptionState {
     /// x (m) and x′ (m/s) at time `t` (s).
     pub fn at(&self, t: f64) -> (f64, f64) {
         let s = t - self.since;
@@ -114,7 +114,7 @@ impl Absorber {
     ///
     /// # Errors
     /// `Scene` if the gauge is too far off for so short a wave, or the stroke is less than the paddle's own wave takes.
-    pub fn new(maker: &Maker, wave: &Wave, tuning: &Tuning) -> Result<Self> {
+    pub fn new(maker: &Wavemaker, wave: &Wave, tuning: &Tuning) -> Result<Self> {
         let Tuning { gauge, level, .. } = *tuning;
         let train = match tuning.period {
             Some(period) => maker.train(period)?,
@@ -181,7 +181,7 @@ impl Absorber {
 
     /// c and s of a wave, –.
     fn answer(&self, train: &Train) -> (f64, f64) {
-        let Maker { depth, g, paddle } = self.maker;
+        let Wavemaker { depth, g, paddle } = self.maker;
         let stays = evanescent(train.omega, depth, g, MODES).into_iter().map(|kappa| {
             let k = Complex::new(0.0, -kappa);
             let whole = k * 4.0 * (k * depth).sinh() * paddle.projected(k, depth);
@@ -243,7 +243,7 @@ impl Absorber {
 
     /// How the paddle, which makes `wave` and has yielded `before`, goes on from time `t` (s): `level` is the height (m) of the
     /// water at the gauge; none: there is none.
-    pub(crate) fn steer(&self, wave: &Wave, before: &Yielding, t: f64, level: Option<f64>) -> Yielding {
+    pub(crate) fn update(&self, wave: &Wave, before: &AbsorptionState, t: f64, level: Option<f64>) -> AbsorptionState {
         let (x, rate) = before.at(t);
         let (own, own_rate) = wave.displacement(t);
         let place = own + x;
@@ -252,12 +252,12 @@ impl Absorber {
         let room = |left: f64| self.speed.min(left.max(0.0) / (4.0 * self.lag));
         let asked = own_rate - x / self.home - self.gain * excess;
         let allowed = asked.clamp(-room(self.reach + place), room(self.reach - place)) - own_rate;
-        Yielding { since: t, x, rate, change: (allowed - rate) / self.lag }
+        AbsorptionState { since: t, x, rate, change: (allowed - rate) / self.lag }
     }
 }
 
 /// How far (m) the face of a paddle may go from end to end, and how fast, m/s: as was asked, or as is usual.
-fn limits(maker: &Maker, wave: &Wave, train: &Train, tuning: &Tuning) -> Result<(f64, f64)> {
+fn limits(maker: &Wavemaker, wave: &Wave, train: &Train, tuning: &Tuning) -> Result<(f64, f64)> {
     let (own, own_speed) = extent(wave, train);
     let most = if let Paddle::Flap { arm } = maker.paddle { 2.0 * STEEPEST * arm } else { f64::INFINITY };
     let usual = if own > 0.0 { ROOM * own } else { train.highest() / maker.paddle.transfer(train) };

@@ -18,7 +18,7 @@ mod solitary;
 mod spectrum;
 mod train;
 
-pub use absorption::{Absorber, Tuning, Yielding};
+pub use absorption::{Absorber, AbsorptionState, Tuning};
 pub use extent::FAST;
 pub use paddle::Paddle;
 pub use solitary::{Solitary, Theory};
@@ -54,7 +54,7 @@ pub struct Component {
 
 /// A paddle and the water before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Maker {
+pub struct Wavemaker {
     /// Depth of the still water at the paddle, m.
     pub depth: f64,
     /// Acceleration of gravity, m/s².
@@ -200,7 +200,7 @@ fn smooth(t: f64, ramp: f64) -> (f64, f64) {
     }
 }
 
-impl Maker {
+impl Wavemaker {
     /// The regular wave of `height` (m), `period` (s) and phase (rad) of the surface at the paddle. Order 2 adds the
     /// motion that keeps the paddle from making free waves of twice the frequency.
     ///

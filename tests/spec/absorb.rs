@@ -57,7 +57,7 @@ fn a_standing_wave_is_gone_after_one_period_before_a_paddle_that_absorbs() {
         while sim.time() < 2.0 * PERIOD {
             sim.step().unwrap();
             if sim.time() > PERIOD {
-                (sum, count) = (sum + sim.system().kinetic(), count + 1);
+                (sum, count) = (sum + sim.system().kinetic_energy(), count + 1);
             }
         }
         sum / f64::from(count)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pontoon::{
     Result,
-    math::{Matrix, Pose, Vector, Wedge},
+    math::{Bivector, Matrix, Pose, Vector},
     scene::Scene,
     simulation::Simulation,
     solid::{Kinematics, Law, Motion, Role},
@@ -144,7 +144,7 @@ fn turns_about_two_axes_in_space_are_the_product_of_their_rotations() -> Result<
     };
     let (yaw, roll) = (turn("0, 0, 1", 0.5), turn("2, 0, 0", 0.8));
     let of = |motions: String| after_a_second::<3>("x = 3, y = 0.6, z = 0.2", &motions);
-    let rotation = |axial: [f64; 3]| -> Matrix<3> { Wedge::from_axial(&axial).exp() };
+    let rotation = |axial: [f64; 3]| -> Matrix<3> { Bivector::from_axial(&axial).exp() };
     let (z, x) = (rotation([0.0, 0.0, 0.5]), rotation([0.8, 0.0, 0.0]));
     let (rolled, yawed) = (of(format!("{yaw}, {roll}"))?, of(format!("{roll}, {yaw}"))?);
     assert!((rolled.pose.rotation - z * x).norm() < 1e-14 && (yawed.pose.rotation - x * z).norm() < 1e-14);

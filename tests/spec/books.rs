@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pontoon::{
     geometry::Shape,
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     model::Dimension,
     probe::{Budget, Probe},
     scene::Scene,
@@ -190,7 +190,7 @@ fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
     let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };
     let mut late = rig::float(shape, [0.7, 0.3], 700.0);
     let Role::Free(body) = &mut late.role else { panic!("a free body") };
-    (body.velocity, body.spin) = (Vector::from([0.3, 0.2]), Wedge::from_axial(&[4.0]));
+    (body.velocity, body.spin) = (Vector::from([0.3, 0.2]), Bivector::from_axial(&[4.0]));
     late.name = "late".into();
     let brought = 7.0 * (0.5 * 0.13 + 9.81 * 0.3) + 0.5 * (7.0 * 0.02 / 12.0) * 16.0;
     let added = sim.add_solid(late).unwrap();

@@ -38,7 +38,7 @@ struct Case<const D: usize> {
 
 impl<const D: usize> Case<D> {
     fn new(shape: Shape<D>, ratio: f64, pool: [f64; D]) -> Self {
-        Self { shape, ratio, pool, shift: [0.0; D], turn: [0.0; 3], alpha: 0.02, walls: Walls::Dbc }
+        Self { shape, ratio, pool, shift: [0.0; D], turn: [0.0; 3], alpha: 0.02, walls: Walls::Dynamic }
     }
 }
 
@@ -68,7 +68,7 @@ where
         let (up, pool) = (D - 1, Vector::from(pool) * DP);
         let mut float = rig::float(shape.clone(), [0.0; D], ratio * RHO0);
         let Role::Free(body) = float.role else { panic!("a free body") };
-        float.pose = Pose::turned(pool * 0.5, &turn);
+        float.pose = Pose::rotated(pool * 0.5, &turn);
         float.pose.position[up] +=
             hydrostatics::equilibrium_height(&shape, &float.pose, body.mass, RHO0, pool[up]).unwrap();
         float.pose.position += Vector::from(shift) * DP;
@@ -102,7 +102,7 @@ where
 
     /// Tilt, degrees; 2-D.
     fn tilt(&self) -> f64 {
-        self.pose().turn()[0].to_degrees()
+        self.pose().rotation_vector()[0].to_degrees()
     }
 
     /// Goes on for `seconds` and reads `what` a hundred times.
@@ -194,7 +194,7 @@ fn a_box_dropped_from_above_its_draft_comes_back_to_it() {
 fn walls_that_settle_leave_no_gap_at_a_box_that_has_moved() {
     for above in [2.0, -2.0] {
         let mut case = Case::new(block([16.0, 10.0]), 0.5, [48.0, 16.0]);
-        (case.shift[1], case.alpha, case.walls) = (above, 0.1, Walls::Settling);
+        (case.shift[1], case.alpha, case.walls) = (above, 0.1, Walls::RelaxedAdami);
         let mut bobber = Afloat::new(case);
         bobber.watch(6.0, |_| 0.0);
         let late = mean(&bobber.watch(1.0, Afloat::too_deep));

@@ -2,8 +2,8 @@
 
 use pontoon::{
     geometry::Shape,
-    math::{Bounds, Pose, Vector, Wedge, expression::Formula},
-    model::{Diffusion, Dimension, Model, Scheme, Sweeping, Viscosity, Walls},
+    math::{Bivector, Bounds, Pose, Vector, expression::Formula},
+    model::{Diffusion, Dimension, Model, PairLoopKind, Scheme, Viscosity, Walls},
     simulation::{Setup, Simulation},
     solid::{Dim, Law, Motion, Role},
 };
@@ -12,17 +12,17 @@ use crate::rig;
 
 /// Both sweeps and what they may lose of what they add up in 500 to 1,000 steps: rounding of f64; and of single precision,
 /// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/performance.md).
-const SWEEPS: [(Sweeping, f64); 2] = [(Sweeping::Reference, 1e-12), (Sweeping::Fast, 1e-8)];
+const SWEEPS: [(PairLoopKind, f64); 2] = [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)];
 
 /// Speed of sound in a drop, m/s: so fast that 1,000 steps end before the drop has flown apart.
 const C0: f64 = 34.0;
 
 /// A drop in free space with a body inside it, started spinning and stretching.
-fn drop_with_body(scheme: Scheme, sweep: Sweeping) -> Simulation<2> {
+fn drop_with_body(scheme: Scheme, sweep: PairLoopKind) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    (model.scheme, model.gravity, model.sweep) = (scheme, vec![0.0, 0.0], sweep);
-    (model.c0, model.walls) = (C0, Walls::Dbc);
+    (model.scheme, model.gravity, model.pair_loop) = (scheme, vec![0.0, 0.0], sweep);
+    (model.c0, model.walls) = (C0, Walls::Dynamic);
     if scheme != Scheme::Symplectic {
         // Without damping no Euler step comes before its time.
         (model.cfl, model.viscosity, model.diffusion) = (0.2, Viscosity::None, Diffusion::None);
@@ -72,7 +72,7 @@ fn a_free_drop_with_a_body_inside_keeps_its_momentum() {
 fn walls_that_settle_keep_momentum_too() {
     for (sweep, lost) in SWEEPS {
         let mut model = drop_with_body(Scheme::Symplectic, sweep).system().model().clone();
-        model.walls = Walls::Settling;
+        model.walls = Walls::RelaxedAdami;
         let mut sim = drop_under(model, 600.0);
         let start = rig::water_momentum(&sim) + body_momentum(&sim);
         for _ in 0..200 {
@@ -88,12 +88,12 @@ fn a_free_drop_keeps_its_angular_momentum() {
     for (sweep, rounding) in SWEEPS {
         let dp = 0.02;
         let mut model = Model::water(2, dp, 0.3);
-        (model.gravity, model.sweep, model.c0) = (vec![0.0, 0.0], sweep, C0);
+        (model.gravity, model.pair_loop, model.c0) = (vec![0.0, 0.0], sweep, C0);
         let mut sim = rig::simulation(model, rig::lattice([-0.2, -0.2], [0.4, 0.4], dp), -1.0, vec![]);
         sim.set_water_velocity(|r| Vector::from([2.0 * r[0] + 3.0 * r[1], -2.0 * r[1] - 5.0 * r[0]]));
         let spin = |sim: &Simulation<2>| -> (f64, f64) {
             let fluid = sim.system().fluid();
-            let each = fluid.r.iter().zip(fluid.v).map(|(r, v)| Wedge::torque(r, v).axial()[0]);
+            let each = fluid.r.iter().zip(fluid.v).map(|(r, v)| Bivector::torque(r, v).axial()[0]);
             each.fold((0.0, 0.0), |(sum, size), l| (sum + l, size + l.abs()))
         };
         let (start, scale) = spin(&sim);
@@ -134,7 +134,7 @@ fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
 #[test]
 fn an_euler_step_moves_the_shared_momentum_by_less_than_a_step_does() {
     let (every, steps) = (50, 500);
-    let mut sim = drop_with_body(Scheme::Verlet { euler_every: every }, Sweeping::Fast);
+    let mut sim = drop_with_body(Scheme::Verlet { euler_every: every }, PairLoopKind::Fast);
     sim.step().unwrap();
     let mut before = rig::water_momentum(&sim);
     let shared = |now: Vector<2>, before: Vector<2>, sim: &Simulation<2>| (now + before) * 0.5 + body_momentum(sim);
@@ -156,7 +156,7 @@ fn a_piston_gives_the_water_the_work_that_it_records() {
     // Work by the recorded force against kinetic, potential and compression energy of water and walls: 2 %, the
     // project's bound; what is lost goes into the floor under the walls' density. Walls that settle change their density
     // otherwise than by being compressed, so that the balance is open by as much again.
-    for (walls, open) in [(Walls::Dbc, 0.02), (Walls::Settling, 0.04)] {
+    for (walls, open) in [(Walls::Dynamic, 0.02), (Walls::RelaxedAdami, 0.04)] {
         let (work, gained) = pushed(walls);
         assert!(work > 1.0, "the piston did {work} J/m");
         assert!((work / gained - 1.0).abs() < open, "{walls:?}: work {work} J/m, gained {gained} J/m");
@@ -224,8 +224,8 @@ fn energy(sim: &Simulation<2>) -> f64 {
     let system = sim.system();
     let fluid = system.fluid();
     let water = (0..fluid.len())
-        .map(|i| 0.5 * fluid.v[i].norm_squared() + 9.81 * fluid.r[i][1] + system.compression(fluid.rho[i]));
-    let walls = system.skin().rho.iter().map(|&rho| system.compression(rho));
+        .map(|i| 0.5 * fluid.v[i].norm_squared() + 9.81 * fluid.r[i][1] + system.compression_energy(fluid.rho[i]));
+    let walls = system.boundary().rho.iter().map(|&rho| system.compression_energy(rho));
     (water.sum::<f64>() + walls.sum::<f64>()) * system.particle_mass()
 }
 
@@ -243,7 +243,7 @@ where
     let mut body = rig::float(Shape::Box { size: Vector::from_fn(|i, _| 0.1 + 0.05 * i as f64) }, at, 5.0);
     let Role::Free(free) = &mut body.role else { panic!("a free body") };
     (free.velocity[0], free.velocity[D - 1]) = (2.0, 3.0);
-    free.spin = Wedge::from_axial(&[4.0, 1.0, -2.0][..Wedge::<D>::COMPONENTS]);
+    free.spin = Bivector::from_axial(&[4.0, 1.0, -2.0][..Bivector::<D>::COMPONENTS]);
     let start = *free;
     let water = rig::lattice([0.0; D], size, dp);
     let levels = vec![0.2; water.len()];

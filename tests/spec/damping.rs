@@ -24,7 +24,7 @@ fn scene(words: &str) -> Result<Scene, Error> {
 }
 
 fn zone(words: &str) -> Result<SpongeLayer<2>, Error> {
-    Ok(scene(words)?.build::<2>()?.setup.damping[0])
+    Ok(scene(words)?.build::<2>()?.setup.sponge_layers[0])
 }
 
 #[test]

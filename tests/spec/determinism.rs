@@ -13,10 +13,10 @@ use crate::rig;
 
 /// Both steppers, walls and gradients.
 const KINDS: [(Scheme, Walls, Gradient); 4] = [
-    (Scheme::Symplectic, Walls::Dbc, Gradient::Plain),
-    (Scheme::Verlet { euler_every: 50 }, Walls::Dbc, Gradient::Plain),
-    (Scheme::Symplectic, Walls::Settling, Gradient::Plain),
-    (Scheme::Symplectic, Walls::Settling, Gradient::Corrected),
+    (Scheme::Symplectic, Walls::Dynamic, Gradient::Plain),
+    (Scheme::Verlet { euler_every: 50 }, Walls::Dynamic, Gradient::Plain),
+    (Scheme::Symplectic, Walls::RelaxedAdami, Gradient::Plain),
+    (Scheme::Symplectic, Walls::RelaxedAdami, Gradient::Corrected),
 ];
 
 /// A dam break onto two floats that collide, one as light as foam, beside a paddle, with every term that remembers something.

@@ -48,7 +48,7 @@ fn mean<const N: usize>(
 }
 
 fn tilt(sim: &Simulation<2>, solid: usize) -> f64 {
-    sim.system().solids()[solid].kinematics.pose.turn()[0]
+    sim.system().solids()[solid].kinematics.pose.rotation_vector()[0]
 }
 
 /// How high a point of a solid's frame is, m.
@@ -61,7 +61,7 @@ fn list(sim: &Simulation<2>, solid: usize) -> Result<f64> {
     let spec = &sim.system().solids()[solid].spec;
     let Role::Free(body) = &spec.role else { panic!("a free body") };
     let lever = |tilt: f64| -> Result<f64> {
-        let mut pose = Pose::turned(Vector::zeros(), &[tilt]);
+        let mut pose = Pose::rotated(Vector::zeros(), &[tilt]);
         pose.position[1] += equilibrium_height(&spec.shape, &pose, body.mass, 1000.0, 0.0)?;
         Ok(spec.shape.submerged(&pose, 0.0).1[0] - pose.point(&body.centre)[0])
     };
@@ -126,7 +126,7 @@ fn a_catamaran_floats_on_its_hulls_and_lists_as_hydrostatics_says() -> Result<()
     // Stiff as two hulls are: a quarter of a dp at 10 dp on either side of the middle is 0.7°.
     assert!(exact.abs() > 0.02 && (found - exact).abs() < 0.7f64.to_radians(), "{found} rad, hydrostatics {exact}");
     let Role::Free(body) = &sim.system().solids()[1].spec.role else { panic!("a free body") };
-    let mut rest = Pose::turned(Vector::zeros(), &[exact]);
+    let mut rest = Pose::rotated(Vector::zeros(), &[exact]);
     rest.position[1] += equilibrium_height(&sim.system().solids()[1].spec.shape, &rest, body.mass, 1000.0, 0.32)?;
     assert!((keel - rest.position[1]).abs() < 0.25 * DP, "{keel} m, hydrostatics {} m", rest.position[1]);
     Ok(())

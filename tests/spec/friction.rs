@@ -58,8 +58,8 @@ fn a_block_on_a_slope_sticks_below_the_angle_of_friction_and_slides_above_as_cou
 /// The mean gain of speed (m/s²) in half a second down a slab of `slope` (rad) in space and across it, of a block 0.3 × 0.2 × 0.1 m
 /// turned by `yaw` (rad) on it, whose friction is `share` of what would just hold it.
 fn gains_in_space(slope: f64, yaw: f64, share: f64) -> Result<[f64; 2]> {
-    let slab = Pose::<3>::turned(Vector::zeros(), &[0.0, slope, 0.0]);
-    let on = |x: [f64; 3], yaw: f64| slab.then(&Pose::turned(Vector::from(x), &[0.0, 0.0, yaw]));
+    let slab = Pose::<3>::rotated(Vector::zeros(), &[0.0, slope, 0.0]);
+    let on = |x: [f64; 3], yaw: f64| slab.then(&Pose::rotated(Vector::from(x), &[0.0, 0.0, yaw]));
     let (dp, depth) = (0.05, 0.2);
     let mut pool = rig::tank([0.2, 0.2, 0.3], dp);
     pool.pose = Pose::at(Vector::from([-3.0, 0.0, 0.0]));

@@ -3,11 +3,11 @@
 use pontoon::{
     geometry::Shape,
     math::Vector,
-    model::{Gradient, Kernel, Model, Shifting, Sweeping, Viscosity},
+    model::{Gradient, Kernel, Model, PairLoopKind, Shifting, Viscosity},
     simulation::{Setup, Simulation},
     sph::{
-        Extra, Pair, Side, Term,
-        gradient_correction::{self, Corrected},
+        AuxiliarySums, Pair, PairSide, Term,
+        gradient_correction::{self, CorrectedGradient},
         kernel::{Kernel as _, Wendland},
         viscosity::Laminar,
     },
@@ -25,18 +25,27 @@ fn the_slope_of_a_linear_field_is_exact_however_particles_lie() {
         .map(|r| r + (dice.point::<3>() - Vector::repeat(0.5)) * 0.6 * dp)
         .collect();
     let none = [[0.0; 3]; 3];
-    let side = Side { x: 0.0, low: 0.0, p: 0.0, s: 1.0, repulsion: 0.0, mark: 0.0, stress: none, form: none };
+    let side = PairSide {
+        compression: 0.0,
+        compression_lo: 0.0,
+        p: 0.0,
+        specific_volume: 1.0,
+        repulsion: 0.0,
+        shifting_suppressed: 0.0,
+        stress: none,
+        gradient_correction: none,
+    };
     let slope = Vector::from([0.7, -1.3, 2.1]);
     let centre = places.iter().copied().min_by(|a, b| a.norm().total_cmp(&b.norm())).expect("a cloud");
     let near: Vec<&Vector<3>> = places.iter().filter(|r| (centre - *r).norm() < 2.0 * h && **r != centre).collect();
-    let (mut sums, mut other) = (Extra::all(0.0), Extra::all(0.0));
+    let (mut sums, mut other) = (AuxiliarySums::all(0.0), AuxiliarySums::all(0.0));
     for b in &near {
         let r = centre - *b;
         let factor: f64 = kernel.slope(r.norm_squared()) * volume;
         let pair = Pair::new(r.into(), [0.0; 3], r.norm_squared(), 0.0, 0.0, side, side);
-        Corrected.extra(&pair, factor, &mut sums, &mut other);
+        CorrectedGradient.auxiliary(&pair, factor, &mut sums, &mut other);
     }
-    let form = gradient_correction::close(&sums.moment);
+    let form = gradient_correction::correction(&sums.moment);
     let mut found = [Vector::<3>::zeros(); 2];
     for b in &near {
         let r = centre - *b;
@@ -53,7 +62,7 @@ fn the_slope_of_a_linear_field_is_exact_however_particles_lie() {
 fn momentum_of_water_and_body_is_kept() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    (model.gradient, model.sweep, model.gravity) = (Gradient::Corrected, Sweeping::Reference, vec![0.0, 0.0]);
+    (model.gradient, model.pair_loop, model.gravity) = (Gradient::Corrected, PairLoopKind::Reference, vec![0.0, 0.0]);
     let mut water = rig::lattice([-0.2, -0.2], [0.4, 0.4], dp);
     water.retain(|r| r.amax() > 0.06);
     let float = rig::float(Shape::Box { size: Vector::from([0.12, 0.12]) }, [0.0, 0.0], 2000.0);
@@ -113,7 +122,7 @@ fn a_standing_wave_loses_less_of_its_height() {
 #[test]
 fn what_it_does_not_go_with_is_refused() {
     let of = |kernel, shifting| Model { gradient: Gradient::Corrected, kernel, shifting, ..Model::water(2, 0.02, 0.3) };
-    assert!(of(Kernel::Wendland, Shifting::None).clash().is_none());
+    assert!(of(Kernel::Wendland, Shifting::None).conflict().is_none());
     for model in [
         of(Kernel::Cubic { tensile: true }, Shifting::None),
         of(Kernel::Wendland, Shifting::Everywhere(pontoon::sph::particle_shifting::Shift::default())),

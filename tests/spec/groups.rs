@@ -6,7 +6,7 @@ use pontoon::{
     Result,
     scene::Scene,
     simulation::Simulation,
-    solid::{ContactSpec, Links},
+    solid::{Constraints, ContactSpec},
 };
 
 /// Three floats, and a beam of steel over them, in a tank with a post of steel; numbers 1 to 3, 4, 0 and 5.
@@ -66,11 +66,11 @@ fn crowd(words: &str) -> Result<Scene> {
     Scene::parse(&format!("{CROWD}\n{words}"), Path::new(""), &[])
 }
 
-fn links(words: &str) -> Result<Links<2>> {
-    Ok(crowd(words)?.build::<2>()?.setup.links)
+fn links(words: &str) -> Result<Constraints<2>> {
+    Ok(crowd(words)?.build::<2>()?.setup.constraints)
 }
 
-fn friction(links: &Links<2>, a: usize, b: usize) -> Option<f64> {
+fn friction(links: &Constraints<2>, a: usize, b: usize) -> Option<f64> {
     links.contacts.find(a, b).and_then(|pair| pair.friction)
 }
 
@@ -120,7 +120,7 @@ fn of_two_contacts_of_a_pair_the_later_counts() -> Result<()> {
     assert!(usual.touch(1, 2) && !usual.touch(2, 3));
     // From Rust, too.
     let pair = |between, touch| ContactSpec { between, touch, friction: None, restitution: None };
-    let mut contacts: Links<2> = Links::default();
+    let mut contacts: Constraints<2> = Constraints::default();
     contacts.contacts.extend([pair([1, 0], false), pair([0, 1], true)]);
     assert!(contacts.touch(0, 1) && contacts.contacts.len() == 1);
     Ok(())
@@ -130,7 +130,7 @@ fn of_two_contacts_of_a_pair_the_later_counts() -> Result<()> {
 fn a_thousand_floats_that_ignore_one_another_cost_a_moment() {
     let pairs = (0..1000).flat_map(|a| (0..a).map(move |b| [a, b]));
     let apart = |between| ContactSpec { between, touch: false, friction: None, restitution: None };
-    let links: Links<2> = Links { contacts: pairs.clone().map(apart).collect(), ..Links::default() };
+    let links: Constraints<2> = Constraints { contacts: pairs.clone().map(apart).collect(), ..Constraints::default() };
     // Half a million pairs: a search through all of them for each would take minutes.
     assert!(pairs.into_iter().all(|[a, b]| !links.touch(a, b)));
 }

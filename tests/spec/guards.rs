@@ -35,24 +35,24 @@ fn plant(sim: &mut Simulation<2>) {
 fn the_first_alarm_is_answered_by_going_back_and_halving_the_step() {
     let mut sim = dam_break();
     steps(&mut sim, 700);
-    let (time, limit) = (sim.time(), sim.limit());
+    let (time, limit) = (sim.time(), sim.step_limit());
     plant(&mut sim);
     sim.step().expect("the run goes back");
     // States are kept every 500 steps; that of step 500 is old enough, 200 steps before.
     assert_eq!(sim.steps(), 500);
-    let told = sim.rescued().to_vec();
+    let told = sim.rollbacks().to_vec();
     assert_eq!(told.len(), 1);
     assert!(
         told[0].alarm.contains("speed of sound") && told[0].back_to == sim.time() && told[0].at >= time,
         "{told:?}"
     );
     // Half, but for what the flow itself asks for by then.
-    assert!(sim.limit() < 0.6 * limit, "{} after {limit}", sim.limit());
+    assert!(sim.step_limit() < 0.6 * limit, "{} after {limit}", sim.step_limit());
     while sim.time() < told[0].halved_until {
         sim.step().expect("the good state goes on");
     }
     sim.step().expect("the good state goes on");
-    assert!(sim.limit() > 0.8 * limit, "the step is whole again: {} after {limit}", sim.limit());
+    assert!(sim.step_limit() > 0.8 * limit, "the step is whole again: {} after {limit}", sim.step_limit());
 }
 
 #[test]
@@ -76,20 +76,20 @@ fn a_run_that_was_rescued_goes_on_with_half_the_step_after_a_restart() {
     let kept = whole.save().unwrap();
     let mut again = dam_break();
     again.restore(&kept).unwrap();
-    assert!(whole.time() < whole.rescued()[0].halved_until && again.rescued() == whole.rescued());
+    assert!(whole.time() < whole.rollbacks()[0].halved_until && again.rollbacks() == whole.rollbacks());
     // Past the time of half steps: 400 of them.
     steps(&mut whole, 900);
     steps(&mut again, 900);
-    assert!(whole.time() > whole.rescued()[0].halved_until);
+    assert!(whole.time() > whole.rollbacks()[0].halved_until);
     assert!(whole.save().unwrap() == again.save().unwrap());
 }
 
 #[test]
 fn a_healthy_run_is_not_changed_by_a_bit() {
-    let (mut with, mut without) = (dam_break(), dam_break().without_rescue());
+    let (mut with, mut without) = (dam_break(), dam_break().without_rollback());
     steps(&mut with, 600);
     steps(&mut without, 600);
-    assert!(with.rescued().is_empty());
+    assert!(with.rollbacks().is_empty());
     assert!(with.save().unwrap() == without.save().unwrap());
 }
 
@@ -101,7 +101,7 @@ fn falling(limits: Limits) -> Simulation<2> {
     let mut setup = Setup::new(Model::water(2, dp, 10.0), water, levels, vec![]);
     setup.domain = Some(Bounds { min: Vector::from([-1.0, -0.05]), max: Vector::from([1.1, 1.0]) });
     setup.limits = limits;
-    Simulation::new(setup).expect("a sound setup").without_rescue()
+    Simulation::new(setup).expect("a sound setup").without_rollback()
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
         goes_on.step().expect("those that leave are taken out");
     }
     // Twenty of twenty-five are gone, each listed once, below the domain, on its way down.
-    let lost = goes_on.lost();
+    let lost = goes_on.removed_particles();
     assert_eq!(lost.len(), 25 - goes_on.system().fluid().len());
     let mut ids: Vec<u32> =
         lost.iter().map(|(_, lost)| lost.id).chain(goes_on.system().fluid().id.iter().copied()).collect();
@@ -122,7 +122,7 @@ fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
     assert!(ids.iter().copied().eq(0..25), "{ids:?}");
     for (t, lost) in lost {
         assert!(*t > 0.0 && lost.r[1] < -0.05 && lost.v[1] < 0.0, "{t} {lost:?}");
-        assert!(lost.way.to_string().contains("through"), "{lost:?}");
+        assert!(lost.exit.to_string().contains("through"), "{lost:?}");
     }
 }
 
@@ -131,11 +131,11 @@ fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
     // Thrown up by v²/2g = 0.32 m, three supports and more above where it stood, it leaves below, as splash does beside a tank.
     let mut thrown = falling(Limits { escape: Escape::Remove, ..Limits::default() });
     thrown.set_water_velocity(|_| Vector::from([0.0, 2.5]));
-    while thrown.lost().is_empty() {
+    while thrown.removed_particles().is_empty() {
         thrown.step().expect("those that leave are taken out");
     }
-    for (_, lost) in thrown.lost() {
-        assert!(lost.r[1] < -0.05 && lost.way.to_string().contains("over a wall"), "{lost:?}");
+    for (_, lost) in thrown.removed_particles() {
+        assert!(lost.r[1] < -0.05 && lost.exit.to_string().contains("over a wall"), "{lost:?}");
     }
 }
 
@@ -143,7 +143,7 @@ fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
 fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
     let limits = Limits { escape: Escape::Remove, ..Limits::default() };
     let mut whole = falling(limits);
-    while whole.lost().is_empty() {
+    while whole.removed_particles().is_empty() {
         whole.step().unwrap();
     }
     let kept = whole.save().unwrap();
@@ -206,7 +206,7 @@ fn thrown() -> Simulation<2> {
     let solids = vec![rig::tank([0.2, 0.4], dp), float];
     let mut setup = Setup::new(Model::water(2, dp, 0.2), water, levels, solids);
     setup.domain = Some(Bounds { min: Vector::from([-1.0, -1.0]), max: Vector::from([1.0, 1.0]) });
-    Simulation::new(setup).expect("a sound setup").without_rescue()
+    Simulation::new(setup).expect("a sound setup").without_rollback()
 }
 
 #[test]

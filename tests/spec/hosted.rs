@@ -6,7 +6,7 @@ use pontoon::{
     Result,
     error::Kind,
     geometry::Shape,
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     scene::Scene,
     simulation::Simulation,
     solid::{
@@ -90,7 +90,7 @@ fn a_push_at_the_handover_is_a_push() -> Result<()> {
         early.push(2, &force, &at);
         early.step()?;
         late.step_with(f64::INFINITY, |step| {
-            step.push(2, &Load { force, torque: Wedge::zero() });
+            step.push(2, &Load { force, torque: Bivector::zero() });
             Ok(())
         })?;
     }
@@ -127,7 +127,7 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
     let (mut world, bodies) = world(&hosted);
     for (body, name) in bodies.iter().zip(["float", "foam"]) {
         let spec = rapier2d::solid(name, *body, &world.bodies, &world.colliders)?;
-        let known = &hosted.system().solids()[hosted.system().solid(name).unwrap_or_default()].spec;
+        let known = &hosted.system().solids()[hosted.system().find_solid(name).unwrap_or_default()].spec;
         let (Role::Free(taken), Role::Free(said)) = (&spec.role, &known.role) else { panic!("both are free") };
         assert!((taken.mass / said.mass - 1.0).abs() < 1e-12 && spec.shape == known.shape && spec.pose == known.pose);
         assert!((taken.inertia - said.inertia).norm() < 1e-12 * said.inertia.norm() && taken.spin == said.spin);
@@ -136,7 +136,7 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
         inside.step()?;
         hosted.step_with(f64::INFINITY, |step| {
             for (i, &body) in bodies.iter().enumerate() {
-                rapier2d::give(&mut world.bodies[body], &step.loads()[i + 1]);
+                rapier2d::apply_load(&mut world.bodies[body], &step.loads()[i + 1]);
             }
             world.integration_parameters.dt = step.dt();
             world.step();
@@ -219,15 +219,15 @@ fn a_solid_that_comes_takes_the_place_of_water_and_one_that_goes_leaves_it() -> 
     assert!(sim.system().solids()[3].kinematics.velocity[1] > 0.0, "it rises");
     let kinetic = |sim: &Simulation<2>| sim.system().fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
     sim.remove_solid(3)?;
-    let skin = sim.system().skin().len();
-    assert!(sim.system().solids()[3].skin.is_empty() && skin == pool()?.system().skin().len());
+    let skin = sim.system().boundary().len();
+    assert!(sim.system().solids()[3].boundary.is_empty() && skin == pool()?.system().boundary().len());
     sim.remove_solid(1)?;
     while sim.time() < 0.6 {
         sim.step_to(0.6)?;
     }
     let near = sim.system().fluid().r.iter().filter(|r| (*r - Vector::from([0.5, 0.1])).amax() < 0.05).count();
     assert!(near >= 20, "water is back where the block was: {near} particles of 25");
-    assert!(kinetic(&sim) < 2.0 && sim.rescued().is_empty(), "in peace: {} m/s", kinetic(&sim));
+    assert!(kinetic(&sim) < 2.0 && sim.rollbacks().is_empty(), "in peace: {} m/s", kinetic(&sim));
     assert!(sim.system().solids()[2].kinematics.centre[1] > 0.25, "the foam floats on");
     Ok(())
 }

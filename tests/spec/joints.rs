@@ -213,12 +213,12 @@ fn a_joint_that_something_contradicts_is_told_of() -> Result<()> {
     let more = "[[joint]]\nname = \"weld\"\nkind = \"fixed\"\nbetween = [\"tank\", \"flap\"]\nat = [0.5, 0.14]\n";
     let text = format!("{PINNED}\n{more}");
     let mut sim = Simulation::new(pool(0.02, &text)?.build::<2>()?.setup)?;
-    assert!(sim.torn().is_empty(), "whole at the start");
+    assert!(sim.violated_joints().is_empty(), "whole at the start");
     while sim.time() < 0.3 {
         sim.step_to(0.3)?;
     }
     // The paddle has gone 65 mm from what is welded to the tank.
-    assert!(sim.torn().iter().any(|said| said.contains("is torn by 0.06")), "{:?}", sim.torn());
+    assert!(sim.violated_joints().iter().any(|said| said.contains("is torn by 0.06")), "{:?}", sim.violated_joints());
     Ok(())
 }
 
@@ -226,7 +226,7 @@ fn a_joint_that_something_contradicts_is_told_of() -> Result<()> {
 fn stiff_lines_shorten_the_step_and_nothing_else_does() -> Result<()> {
     let limit = |stiffness: &str| -> Result<f64> {
         let sets = [("spring.line.stiffness".to_string(), stiffness.to_string())];
-        Ok(Simulation::new(Scene::parse(MOORED, Path::new(""), &sets)?.build::<2>()?.setup)?.limit())
+        Ok(Simulation::new(Scene::parse(MOORED, Path::new(""), &sets)?.build::<2>()?.setup)?.step_limit())
     };
     let (soft, stiff) = (limit("20000")?, limit("2e9")?);
     assert_eq!(soft, limit("20")?, "the water sets the step");
@@ -324,7 +324,7 @@ fn values_of_ties_may_be_numbers_formulas_or_tables() -> Result<()> {
     let force = "[[force]]\nname = \"wind\"\non = \"buoy\"\nforce = [\"10*t\", 0]\ntorque = 0.5\nframe = \"body\"\n\n\
                  [[contact]]\nbetween = [\"buoy\"]\nfriction = 0.1\n\n[[contact]]\nbetween = [\"buoy\", \"flap\"]\ntouch = false\n\n[[joint]]";
     let scene = Scene::parse(&MOORED.replacen("[[joint]]", force, 1), Path::new(""), &[])?;
-    let links = scene.build::<2>()?.setup.links;
+    let links = scene.build::<2>()?.setup.constraints;
     assert_eq!((links.forces[0].force.len(), links.forces[0].torque.len(), links.contacts.len()), (2, 1, 2));
     assert!(!links.touch(1, 2) && links.touch(1, 0) && !links.touch(0, 2), "what is jointed does not touch either");
     let pushed = links.forces[0].force[0].at(0.5).0;

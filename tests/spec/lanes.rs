@@ -2,10 +2,10 @@
 
 use pontoon::{
     geometry::Shape,
-    interaction::{self, Input, Output, Sums},
+    interaction::{self, PairLoopInput, PairLoopOutput, PairSums},
     math::{Bounds, Pose, Vector, expression::Formula, simd},
-    model::{Diffusion, Dimension, Gradient, Kernel, Model, Scheme, Shifting, Slip, Sweeping, Viscosity, Walls},
-    neighbours::Near,
+    model::{Diffusion, Dimension, Gradient, Kernel, Model, PairLoopKind, Scheme, Shifting, Slip, Viscosity, Walls},
+    neighbours::NeighbourLists,
     particles::Particles,
     simulation::{Setup, Simulation},
     solid::{Dim, Law, Motion, Role},
@@ -13,7 +13,7 @@ use pontoon::{
         Units,
         continuity::Continuity,
         density_diffusion::{Fourtakas, Molteni},
-        equation_of_state::State,
+        equation_of_state::EquationOfState,
         kernel::Wendland,
         particle_shifting::Shift,
         pressure::Pressure,
@@ -24,15 +24,15 @@ use pontoon::{
 use crate::rig::{self, Dice};
 
 /// A simulation with one sweep, and then the same state under another.
-fn under<const D: usize>(setup: &Setup<D>, sweep: Sweeping, state: &[u8]) -> Simulation<D>
+fn under<const D: usize>(setup: &Setup<D>, sweep: PairLoopKind, state: &[u8]) -> Simulation<D>
 where
     Dim<D>: Dimension<D>,
 {
     let mut setup = setup.clone();
-    setup.model.sweep = sweep;
+    setup.model.pair_loop = sweep;
     let mut sim = Simulation::new(setup).expect("a sound setup");
     sim.restore(state).expect("the same scene");
-    sim.refresh();
+    sim.update_rates();
     sim
 }
 
@@ -40,7 +40,7 @@ where
 fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
     let system = sim.system();
     let (h, c0, rho0, dp) = (system.model().h, system.model().c0, system.model().rho0, system.model().dp);
-    let (fluid, skin) = (system.fluid(), system.skin());
+    let (fluid, skin) = (system.fluid(), system.boundary());
     let (mut force, mut rate) = (0.0, 0.0);
     let mut meet = |r: &Vector<D>, v: &Vector<D>, rho: f64| {
         let (r, v) = (fluid.r[a] - r, fluid.v[a] - v);
@@ -60,7 +60,7 @@ fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
             meet(&fluid.r[b], &fluid.v[b], fluid.rho[b]);
         }
     });
-    system.solid_near(&fluid.r[a], &mut |b, _, _| meet(&skin.r[b], &skin.v[b], skin.rho[b]));
+    system.boundary_near(&fluid.r[a], &mut |b, _, _| meet(&skin.r[b], &skin.v[b], skin.rho[b]));
     (force, rate)
 }
 
@@ -69,13 +69,13 @@ fn agrees<const D: usize>(name: &str, setup: &Setup<D>, state: &[u8])
 where
     Dim<D>: Dimension<D>,
 {
-    let oracle = under(setup, Sweeping::Reference, state);
+    let oracle = under(setup, PairLoopKind::Reference, state);
     let of = oracle.system();
     let n = of.fluid().len();
     let sizes: Vec<(f64, f64)> = (0..n).map(|i| sizes(&oracle, i)).collect();
     let most = sizes.iter().fold((0.0f64, 0.0f64), |m, s| (m.0.max(s.0), m.1.max(s.1)));
     let all_forces: f64 = sizes.iter().map(|s| s.0).sum::<f64>() * of.particle_mass();
-    let fast = under(setup, Sweeping::Fast, state);
+    let fast = under(setup, PairLoopKind::Fast, state);
     let with = fast.system();
     for (i, size) in sizes.iter().enumerate() {
         let dv = (with.fluid_dv(i) - of.fluid_dv(i)).norm();
@@ -94,9 +94,9 @@ where
         assert!(off < 1e-6 * all_forces, "{name}: load on {} off by {off} N", a.spec.name);
     }
     // The peak may be a pair that one sees within and the other without the support, by a rounding.
-    let (a, b) = (with.peaks(), of.peaks());
+    let (a, b) = (with.step_limits(), of.step_limits());
     assert!((a.acceleration / b.acceleration - 1.0).abs() < 1e-4, "{name}: {a:?} {b:?}");
-    assert!((a.closing - b.closing).abs() <= 1e-4 * b.closing + 1e-6, "{name}: {a:?} {b:?}");
+    assert!((a.approach_rate - b.approach_rate).abs() <= 1e-4 * b.approach_rate + 1e-6, "{name}: {a:?} {b:?}");
 }
 
 fn run<const D: usize>(setup: &Setup<D>, until: f64) -> Vec<u8>
@@ -152,11 +152,11 @@ fn a_floating_box_and_a_light_one() {
 #[test]
 fn walls_that_settle() {
     let mut model = Model::water(2, 0.0125, 0.3);
-    model.walls = Walls::Settling;
+    model.walls = Walls::RelaxedAdami;
     let setup = dam(model, [0.8, 0.3], 0.0);
     agrees("2-D", &setup, &run(&setup, 0.35));
     let mut model = Model::water(3, 0.025, 0.3);
-    model.walls = Walls::Settling;
+    model.walls = Walls::RelaxedAdami;
     let setup = dam(model, [0.6, 0.15, 0.3], 0.0);
     agrees("3-D", &setup, &run(&setup, 0.3));
 }
@@ -247,7 +247,7 @@ where
             model.gradient = Gradient::Plain;
             ends_as_the_oracle(&model, size);
             model.gradient = Gradient::Corrected;
-            if model.clash().is_none() {
+            if model.conflict().is_none() {
                 ends_as_the_oracle(&model, size);
             }
         }
@@ -268,16 +268,16 @@ where
         sim.step().expect("a sound run");
     }
     let state = sim.save().expect("a state");
-    let mut oracle = under(&setup, Sweeping::Reference, &state);
+    let mut oracle = under(&setup, PairLoopKind::Reference, &state);
     oracle.step().expect("a sound run");
-    let mut fast = under(&setup, Sweeping::Fast, &state);
+    let mut fast = under(&setup, PairLoopKind::Fast, &state);
     fast.step().expect("a sound run");
     let Model { kernel, gradient, viscosity, diffusion, shifting, .. } = model;
     let what = format!("{kernel:?} {gradient:?} {viscosity:?} {diffusion:?} {shifting:?} in {D}-D");
     // Single precision: 1e-6 of the largest change of a step was seen.
     let dt = oracle.dt();
     assert!((fast.dt() / dt - 1.0).abs() < 1e-5, "{what}: {} {dt}", fast.dt());
-    let most = oracle.system().peaks().acceleration * dt;
+    let most = oracle.system().step_limits().acceleration * dt;
     for i in 0..oracle.system().fluid().len() {
         let (a, b) = (fast.system().fluid(), oracle.system().fluid());
         assert!((a.v[i] - b.v[i]).norm() < 1e-5 * most, "{what}: v of {i}");
@@ -297,20 +297,31 @@ fn every_law_in_three_dimensions() {
 }
 
 /// All sums of a stirred cloud by lanes with the instructions of `level`.
-fn with_instructions(level: simd::Level, water: &Particles<3>, skin: &Particles<3>, model: &Model) -> Vec<Sums<3>> {
-    let mut near = Near::new(model.reach(), model.dp, Some(level));
+fn with_instructions(level: simd::Level, water: &Particles<3>, skin: &Particles<3>, model: &Model) -> Vec<PairSums<3>> {
+    let mut near = NeighbourLists::new(model.support_radius(), model.dp, Some(level));
     near.build(&water.r, &skin.r);
-    let units = Units { length: Near::<3>::unit(model.reach()), time: model.h / model.c0 };
-    let (medium, state) = (model.medium::<3>(), State::new(model.c0, model.gamma));
-    let counted = medium.counted_in(&units);
+    let units = Units { length: NeighbourLists::<3>::length_unit(model.support_radius()), time: model.h / model.c0 };
+    let (medium, state) = (model.fluid_properties::<3>(), EquationOfState::new(model.c0, model.gamma));
+    let counted = medium.in_units(&units);
     let wall = ((Pressure, Continuity), Artificial { alpha: 0.1 }.term(&counted));
     let inner = (wall, Fourtakas::default().term(&counted));
     let kernel = Wendland::new(counted.h, 3);
     let mut sweep = interaction::compile(kernel, inner, wall, &counted, units, Some(level));
-    let (mut sums, mut on_skin) = (vec![Sums::zero(); water.len()], vec![Sums::zero(); near.wet().len()]);
+    let (mut sums, mut on_skin) =
+        (vec![PairSums::zero(); water.len()], vec![PairSums::zero(); near.boundary_near_fluid().len()]);
     let (shown, stress, forms, marks) = (&skin.v[..], &[][..], &[][..], &[][..]);
-    let input = Input { near: &near, water, skin, shown, stress, forms, marks, medium: &medium, state: &state };
-    sweep.rates(&input, &mut Output { water: &mut sums, skin: &mut on_skin, extra: &mut [] });
+    let input = PairLoopInput {
+        neighbours: &near,
+        fluid: water,
+        boundary: skin,
+        boundary_velocity: shown,
+        stress,
+        gradient_correction: forms,
+        shifting_suppressed: marks,
+        properties: &medium,
+        equation_of_state: &state,
+    };
+    sweep.rates(&input, &mut PairLoopOutput { fluid: &mut sums, boundary: &mut on_skin, auxiliary: &mut [] });
     sums.into_iter().chain(on_skin).collect()
 }
 
@@ -329,7 +340,7 @@ fn every_instruction_set_gives_the_same_bits() {
         skin.push(r, 1000.0);
     }
     // A processor has one or two; both round a multiplication and an addition once.
-    let all = simd::levels().into_iter().map(|level| with_instructions(level, &water, &skin, &model));
+    let all = simd::instruction_sets().into_iter().map(|level| with_instructions(level, &water, &skin, &model));
     let all: Vec<_> = all.collect();
     assert!(all.iter().all(|sums| *sums == all[0]));
 }

@@ -3,15 +3,15 @@
 
 use pontoon::{
     math::Vector,
-    model::{Diffusion, Kernel, Model, Sweeping, Viscosity},
+    model::{Diffusion, Kernel, Model, PairLoopKind, Viscosity},
     sph::{
-        Extra, Medium, Pair, Side, Term, Units,
-        boundary::{Barrier, Cover, Fit, settled, sticking},
+        AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units,
+        boundary::{Repulsion, SupportCoverage, WallExtrapolation, no_slip_velocity, relaxation},
         continuity::Continuity,
         density_diffusion::{Fourtakas, Molteni},
-        gradient_correction::{Corrected, Moments},
+        gradient_correction::{CorrectedGradient, RenormalizationMatrix},
         kernel::{Kernel as _, Wendland},
-        particle_shifting::{HeldTerm, Shift, ShiftTerm},
+        particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
         viscosity::{Artificial, Laminar, Sps, SpsTerm},
     },
@@ -19,8 +19,15 @@ use pontoon::{
 
 use crate::rig::{self, Dice};
 
-fn medium() -> Medium<3> {
-    Medium { h: 0.017, dp: 0.01, rho0: 1000.0, c0: 20.0, gamma: 7.0, gravity: Vector::from([0.3, -1.0, -9.81]) }
+fn medium() -> FluidProperties<3> {
+    FluidProperties {
+        h: 0.017,
+        dp: 0.01,
+        rho0: 1000.0,
+        c0: 20.0,
+        gamma: 7.0,
+        gravity: Vector::from([0.3, -1.0, -9.81]),
+    }
 }
 
 /// A random pair closer than the support, and the same pair seen from the other side.
@@ -32,7 +39,16 @@ fn pair(dice: &mut Dice) -> [Pair<f64, 3>; 2] {
             [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
         };
         let (stress, form) = (tensor(), tensor());
-        Side { x, low: 0.0, p: 400.0 * x, s: 1.0 / (1.0 + x), repulsion: 4.0 * x.abs(), mark: 1.0, stress, form }
+        PairSide {
+            compression: x,
+            compression_lo: 0.0,
+            p: 400.0 * x,
+            specific_volume: 1.0 / (1.0 + x),
+            repulsion: 4.0 * x.abs(),
+            shifting_suppressed: 1.0,
+            stress,
+            gradient_correction: form,
+        }
     };
     let (a, b) = (side(), side());
     let r: [f64; 3] = std::array::from_fn(|_| 0.02 * (dice.roll() - 0.5));
@@ -52,9 +68,10 @@ fn odd_under_swap(name: &str, term: impl Term<3>) {
         assert_eq!(term.vector(&ab, [0.0; 3]), term.vector(&ba, [0.0; 3]).map(|x| -x), "{name}: vector");
         let (there, back) = (term.rate(&ab, (0.0, 0.0)), term.rate(&ba, (0.0, 0.0)));
         assert_eq!((there.0, there.1), (back.1, back.0), "{name}: rates");
-        let (mut a, mut b, mut c, mut d) = (Extra::all(0.0), Extra::all(0.0), Extra::all(0.0), Extra::all(0.0));
-        term.extra(&ab, -2.0, &mut a, &mut b);
-        term.extra(&ba, -2.0, &mut c, &mut d);
+        let (mut a, mut b, mut c, mut d) =
+            (AuxiliarySums::all(0.0), AuxiliarySums::all(0.0), AuxiliarySums::all(0.0), AuxiliarySums::all(0.0));
+        term.auxiliary(&ab, -2.0, &mut a, &mut b);
+        term.auxiliary(&ba, -2.0, &mut c, &mut d);
         assert_eq!((a, b), (d, c), "{name}: extra sums");
     }
 }
@@ -71,9 +88,9 @@ fn swapping_the_particles_changes_the_sign_and_no_bit() {
     odd_under_swap("molteni", Molteni::default().term(&m));
     odd_under_swap("fourtakas", Fourtakas::default().term(&m));
     odd_under_swap("shifting", ShiftTerm);
-    odd_under_swap("held", HeldTerm);
-    odd_under_swap("corrected", Corrected);
-    odd_under_swap("moments", Moments);
+    odd_under_swap("held", ShiftingSuppressionTerm);
+    odd_under_swap("corrected", CorrectedGradient);
+    odd_under_swap("moments", RenormalizationMatrix);
 }
 
 #[test]
@@ -84,7 +101,7 @@ fn viscosity_takes_energy_and_never_gives_it() {
         let [ab, _] = pair(&mut dice);
         let v2: f64 = ab.v_ab.iter().map(|x| x * x).sum();
         // The power of a pair is ∂W (along_r v·r + along_v v²) and ∂W < 0.
-        assert!(artificial.along_r(&ab, 0.0) * ab.vr >= 0.0);
+        assert!(artificial.along_r(&ab, 0.0) * ab.velocity_along_r >= 0.0);
         assert!(laminar.along_v(&ab, 0.0) * v2 >= 0.0);
     }
 }
@@ -95,7 +112,7 @@ fn sps_stress_takes_energy_from_a_shear() {
     let (m, rate) = (medium(), 3.0);
     let mut strain = [[0.0; 3]; 3];
     (strain[0][1], strain[1][0]) = (0.5 * rate, 0.5 * rate);
-    let stress = Sps::default().close(&strain, 1.0, &m);
+    let stress = Sps::default().stress(&strain, 1.0, &m);
     let expected = 0.12f64.powi(2) * m.dp * m.dp / 3.0 * rate * rate;
     assert!((stress[0][1] / expected - 1.0).abs() < 1e-12);
     assert!(stress[0][0] < 0.0, "the isotropic part is a pressure");
@@ -111,7 +128,16 @@ fn still_water_has_no_dynamic_density_to_diffuse() {
     let none = [[0.0; 3]; 3];
     let side = |x: f64| {
         let s = 1.0 / (1.0 + x);
-        Side { x, low: 0.0, p: 0.0, s, repulsion: 0.0, mark: 1.0, stress: none, form: none }
+        PairSide {
+            compression: x,
+            compression_lo: 0.0,
+            p: 0.0,
+            specific_volume: s,
+            repulsion: 0.0,
+            shifting_suppressed: 1.0,
+            stress: none,
+            gradient_correction: none,
+        }
     };
     let mut dice = Dice(11);
     for _ in 0..100 {
@@ -130,10 +156,14 @@ fn still_water_has_no_dynamic_density_to_diffuse() {
 #[test]
 fn shifting_stops_at_the_free_surface_and_is_held_to_a_tenth_of_dp() {
     let m = medium();
-    let sums = |div_r| Extra { grad_c: [1e6, -1e6, 0.0], div_r, ..Extra::all(0.0) };
+    let sums = |div_r| AuxiliarySums {
+        concentration_gradient: [1e6, -1e6, 0.0],
+        position_divergence: div_r,
+        ..AuxiliarySums::all(0.0)
+    };
     let shift = Shift::default();
-    assert_eq!(shift.close(&sums(2.7), 1.0, 1e-4, &m), Vector::<3>::zeros());
-    let inside = shift.close(&sums(3.0), 1.0, 1e-4, &m);
+    assert_eq!(shift.displacement(&sums(2.7), 1.0, 1e-4, &m), Vector::<3>::zeros());
+    let inside = shift.displacement(&sums(3.0), 1.0, 1e-4, &m);
     assert_eq!(inside, Vector::from([-0.001, 0.001, 0.0]));
 }
 
@@ -146,7 +176,7 @@ fn the_sweep_agrees_with_a_loop_over_all_pairs() {
     model.viscosity = Viscosity::Artificial(Artificial { alpha: 0.1 });
     model.diffusion = Diffusion::Molteni(Molteni::default());
     model.kernel = Kernel::Wendland;
-    model.sweep = Sweeping::Reference;
+    model.pair_loop = PairLoopKind::Reference;
     let mut dice = Dice(5);
     let water: Vec<Vector<2>> = rig::lattice([0.0, 0.0], [0.4, 0.3], dp)
         .into_iter()
@@ -155,7 +185,7 @@ fn the_sweep_agrees_with_a_loop_over_all_pairs() {
     let (h, c0, rho0) = (model.h, model.c0, model.rho0);
     let mut sim = rig::simulation(model, water, 0.3, vec![]);
     sim.set_water_velocity(|r| Vector::from([(20.0 * r[1]).sin(), (30.0 * r[0]).cos()]));
-    sim.refresh();
+    sim.update_rates();
 
     let (fluid, mass) = (sim.system().fluid(), rho0 * dp * dp);
     let slope = |q: f64| 7.0 / (4.0 * std::f64::consts::PI * h * h) / (h * h) * -5.0 * (1.0 - q / 2.0).powi(3);
@@ -202,12 +232,12 @@ fn diffusion_flattens_a_bump() {
     {
         let dp = 0.02;
         let mut model = Model::water(2, dp, 0.3);
-        model.sweep = Sweeping::Reference;
+        model.pair_loop = PairLoopKind::Reference;
         (model.diffusion, model.gravity) = (diffusion, vec![0.0, 0.0]);
         let mut sim = rig::simulation(model, rig::lattice([0.0, 0.0], [0.6, 0.6], dp), 0.0, vec![]);
         let bump = |r: &Vector<2>| 1000.0 + 0.5 * (-(r - Vector::from([0.3, 0.3])).norm_squared() / 0.002).exp();
         sim.set_water_density(bump);
-        sim.refresh();
+        sim.update_rates();
         let fluid = sim.system().fluid();
         let top = (0..fluid.len()).max_by(|&a, &b| fluid.rho[a].total_cmp(&fluid.rho[b])).unwrap();
         let sum: f64 = (0..fluid.len()).map(|i| sim.system().fluid_drho(i)).sum();
@@ -223,8 +253,8 @@ fn diffusion_flattens_a_bump() {
 }
 
 /// What a boundary particle at the origin sees of water in random places, of pressure `p` (P/ρ₀).
-fn fit(p: impl Fn(&Vector<3>) -> f64) -> Fit<f64, 3> {
-    let (mut dice, mut fit) = (Dice(5), Fit::all(0.0));
+fn fit(p: impl Fn(&Vector<3>) -> f64) -> WallExtrapolation<f64, 3> {
+    let (mut dice, mut fit) = (Dice(5), WallExtrapolation::all(0.0));
     for _ in 0..40 {
         let r = (dice.point::<3>() - Vector::repeat(0.5)) * 0.02;
         fit.add(dice.roll(), p(&r), 1.0, (-r).into());
@@ -236,27 +266,27 @@ fn fit(p: impl Fn(&Vector<3>) -> f64) -> Fit<f64, 3> {
 fn the_pressure_of_water_that_moves_with_a_wall_is_extrapolated_to_it_exactly() {
     let pull = Vector::from([1.0, -2.0, -9.81]);
     // ∇P = ρ₀ (g − a): linear.
-    let p = fit(|r| 7.0 + pull.dot(r)).close(&pull, &pull, 0.01);
+    let p = fit(|r| 7.0 + pull.dot(r)).pressure(&pull, &pull, 0.01);
     assert!((p - 7.0).abs() < 1e-12, "{p}");
-    assert_eq!(Fit::<f64, 3>::all(0.0).close(&pull, &pull, 0.01), 0.0, "no water, no pressure");
+    assert_eq!(WallExtrapolation::<f64, 3>::all(0.0).pressure(&pull, &pull, 0.01), 0.0, "no water, no pressure");
 }
 
 #[test]
 fn a_face_is_never_sucked_at() {
     let (g, deep) = (Vector::from([0.0, 0.0, -9.81]), 0.004);
     let at = |below: f64, p: f64| {
-        let mut fit = Fit::all(0.0);
+        let mut fit = WallExtrapolation::all(0.0);
         fit.add(0.3, p, 1.0, [0.0, 0.0, below]);
-        fit.close(&g, &g, deep)
+        fit.pressure(&g, &g, deep)
     };
     // Water 6 mm below the particle under no pressure: the face 4 mm below it has less than none, and is given none.
     assert!((at(0.006, 0.0) + 9.81 * deep).abs() < 1e-15);
     // With 0.03 m²/s² it has 0.03 − g · 2 mm.
     assert!((at(0.006, 0.03) - (0.03 - 9.81 * 0.006)).abs() < 1e-15);
     // However a body is thrown about, its weight is all that counts.
-    let mut fit = Fit::all(0.0);
+    let mut fit = WallExtrapolation::all(0.0);
     fit.add(0.3, 0.0, 1.0, [0.0, 0.0, 0.006]);
-    assert!((fit.close(&(g * 1e6), &g, deep) + 9.81 * deep).abs() < 1e-15);
+    assert!((fit.pressure(&(g * 1e6), &g, deep) + 9.81 * deep).abs() < 1e-15);
     // Above a bed the particle has at least none itself.
     assert_eq!(at(-0.006, -1.0), 0.0);
 }
@@ -265,7 +295,7 @@ fn a_face_is_never_sucked_at() {
 fn a_wall_settles_where_water_is_before_it_hardly_in_a_film_and_not_beside_spray() {
     let (dp, h) = (0.01, 0.017);
     let kernel = Wendland::new(h, 2);
-    let cover = Cover::new(|r2: f64| kernel.w(r2) * dp * dp, dp, 2.0 * h, 2);
+    let cover = SupportCoverage::new(|r2: f64| kernel.w(r2) * dp * dp, dp, 2.0 * h, 2);
     for depth in [0.5 * dp, 1.5 * dp] {
         let rows = |n: i32| -> f64 {
             let row = |j: i32| depth + (f64::from(j) + 0.5) * dp;
@@ -274,20 +304,20 @@ fn a_wall_settles_where_water_is_before_it_hardly_in_a_film_and_not_beside_spray
                 .fold(0.0, |sum, (i, j)| sum + kernel.w((f64::from(i) * dp).powi(2) + row(j).powi(2)) * dp * dp)
         };
         // The table is linear between 64 depths.
-        assert!((cover.part(rows(4), depth) - 1.0).abs() < 1e-3, "a half space of water");
+        assert!((cover.fraction(rows(4), depth) - 1.0).abs() < 1e-3, "a half space of water");
         if depth < dp {
             // The first row is 0.86 of all that the first layer sees.
-            let film = cover.part(rows(1), depth);
+            let film = cover.fraction(rows(1), depth);
             assert!((0.15..0.3).contains(&film), "a film of one row: {film}");
         }
-        assert_eq!(cover.part(kernel.w((depth + 0.5 * dp).powi(2)) * dp * dp, depth), 0.0, "a particle of spray");
+        assert_eq!(cover.fraction(kernel.w((depth + 0.5 * dp).powi(2)) * dp * dp, depth), 0.0, "a particle of spray");
     }
 }
 
 #[test]
 fn the_barrier_is_felt_by_none_but_what_is_pressed_into_a_face() {
     let (medium, mut dice) = (medium(), Dice(7));
-    let barrier = Barrier::new(Wendland::new(medium.h, 3), &medium);
+    let barrier = Repulsion::new(Wendland::new(medium.h, 3), &medium);
     for _ in 0..200 {
         let [ab, _] = pair(&mut dice);
         let near = ab.r2.sqrt() < 0.75 * medium.dp;
@@ -303,23 +333,27 @@ fn a_shear_along_a_face_is_continued_behind_it_exactly() {
     // A wall that moves, its face 0.004 m above the boundary particle at the origin, and water that shears and approaches.
     let (wall, depth, normal) = (Vector::from([0.3, 0.1, 0.2]), 0.004, Vector::<3>::z());
     let moves = |r: &Vector<3>| wall + Vector::from([5.0, -3.0, 2.0]) * (r[2] - depth);
-    let mut fit = Fit::all(0.0);
+    let mut fit = WallExtrapolation::all(0.0);
     for _ in 0..40 {
         let r = (dice.point::<3>() - Vector::from([0.5, 0.5, -0.4])).component_mul(&Vector::from([0.02, 0.02, 0.01]));
         let w = dice.roll();
         fit.add(w, 0.0, 1.0, (-r).into());
-        fit.add_flow(w, 1.0, moves(&r).into());
+        fit.add_velocity(w, 1.0, moves(&r).into());
     }
     let continued = wall + Vector::from([5.0, -3.0, 0.0]) * -depth;
-    let shown = sticking(&fit, wall, &normal, depth);
+    let shown = no_slip_velocity(&fit, wall, &normal, depth);
     assert!((shown - continued).norm() < 1e-14, "{shown}");
-    assert_eq!(sticking(&Fit::<f64, 3>::all(0.0), wall, &normal, depth), wall, "no water, no continuation");
+    assert_eq!(
+        no_slip_velocity(&WallExtrapolation::<f64, 3>::all(0.0), wall, &normal, depth),
+        wall,
+        "no water, no continuation"
+    );
 }
 
 #[test]
 fn a_wall_settles_as_fast_in_one_step_as_in_many() {
-    let many = (0..10).fold(1.0, |left, _| left * (1.0 - settled(1e-4, 0.02, 20.0)));
-    assert!((many - (1.0 - settled(1e-3, 0.02, 20.0))).abs() < 1e-15);
+    let many = (0..10).fold(1.0, |left, _| left * (1.0 - relaxation(1e-4, 0.02, 20.0)));
+    assert!((many - (1.0 - relaxation(1e-3, 0.02, 20.0))).abs() < 1e-15);
     // Ten h/c₀ leave 1/e of the way.
-    assert!((settled(0.01, 0.02, 20.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
+    assert!((relaxation(0.01, 0.02, 20.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
 }

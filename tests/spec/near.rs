@@ -4,17 +4,17 @@ use std::collections::BTreeMap;
 
 use pontoon::{
     math::Vector,
-    model::Sweeping,
-    neighbours::{CHUNK, Clusters, Near, PAD, Pairs},
+    model::PairLoopKind,
+    neighbours::{CHUNK, Clusters, NeighbourLists, PAD, Pairs},
 };
 
 use crate::rig::Dice;
 
 const REACH: f64 = 0.1;
-const ALL: [Sweeping; 2] = [Sweeping::Fast, Sweeping::Reference];
+const ALL: [PairLoopKind; 2] = [PairLoopKind::Fast, PairLoopKind::Reference];
 
-fn near<const D: usize>(sweep: Sweeping) -> Near<D> {
-    Near::new(REACH, REACH / 3.5, sweep.level())
+fn near<const D: usize>(sweep: PairLoopKind) -> NeighbourLists<D> {
+    NeighbourLists::new(REACH, REACH / 3.5, sweep.instruction_set())
 }
 
 /// How often each pair is met: of two waters (the smaller index first), or of a water and a boundary particle.
@@ -40,7 +40,7 @@ fn all_pairs<const D: usize>(water: &[Vector<D>], skin: &[Vector<D>]) -> Met {
 }
 
 /// The pairs nearer than the support that the lists know.
-fn listed<const D: usize>(near: &Near<D>, water: &[Vector<D>], skin: &[Vector<D>]) -> Met {
+fn listed<const D: usize>(near: &NeighbourLists<D>, water: &[Vector<D>], skin: &[Vector<D>]) -> Met {
     let mut met = match near.pairs() {
         Pairs::Clusters(clusters, _) => from_clusters(clusters),
         Pairs::Lists(lists) => {
@@ -98,7 +98,7 @@ fn lists_hold_every_pair<const D: usize>(seed: u64, n: usize, origin: f64) {
         let mut skin: Vec<Vector<D>> = (0..n).map(|_| around(dice.point())).collect();
         let mut near = near(sweep);
         near.build(&water, &skin);
-        for &i in near.wet() {
+        for &i in near.boundary_near_fluid() {
             let nearest = water.iter().map(|x| (x - skin[i as usize]).norm()).fold(f64::INFINITY, f64::min);
             assert!(nearest < REACH + near.margin() * 1.001, "a wet boundary particle has water near it");
         }
@@ -111,7 +111,7 @@ fn lists_hold_every_pair<const D: usize>(seed: u64, n: usize, origin: f64) {
         assert!(expected.among.len() > n && expected.beside.len() > n / 2, "the case has pairs");
         assert_eq!(listed(&near, &water, &skin), expected, "{sweep:?} in {D}-D");
         for &(_, j) in expected.beside.keys() {
-            assert!(near.wet().binary_search(&j).is_ok(), "a boundary particle with water is wet");
+            assert!(near.boundary_near_fluid().binary_search(&j).is_ok(), "a boundary particle with water is wet");
         }
     }
 }
@@ -133,7 +133,7 @@ fn strays_empty_cells_and_a_heap_in_one_cell_lose_no_pair() {
     for sweep in ALL {
         let mut near = near::<2>(sweep);
         near.build(&[], &[]);
-        assert!(near.wet().is_empty());
+        assert!(near.boundary_near_fluid().is_empty());
         let alone = [Vector::from([1e6, -1e6])];
         near.build(&alone, &[]);
         assert_eq!(listed(&near, &alone, &[]), Met::default(), "a particle is not its own neighbour");
@@ -144,7 +144,7 @@ fn strays_empty_cells_and_a_heap_in_one_cell_lose_no_pair() {
         let met = listed(&near, &spread, &heap);
         assert_eq!((met.among.len(), met.beside.len()), (40 * 39 / 2, 40 * 40), "{sweep:?}");
         assert!(met.among.values().chain(met.beside.values()).all(|&n| n == 1), "each once");
-        assert_eq!(near.wet().len(), 40);
+        assert_eq!(near.boundary_near_fluid().len(), 40);
     }
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use pontoon::{
     geometry::Shape,
     math::{Pose, Vector},
-    model::{Diffusion, Model, Shifting, Slip, Sweeping, Viscosity},
+    model::{Diffusion, Model, PairLoopKind, Shifting, Slip, Viscosity},
     simulation::{Setup, Simulation},
     solid::Role,
     sph::{particle_shifting::Shift, viscosity::Laminar},
@@ -41,9 +41,9 @@ fn swirl(model: Model, x: f64, y: f64) -> Simulation<2> {
 
 #[test]
 fn the_water_does_not_feel_where_the_sides_are() {
-    for (sweep, bound) in [(Sweeping::Reference, 1e-9), (Sweeping::Fast, 1e-3)] {
+    for (sweep, bound) in [(PairLoopKind::Reference, 1e-9), (PairLoopKind::Fast, 1e-3)] {
         let at = |x: f64, y: f64| {
-            let mut sim = swirl(Model { sweep, ..model() }, x, y);
+            let mut sim = swirl(Model { pair_loop: sweep, ..model() }, x, y);
             (0..20).for_each(|_| sim.step().expect("a sound run"));
             let fluid = sim.system().fluid();
             let mut v = vec![Vector::<2>::zeros(); fluid.len()];

@@ -3,7 +3,7 @@
 use pontoon::{
     Result,
     geometry::Shape,
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     model::Model,
     probe::{Elevation, Energy, Force, Front, Motion, Pressure, Probe, Velocity},
     simulation::Simulation,
@@ -76,7 +76,7 @@ fn motion_counts_from_the_start_and_reads_the_velocity() -> Result<()> {
     let mut sim = floats();
     let probe = Motion::new(sim.system(), "float")?;
     let columns = Probe::<2>::columns(&probe);
-    sim.set_velocity(1, &Vector::from([0.5, -0.25]), &Wedge::from_axial(&[2.0]));
+    sim.set_velocity(1, &Vector::from([0.5, -0.25]), &Bivector::from_axial(&[2.0]));
     let now = probe.look(&sim);
     assert_eq!(columns.len(), now.len());
     let of = |name: &str| columns.iter().position(|c| c == name).map(|i| now[i]);
@@ -101,7 +101,7 @@ fn energies_of_a_uniform_motion_are_those_of_a_block() -> Result<()> {
     let probe = Energy::new(sim.system());
     sim.set_water_density(|_| 1000.0);
     sim.set_water_velocity(|_| Vector::from([0.6, 0.8]));
-    sim.set_velocity(1, &Vector::from([2.0, 0.0]), &Wedge::from_axial(&[0.0]));
+    sim.set_velocity(1, &Vector::from([2.0, 0.0]), &Bivector::from_axial(&[0.0]));
     let now = Probe::<2>::look(&probe, &sim);
     let (water, body) = (0.5 * 1000.0 * 0.4 * 0.1, 0.5 * 500.0 * 0.1 * 0.06 * 4.0);
     let expected = [water, 0.0, 0.0, body, 0.0, water + body];

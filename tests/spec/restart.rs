@@ -122,7 +122,7 @@ fn water_between_periodic_sides_that_is_shifted_outlives_a_restart() -> Result<(
 #[test]
 fn who_was_taken_out_is_known_after_a_restart() -> Result<()> {
     let (home, sim) = outlives("spill", [0.2, 0.4], Simulation::<2>::enable_energy_budget)?;
-    let (then, all) = (sim.lost().len(), text(&home, "removed.csv").lines().count() - 1);
+    let (then, all) = (sim.removed_particles().len(), text(&home, "removed.csv").lines().count() - 1);
     assert!(then > 0 && all > then, "{then} before the second moment, {all} in all");
     assert!(sim.energy_budget().is_some_and(|ledger| ledger.removed != 0.0), "they took energy along");
     Ok(())

@@ -9,7 +9,7 @@ use pontoon::{
     report::{self, Field, Shot},
     run::{self, Options, Progress},
     scene::Scene,
-    solid::{Dim, Engine, FreeBody, HasEngine, Kinematics, Links, Load, Role, SolidSpec},
+    solid::{Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Load, Role, SolidSpec},
 };
 use serde_json::Value;
 use tiny_skia::Pixmap;
@@ -54,7 +54,7 @@ where
 {
     let start: Vec<Kinematics<D>> = solids.iter().map(SolidSpec::start).collect();
     let gravity = Vector::from_fn(|i, _| if i == D - 1 { -g } else { 0.0 });
-    Dim::<D>::engine(solids, &start, &Links::default(), &gravity, 0.01)
+    Dim::<D>::engine(solids, &start, &Constraints::default(), &gravity, 0.01)
 }
 
 /// Half a second under gravity in steps of 0.1 ms.

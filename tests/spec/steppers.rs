@@ -78,17 +78,20 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
     assert_eq!(step_size::viscous(&model), f64::INFINITY);
     let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
     assert_eq!(step_size::viscous(&thick), model.h * model.h / 4.0);
-    let peaks = pontoon::system::Peaks { acceleration: 1e7, closing: 0.0 };
-    assert_eq!(step_size::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / 1e7).sqrt());
-    let peaks = pontoon::system::Peaks { acceleration: 0.0, closing: 100.0 };
-    assert_eq!(step_size::water(&peaks, sim.system().medium(), 0.2), 0.2 * (model.h / (model.c0 + model.h * 100.0)));
+    let peaks = pontoon::system::StepLimits { acceleration: 1e7, approach_rate: 0.0 };
+    assert_eq!(step_size::water(&peaks, sim.system().properties(), 0.2), 0.2 * (model.h / 1e7).sqrt());
+    let peaks = pontoon::system::StepLimits { acceleration: 0.0, approach_rate: 100.0 };
+    assert_eq!(
+        step_size::water(&peaks, sim.system().properties(), 0.2),
+        0.2 * (model.h / (model.c0 + model.h * 100.0))
+    );
 }
 
 #[test]
 fn a_body_on_water_swings_faster_by_the_root_of_its_mass() {
     use pontoon::{geometry::Shape, solid::FreeBody};
     let dp = 0.01;
-    let medium = Model::water(2, dp, 1.0).medium::<2>();
+    let medium = Model::water(2, dp, 1.0).fluid_properties::<2>();
     let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };
     let of = |density| stiffest_frequency(&shape, &FreeBody::from_density(&shape, density), &medium);
     assert!((of(10.0) / of(1000.0) - 10.0).abs() < 1e-9);

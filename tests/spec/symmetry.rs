@@ -5,8 +5,8 @@ use std::path::Path;
 use pontoon::{
     Result,
     geometry::Shape,
-    math::{Matrix, Vector, Wedge},
-    model::{Dimension, Model, Sweeping},
+    math::{Bivector, Matrix, Vector},
+    model::{Dimension, Model, PairLoopKind},
     scene::Scene,
     simulation::Simulation,
     solid::{Dim, Kinematics, Role, SolidSpec},
@@ -202,13 +202,13 @@ fn a_harbour_turned_with_its_gravity_goes_the_same_ways() -> Result<()> {
 }
 
 /// Momentum that water and two bodies lose while these collide in free space, over the sum of the sizes of the bodies' at the start.
-fn lost<const D: usize>(sweep: Sweeping) -> f64
+fn lost<const D: usize>(sweep: PairLoopKind) -> f64
 where
     Dim<D>: Dimension<D>,
 {
     let dp = 0.04;
     let mut model = Model::water(D, dp, 0.3);
-    (model.gravity, model.sweep, model.c0) = (vec![0.0; D], sweep, 34.0);
+    (model.gravity, model.pair_loop, model.c0) = (vec![0.0; D], sweep, 34.0);
     let along = |x: f64, others: f64| Vector::<D>::from_fn(|i, _| if i == 0 { x } else { others });
     let (low, size) = (along(-8.0 * dp, -5.0 * dp), along(16.0 * dp, 10.0 * dp));
     let mut water = rig::lattice(low.into(), size.into(), dp);
@@ -220,10 +220,10 @@ where
     solids[1].name = "second".into();
     solids.iter_mut().for_each(|solid| (solid.friction, solid.restitution) = (0.3, 0.6));
     let mut sim = rig::simulation(model, water, -1.0, solids);
-    let spin = |axial: [f64; 3]| Wedge::from_axial(&axial[..if D == 2 { 1 } else { 3 }]);
+    let spin = |axial: [f64; 3]| Bivector::from_axial(&axial[..if D == 2 { 1 } else { 3 }]);
     sim.set_velocity(0, &along(3.0, 0.2), &spin([2.0, 1.0, 0.5]));
     sim.set_velocity(1, &along(-2.0, 0.0), &spin([-1.0, 1.0, 0.0]));
-    sim.refresh();
+    sim.update_rates();
     let parts = |sim: &Simulation<D>| {
         [0, 1].map(|i| {
             let solid = &sim.system().solids()[i];
@@ -246,10 +246,10 @@ where
 #[test]
 fn bodies_that_collide_under_water_in_free_space_and_their_water_keep_their_momentum() {
     // The project's bound; found: 3e-15.
-    let off = lost::<3>(Sweeping::Reference);
+    let off = lost::<3>(PairLoopKind::Reference);
     assert!(off < 1e-10, "{off:e}");
     // Forces of the fast sweep flip their signs bit for bit, but their sums are rounded to single precision: `stability.md`'s bound for
     // it, a hundredfold of the round-off found there. Here 3e-8 and 4e-9.
-    let off = [lost::<2>(Sweeping::Fast), lost::<3>(Sweeping::Fast)];
+    let off = [lost::<2>(PairLoopKind::Fast), lost::<3>(PairLoopKind::Fast)];
     assert!(off[0].max(off[1]) < 1e-6, "{off:?}");
 }

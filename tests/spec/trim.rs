@@ -54,7 +54,7 @@ fn trimmed(hull: &SolidSpec<3>) -> Result<[f64; 2]> {
     let mut pose = Pose::identity();
     // Each round leaves 0.6 of the lever at most: 5 rad/m of its metacentric heights, 0.09 m and 0.15 m.
     for _ in 0..80 {
-        pose = Pose::turned(Vector::zeros(), &turn);
+        pose = Pose::rotated(Vector::zeros(), &turn);
         pose.position[2] += equilibrium_height(&hull.shape, &pose, body.mass, 1000.0, 0.0)?;
         let lever = hull.shape.submerged(&pose, 0.0).1 - pose.point(&body.centre);
         turn[0] += 5.0 * lever[1];

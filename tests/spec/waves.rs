@@ -365,7 +365,7 @@ fn a_damping_zone_slows_water_by_its_law_whatever_the_scheme() {
         // It begins far to the left: s = 1 where the water is.
         let zone = SpongeLayer { from: [-9.0, 0.0].into(), to: [-8.0, 0.0].into(), strength: 3.0, power: 2.0 };
         let velocity = vec![Vector::from([0.2, 0.1]); water.len()];
-        let setup = Setup { velocity, damping: vec![zone], ..Setup::new(model, water.clone(), levels, vec![]) };
+        let setup = Setup { velocity, sponge_layers: vec![zone], ..Setup::new(model, water.clone(), levels, vec![]) };
         let mut sim = Simulation::new(setup).unwrap();
         while sim.time() < 0.5 {
             sim.step_to(0.5).unwrap();

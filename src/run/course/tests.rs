@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use super::*;
-use crate::{math::Vector, output::Readings, run::resume, simulation::Rescued};
+use crate::{math::Vector, output::Readings, run::resume, simulation::Rollback};
 
 /// Water that falls over, with a table of every kind: by step, of means, of many rows at one time.
 const SCENE: &str = r#"
@@ -52,7 +52,7 @@ struct Stop {
 }
 
 impl Watch for Stop {
-    fn rescued(&mut self, _: &Rescued) {
+    fn rescued(&mut self, _: &Rollback) {
         self.rescued = true;
     }
 
@@ -88,7 +88,11 @@ fn what_was_written_of_a_course_that_ended_in_an_alarm_is_taken_back() -> Result
     course.sim.set_water_velocity(|_| Vector::from([2.0 * c0, 0.0]));
     course.advance(&mut Stop { steps: u64::MAX, rescued: false })?;
     let back_to = course.sim.time();
-    assert_eq!((course.sim.steps(), course.sim.rescued().len()), (500, 1), "the state kept of step 500 is old enough");
+    assert_eq!(
+        (course.sim.steps(), course.sim.rollbacks().len()),
+        (500, 1),
+        "the state kept of step 500 is old enough"
+    );
 
     // Nothing later is left, in tables, frames or either checkpoint.
     let last = |name: &str| Ok::<_, Error>(Readings::read(&out.join(name))?.t.last().copied().unwrap_or(0.0));

@@ -3,16 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    jacobian::{Mobility, Row},
+    jacobian::{ConstraintJacobian, Mobility},
     joint::Joint,
     lines::{Elastic, Line, RopeSpec, SpringSpec, start_length},
-    links::{Hold, Links},
+    links::{Constraints, Hold},
     motor::Drive,
-    reactions::{Pull, mend},
+    reactions::{Reaction, project},
 };
 use crate::{
-    math::{Vector, Wedge},
-    solid::{Around, Engine, ForceSpec, Kinematics, Load},
+    math::{Bivector, Vector},
+    solid::{Engine, ForceSpec, Kinematics, Load, LoadContext},
 };
 
 /// Δt times the highest frequency of the springs, at most: their period is right within 0.2 %.
@@ -24,7 +24,7 @@ pub struct JointReading<const D: usize> {
     /// Force of its locks and end stops on the second solid, N (N/m in 2-D); the motor's is not in it.
     pub force: Vector<D>,
     /// Their torque on it about the joint, N m (N m/m in 2-D).
-    pub torque: Wedge<D>,
+    pub torque: Bivector<D>,
     /// Its coordinate from the start, m or rad (−π to π); 0 where it has none.
     pub position: f64,
     /// Its rate, m/s or rad/s.
@@ -53,7 +53,7 @@ pub struct LineReading {
 
 /// What the ties did to a solid in the last step, by their kind.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tied<const D: usize> {
+pub(crate) struct ConstraintLoads<const D: usize> {
     pub(crate) joints: Load<D>,
     pub(crate) ropes: Load<D>,
     pub(crate) springs: Load<D>,
@@ -63,7 +63,7 @@ pub(crate) struct Tied<const D: usize> {
     pub(crate) held: bool,
 }
 
-impl<const D: usize> Tied<D> {
+impl<const D: usize> ConstraintLoads<D> {
     /// Nothing.
     pub(crate) fn zero() -> Self {
         let none = Load::zero();
@@ -73,7 +73,7 @@ impl<const D: usize> Tied<D> {
 
 /// What of it must be kept to go on to the same bits.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct RigState<const D: usize> {
+pub(crate) struct AssemblyState<const D: usize> {
     joints: Vec<(Option<Drive>, JointReading<D>)>,
     springs: Vec<(Elastic, LineReading)>,
     ropes: Vec<LineReading>,
@@ -85,7 +85,7 @@ struct Spring<const D: usize> {
 }
 
 /// All ties at work.
-pub(crate) struct Rig<const D: usize> {
+pub(crate) struct Assembly<const D: usize> {
     start: Vec<Kinematics<D>>,
     joints: Vec<Joint<D>>,
     springs: Vec<Spring<D>>,
@@ -93,18 +93,18 @@ pub(crate) struct Rig<const D: usize> {
     forces: Vec<ForceSpec<D>>,
     holds: Vec<Hold>,
     /// Rows of each joint's locks and of its coordinate in the present step.
-    rows: Vec<Vec<Row<D>>>,
+    rows: Vec<Vec<ConstraintJacobian<D>>>,
     /// What they did to each solid in the last step.
-    tied: Vec<Tied<D>>,
-    state: RigState<D>,
+    tied: Vec<ConstraintLoads<D>>,
+    state: AssemblyState<D>,
 }
 
-impl<const D: usize> Rig<D> {
+impl<const D: usize> Assembly<D> {
     /// The ties of solids that start as `start`.
-    pub(crate) fn new(links: &Links<D>, start: Vec<Kinematics<D>>) -> Self {
+    pub(crate) fn new(links: &Constraints<D>, start: Vec<Kinematics<D>>) -> Self {
         let none = JointReading {
             force: Vector::zeros(),
-            torque: Wedge::zero(),
+            torque: Bivector::zero(),
             position: 0.0,
             rate: 0.0,
             motor: 0.0,
@@ -124,8 +124,8 @@ impl<const D: usize> Rig<D> {
             forces: links.forces.clone(),
             holds: links.holds.clone(),
             rows: Vec::new(),
-            tied: vec![Tied::zero(); start.len()],
-            state: RigState {
+            tied: vec![ConstraintLoads::zero(); start.len()],
+            state: AssemblyState {
                 joints: vec![(None, none); links.joints.len()],
                 springs: links.springs.iter().map(spring).collect(),
                 ropes: links.ropes.iter().map(rope).collect(),
@@ -135,9 +135,9 @@ impl<const D: usize> Rig<D> {
     }
 
     /// Takes up a solid that has come as `start`.
-    pub(crate) fn admit(&mut self, start: Kinematics<D>) {
+    pub(crate) fn add_body(&mut self, start: Kinematics<D>) {
         self.start.push(start);
-        self.tied.push(Tied::zero());
+        self.tied.push(ConstraintLoads::zero());
     }
 
     /// Whether there is nothing that acts.
@@ -151,14 +151,14 @@ impl<const D: usize> Rig<D> {
 
     /// Puts motors, springs and forces on the engine's solids for the step from `t` (s) on, `dt` (s) long, in which they start as
     /// `solids` says, with what is `around` them.
-    pub(crate) fn act(
+    pub(crate) fn apply_loads(
         &mut self,
         engine: &mut dyn Engine<D>,
         solids: &[Kinematics<D>],
-        around: &Around<D>,
+        around: &LoadContext<D>,
         [t, dt]: [f64; 2],
     ) {
-        self.tied.fill(Tied::zero());
+        self.tied.fill(ConstraintLoads::zero());
         for hold in &self.holds {
             self.tied[hold.solid].held = hold.holds(t);
             engine.hold(hold.solid, hold.holds(t));
@@ -177,7 +177,7 @@ impl<const D: usize> Rig<D> {
         }
         for force in &self.forces {
             let load = force.load(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
-            engine.burden(force.solid, &load);
+            engine.add_load(force.solid, &load);
             self.tied[force.solid].forces += load;
         }
         // Last, so that they know of what the others do.
@@ -187,8 +187,10 @@ impl<const D: usize> Rig<D> {
             let ((rows, _), free) = (joint.rows(&ends, &mobility), joint.free(&ends));
             let drive = joint.drive(*set, t + 0.5 * dt);
             if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
-                let loads =
-                    joint.spec.between.map(|end| end.map_or_else(Load::zero, |i| around.loads[i] + engine.pushed(i)));
+                let loads = joint
+                    .spec
+                    .between
+                    .map(|end| end.map_or_else(Load::zero, |i| around.loads[i] + engine.applied_push(i)));
                 let going = [free.rate(&ends), own.gain(&loads, &mobility), own.with(own, &mobility)];
                 reading.motor = joint.force(&drive, &ends, going, dt);
                 give(engine, joint.spec.between, &free.loads(reading.motor));
@@ -200,7 +202,7 @@ impl<const D: usize> Rig<D> {
 
     /// Reads what they felt in the step, `dt` (s) long, from `before` to `after`. Where the engine does not tell all of
     /// its impulses, `told` says what changed the momentum of each solid and no other load explains (N, N m).
-    pub(crate) fn learn(
+    pub(crate) fn update_reactions(
         &mut self,
         engine: &dyn Engine<D>,
         [before, after]: [&[Kinematics<D>]; 2],
@@ -212,7 +214,7 @@ impl<const D: usize> Rig<D> {
             let (was, is) = (joint.ends(before), joint.ends(after));
             let held: Load<D> = pulls[i].iter().map(|pull| pull.loads()[1]).sum();
             let arm = joint.point(&was) - was[1].centre;
-            (reading.force, reading.torque) = (held.force, held.torque + Wedge::torque(&arm, &held.force) * -1.0);
+            (reading.force, reading.torque) = (held.force, held.torque + Bivector::torque(&arm, &held.force) * -1.0);
             reading.position = joint.position(&is);
             let rate = |ends: &[Kinematics<D>; 2]| joint.free(ends).map_or(0.0, |row| row.rate(ends));
             reading.absorbed -= reading.motor * 0.5 * (rate(&was) + rate(&is)) * dt;
@@ -241,25 +243,25 @@ impl<const D: usize> Rig<D> {
         before: &[Kinematics<D>],
         dt: f64,
         told: Option<&[Load<D>]>,
-    ) -> Vec<Vec<Pull<D>>> {
+    ) -> Vec<Vec<Reaction<D>>> {
         let of_joint = |(i, joint): (usize, &Joint<D>)| {
             let (between, mobility) = (joint.spec.between, joint.mobility(engine));
             let rows = self.rows[i].iter().zip(engine.impulses(i));
-            rows.map(|(row, impulse)| Pull { between, row: *row, mobility, force: impulse / dt }).collect()
+            rows.map(|(row, impulse)| Reaction { between, row: *row, mobility, force: impulse / dt }).collect()
         };
         let of_rope = |(i, rope): (usize, &Line<D>)| {
             let (between, mobility) = (rope.solids(), rope.mobility(engine));
             let force = -engine.rope_impulse(i) / dt;
-            let pull = |row| Pull { between, row, mobility, force };
+            let pull = |row| Reaction { between, row, mobility, force };
             rope.along(&rope.ends(before)).1.map(pull).into_iter().collect()
         };
         let joints = self.joints.iter().enumerate().map(of_joint);
         let ropes = self.ropes.iter().enumerate().map(of_rope);
-        let mut pulls: Vec<Vec<Pull<D>>> = joints.chain(ropes).collect();
+        let mut pulls: Vec<Vec<Reaction<D>>> = joints.chain(ropes).collect();
         if let Some(told) = told {
             let sizes: Vec<usize> = pulls.iter().map(Vec::len).collect();
-            let mut all: Vec<Pull<D>> = pulls.into_iter().flatten().collect();
-            mend(&mut all, told);
+            let mut all: Vec<Reaction<D>> = pulls.into_iter().flatten().collect();
+            project(&mut all, told);
             let mut all = all.into_iter();
             pulls = sizes.into_iter().map(|size| all.by_ref().take(size).collect()).collect();
         }
@@ -270,16 +272,17 @@ impl<const D: usize> Rig<D> {
     ///
     /// ω² is at most the largest, over all solids, of Σ k A (A + B) over the springs of the solid, with A² and B² the ease of its own
     /// and of the other end (Gershgorin's bound, solid by solid).
-    pub(crate) fn limit(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>], t: f64) -> f64 {
+    pub(crate) fn step_limit(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>], t: f64) -> f64 {
         let mut squares = vec![0.0; solids.len()];
-        let mut stiffen = |ends: [Option<usize>; 2], row: &Row<D>, mobility: &[Mobility<D>; 2], stiffness: f64| {
-            let own = row.ease(mobility).map(f64::sqrt);
-            for (solid, ease) in ends.iter().zip(own) {
-                if let Some(solid) = solid {
-                    squares[*solid] += stiffness * ease * (own[0] + own[1]);
+        let mut stiffen =
+            |ends: [Option<usize>; 2], row: &ConstraintJacobian<D>, mobility: &[Mobility<D>; 2], stiffness: f64| {
+                let own = row.ease(mobility).map(f64::sqrt);
+                for (solid, ease) in ends.iter().zip(own) {
+                    if let Some(solid) = solid {
+                        squares[*solid] += stiffness * ease * (own[0] + own[1]);
+                    }
                 }
-            }
-        };
+            };
         for (joint, (set, _)) in self.joints.iter().zip(&self.state.joints) {
             let Some(drive) = joint.drive(*set, t).filter(|drive| drive.stiffness > 0.0) else { continue };
             let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
@@ -299,17 +302,17 @@ impl<const D: usize> Rig<D> {
     }
 
     /// How long (s) from time `t` (s) on until the next solid is let go; no step goes past that.
-    pub(crate) fn let_go(&self, t: f64) -> f64 {
+    pub(crate) fn next_release(&self, t: f64) -> f64 {
         self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether there is a joint or a rope.
-    pub(crate) fn pulls_on_any(&self) -> bool {
+    pub(crate) fn has_reactions(&self) -> bool {
         !(self.joints.is_empty() && self.ropes.is_empty())
     }
 
     /// What the ties did to solid number `i` in the last step.
-    pub(crate) fn tied(&self, i: usize) -> Tied<D> {
+    pub(crate) fn loads_on(&self, i: usize) -> ConstraintLoads<D> {
         self.tied[i]
     }
 
@@ -326,7 +329,7 @@ impl<const D: usize> Rig<D> {
     }
 
     /// How far (m) and by what angle (rad) joint number `i` is torn where the solids are.
-    pub(crate) fn gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
+    pub(crate) fn joint_gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
         self.joints[i].gap(&self.joints[i].ends(solids))
     }
 
@@ -351,12 +354,12 @@ impl<const D: usize> Rig<D> {
     }
 
     /// What must be kept to go on to the same bits.
-    pub(crate) fn save(&self) -> RigState<D> {
+    pub(crate) fn save(&self) -> AssemblyState<D> {
         self.state.clone()
     }
 
     /// Goes back to what was kept; says whether it is of these ties.
-    pub(crate) fn restore(&mut self, kept: RigState<D>) -> bool {
+    pub(crate) fn restore(&mut self, kept: AssemblyState<D>) -> bool {
         let same = kept.joints.len() == self.joints.len()
             && kept.springs.len() == self.springs.len()
             && kept.ropes.len() == self.ropes.len();
@@ -371,17 +374,17 @@ impl<const D: usize> Rig<D> {
 fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], loads: &[Load<D>; 2]) {
     for (end, load) in ends.iter().zip(loads) {
         if let Some(solid) = end {
-            engine.burden(*solid, load);
+            engine.add_load(*solid, load);
         }
     }
 }
 
 /// Notes a load each for the solids at both ends.
 fn note<const D: usize>(
-    tied: &mut [Tied<D>],
+    tied: &mut [ConstraintLoads<D>],
     ends: [Option<usize>; 2],
     loads: &[Load<D>; 2],
-    kind: impl Fn(&mut Tied<D>) -> &mut Load<D>,
+    kind: impl Fn(&mut ConstraintLoads<D>) -> &mut Load<D>,
 ) {
     for (end, load) in ends.iter().zip(loads) {
         if let Some(solid) = end {

@@ -6,7 +6,7 @@
 use nalgebra::SMatrix;
 
 use crate::{
-    math::{Pose, Vector, Wedge},
+    math::{Bivector, Pose, Vector},
     solid::{Kinematics, Load},
 };
 
@@ -26,24 +26,24 @@ impl<const D: usize> Mobility<D> {
     }
 
     /// The spin (rad/s) that the angular impulse `torque` (N m s) gives.
-    pub(in crate::solid) fn spin(&self, torque: &Wedge<D>) -> Wedge<D> {
+    pub(in crate::solid) fn spin(&self, torque: &Bivector<D>) -> Bivector<D> {
         let torque = torque.axial();
         let mut spin = [0.0; 3];
         for (i, spin) in spin.iter_mut().enumerate() {
             *spin = torque.iter().enumerate().map(|(j, t)| self.angular[(i, j)] * t).sum();
         }
-        Wedge::from_axial(&spin)
+        Bivector::from_axial(&spin)
     }
 }
 
 /// A row of two solids.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solid) struct Row<const D: usize> {
+pub(in crate::solid) struct ConstraintJacobian<const D: usize> {
     along: Vector<D>,
-    about: [Wedge<D>; 2],
+    about: [Bivector<D>; 2],
 }
 
-impl<const D: usize> Row<D> {
+impl<const D: usize> ConstraintJacobian<D> {
     /// Along the unit vector `n`, at the world point `x` (m) of both.
     pub(in crate::solid) fn along(n: Vector<D>, x: &Vector<D>, ends: &[Kinematics<D>; 2]) -> Self {
         Self::between(n, &[*x, *x], ends)
@@ -51,11 +51,11 @@ impl<const D: usize> Row<D> {
 
     /// Along the unit vector `n`, at a world point (m) of each.
     pub(in crate::solid) fn between(n: Vector<D>, places: &[Vector<D>; 2], ends: &[Kinematics<D>; 2]) -> Self {
-        Self { along: n, about: [0, 1].map(|k| Wedge::torque(&(places[k] - ends[k].centre), &n)) }
+        Self { along: n, about: [0, 1].map(|k| Bivector::torque(&(places[k] - ends[k].centre), &n)) }
     }
 
     /// About the axis `a`.
-    pub(in crate::solid) fn about(a: Wedge<D>) -> Self {
+    pub(in crate::solid) fn about(a: Bivector<D>) -> Self {
         Self { along: Vector::zeros(), about: [a, a] }
     }
 
@@ -101,14 +101,22 @@ impl<const D: usize> Row<D> {
 
 /// How the solid at an end moves; the world does not.
 pub(in crate::solid) fn of<const D: usize>(end: Option<usize>, solids: &[Kinematics<D>]) -> Kinematics<D> {
-    let world =
-        Kinematics { pose: Pose::identity(), centre: Vector::zeros(), velocity: Vector::zeros(), spin: Wedge::zero() };
+    let world = Kinematics {
+        pose: Pose::identity(),
+        centre: Vector::zeros(),
+        velocity: Vector::zeros(),
+        spin: Bivector::zero(),
+    };
     end.and_then(|solid| solids.get(solid)).copied().unwrap_or(world)
 }
 
 /// Takes out of each row what those before it among the first `locks` do already (Gram and Schmidt): the rows along which the
 /// engine gives its impulses.
-pub(in crate::solid) fn part<const D: usize>(rows: &mut [Row<D>], locks: usize, mobility: &[Mobility<D>; 2]) {
+pub(in crate::solid) fn part<const D: usize>(
+    rows: &mut [ConstraintJacobian<D>],
+    locks: usize,
+    mobility: &[Mobility<D>; 2],
+) {
     for j in 0..locks {
         let done = rows[j];
         let own = done.with(&done, mobility);

@@ -4,11 +4,11 @@
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::{
-    jacobian::{Mobility, Row, of, part},
+    jacobian::{ConstraintJacobian, Mobility, of, part},
     motor::{Drive, Going, Motor},
 };
 use crate::{
-    math::{Matrix, Pose, Vector, Wedge},
+    math::{Bivector, Matrix, Pose, Vector},
     solid::{Engine, Kinematics},
 };
 
@@ -173,12 +173,12 @@ impl<const D: usize> Joint<D> {
     }
 
     /// The row of its coordinate, if it has one.
-    pub(in crate::solid) fn free(&self, ends: &[Kinematics<D>; 2]) -> Option<Row<D>> {
+    pub(in crate::solid) fn free(&self, ends: &[Kinematics<D>; 2]) -> Option<ConstraintJacobian<D>> {
         self.spec.own().map(|mode| self.row(mode, ends))
     }
 
     /// The row of a mode's coordinate.
-    fn row(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> Row<D> {
+    fn row(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> ConstraintJacobian<D> {
         let [first, second] = self.sits(ends);
         match mode.checked_sub(D) {
             None => {
@@ -186,15 +186,15 @@ impl<const D: usize> Joint<D> {
                 let off = first.local(&second.position);
                 let held = Vector::from_fn(|axis, _| if self.spec.locks(axis) { off[axis] } else { 0.0 });
                 let places = [second.position - first.rotation * held, second.position];
-                Row::between(first.rotation.column(mode).into(), &places, ends)
+                ConstraintJacobian::between(first.rotation.column(mode).into(), &places, ends)
             }
-            Some(axis) => Row::about(turning(&first.rotation.column(axis).into())),
+            Some(axis) => ConstraintJacobian::about(turning(&first.rotation.column(axis).into())),
         }
     }
 
     /// The rows of its locks in the order of the engine. In 3-D the engine measures a locked turn by its part of the quaternion (w, v)
     /// between the frames, whose rate is ½ (w ω + ω × v).
-    fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<Row<D>> {
+    fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<ConstraintJacobian<D>> {
         let locked = turns_first::<D>().filter(|&mode| self.spec.locks(mode));
         if D == 2 {
             return locked.map(|mode| self.row(mode, ends)).collect();
@@ -208,7 +208,7 @@ impl<const D: usize> Joint<D> {
             None => self.row(mode, ends),
             Some(axis) => {
                 let about: Vector<D> = first.rotation * Vector::from_fn(|i, _| rates[(axis, i)]);
-                Row::about(Wedge::from_axial(about.as_slice()))
+                ConstraintJacobian::about(Bivector::from_axial(about.as_slice()))
             }
         };
         locked.map(row).collect()
@@ -220,7 +220,7 @@ impl<const D: usize> Joint<D> {
         &self,
         ends: &[Kinematics<D>; 2],
         mobility: &[Mobility<D>; 2],
-    ) -> (Vec<Row<D>>, usize) {
+    ) -> (Vec<ConstraintJacobian<D>>, usize) {
         let mut rows = self.locks(ends);
         let locks = rows.len();
         match self.spec.own() {
@@ -290,8 +290,8 @@ impl<const D: usize> JointSpec<D> {
 }
 
 /// Turning once about `axis`; in 2-D counter-clockwise.
-fn turning<const D: usize>(axis: &Vector<D>) -> Wedge<D> {
-    if D == 2 { Wedge::from_axial(&[1.0]) } else { Wedge::from_axial(axis.as_slice()) }
+fn turning<const D: usize>(axis: &Vector<D>) -> Bivector<D> {
+    if D == 2 { Bivector::from_axial(&[1.0]) } else { Bivector::from_axial(axis.as_slice()) }
 }
 
 /// A right-handed frame with its x along `axis`; the world's if that is nowhere.
@@ -304,11 +304,11 @@ fn frame<const D: usize>(axis: &Vector<D>) -> Matrix<D> {
     let x = axis / length;
     all.set_column(0, &x);
     if D == 2 {
-        all.set_column(1, &turning(&x).at(&x));
+        all.set_column(1, &turning(&x).velocity_at(&x));
     } else {
         let away = x.iamin();
-        let z = turning(&x).at(&Vector::from_fn(|i, _| f64::from(u8::from(i == away)))).normalize();
-        all.set_column(1, &turning(&z).at(&x));
+        let z = turning(&x).velocity_at(&Vector::from_fn(|i, _| f64::from(u8::from(i == away)))).normalize();
+        all.set_column(1, &turning(&z).velocity_at(&x));
         all.set_column(2, &z);
     }
     all

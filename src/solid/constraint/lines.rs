@@ -9,7 +9,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::jacobian::{Mobility, Row, of};
+use super::jacobian::{ConstraintJacobian, Mobility, of};
 use crate::{
     math::Vector,
     solid::{Engine, Kinematics},
@@ -91,10 +91,10 @@ impl<const D: usize> Line<D> {
     }
 
     /// Its length, m, and the row along it; none where it has no length.
-    pub(in crate::solid) fn along(&self, ends: &[Kinematics<D>; 2]) -> (f64, Option<Row<D>>) {
+    pub(in crate::solid) fn along(&self, ends: &[Kinematics<D>; 2]) -> (f64, Option<ConstraintJacobian<D>>) {
         let [a, b] = [0, 1].map(|k| ends[k].pose.point(&self.local[k]));
         let length = (b - a).norm();
-        (length, (length > 0.0).then(|| Row::along((b - a) / length, &b, ends)))
+        (length, (length > 0.0).then(|| ConstraintJacobian::along((b - a) / length, &b, ends)))
     }
 
     pub(in crate::solid) fn mobility(&self, engine: &dyn Engine<D>) -> [Mobility<D>; 2] {

@@ -13,7 +13,7 @@ use crate::{
 
 /// All ties of a simulation. Solids are numbered as in its list of solids.
 #[derive(Clone, Debug, Default)]
-pub struct Links<const D: usize> {
+pub struct Constraints<const D: usize> {
     /// Joints.
     pub joints: Vec<JointSpec<D>>,
     /// Springs and mooring lines.
@@ -96,7 +96,7 @@ impl FromIterator<ContactSpec> for Contacts {
     }
 }
 
-impl<const D: usize> Links<D> {
+impl<const D: usize> Constraints<D> {
     /// Whether there is nothing.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()

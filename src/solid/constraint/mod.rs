@@ -12,5 +12,5 @@ pub use assembly::{JointReading, LineReading};
 pub use jacobian::Mobility;
 pub use joint::{FreeMode, JointKind, JointSpec};
 pub use lines::{Elastic, End, RopeSpec, SpringSpec};
-pub use links::{ContactSpec, Contacts, Hold, Links};
+pub use links::{Constraints, ContactSpec, Contacts, Hold};
 pub use motor::{Drive, Motor};

@@ -4,7 +4,7 @@
 //! mends places. What a joint gave is known from the momentum of the solids: with R what changed it and no other load explains, the pulls f are to give Σ f Jᵀ = R. From the last impulse times their
 //! number they are mended row after row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until nothing is left (Kaczmarz 1937).
 
-use super::jacobian::{Mobility, Row};
+use super::jacobian::{ConstraintJacobian, Mobility};
 use crate::{
     math::{Pose, Vector},
     solid::{Kinematics, Load},
@@ -14,16 +14,16 @@ use crate::{
 const SWEEPS: usize = 200;
 
 /// A pull along a row of two solids.
-pub(in crate::solid) struct Pull<const D: usize> {
+pub(in crate::solid) struct Reaction<const D: usize> {
     /// Their numbers; `None` is the world.
     pub(in crate::solid) between: [Option<usize>; 2],
-    pub(in crate::solid) row: Row<D>,
+    pub(in crate::solid) row: ConstraintJacobian<D>,
     pub(in crate::solid) mobility: [Mobility<D>; 2],
     /// On the second, along the row, N or N m.
     pub(in crate::solid) force: f64,
 }
 
-impl<const D: usize> Pull<D> {
+impl<const D: usize> Reaction<D> {
     /// The loads of it on both.
     pub(in crate::solid) fn loads(&self) -> [Load<D>; 2] {
         self.row.loads(self.force)
@@ -52,7 +52,7 @@ impl<const D: usize> Pull<D> {
 }
 
 /// Mends the `pulls` so that they come to `told` of each solid.
-pub(in crate::solid) fn mend<const D: usize>(pulls: &mut [Pull<D>], told: &[Load<D>]) {
+pub(in crate::solid) fn project<const D: usize>(pulls: &mut [Reaction<D>], told: &[Load<D>]) {
     let mut left = told.to_vec();
     pulls.iter().for_each(|pull| pull.take(pull.loads(), &mut left));
     for _ in 0..SWEEPS {
@@ -72,7 +72,7 @@ pub(in crate::solid) fn mend<const D: usize>(pulls: &mut [Pull<D>], told: &[Load
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Wedge;
+    use crate::math::Bivector;
 
     #[test]
     fn pulls_are_found_from_what_they_did() {
@@ -81,7 +81,7 @@ mod tests {
             pose: Pose::at(Vector::<2>::new(x, 0.0)),
             centre: Vector::<2>::new(x, 0.0),
             velocity: Vector::zeros(),
-            spin: Wedge::zero(),
+            spin: Bivector::zero(),
         };
         let mobility = |mass: f64, inertia: f64| {
             let mut mobility = Mobility::<2>::none();
@@ -90,9 +90,10 @@ mod tests {
             mobility
         };
         let (a, b, ground) = (mobility(2.0, 0.1), mobility(3.0, 0.2), Mobility::none());
-        let row =
-            |n: [f64; 2], at: [f64; 2], ends: [f64; 2]| Row::along(Vector::from(n), &Vector::from(at), &ends.map(body));
-        let pull = |between, row, mobility, force| Pull { between, row, mobility, force };
+        let row = |n: [f64; 2], at: [f64; 2], ends: [f64; 2]| {
+            ConstraintJacobian::along(Vector::from(n), &Vector::from(at), &ends.map(body))
+        };
+        let pull = |between, row, mobility, force| Reaction { between, row, mobility, force };
         let mut pulls = [
             pull([Some(0), Some(1)], row([0.8, 0.6], [0.3, 0.1], [0.0, 1.0]), [a, b], 40.0),
             pull([Some(1), None], row([0.0, 1.0], [1.1, 0.0], [1.0, 0.0]), [b, ground], -7.0),
@@ -104,7 +105,7 @@ mod tests {
             }
         }
         pulls.iter_mut().for_each(|pull| pull.force = 1.0);
-        mend(&mut pulls, &told);
+        project(&mut pulls, &told);
         // Each sweep leaves some part; what is left of forces of 40 N is round-off.
         assert!((pulls[0].force - 40.0).abs() < 1e-9 && (pulls[1].force + 7.0).abs() < 1e-9);
     }

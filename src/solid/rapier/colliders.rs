@@ -14,8 +14,8 @@ use crate::{
     geometry::Shape,
     math::{Bounds, Pose, Vector},
     solid::{
-        Kinematics, Links, Role, SolidSpec,
-        containment::{Placed, swallowed},
+        Constraints, Kinematics, Role, SolidSpec,
+        containment::{Placed, depth_inside_mesh},
     },
 };
 
@@ -115,7 +115,7 @@ pub(super) fn refuse_overlap(
     solids: &[SolidSpec<D>],
     start: &[Kinematics<D>],
     parts: &[Parts],
-    links: &Links<D>,
+    links: &Constraints<D>,
     allowed: f64,
 ) -> Result<()> {
     let free = |i: usize| matches!(solids[i].role, Role::Free(_));
@@ -135,7 +135,7 @@ pub(super) fn refuse_overlap(
             }
             let (inner, outer) = if free(a) { (a, b) } else { (b, a) };
             let (body, other) = ((&solids[inner], &start[inner].pose), (&solids[outer], &start[outer].pose));
-            let within = [swallowed(body, other, allowed), swallowed(other, body, allowed)];
+            let within = [depth_inside_mesh(body, other, allowed), depth_inside_mesh(other, body, allowed)];
             depth = within.into_iter().flatten().fold(depth, f64::max);
             if depth > allowed {
                 let help = cramped(body, &parts[inner], other, allowed);
@@ -191,7 +191,7 @@ mod tests {
                 collect(&solid.shape, &Pose::identity(), true, &mut parts).map(|()| parts).unwrap_or_default()
             })
             .collect();
-        let refused = refuse_overlap(&solids, &start, &parts, &Links::default(), 0.001);
+        let refused = refuse_overlap(&solids, &start, &parts, &Constraints::default(), 0.001);
         refused.err().map(|e| e.to_string()).unwrap_or_default()
     }
 

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::{
     super::{friction, rapier::geometry::ContactData},
-    D, Met, PhysicsWorld, Point, RigidBody, RigidBodyHandle, from_point,
+    D, Impact, PhysicsWorld, Point, RigidBody, RigidBodyHandle, from_point,
 };
 use crate::{
     math::Vector,
@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// The pairs that pressed on each other, in order of their numbers.
-pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[Met]) -> Vec<Contact<D>> {
+pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[Impact]) -> Vec<Contact<D>> {
     let mut pairs = Pairs(BTreeMap::new());
     let rate = 1.0 / world.integration_parameters.dt;
     for met in met {

@@ -4,8 +4,8 @@
 
 use crate::{
     error::{Error, Kind, Result},
-    math::{Vector, Wedge},
-    solid::{Kinematics, Links, Load, Mobility, SolidSpec},
+    math::{Bivector, Vector},
+    solid::{Constraints, Kinematics, Load, Mobility, SolidSpec},
 };
 
 /// Moves the free solids of one world under weight, water, contacts and the user's pushes.
@@ -36,13 +36,13 @@ pub trait Engine<const D: usize>: Send + Sync {
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>);
 
     /// Adds a load about the centre of a free solid, in the next step only; without effect on any other.
-    fn burden(&mut self, solid: usize, load: &Load<D>);
+    fn add_load(&mut self, solid: usize, load: &Load<D>);
 
     /// What the pushes and burdens that wait for the next step come to on a free solid.
-    fn pushed(&self, solid: usize) -> Load<D>;
+    fn applied_push(&self, solid: usize) -> Load<D>;
 
     /// Sets the velocity of the centre of mass (m/s) and the spin (rad/s) of a free solid.
-    fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>);
+    fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>);
 
     /// How the solids pressed on one another in the last step, pair by pair in order.
     fn contacts(&self) -> Vec<Contact<D>>;
@@ -60,14 +60,14 @@ pub trait Engine<const D: usize>: Send + Sync {
     ///
     /// # Errors
     /// `Scene` if its shape cannot be touched; nothing has changed then.
-    fn admit(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()>;
+    fn add_body(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()>;
 
     /// Takes a solid out that nothing is tied to: it keeps its number and takes no part any more.
-    fn oust(&mut self, solid: usize);
+    fn remove_body(&mut self, solid: usize);
 
     /// What a free solid did in the last step against torques (N m), if it is one that the engine turns by its spin: in space one in
     /// a joint, on a rope, or with something locked, I(R₀) ΔΩ/Δt less its gyroscopic torque. All others turn by their angular momentum.
-    fn turned(&self, solid: usize) -> Option<Wedge<D>>;
+    fn gyroscopic_rate(&self, solid: usize) -> Option<Bivector<D>>;
 
     /// How easily a solid is moved now.
     fn mobility(&self, solid: usize) -> Mobility<D>;
@@ -142,7 +142,7 @@ pub trait HasEngine<const D: usize> {
     fn engine(
         solids: &[SolidSpec<D>],
         start: &[Kinematics<D>],
-        links: &Links<D>,
+        links: &Constraints<D>,
         gravity: &Vector<D>,
         dp: f64,
     ) -> Result<Box<dyn Engine<D>>>;
@@ -155,7 +155,7 @@ impl HasEngine<2> for Dim<2> {
     fn engine(
         solids: &[SolidSpec<2>],
         start: &[Kinematics<2>],
-        links: &Links<2>,
+        links: &Constraints<2>,
         gravity: &Vector<2>,
         dp: f64,
     ) -> Result<Box<dyn Engine<2>>> {
@@ -170,7 +170,7 @@ impl HasEngine<3> for Dim<3> {
     fn engine(
         solids: &[SolidSpec<3>],
         start: &[Kinematics<3>],
-        links: &Links<3>,
+        links: &Constraints<3>,
         gravity: &Vector<3>,
         dp: f64,
     ) -> Result<Box<dyn Engine<3>>> {

@@ -64,7 +64,7 @@ pub fn solid(
 
 /// Gives a body the water's load in place of all forces and torques of the step before. Rapier keeps forces until it is told
 /// otherwise, so add yours after this.
-pub fn give(body: &mut RigidBody, load: &Load<D>) {
+pub fn apply_load(body: &mut RigidBody, load: &Load<D>) {
     body.reset_forces(false);
     body.reset_torques(false);
     body.add_force(world::to_point(&load.force), true);
@@ -82,7 +82,7 @@ pub fn kinematics(body: &RigidBody) -> Kinematics<D> {
 }
 
 /// Moves a body to where a solid is at the end of the step: for a kinematic body that stands for a driven solid.
-pub fn follow(body: &mut RigidBody, solid: &Kinematics<D>) {
+pub fn set_kinematic(body: &mut RigidBody, solid: &Kinematics<D>) {
     body.set_next_kinematic_position(world::to_frame(&solid.pose));
 }
 

@@ -21,7 +21,7 @@ use crate::{
         constraint::{
             joint::turns_first,
             lines::{Line, start_length},
-            links::{ContactSpec, Contacts, Links},
+            links::{Constraints, ContactSpec, Contacts},
         },
     },
 };
@@ -30,19 +30,19 @@ use crate::{
 const LOCK: f64 = 1e9;
 
 /// Joints and ropes by their handles, in order, and the pairs with a contact of their own.
-pub(super) struct Ties {
+pub(super) struct RapierJoints {
     joints: Vec<ImpulseJointHandle>,
     /// With the longest that each can be, m.
     ropes: Vec<(ImpulseJointHandle, f64)>,
     pub(super) pairs: Pairs,
 }
 
-impl Ties {
+impl RapierJoints {
     /// Puts the joints and ropes of `links` into `world`, where the solids are `bodies` and start as `start`.
     pub(super) fn new(
         world: &mut PhysicsWorld,
         bodies: &[RigidBodyHandle],
-        links: &Links<D>,
+        links: &Constraints<D>,
         start: &[Kinematics<D>],
     ) -> Self {
         let on_ground = links.joints.iter().any(|joint| joint.between.contains(&None))

@@ -25,7 +25,7 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::{follow, give, kinematics, solid};
+pub use external::{apply_load, kinematics, set_kinematic, solid};
 pub(super) use world::World;
 
 use nalgebra::SMatrix;
@@ -41,7 +41,7 @@ use rapier::{
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Matrix, Vector, Wedge},
+    math::{Bivector, Matrix, Vector},
     solid::FreeBody,
 };
 
@@ -53,12 +53,12 @@ type Angular = f64;
 /// Names the engine that wrote a state.
 const ENGINE: &str = "rapier2d-f64 0.36.1";
 
-fn to_angular(wedge: &Wedge<D>) -> f64 {
+fn to_angular(wedge: &Bivector<D>) -> f64 {
     wedge.0[(1, 0)]
 }
 
-fn from_angular(angular: f64) -> Wedge<D> {
-    Wedge::from_axial(&[angular])
+fn from_angular(angular: f64) -> Bivector<D> {
+    Bivector::from_axial(&[angular])
 }
 
 fn to_rotation(matrix: &Matrix<D>) -> Rotation {
@@ -109,7 +109,7 @@ fn unwind(
     _turning: Turning,
     _spins: &[Angular],
     _dt: f64,
-) -> Vec<Option<Wedge<D>>> {
+) -> Vec<Option<Bivector<D>>> {
     Vec::new()
 }
 

@@ -25,7 +25,7 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::{follow, give, kinematics, solid};
+pub use external::{apply_load, kinematics, set_kinematic, solid};
 pub(super) use world::World;
 
 use std::{
@@ -48,7 +48,7 @@ use rapier::{
 use crate::{
     error::{Error, Result},
     geometry::{Mesh, Shape, Touchable},
-    math::{Matrix, Vector, Wedge},
+    math::{Bivector, Matrix, Vector},
     solid::FreeBody,
 };
 
@@ -63,12 +63,12 @@ const ENGINE: &str = "rapier3d-f64 0.36.1";
 /// Up to so much of a mesh's volume its hull stands for it in contacts, –.
 const NEARLY_CONVEX: f64 = 1.01;
 
-fn to_angular(wedge: &Wedge<D>) -> Point {
+fn to_angular(wedge: &Bivector<D>) -> Point {
     Point::new(wedge.0[(2, 1)], wedge.0[(0, 2)], wedge.0[(1, 0)])
 }
 
-fn from_angular(angular: Point) -> Wedge<D> {
-    Wedge::from_axial(&angular.to_array())
+fn from_angular(angular: Point) -> Bivector<D> {
+    Bivector::from_axial(&angular.to_array())
 }
 
 fn to_rotation(matrix: &Matrix<D>) -> Rotation {
@@ -211,7 +211,7 @@ fn unwind(
     turnings: Vec<Option<Turning>>,
     spins: &[Angular],
     dt: f64,
-) -> Vec<Option<Wedge<D>>> {
+) -> Vec<Option<Bivector<D>>> {
     let one = |((&handle, turning), before): ((&RigidBodyHandle, Option<Turning>), &Angular)| {
         let body = world.bodies.get_mut(handle)?;
         match turning? {
@@ -225,7 +225,7 @@ fn unwind(
             }
             Turning::Bound { inertia, torque } => {
                 let turned = inertia * world::from_point(body.angvel() - *before) / dt - world::from_point(torque);
-                Some(Wedge::from_axial(turned.as_slice()))
+                Some(Bivector::from_axial(turned.as_slice()))
             }
         }
     };

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    math::{Pose, Wedge},
+    math::{Bivector, Pose},
     solid::{Kinematics, Role, SolidSpec, rapier::engine::iterations as for_masses},
 };
 
@@ -63,7 +63,7 @@ impl World {
         let body = &mut self.world.bodies[self.bodies[solid]];
         if body.is_dynamic() {
             body.set_linvel(Point::ZERO, false);
-            body.set_angvel(to_angular(&Wedge::zero()), false);
+            body.set_angvel(to_angular(&Bivector::zero()), false);
         }
         body.set_enabled(false);
         self.gone[solid] = true;

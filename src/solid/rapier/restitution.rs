@@ -10,7 +10,7 @@ use super::{super::Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
 
 /// Two solids that bounced off each other at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Met {
+pub(super) struct Impact {
     /// Their numbers.
     pub(super) between: [usize; 2],
     /// Where, m.
@@ -52,7 +52,11 @@ struct Touch {
 
 /// Lets the bodies of `world` that are to touch in a step `dt` (s) part again. `pair` gives restitution and friction of two solids
 /// whose mean friction it is told. Gives who met, point by point.
-pub(super) fn rebound(world: &mut PhysicsWorld, dt: f64, pair: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Met> {
+pub(super) fn rebound(
+    world: &mut PhysicsWorld,
+    dt: f64,
+    pair: impl Fn(usize, usize, f64) -> (f64, f64),
+) -> Vec<Impact> {
     let mut touches = find(world, dt, pair);
     for touch in &mut touches {
         touch.response = response(world, touch, touch.normal);
@@ -71,7 +75,7 @@ pub(super) fn rebound(world: &mut PhysicsWorld, dt: f64, pair: impl Fn(usize, us
         }
         solve(world, &mut touches);
     }
-    let met = |touch: &Touch| Met {
+    let met = |touch: &Touch| Impact {
         between: touch.owners,
         at: touch.at,
         arms: touch.bodies.map(|body| touch.at - world.bodies[body].center_of_mass()),

@@ -37,15 +37,15 @@ use super::{
 };
 use crate::{
     error::Result,
-    math::{Pose, Vector, Wedge},
+    math::{Bivector, Pose, Vector},
     solid::{
-        Kinematics, Links, Load, Mobility, Role, SolidSpec,
+        Constraints, Kinematics, Load, Mobility, Role, SolidSpec,
         rapier::engine::{Contact, Engine, EngineFault, restart},
     },
 };
 use colliders::{Parts, collect, refuse_overlap, thickness};
-use joints::Ties;
-use restitution::Met;
+use joints::RapierJoints;
+use restitution::Impact;
 
 /// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
 const OVERLAP_MAX: f64 = 0.05;
@@ -66,19 +66,19 @@ pub(in crate::solid) struct World {
     /// Those of the last step.
     iterations: usize,
     /// Who bounced in the last step, with the impulse, N s.
-    met: Vec<Met>,
+    met: Vec<Impact>,
     /// A tenth of the thinnest free body, m: contacts are foreseen from there.
     reach: f64,
     /// The time of an iteration for which the contacts' stiffness was last set, s; 0 before the first step.
     tuned_for: f64,
     pushes: Vec<Push>,
-    ties: Ties,
+    ties: RapierJoints,
     /// What of each solid is locked when it is not held.
     locks: Vec<LockedAxes>,
     /// Which of them have been taken out.
     gone: Vec<bool>,
     /// What those did in the last step that the engine turns by their spin, N m.
-    turned: Vec<Option<Wedge<D>>>,
+    turned: Vec<Option<Bivector<D>>>,
 }
 
 /// A load on a solid in the next step.
@@ -88,7 +88,7 @@ impl World {
     pub(in crate::solid) fn new(
         solids: &[SolidSpec<D>],
         start: &[Kinematics<D>],
-        links: &Links<D>,
+        links: &Constraints<D>,
         gravity: &Vector<D>,
         dp: f64,
     ) -> Result<Self> {
@@ -110,7 +110,7 @@ impl World {
         let hooks = if links.contacts.is_empty() { HOOKS } else { ActiveHooks::all() };
         let insert = |i: usize| registry::insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
         let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
-        let ties = Ties::new(&mut world, &bodies, links, start);
+        let ties = RapierJoints::new(&mut world, &bodies, links, start);
         let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let restitution = solids.iter().map(|solid| solid.restitution).collect();
         let (when_near, met, pushes) = (registry::iterations(&world), Vec::new(), Vec::new());
@@ -275,19 +275,19 @@ impl Engine<D> for World {
     }
 
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>) {
-        let torque = Wedge::torque(&(at - from_point(self.body(solid).center_of_mass())), force);
+        let torque = Bivector::torque(&(at - from_point(self.body(solid).center_of_mass())), force);
         self.pushes.push((solid, Load { force: *force, torque }));
     }
 
-    fn burden(&mut self, solid: usize, load: &Load<D>) {
+    fn add_load(&mut self, solid: usize, load: &Load<D>) {
         self.pushes.push((solid, *load));
     }
 
-    fn pushed(&self, solid: usize) -> Load<D> {
+    fn applied_push(&self, solid: usize) -> Load<D> {
         self.pushes.iter().filter(|push| push.0 == solid).map(|push| push.1).sum()
     }
 
-    fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Wedge<D>) {
+    fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
         let body = &mut self.world.bodies[self.bodies[solid]];
         body.set_linvel(to_point(velocity), true);
         body.set_angvel(to_angular(spin), true);
@@ -297,11 +297,11 @@ impl Engine<D> for World {
         self.overlap_of(solid, start)
     }
 
-    fn admit(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+    fn add_body(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         self.admit_one(solid, start)
     }
 
-    fn oust(&mut self, solid: usize) {
+    fn remove_body(&mut self, solid: usize) {
         self.oust_one(solid);
     }
 
@@ -313,12 +313,12 @@ impl Engine<D> for World {
         let body = &mut self.world.bodies[self.bodies[solid]];
         if held {
             body.set_linvel(Point::ZERO, true);
-            body.set_angvel(to_angular(&Wedge::zero()), true);
+            body.set_angvel(to_angular(&Bivector::zero()), true);
         }
         body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
     }
 
-    fn turned(&self, solid: usize) -> Option<Wedge<D>> {
+    fn gyroscopic_rate(&self, solid: usize) -> Option<Bivector<D>> {
         self.turned.get(solid).copied().flatten()
     }
 
@@ -351,7 +351,7 @@ impl Engine<D> for World {
         if engine != ENGINE {
             return Err(restart(format!("they were written by {engine}, this is {ENGINE}")));
         }
-        let (world, tuned_for, met, pushes): (PhysicsWorld, f64, Vec<Met>, Vec<Push>) =
+        let (world, tuned_for, met, pushes): (PhysicsWorld, f64, Vec<Impact>, Vec<Push>) =
             postcard::from_bytes(rest).map_err(restart)?;
         let same = world.bodies.len() == self.world.bodies.len()
             && world.impulse_joints.len() == self.world.impulse_joints.len()

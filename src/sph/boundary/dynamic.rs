@@ -3,12 +3,12 @@
 
 /// Dynamic boundary condition [@crespo2007].
 #[derive(Clone, Copy, Debug)]
-pub struct Dbc;
+pub struct DynamicBoundary;
 
-impl Dbc {
+impl DynamicBoundary {
     /// The density (kg/m³) that a boundary particle of density `rho` shows, `least` being that at which its face bears nothing.
     #[inline(always)]
-    pub fn close(&self, rho: f64, least: f64) -> f64 {
+    pub fn limited_density(&self, rho: f64, least: f64) -> f64 {
         rho.max(least)
     }
 }

@@ -5,7 +5,7 @@ mod relaxed_adami;
 mod repulsion;
 mod slip;
 
-pub use dynamic::Dbc;
-pub use relaxed_adami::{Cover, Fit, settled};
-pub use repulsion::Barrier;
-pub use slip::{Slip, sticking};
+pub use dynamic::DynamicBoundary;
+pub use relaxed_adami::{SupportCoverage, WallExtrapolation, relaxation};
+pub use repulsion::Repulsion;
+pub use slip::{Slip, no_slip_velocity};

@@ -12,23 +12,23 @@
 use crate::{math::Vector, sph::Num};
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
-const TIME: f64 = 10.0;
+const RELAXATION_TIME: f64 = 10.0;
 
 /// Depths at which [`Cover`] is tabled, less one.
 const DEPTHS: usize = 64;
 
 /// The parts of a full weight, –, up to which and from which on water is scanty or ample.
-const SCANTY: f64 = 0.8;
-const AMPLE: f64 = 1.0;
+const COVERAGE_MIN: f64 = 0.8;
+const COVERAGE_FULL: f64 = 1.0;
 
 /// The part of the way (–) to its goal that a boundary particle goes in `dt` (s), with h (m) and c₀ (m/s).
-pub fn settled(dt: f64, h: f64, c0: f64) -> f64 {
-    1.0 - (-dt * c0 / (TIME * h)).exp()
+pub fn relaxation(dt: f64, h: f64, c0: f64) -> f64 {
+    1.0 - (-dt * c0 / (RELAXATION_TIME * h)).exp()
 }
 
 /// The sums of a boundary particle over the water near it [@adami2012].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fit<N, const D: usize> {
+pub struct WallExtrapolation<N, const D: usize> {
     /// Σ V_f W_wf, –.
     pub weight: N,
     /// Σ V_f W_wf P_f/ρ₀, m²/s².
@@ -36,14 +36,14 @@ pub struct Fit<N, const D: usize> {
     /// Σ V₀ W_wf r_wf, m.
     pub arm: [N; D],
     /// Σ V_f W_wf v_f, m/s; summed where the wall's [`Slip`](super::Slip) asks for it.
-    pub flow: [N; D],
+    pub velocity: [N; D],
 }
 
-impl<N: Num, const D: usize> Fit<N, D> {
+impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     /// All sums `zero`.
     #[inline(always)]
     pub fn all(zero: N) -> Self {
-        Self { weight: zero, head: zero, arm: [zero; D], flow: [zero; D] }
+        Self { weight: zero, head: zero, arm: [zero; D], velocity: [zero; D] }
     }
 
     /// Adds a water particle of pressure `p` (P/ρ₀, m²/s²) and specific volume `s` (ρ₀/ρ) at r_w − `r_wf` (m), seen with
@@ -60,18 +60,18 @@ impl<N: Num, const D: usize> Fit<N, D> {
 
     /// Adds its velocity `v` (m/s) too.
     #[inline(always)]
-    pub fn add_flow(&mut self, w: N, s: N, v: [N; D]) {
+    pub fn add_velocity(&mut self, w: N, s: N, v: [N; D]) {
         let share = w * s;
-        for (flow, v) in self.flow.iter_mut().zip(v) {
+        for (flow, v) in self.velocity.iter_mut().zip(v) {
             *flow = share.fma(v, *flow);
         }
     }
 }
 
-impl<const D: usize> Fit<f64, D> {
+impl<const D: usize> WallExtrapolation<f64, D> {
     /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle that feels `pull` = g − a_w (m/s²), of which `g` is the weight, and lies
     /// `depth` (m) below the face.
-    pub fn close(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 {
+    pub fn pressure(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 {
         // At the rim of the support the weight is the square of a rounding: no water.
         if self.weight < 1e-9 {
             return 0.0;
@@ -85,14 +85,14 @@ impl<const D: usize> Fit<f64, D> {
 
 /// How far water fills what a boundary particle can see of it, as told by the weight of its [`Fit`].
 #[derive(Clone, Debug)]
-pub struct Cover {
+pub struct SupportCoverage {
     /// Weights of boundary particles behind a flat face with water all before it, at depths from 0 on.
     full: Vec<f64>,
     /// From one depth to the next, m.
     step: f64,
 }
 
-impl Cover {
+impl SupportCoverage {
     /// For a kernel `w` (V₀ W of the squared distance) of support `reach` (m) over particles `dp` (m) apart in `dimension`.
     pub fn new(w: impl Fn(f64) -> f64, dp: f64, reach: f64, dimension: usize) -> Self {
         let (step, most) = (reach / DEPTHS as f64, (reach / dp).ceil() as i32);
@@ -114,11 +114,11 @@ impl Cover {
 
     /// The part (0 to 1) with which a boundary particle `depth` (m) below the face may settle to more pressure, if its fit has
     /// `weight`: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
-    pub fn part(&self, weight: f64, depth: f64) -> f64 {
+    pub fn fraction(&self, weight: f64, depth: f64) -> f64 {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);
         let (k, rest) = (place as usize, place.fract());
         let full = self.full[k] + (self.full[k + 1] - self.full[k]) * rest;
-        let t = ((weight / full.max(1e-6) - SCANTY) / (AMPLE - SCANTY)).clamp(0.0, 1.0);
+        let t = ((weight / full.max(1e-6) - COVERAGE_MIN) / (COVERAGE_FULL - COVERAGE_MIN)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     }
 }

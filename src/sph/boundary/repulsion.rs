@@ -4,7 +4,7 @@
 //! before a face comes nearer only if it is pressed a quarter of dp into it: first rows are dp from the boundary particles, and
 //! half of that from the face.
 
-use crate::sph::{Medium, Num, Pair, Term, kernel::Kernel};
+use crate::sph::{FluidProperties, Num, Pair, Term, kernel::Kernel};
 
 /// r₀/dp, –.
 const RANGE: f64 = 0.75;
@@ -15,26 +15,26 @@ const STRENGTH: f64 = 2.0;
 
 /// The barrier of one kernel.
 #[derive(Clone, Copy, Debug)]
-pub struct Barrier {
+pub struct Repulsion {
     /// 1/r₀², 1/m².
     inv_range2: f64,
     /// A c₀²/dp² over −V₀ ∂W at half of r₀, m²/s².
     strength: f64,
 }
 
-impl Barrier {
+impl Repulsion {
     /// The barrier under `kernel`.
-    pub fn new<K: Kernel, const D: usize>(kernel: K, medium: &Medium<D>) -> Self {
+    pub fn new<K: Kernel, const D: usize>(kernel: K, medium: &FluidProperties<D>) -> Self {
         let range2 = (RANGE * medium.dp).powi(2);
-        let slope: f64 = kernel.on_lattice(medium).slope(0.25 * range2);
+        let slope: f64 = kernel.normalised_on_lattice(medium).slope(0.25 * range2);
         Self { inv_range2: 1.0 / range2, strength: STRENGTH * (medium.c0 / medium.dp).powi(2) / -slope }
     }
 }
 
-impl<const D: usize> Term<D> for Barrier {
+impl<const D: usize> Term<D> for Repulsion {
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        let inside = ab.r2.fma(ab.of(-self.inv_range2), ab.of(1.0)).max(ab.of(0.0));
-        (inside * inside).fma(ab.of(-self.strength), sum)
+        let inside = ab.r2.fma(ab.constant(-self.inv_range2), ab.constant(1.0)).max(ab.constant(0.0));
+        (inside * inside).fma(ab.constant(-self.strength), sum)
     }
 }

@@ -10,7 +10,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Fit;
+use super::WallExtrapolation;
 use crate::math::Vector;
 
 /// How the water is held along solids. Scene word `model.slip`.
@@ -26,11 +26,16 @@ pub enum Slip {
 }
 
 /// Most d/d̄: at the rim of the support the mean of few particles says little.
-const MOST: f64 = 4.0;
+const MAX_RATIO: f64 = 4.0;
 
 /// The velocity (m/s) without slip of a boundary particle whose solid moves there with `v` (m/s), `depth` (m) below the face with
 /// outward normal `normal`, with sums `fit` over the water. Where the water is not before that face, its solid's.
-pub fn sticking<const D: usize>(fit: &Fit<f64, D>, v: Vector<D>, normal: &Vector<D>, depth: f64) -> Vector<D> {
+pub fn no_slip_velocity<const D: usize>(
+    fit: &WallExtrapolation<f64, D>,
+    v: Vector<D>,
+    normal: &Vector<D>,
+    depth: f64,
+) -> Vector<D> {
     if fit.weight < 1e-9 {
         return v;
     }
@@ -39,7 +44,7 @@ pub fn sticking<const D: usize>(fit: &Fit<f64, D>, v: Vector<D>, normal: &Vector
     if height <= 0.0 {
         return v;
     }
-    let past = Vector::from(fit.flow) / fit.weight - v;
+    let past = Vector::from(fit.velocity) / fit.weight - v;
     let along = past - normal * normal.dot(&past);
-    v - along * (depth / height).min(MOST)
+    v - along * (depth / height).min(MAX_RATIO)
 }

@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::sph::{Medium, Num, Pair, Term};
+use crate::sph::{FluidProperties, Num, Pair, Term};
 
 /// Fourtakas' diffusion [@fourtakas2019]: still water stays still.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,7 +27,7 @@ impl Default for Fourtakas {
 
 impl Fourtakas {
     /// The law in water of the given constants.
-    pub fn term<const D: usize>(&self, medium: &Medium<D>) -> FourtakasTerm<D> {
+    pub fn term<const D: usize>(&self, medium: &FluidProperties<D>) -> FourtakasTerm<D> {
         let c2 = medium.c0 * medium.c0;
         FourtakasTerm {
             strength: 2.0 * self.delta * medium.h * medium.c0,
@@ -49,12 +49,12 @@ pub struct FourtakasTerm<const D: usize> {
 impl<const D: usize> Term<D> for FourtakasTerm<D> {
     #[inline(always)]
     fn rate<N: Num>(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
-        let mut rise = ab.of(self.slope[0]) * ab.r_ab[0];
+        let mut rise = ab.constant(self.slope[0]) * ab.r_ab[0];
         for i in 1..D {
-            rise = ab.of(self.slope[i]).fma(ab.r_ab[i], rise);
+            rise = ab.constant(self.slope[i]).fma(ab.r_ab[i], rise);
         }
-        let stiffer = ab.of(-self.stiffening).fma(ab.a.x + ab.b.x, ab.of(1.0));
-        let d = ab.of(self.strength) * rise.fma(stiffer, ab.x_ba);
-        ((-d).fma(ab.b.s, sum.0), d.fma(ab.a.s, sum.1))
+        let stiffer = ab.constant(-self.stiffening).fma(ab.a.compression + ab.b.compression, ab.constant(1.0));
+        let d = ab.constant(self.strength) * rise.fma(stiffer, ab.compression_difference);
+        ((-d).fma(ab.b.specific_volume, sum.0), d.fma(ab.a.specific_volume, sum.1))
     }
 }

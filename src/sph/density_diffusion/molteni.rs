@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Fourtakas, FourtakasTerm};
-use crate::{math::Vector, sph::Medium};
+use crate::{math::Vector, sph::FluidProperties};
 
 /// Molteni & Colagrossi's diffusion [@molteni2009]; eq. (15) of [@pirkhalili2023] with the sign that diffuses.
 /// It lets a deep tank at rest sink slowly: see [`super::Fourtakas`].
@@ -28,7 +28,7 @@ impl Default for Molteni {
 impl Molteni {
     /// The law in water of the given constants: that of [`super::Fourtakas`] with no hydrostatic part, so that one
     /// sweep less is compiled for every other choice of laws.
-    pub fn term<const D: usize>(&self, medium: &Medium<D>) -> FourtakasTerm<D> {
-        Fourtakas { delta: self.delta }.term(&Medium { gravity: Vector::zeros(), ..*medium })
+    pub fn term<const D: usize>(&self, medium: &FluidProperties<D>) -> FourtakasTerm<D> {
+        Fourtakas { delta: self.delta }.term(&FluidProperties { gravity: Vector::zeros(), ..*medium })
     }
 }

@@ -26,27 +26,27 @@ impl Cubic {
     /// q/2, u and t; q/2 above zero, so that it can divide.
     #[inline(always)]
     fn rests<N: Num>(&self, r2: N) -> (N, N, N) {
-        let half = (r2.sqrt() * r2.of(self.half_inv_h)).max(r2.of(1e-6));
-        let u = (r2.of(1.0) - half).max(r2.of(0.0));
-        let t = half.fma(r2.of(-2.0), r2.of(1.0)).max(r2.of(0.0));
+        let half = (r2.sqrt() * r2.constant(self.half_inv_h)).max(r2.constant(1e-6));
+        let u = (r2.constant(1.0) - half).max(r2.constant(0.0));
+        let t = half.fma(r2.constant(-2.0), r2.constant(1.0)).max(r2.constant(0.0));
         (half, u, t)
     }
 }
 
 impl Kernel for Cubic {
-    fn weighed(self, volume: f64) -> Self {
+    fn times_volume(self, volume: f64) -> Self {
         Self { amplitude: self.amplitude * volume, slope: self.slope * volume, ..self }
     }
 
     #[inline(always)]
     fn w<N: Num>(&self, r2: N) -> N {
         let (_, u, t) = self.rests(r2);
-        r2.of(self.amplitude) * (r2.of(2.0) * u * (u * u) - t * (t * t))
+        r2.constant(self.amplitude) * (r2.constant(2.0) * u * (u * u) - t * (t * t))
     }
 
     #[inline(always)]
     fn slope<N: Num>(&self, r2: N) -> N {
         let (half, u, t) = self.rests(r2);
-        r2.of(self.slope) * u.fma(u, -(t * t)) / half
+        r2.constant(self.slope) * u.fma(u, -(t * t)) / half
     }
 }

@@ -7,8 +7,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Kernel, REACH};
-use crate::sph::Medium;
+use super::{Kernel, SUPPORT_RATIO};
+use crate::sph::FluidProperties;
 
 /// Compression P/ρ₀c₀² at which sound is weighed against pressure, –: that at the bed with c₀ = 10 √(g depth).
 const COMPRESSION: f64 = 0.01;
@@ -18,15 +18,15 @@ const PARTS: usize = 12;
 
 /// μ (–), the least stiffness of a square (cubic) lattice of the medium's spacing against any wave under `kernel`: 0 if the lattice
 /// holds, less if a wave grows.
-pub fn stiffness<const D: usize>(kernel: impl Kernel, medium: &Medium<D>) -> f64 {
-    let neighbours = neighbours(kernel.on_lattice(medium), medium);
+pub fn lattice_stiffness<const D: usize>(kernel: impl Kernel, medium: &FluidProperties<D>) -> f64 {
+    let neighbours = neighbours(kernel.normalised_on_lattice(medium), medium);
     let sines: Vec<f64> = (0..2 * PARTS).map(|i| (i as f64 * std::f64::consts::PI / PARTS as f64).sin()).collect();
     let mut least = 0.0_f64;
     // The others are mirrored from these.
     for a in 1..=PARTS {
         for b in 0..=a {
             for c in 0..=if D == 2 { 0 } else { b } {
-                least = least.min(softest::<D>(&neighbours, &[a, b, c].map(|n| n as i64), &sines));
+                least = least.min(lowest_stiffness::<D>(&neighbours, &[a, b, c].map(|n| n as i64), &sines));
             }
         }
     }
@@ -34,10 +34,10 @@ pub fn stiffness<const D: usize>(kernel: impl Kernel, medium: &Medium<D>) -> f64
 }
 
 /// One neighbour of the particle in the middle: its place, V ∇W and V ∇∇W, in spacings.
-type Neighbour = ([i64; 3], Vector3<f64>, Matrix3<f64>);
+type LatticeNeighbour = ([i64; 3], Vector3<f64>, Matrix3<f64>);
 
-fn neighbours<const D: usize>(kernel: impl Kernel, medium: &Medium<D>) -> Vec<Neighbour> {
-    let (reach, spacing2) = (REACH * medium.h / medium.dp, medium.dp.powi(2));
+fn neighbours<const D: usize>(kernel: impl Kernel, medium: &FluidProperties<D>) -> Vec<LatticeNeighbour> {
+    let (reach, spacing2) = (SUPPORT_RATIO * medium.h / medium.dp, medium.dp.powi(2));
     let slope = |r2: f64| spacing2 * kernel.slope(spacing2 * r2);
     let most = reach as i64;
     let layers = if D == 2 { 0 } else { most };
@@ -61,7 +61,7 @@ fn neighbours<const D: usize>(kernel: impl Kernel, medium: &Medium<D>) -> Vec<Ne
 }
 
 /// The least stiffness against the waves k = `wave` π/12.
-fn softest<const D: usize>(neighbours: &[Neighbour], wave: &[i64; 3], sines: &[f64]) -> f64 {
+fn lowest_stiffness<const D: usize>(neighbours: &[LatticeNeighbour], wave: &[i64; 3], sines: &[f64]) -> f64 {
     let (mut pull, mut sound) = (Matrix3::zeros(), Vector3::zeros());
     for (place, gradient, hessian) in neighbours {
         let turn: i64 = place.iter().zip(wave).map(|(x, k)| x * k).sum();

@@ -7,7 +7,7 @@ mod wendland;
 pub use cubic::Cubic;
 pub use wendland::Wendland;
 
-use super::{Medium, Num};
+use super::{FluidProperties, Num};
 
 /// A kernel for one smoothing length and dimension.
 pub trait Kernel: Copy + Send + Sync {
@@ -15,16 +15,16 @@ pub trait Kernel: Copy + Send + Sync {
     fn w<N: Num>(&self, r2: N) -> N;
 
     /// The same with W and ∂W multiplied by `volume`.
-    fn weighed(self, volume: f64) -> Self;
+    fn times_volume(self, volume: f64) -> Self;
 
     /// The same, weighed with the volume of a particle so that −Σ r_x ∂W r_x = 1 over a lattice of spacing dp: there the
     /// gradient of what is linear is exact.
-    fn on_lattice<const D: usize>(self, medium: &Medium<D>) -> Self {
-        self.weighed(1.0 / moment(&self, medium, |_| 1.0))
+    fn normalised_on_lattice<const D: usize>(self, medium: &FluidProperties<D>) -> Self {
+        self.times_volume(1.0 / moment(&self, medium, |_| 1.0))
     }
 
     /// The part that r²/(r² + η²) leaves of a viscous force on a lattice, –.
-    fn damped<const D: usize>(&self, medium: &Medium<D>) -> f64 {
+    fn viscous_sum<const D: usize>(&self, medium: &FluidProperties<D>) -> f64 {
         let eta2 = medium.eta2();
         moment(self, medium, |r2| r2 / (r2 + eta2)) / moment(self, medium, |_| 1.0)
     }
@@ -34,9 +34,9 @@ pub trait Kernel: Copy + Send + Sync {
 }
 
 /// −Σ r_x f(r²) ∂W r_x over a lattice of spacing dp around its middle.
-fn moment<K: Kernel, const D: usize>(kernel: &K, medium: &Medium<D>, f: impl Fn(f64) -> f64) -> f64 {
-    let Medium { h, dp, .. } = *medium;
-    let most = (REACH * h / dp) as i32;
+fn moment<K: Kernel, const D: usize>(kernel: &K, medium: &FluidProperties<D>, f: impl Fn(f64) -> f64) -> f64 {
+    let FluidProperties { h, dp, .. } = *medium;
+    let most = (SUPPORT_RATIO * h / dp) as i32;
     let layers = if D == 2 { 0 } else { most };
     let mut moment = 0.0;
     for k in -layers..=layers {
@@ -52,4 +52,4 @@ fn moment<K: Kernel, const D: usize>(kernel: &K, medium: &Medium<D>, f: impl Fn(
 }
 
 /// Support radius over smoothing length, the same for every kernel here.
-pub const REACH: f64 = 2.0;
+pub const SUPPORT_RATIO: f64 = 2.0;

@@ -23,12 +23,12 @@ impl Wendland {
     /// max(1 − q/2, 0).
     #[inline(always)]
     fn rest<N: Num>(&self, r2: N) -> N {
-        r2.sqrt().fma(r2.of(-self.half_inv_h), r2.of(1.0)).max(r2.of(0.0))
+        r2.sqrt().fma(r2.constant(-self.half_inv_h), r2.constant(1.0)).max(r2.constant(0.0))
     }
 }
 
 impl Kernel for Wendland {
-    fn weighed(self, volume: f64) -> Self {
+    fn times_volume(self, volume: f64) -> Self {
         Self { amplitude: self.amplitude * volume, slope: self.slope * volume, ..self }
     }
 
@@ -37,12 +37,12 @@ impl Kernel for Wendland {
         let t = self.rest(r2);
         let t2 = t * t;
         // 2q + 1 = 5 − 4t inside the support.
-        r2.of(self.amplitude) * (t2 * t2) * t.fma(r2.of(-4.0), r2.of(5.0))
+        r2.constant(self.amplitude) * (t2 * t2) * t.fma(r2.constant(-4.0), r2.constant(5.0))
     }
 
     #[inline(always)]
     fn slope<N: Num>(&self, r2: N) -> N {
         let t = self.rest(r2);
-        r2.of(self.slope) * (t * t) * t
+        r2.constant(self.slope) * (t * t) * t
     }
 }

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::sph::{Medium, Num, Pair, Term};
+use crate::sph::{FluidProperties, Num, Pair, Term};
 
 /// Monaghan's artificial viscosity [@monaghan1992]; eqs. (4), (5) of [@pirkhalili2023]. c̄ is c₀: both
 /// particles' speeds of sound differ from it by less than 3 % as density varies below 1 %.
@@ -24,7 +24,7 @@ impl Default for Artificial {
 
 impl Artificial {
     /// The law in water of the given constants.
-    pub fn term<const D: usize>(&self, medium: &Medium<D>) -> ArtificialTerm {
+    pub fn term<const D: usize>(&self, medium: &FluidProperties<D>) -> ArtificialTerm {
         ArtificialTerm { alpha_c_h: self.alpha * medium.c0 * medium.h }
     }
 }
@@ -38,6 +38,6 @@ pub struct ArtificialTerm {
 impl<const D: usize> Term<D> for ArtificialTerm {
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        (ab.of(self.alpha_c_h) * ab.vr.min(ab.of(0.0))).fma(ab.drag, sum)
+        (ab.constant(self.alpha_c_h) * ab.velocity_along_r.min(ab.constant(0.0))).fma(ab.drag, sum)
     }
 }

@@ -39,6 +39,6 @@ impl<const D: usize> Term<D> for LaminarTerm {
 
     #[inline(always)]
     fn along_v<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        (ab.of(2.0 * self.nu0) * ab.r2).fma(ab.drag, sum)
+        (ab.constant(2.0 * self.nu0) * ab.r2).fma(ab.drag, sum)
     }
 }

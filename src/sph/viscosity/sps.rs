@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Laminar, LaminarTerm};
-use crate::sph::{Extra, Medium, Num, Pair, Term, Units};
+use crate::sph::{AuxiliarySums, FluidProperties, Num, Pair, Term, Units};
 
 /// Laminar viscosity with a Smagorinsky stress [@dalrymple2006]; eqs. (6)–(8) of [@pirkhalili2023]. The
 /// paper's k is the trace S_kk: only so do its units agree with 2 S_ij beside it.
@@ -35,7 +35,7 @@ impl Sps {
 
     /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
     /// a particle.
-    pub fn close<const D: usize>(&self, strain: &[[f64; D]; D], s: f64, medium: &Medium<D>) -> [[f64; D]; D] {
+    pub fn stress<const D: usize>(&self, strain: &[[f64; D]; D], s: f64, medium: &FluidProperties<D>) -> [[f64; D]; D] {
         let strain: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
         let length2 = medium.dp * medium.dp / D as f64;
         let norm2: f64 = 2.0 * strain.iter().flatten().map(|x| x * x).sum::<f64>();
@@ -68,9 +68,9 @@ impl<const D: usize> Term<D> for SpsTerm {
     }
 
     #[inline(always)]
-    fn extra<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut Extra<N, D>, b: &mut Extra<N, D>) {
-        let half = ab.of(-0.5) * factor;
-        let (of_b, of_a) = (half * ab.b.s, half * ab.a.s);
+    fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
+        let half = ab.constant(-0.5) * factor;
+        let (of_b, of_a) = (half * ab.b.specific_volume, half * ab.a.specific_volume);
         for i in 0..D {
             for j in 0..=i {
                 let s = ab.v_ab[i].fma(ab.r_ab[j], ab.v_ab[j] * ab.r_ab[i]);

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     error::Result,
     geometry::Shape,
-    math::{Vector, Wedge, expression::Formula},
+    math::{Bivector, Vector, expression::Formula},
     probe::{Energy, Motion, Probe, find_solid},
     simulation::Simulation,
     solid::{Kinematics, Role, Solid, hydrostatics::equilibrium_height},
@@ -141,7 +141,7 @@ fn energies<const D: usize>(probe: &Energy, sim: &Simulation<D>) -> Energies {
 fn work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
     let Role::Driven(_) = &now.spec.role else { return 0.0 };
     let velocity = (then.velocity + now.kinematics.velocity) * 0.5;
-    let spin: Wedge<D> = (then.spin + now.kinematics.spin) * 0.5;
+    let spin: Bivector<D> = (then.spin + now.kinematics.spin) * 0.5;
     -dt * (now.load.force.dot(&velocity) + now.load.torque.power(&spin))
 }
 
@@ -188,7 +188,7 @@ fn free<const D: usize>(system: &System<D>) -> impl Iterator<Item = (&Solid<D>, 
 /// How deep (dp) water lies inside a solid, how deep the face of a free body inside another solid, and how much water has
 /// left a tank but over its rim.
 fn walls<const D: usize>(system: &System<D>) -> [f64; 3] {
-    let (dp, skin) = (system.model().dp, system.skin());
+    let (dp, skin) = (system.model().dp, system.boundary());
     let [mut deepest, mut pressed, mut outside] = [0.0; 3];
     for (i, solid) in system.solids().iter().enumerate() {
         let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
@@ -197,7 +197,7 @@ fn walls<const D: usize>(system: &System<D>) -> [f64; 3] {
         for (k, body) in system.solids().iter().enumerate() {
             if k != i && matches!(body.spec.role, Role::Free(_)) {
                 // Its outermost boundary particles lie half a dp behind its face.
-                pressed = skin.r[body.skin.clone()].iter().map(|r| depth(r) + 0.5).fold(pressed, worse);
+                pressed = skin.r[body.boundary.clone()].iter().map(|r| depth(r) + 0.5).fold(pressed, worse);
             }
         }
         if let Shape::Tank { size, thickness } = shape {

@@ -119,8 +119,8 @@ impl Trial {
         let built = case.scene.build::<D>()?;
         let level = built.setup.levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         // A rescue would move the border that is asked for.
-        let tied = !built.setup.links.is_empty();
-        let mut sim = Simulation::new(built.setup)?.without_rescue();
+        let tied = !built.setup.constraints.is_empty();
+        let mut sim = Simulation::new(built.setup)?.without_rollback();
         if tied {
             // What springs and motors do is no energy made.
             sim.enable_load_breakdown();
@@ -140,7 +140,7 @@ impl Trial {
                 break Err(error);
             }
             measure.step(&sim, sim.time() - before)?;
-            spent += ((sim.passes() - passes) as f64) * (self.water + sim.system().wet()) as f64;
+            spent += ((sim.passes() - passes) as f64) * (self.water + sim.system().boundary_near_fluid_count()) as f64;
             passes = sim.passes();
         };
         (self.time_s, self.steps) = (sim.time(), sim.steps());

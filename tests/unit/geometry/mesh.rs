@@ -93,7 +93,7 @@ fn a_drawn_box_displaces_what_the_box_does() {
     let (drawn, block) = boxes([0.3, 0.2, 0.5]);
     for (turn, level) in [([0.0; 3], 0.05), ([0.3, -0.4, 0.5], 0.11), ([1.2, 0.1, 0.0], -0.08), ([0.0, 0.0, 1.0], 9.0)]
     {
-        let pose = Pose::turned(Vector::from([0.1, 0.2, 0.03]), &turn);
+        let pose = Pose::rotated(Vector::from([0.1, 0.2, 0.03]), &turn);
         let (a, b) = (drawn.submerged(&pose, level), block.submerged(&pose, level));
         assert!((a.0 - b.0).abs() < 1e-15 && (a.1 - b.1).norm() < 1e-12, "{a:?} {b:?}");
     }

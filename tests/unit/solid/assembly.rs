@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use super::{Around, JointReading, Rig};
+use super::{Assembly, JointReading, LoadContext};
 use crate::{
     error::Result,
     geometry::Shape,
-    math::{Pose, Vector, Wedge, expression::Formula},
+    math::{Bivector, Pose, Vector, expression::Formula},
     solid::{
-        ContactSpec, Dim, Drive, Elastic, End, Engine, ForceSpec, FreeBody, HasEngine, Hold, JointKind, JointSpec,
-        Kinematics, Law, Links, Load, Motion, Motor, Role, RopeSpec, SolidSpec, SpringSpec,
+        Constraints, ContactSpec, Dim, Drive, Elastic, End, Engine, ForceSpec, FreeBody, HasEngine, Hold, JointKind,
+        JointSpec, Kinematics, Law, Load, Motion, Motor, Role, RopeSpec, SolidSpec, SpringSpec,
     },
 };
 
@@ -19,7 +19,7 @@ pub(in crate::solid) const G: f64 = 9.81;
 pub(in crate::solid) struct Air<const D: usize> {
     pub(in crate::solid) solids: Vec<SolidSpec<D>>,
     pub(in crate::solid) engine: Box<dyn Engine<D>>,
-    pub(in crate::solid) rig: Rig<D>,
+    pub(in crate::solid) rig: Assembly<D>,
     pub(in crate::solid) t: f64,
     gravity: f64,
 }
@@ -28,16 +28,16 @@ impl<const D: usize> Air<D>
 where
     Dim<D>: HasEngine<D>,
 {
-    pub(in crate::solid) fn new(solids: Vec<SolidSpec<D>>, links: Links<D>, gravity: f64) -> Self {
+    pub(in crate::solid) fn new(solids: Vec<SolidSpec<D>>, links: Constraints<D>, gravity: f64) -> Self {
         Self::made(solids, links, gravity).unwrap()
     }
 
-    fn made(solids: Vec<SolidSpec<D>>, links: Links<D>, gravity: f64) -> Result<Self> {
+    fn made(solids: Vec<SolidSpec<D>>, links: Constraints<D>, gravity: f64) -> Result<Self> {
         let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
         let mut down = Vector::zeros();
         down[D - 1] = -gravity;
         let engine = Dim::<D>::engine(&solids, &start, &links, &down, 0.01)?;
-        Ok(Self { rig: Rig::new(&links, start), solids, engine, t: 0.0, gravity })
+        Ok(Self { rig: Assembly::new(&links, start), solids, engine, t: 0.0, gravity })
     }
 
     pub(in crate::solid) fn now(&self) -> Vec<Kinematics<D>> {
@@ -52,12 +52,12 @@ where
     pub(in crate::solid) fn step(&mut self, dt: f64) {
         let before = self.now();
         let weight = |solid: &SolidSpec<D>| match &solid.role {
-            Role::Free(body) => Load { force: point(0.0, -body.mass * self.gravity), torque: Wedge::zero() },
+            Role::Free(body) => Load { force: point(0.0, -body.mass * self.gravity), torque: Bivector::zero() },
             _ => Load::zero(),
         };
         let loads: Vec<_> = self.solids.iter().map(weight).collect();
-        let around = Around { wet: vec![false; loads.len()], loads, crossing: 0.0 };
-        self.rig.act(&mut *self.engine, &before, &around, [self.t, dt]);
+        let around = LoadContext { wet: vec![false; loads.len()], loads, crossing: 0.0 };
+        self.rig.apply_loads(&mut *self.engine, &before, &around, [self.t, dt]);
         self.t += dt;
         let driven = |solid: &SolidSpec<D>| match &solid.role {
             Role::Driven(motion) => Some(motion.kinematics(&solid.pose, self.t)),
@@ -66,7 +66,7 @@ where
         let targets: Vec<_> = self.solids.iter().map(driven).collect();
         let idle = Load::zero();
         self.engine.step(dt, &vec![idle; targets.len()], &targets).unwrap();
-        self.rig.learn(&*self.engine, [&before, &self.now()], dt, None);
+        self.rig.update_reactions(&*self.engine, [&before, &self.now()], dt, None);
     }
 
     pub(in crate::solid) fn run(&mut self, dt: f64, until: f64) {
@@ -140,8 +140,8 @@ pub(in crate::solid) fn slider<const D: usize>(
     JointSpec::new("slider", JointKind::Slider, between, at, along)
 }
 
-pub(in crate::solid) fn joined<const D: usize>(joint: JointSpec<D>) -> Links<D> {
-    Links { joints: vec![joint], ..Links::default() }
+pub(in crate::solid) fn joined<const D: usize>(joint: JointSpec<D>) -> Constraints<D> {
+    Constraints { joints: vec![joint], ..Constraints::default() }
 }
 
 #[test]
@@ -150,8 +150,8 @@ fn a_thrust_turns_with_its_body_and_wind_does_not() {
         let solids = vec![bar::<2>("boat", 0.4, point(0.0, 0.0), true)];
         let force = vec![Law::constant(12.0), Law::constant(0.0)];
         let thrust = ForceSpec { name: "thrust".into(), solid: 0, at, force, torque: vec![], turns };
-        let mut air = Air::new(solids, Links { forces: vec![thrust], ..Links::default() }, 0.0);
-        air.engine.set_velocity(0, &Vector::zeros(), &Wedge::from_axial(&[PI]));
+        let mut air = Air::new(solids, Constraints { forces: vec![thrust], ..Constraints::default() }, 0.0);
+        air.engine.set_velocity(0, &Vector::zeros(), &Bivector::from_axial(&[PI]));
         air.run(1e-4, 1.0);
         (air.now()[0], body(&air.solids[0]), inertia(&air.solids[0]))
     };
@@ -169,13 +169,13 @@ fn a_thrust_turns_with_its_body_and_wind_does_not() {
 fn slides(contact: Option<ContactSpec>) -> f64 {
     let slope = 20f64.to_radians();
     let tilt = |x: f64, y: f64| Pose {
-        position: Pose::turned(Vector::zeros(), &[slope]).point(&[x, y].into()),
-        ..Pose::turned(Vector::zeros(), &[slope])
+        position: Pose::rotated(Vector::zeros(), &[slope]).point(&[x, y].into()),
+        ..Pose::rotated(Vector::zeros(), &[slope])
     };
     let plane =
         SolidSpec { pose: tilt(0.0, -0.05), role: Role::Fixed, ..bar::<2>("plane", 8.0, Vector::zeros(), true) };
     let stone = SolidSpec { pose: tilt(0.0, 0.05), ..bar("stone", 0.2, Vector::zeros(), true) };
-    let links = Links { contacts: contact.into_iter().collect(), ..Links::default() };
+    let links = Constraints { contacts: contact.into_iter().collect(), ..Constraints::default() };
     let mut air = Air::new(vec![plane, stone], links, G);
     air.run(1e-4, 1.0);
     air.now()[1].velocity.norm()
@@ -201,11 +201,12 @@ fn a_box_slides_above_the_angle_of_friction_and_sticks_below() {
 #[test]
 fn a_held_body_stays_until_it_is_let_go() {
     let solids = vec![bar::<2>("stone", 0.2, point(0.0, 0.0), true)];
-    let mut air = Air::new(solids, Links { holds: vec![Hold { solid: 0, until: 0.5 }], ..Links::default() }, G);
+    let mut air =
+        Air::new(solids, Constraints { holds: vec![Hold { solid: 0, until: 0.5 }], ..Constraints::default() }, G);
     air.engine.push(0, &Vector::from([50.0, 0.0]), &Vector::from([0.0, 0.3]));
     air.run(1e-3, 0.4999);
     assert_eq!((air.now()[0].velocity, air.now()[0].centre), (Vector::zeros(), Vector::zeros()));
-    assert!((air.rig.let_go(0.4999) - 1e-4).abs() < 1e-12, "no step goes past the letting go");
+    assert!((air.rig.next_release(0.4999) - 1e-4).abs() < 1e-12, "no step goes past the letting go");
     air.run(1e-3, 1.5);
     assert!((air.now()[0].velocity - Vector::from([0.0, -G])).norm() < 1e-2, "{:?}", air.now()[0]);
 }
@@ -239,7 +240,7 @@ where
             tension_only: true,
         };
         let rope = RopeSpec { name: "rope".into(), ends: line(None, 0.1, 0.3), length: None };
-        Air::new(solids, Links { joints, springs: vec![spring], ropes: vec![rope], ..Links::default() }, G)
+        Air::new(solids, Constraints { joints, springs: vec![spring], ropes: vec![rope], ..Constraints::default() }, G)
     };
     let mut whole = make();
     whole.run(5e-4, 0.3);
@@ -279,7 +280,7 @@ fn ties_that_cannot_be_meant_are_refused_in_words() {
         let fixed = SolidSpec { role: Role::Fixed, ..bar::<2>("wall", 0.2, point(0.0, 1.0), true) };
         vec![bar("box", 0.2, point(0.0, 0.0), true), fixed]
     };
-    let said = |links: Links<2>| Air::made(solids(), links, G).map(|_| ()).unwrap_err().to_string();
+    let said = |links: Constraints<2>| Air::made(solids(), links, G).map(|_| ()).unwrap_err().to_string();
     let joint = |joint: JointSpec<2>| said(joined(joint));
     let at = Vector::zeros();
     assert!(joint(hinge([None, Some(1)], at)).contains("\"wall\" is not free"));
@@ -291,15 +292,16 @@ fn ties_that_cannot_be_meant_are_refused_in_words() {
         joint(JointSpec { kind: JointKind::Fixed, ..hinge([None, Some(0)], at).limits(-0.1, 0.5) })
             .contains("no coordinate")
     );
-    let twice = Links { joints: vec![hinge([None, Some(0)], at), hinge([None, Some(0)], at)], ..Links::default() };
+    let twice =
+        Constraints { joints: vec![hinge([None, Some(0)], at), hinge([None, Some(0)], at)], ..Constraints::default() };
     assert!(said(twice).contains("sits where joint \"hinge\""));
     let ends = [End { solid: Some(0), at }, End { solid: None, at: point(0.0, 1.0) }];
     let spring = |stiffness: f64, damping: f64| {
         let spring = SpringSpec { name: "s".into(), ends, stiffness, damping, length: None, tension_only: false };
-        said(Links { springs: vec![spring], ..Links::default() })
+        said(Constraints { springs: vec![spring], ..Constraints::default() })
     };
     assert!(spring(-1.0, 0.0).contains("stiffness of -1") && spring(1.0, -2.0).contains("damping of -2"));
     assert!(spring(0.0, 0.0).contains("neither stiff nor damped"));
     let rope = RopeSpec { name: "r".into(), ends, length: Some(0.9) };
-    assert!(said(Links { ropes: vec![rope], ..Links::default() }).contains("start 1 m apart"));
+    assert!(said(Constraints { ropes: vec![rope], ..Constraints::default() }).contains("start 1 m apart"));
 }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 #[path = "contact.rs"]
 mod contact;
 
-use super::{Dim, Engine, FreeBody, HasEngine, Kinematics, Law, Links, Load, Motion, Role, SolidSpec};
+use super::{Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Law, Load, Motion, Role, SolidSpec};
 use crate::{
     error::{Kind, Result},
     geometry::{Mesh, Shape, Touchable},
     math::expression::Formula,
-    math::{Matrix, Pose, Vector, Wedge},
+    math::{Bivector, Matrix, Pose, Vector},
 };
 
 const G: f64 = 9.81;
@@ -33,7 +33,7 @@ fn light<const D: usize>() -> FreeBody<D> {
         centre: Vector::zeros(),
         inertia: Matrix::from_fn(|i, j| if i == j { [1e-3, 2e-3, 2.5e-3][i] } else { 0.0 }),
         velocity: Vector::zeros(),
-        spin: Wedge::zero(),
+        spin: Bivector::zero(),
         locked_translations: [false; D],
         locked_rotations: [false; 3],
     }
@@ -61,7 +61,7 @@ where
     Dim<D>: HasEngine<D>,
 {
     let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-    Dim::<D>::engine(solids, &start, &Links::default(), &gravity, 0.01)
+    Dim::<D>::engine(solids, &start, &Constraints::default(), &gravity, 0.01)
 }
 
 fn idle<const D: usize>(count: usize) -> Vec<Load<D>> {
@@ -74,7 +74,7 @@ where
 {
     let mut body = light::<D>();
     (body.velocity[0], body.velocity[D - 1]) = (0.3, 5.0);
-    body.spin = Wedge::from_axial(&[2.0, 3.0, -1.0][..Wedge::<D>::COMPONENTS]);
+    body.spin = Bivector::from_axial(&[2.0, 3.0, -1.0][..Bivector::<D>::COMPONENTS]);
     body.centre[0] = 0.02;
     // Far apart; of unlike mass, so that the engine would iterate were they near.
     let other = solid("pebble", cube(0.1), [9.0; D], Role::Free(FreeBody { mass: 0.01, ..light() }));
@@ -111,7 +111,7 @@ where
     Dim<D>: HasEngine<D>,
 {
     let mut engine = engine(&[solid("box", cube(0.1), [0.3; D], Role::Free(light()))], down()).unwrap();
-    let (start, lift) = (engine.kinematics(0), Load { force: down() * -2.0, torque: Wedge::zero() });
+    let (start, lift) = (engine.kinematics(0), Load { force: down() * -2.0, torque: Bivector::zero() });
     for _ in 0..100 {
         engine.step(1e-3, &[lift], &[None]).unwrap();
     }
@@ -135,7 +135,7 @@ fn a_force_up_on_the_right_turns_counter_clockwise() {
     engine.step(1e-3, &idle(1), &[None]).unwrap();
     assert!((engine.kinematics(0).spin.axial()[0] - 1.0).abs() < 1e-12);
     assert!((engine.kinematics(0).velocity - Vector::from([0.0, 0.5e-3])).norm() < 1e-15);
-    let load = Load { force: Vector::zeros(), torque: Wedge::from_axial(&[-1.0]) };
+    let load = Load { force: Vector::zeros(), torque: Bivector::from_axial(&[-1.0]) };
     engine.step(1e-3, &[load], &[None]).unwrap();
     // The push is over, and the opposite torque undoes it.
     assert!(engine.kinematics(0).spin.axial()[0].abs() < 1e-12);
@@ -223,7 +223,7 @@ where
     let contacts = engine.contacts();
     assert!(contacts.len() == 2, "both contacts last: {contacts:?}");
     let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-    let mut other = Dim::<D>::engine(&solids, &start, &Links::default(), &down(), 0.01).unwrap();
+    let mut other = Dim::<D>::engine(&solids, &start, &Constraints::default(), &down(), 0.01).unwrap();
     other.restore(&saved).unwrap();
     run(&mut *other, 400);
     assert_eq!(unbroken, (1..3).map(|i| other.kinematics(i)).collect::<Vec<_>>());
@@ -251,7 +251,7 @@ fn what_is_not_finite_is_a_fault_and_not_a_panic() {
         assert!(fault.reason.contains("not finite"));
     }
     let mut engine = engine(&solids, down()).unwrap();
-    engine.set_velocity(1, &Vector::from([f64::NAN, 0.0]), &Wedge::zero());
+    engine.set_velocity(1, &Vector::from([f64::NAN, 0.0]), &Bivector::zero());
     assert_eq!(engine.step(1e-4, &idle(2), &[None, None]).unwrap_err().solid, 1);
 }
 
@@ -277,7 +277,7 @@ fn a_locked_body_moves_only_as_it_may() {
     body.locked_translations = [true, true, false];
     body.locked_rotations = [true, false, true];
     let mut engine = engine(&[solid("buoy", cube(0.1), [0.0; 3], Role::Free(body))], Vector::zeros()).unwrap();
-    let load = Load { force: Vector::repeat(1.0), torque: Wedge::from_axial(&[1.0, 1.0, 1.0]) };
+    let load = Load { force: Vector::repeat(1.0), torque: Bivector::from_axial(&[1.0, 1.0, 1.0]) };
     for _ in 0..10 {
         engine.step(1e-4, &[load], &[None]).unwrap();
     }

@@ -4,7 +4,7 @@ use super::*;
 
 /// A cube of 0.1 m that flies at a wall with 1 m/s, flat, 1 cm off its middle, both of restitution `e`: where it is after
 /// 0.2 s, how fast it is then, and its spin.
-fn bounced<const D: usize>(e: f64) -> (f64, Vector<D>, Wedge<D>)
+fn bounced<const D: usize>(e: f64) -> (f64, Vector<D>, Bivector<D>)
 where
     Dim<D>: HasEngine<D>,
 {
@@ -66,7 +66,7 @@ where
             let spin = now.spin.axial();
             momentum += now.velocity * body.mass;
             // The bodies have hardly turned about more than one axis, so that their inertia is as at the start.
-            let turning = (0..Wedge::<D>::COMPONENTS).map(|k| body.inertia[(k, k)] * spin[k] * spin[k]).sum::<f64>();
+            let turning = (0..Bivector::<D>::COMPONENTS).map(|k| body.inertia[(k, k)] * spin[k] * spin[k]).sum::<f64>();
             energy += 0.5 * (body.mass * now.velocity.norm_squared() + turning);
         }
         (momentum, energy)

@@ -1,9 +1,9 @@
 //! What generic joints promise: what they lock, what they leave, and what they tell.
 
 use crate::{
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     solid::{
-        Dim, ForceSpec, HasEngine, JointKind, JointSpec, Law, Links,
+        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Law,
         constraint::assembly::tests::{Air, G, bar, body, hinge, joined, point},
     },
 };
@@ -25,7 +25,8 @@ where
     let torque = (0..D * (D - 1) / 2).map(|i| Law::constant(if D == 2 || i == 1 { 8.0 } else { 0.0 })).collect();
     let force = (0..D).map(|i| Law::constant(if i == 0 { 5.0 } else { 0.0 })).collect();
     let push = ForceSpec { name: "push".into(), solid: 0, at: None, force, torque, turns: false };
-    let mut air = Air::new(solids, Links { joints: vec![guide], forces: vec![push], ..Links::default() }, G);
+    let mut air =
+        Air::new(solids, Constraints { joints: vec![guide], forces: vec![push], ..Constraints::default() }, G);
     air.run(1e-4, 0.05);
     // First order in the step: ½ g t Δt.
     let (free, fallen) = (air.rig.coordinates(0, &air.now()), 0.5 * G * 0.05 * 0.05);
@@ -81,7 +82,7 @@ fn a_universal_joint_tells_the_torque_that_it_carries_at_any_angle() {
         .leaving(5, None);
     let mut air = Air::new(solids, joined(cardan), 0.0);
     let start = [0.0, 3.0, 2.0];
-    air.engine.set_velocity(0, &Vector::zeros(), &Wedge::from_axial(&start));
+    air.engine.set_velocity(0, &Vector::zeros(), &Bivector::from_axial(&start));
     let momentum = |air: &Air<3>| Vector::<3>::from_column_slice(&air.now()[0].spin.axial()) * inertia;
     let (dt, mut turned) = (1e-4, 0.0f64);
     while air.t < 0.4 {

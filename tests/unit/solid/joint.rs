@@ -5,9 +5,9 @@ mod generic;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::{
-    math::{Vector, Wedge, expression::Formula},
+    math::{Bivector, Vector, expression::Formula},
     solid::{
-        Dim, ForceSpec, HasEngine, JointKind, JointSpec, Law, Links, Motion, Motor, Role, SolidSpec,
+        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Law, Motion, Motor, Role, SolidSpec,
         constraint::assembly::tests::{Air, G, bar, body, hinge, inertia, joined, point, slider},
     },
 };
@@ -32,8 +32,8 @@ where
     let exact = TAU * (i / (m * G * 0.2)).sqrt();
     // An amplitude of 0.01 rad makes the period longer by 0.01²/16.
     let w = 0.01 * TAU / exact;
-    let spin = Wedge::torque(&point(0.0, -1.0), &point(1.0, 0.0)) * w;
-    air.engine.set_velocity(0, &spin.at(&point(0.0, -0.2)), &spin);
+    let spin = Bivector::torque(&point(0.0, -1.0), &point(1.0, 0.0)) * w;
+    air.engine.set_velocity(0, &spin.velocity_at(&point(0.0, -0.2)), &spin);
     let period = air.period(1e-3, 3, |air| air.rig.joint(0).position);
     assert!((period / exact - 1.0).abs() < 1e-4, "{D}-D: {period} s, exact {exact} s");
     // The hinge stays where it is.
@@ -87,12 +87,12 @@ where
         JointSpec::new(name, JointKind::Fixed, between, point::<D>(x, 0.0), Vector::zeros())
     };
     let joints = vec![weld("wall", [None, Some(0)], 0.0), weld("middle", [Some(0), Some(1)], 0.4)];
-    let mut air = Air::new(solids, Links { joints, ..Links::default() }, G);
+    let mut air = Air::new(solids, Constraints { joints, ..Constraints::default() }, G);
     air.run(1e-4, 0.2);
     for (joint, weights, moment) in [(0, 2.0, 0.2 + 0.6), (1, 1.0, 0.2)] {
         let reading = air.rig.joint(joint);
         assert!((reading.force - point(0.0, weights * weight)).norm() < 1e-3 * weight, "{D}-D: {reading:?}");
-        let lever = Wedge::torque(&point(moment, 0.0), &point(0.0, weight));
+        let lever = Bivector::torque(&point(moment, 0.0), &point(0.0, weight));
         assert!((reading.torque + lever * -1.0).0.norm() < 1e-3 * weight, "{D}-D: {reading:?} for {lever:?}");
     }
     assert!(air.now()[1].pose.position[D - 1].abs() < 1e-6, "it does not sag");
@@ -114,8 +114,8 @@ where
     let c = 3.0 * i;
     let joint = hinge([None, Some(0)], Vector::<D>::zeros()).motor(Motor::damping(c));
     let mut air = Air::new(vec![flap], joined(joint), 0.0);
-    let spin = Wedge::torque(&point(0.0, -1.0), &point(1.0, 0.0)) * 0.5;
-    air.engine.set_velocity(0, &spin.at(&point(0.0, 0.2)), &spin);
+    let spin = Bivector::torque(&point(0.0, -1.0), &point(1.0, 0.0)) * 0.5;
+    air.engine.set_velocity(0, &spin.velocity_at(&point(0.0, 0.2)), &spin);
     air.run(1e-4, 1.0);
     let reading = air.rig.joint(0);
     assert!((reading.rate / (0.5 * (-c / i).exp()) - 1.0).abs() < 1e-3, "{D}-D: {reading:?}");
@@ -129,7 +129,7 @@ where
     let c = 2.0 * m;
     let joint = slider([None, Some(0)], Vector::zeros(), along * 3.0).motor(Motor::damping(c));
     let mut air = Air::new(vec![float], joined(joint), 0.0);
-    air.engine.set_velocity(0, &(along * 0.5), &Wedge::zero());
+    air.engine.set_velocity(0, &(along * 0.5), &Bivector::zero());
     air.run(1e-4, 1.0);
     let now = air.now()[0];
     assert!((now.velocity.dot(&along) / (0.5 * (-2.0f64).exp()) - 1.0).abs() < 1e-3, "{now:?}");
@@ -208,7 +208,8 @@ where
     let second = slider([None, Some(0)], point(0.0, 0.05), along).motor(Motor::damping(1e9));
     let second = JointSpec { name: "second".into(), ..second };
     let first = slider([None, Some(0)], Vector::zeros(), along).motor(Motor::damping(1e9));
-    let mut air = Air::new(vec![weight.clone()], Links { joints: vec![first, second], ..Links::default() }, G);
+    let mut air =
+        Air::new(vec![weight.clone()], Constraints { joints: vec![first, second], ..Constraints::default() }, G);
     air.run(1e-3, 0.5);
     assert!(air.now()[0].velocity.norm() < 1e-6, "{D}-D: {:?}", air.now());
     // An ordinary power take-off leaves what rests on its end stop to that: a step of weight against it is 5e-5 of m g.
@@ -237,7 +238,7 @@ where
     let reading = air.rig.joint(0);
     assert!((reading.position.abs() - 0.5).abs() < 1e-5, "{D}-D: {reading:?}");
     // At rest on its stop: that carries the moment of the weight.
-    let moment = Wedge::torque(&point(0.2 * 0.5f64.cos(), 0.0), &point(0.0, m * G));
+    let moment = Bivector::torque(&point(0.2 * 0.5f64.cos(), 0.0), &point(0.0, m * G));
     assert!((reading.torque + moment * -1.0).0.norm() < 1e-3 * m * G, "{D}-D: {reading:?} for {moment:?}");
 
     let weight = bar("weight", 0.2, point(0.3, 1.0), false);
@@ -256,12 +257,12 @@ fn an_end_stop_holds_and_carries_what_rests_on_it() {
 
 #[test]
 fn a_ball_joint_turns_every_way_and_a_hinge_one() {
-    let spin = Wedge::<3>::from_axial(&[1.0, -2.0, 3.0]);
+    let spin = Bivector::<3>::from_axial(&[1.0, -2.0, 3.0]);
     let run = |kind| {
         let solids = vec![bar("bar", 0.4, point(0.0, 0.2), false)];
         let joint = JointSpec::new("joint", kind, [None, Some(0)], Vector::zeros(), Vector::from([0.0, 1.0, 0.0]));
         let mut air = Air::new(solids, joined(joint), 0.0);
-        air.engine.set_velocity(0, &spin.at(&point(0.0, 0.2)), &spin);
+        air.engine.set_velocity(0, &spin.velocity_at(&point(0.0, 0.2)), &spin);
         air.run(1e-4, 0.5);
         let now = air.now()[0];
         assert!(now.pose.point(&point(0.0, -0.2)).norm() < 1e-6, "it left its joint: {now:?}");
@@ -300,7 +301,7 @@ fn jointed_bodies_that_are_hit_keep_momentum_and_angular_momentum() {
         air.now().iter().zip(&air.solids).fold((Vector::<2>::zeros(), 0.0), |(p, l), (now, solid)| {
             let linear = now.velocity * body(solid).mass;
             let own = inertia(solid) * now.spin.axial()[0];
-            (p + linear, l + own + Wedge::torque(&now.centre, &linear).axial()[0])
+            (p + linear, l + own + Bivector::torque(&now.centre, &linear).axial()[0])
         })
     };
     let before = momentum(&air);
@@ -318,7 +319,7 @@ fn a_towed_body_goes_with_its_carriage_and_is_free_in_all_else() {
     let carriage = SolidSpec { role: Role::Driven(motion), ..bar::<2>("carriage", 0.2, point(0.0, 1.0), true) };
     let mut solids = vec![carriage, bar("model", 0.4, point(0.1, 0.0), true)];
     let Role::Free(model) = &mut solids[1].role else { panic!() };
-    model.spin = Wedge::from_axial(&[0.7]);
+    model.spin = Bivector::from_axial(&[0.7]);
     let tow = JointSpec::new("tow", JointKind::Tow, [Some(0), Some(1)], point(0.1, 0.0), Vector::from([1.0, 0.0]));
     let mut air = Air::new(solids, joined(tow), G);
     air.run(1e-4, 1.0);
@@ -340,11 +341,11 @@ where
     body_of_it.locked_rotations = [true; 3];
     let mut solids = vec![carriage, bar("buoy", 0.4, Vector::zeros(), true)];
     let Role::Free(buoy) = &mut solids[1].role else { panic!() };
-    buoy.spin = Wedge::from_axial(&[0.7, 0.0, 0.0][..if D == 2 { 1 } else { 3 }]);
+    buoy.spin = Bivector::from_axial(&[0.7, 0.0, 0.0][..if D == 2 { 1 } else { 3 }]);
     let force = (0..D).map(|i| Law::constant(if i == 0 || i == D - 1 { 12.0 } else { 0.0 })).collect();
     let push = ForceSpec { name: "push".into(), solid: 1, at: None, force, torque: vec![], turns: false };
     let tow = JointSpec::new("rail", JointKind::Tow, [Some(0), Some(1)], Vector::zeros(), point(1.0, 0.0));
-    let links = Links { joints: vec![tow], forces: vec![push], ..Links::default() };
+    let links = Constraints { joints: vec![tow], forces: vec![push], ..Constraints::default() };
     let mut air = Air::new(solids, links, 0.0);
     air.run(1e-4, 1.0);
     let (now, [more, m]) = (air.now()[1], [0, 1].map(|i| body(&air.solids[i]).mass));

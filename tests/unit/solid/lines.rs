@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::{
-    math::{Vector, Wedge},
+    math::{Bivector, Vector},
     solid::{
-        Dim, Elastic, End, HasEngine, Links, RopeSpec, SpringSpec,
+        Constraints, Dim, Elastic, End, HasEngine, RopeSpec, SpringSpec,
         constraint::assembly::tests::{Air, G, bar, body, point},
     },
 };
@@ -25,11 +25,11 @@ where
         tension_only: false,
     };
     let m = body(&solids[0]).mass;
-    let links = Links { springs: vec![spec.clone()], ..Links::default() };
+    let links = Constraints { springs: vec![spec.clone()], ..Constraints::default() };
     let mut air = Air::new(solids.clone(), links, 0.0);
     // Two equal masses: ω² = 2 k/m.
     let omega = (800.0 / m).sqrt();
-    let limit = air.rig.limit(&*air.engine, &air.now(), air.t);
+    let limit = air.rig.step_limit(&*air.engine, &air.now(), air.t);
     assert!((limit * omega - 0.2).abs() < 1e-9, "the bound is exact for a pair: {limit}");
     let period = air.period(0.5 * limit, 5, |air| air.rig.spring(0).length - 0.7);
     // (0.1)²/24 too fast at half of the longest step.
@@ -43,11 +43,11 @@ where
 
     // A mooring line lets what comes nearer come nearer, and pulls what goes away.
     let slack = SpringSpec { tension_only: true, length: None, ..spec };
-    let mut air = Air::new(solids, Links { springs: vec![slack], ..Links::default() }, 0.0);
-    air.engine.set_velocity(1, &point(-0.1, 0.0), &Wedge::zero());
+    let mut air = Air::new(solids, Constraints { springs: vec![slack], ..Constraints::default() }, 0.0);
+    air.engine.set_velocity(1, &point(-0.1, 0.0), &Bivector::zero());
     air.run(1e-3, 1.0);
     assert_eq!((air.now()[1].velocity[0], air.rig.spring(0).tension), (-0.1, 0.0));
-    air.engine.set_velocity(1, &point(0.5, 0.0), &Wedge::zero());
+    air.engine.set_velocity(1, &point(0.5, 0.0), &Bivector::zero());
     air.run(1e-3, 2.0);
     assert!(air.now()[0].velocity[0] > 0.1, "{:?}", air.now());
 }
@@ -66,8 +66,8 @@ fn a_damped_spring_settles_whatever_its_damping() {
         let ends = [End { solid: Some(0), at: point(0.0, 0.05) }, End { solid: None, at: point(0.0, 1.0) }];
         let spec =
             SpringSpec { name: "line".into(), ends, stiffness: 2000.0, damping, length: None, tension_only: true };
-        let mut air = Air::new(solids, Links { springs: vec![spec], ..Links::default() }, G);
-        let limit = air.rig.limit(&*air.engine, &air.now(), air.t);
+        let mut air = Air::new(solids, Constraints { springs: vec![spec], ..Constraints::default() }, G);
+        let limit = air.rig.step_limit(&*air.engine, &air.now(), air.t);
         assert!((limit - 0.2 / 10.0).abs() < 1e-12, "damping does not shorten the step: {limit}");
         air.run(1e-3, 20.0);
         let reading = air.rig.spring(0);
@@ -89,8 +89,8 @@ where
     let solids = vec![bar("stone", 0.2, point::<D>(0.2, -0.5), true)];
     let ends = [End { solid: None, at: Vector::zeros() }, End { solid: Some(0), at: point(0.25, -0.45) }];
     let rope = RopeSpec { name: "rope".into(), ends, length: Some(0.8) };
-    let mut air = Air::new(solids, Links { ropes: vec![rope], ..Links::default() }, G);
-    air.engine.set_velocity(0, &point(speed, 0.2), &Wedge::zero());
+    let mut air = Air::new(solids, Constraints { ropes: vec![rope], ..Constraints::default() }, G);
+    air.engine.set_velocity(0, &point(speed, 0.2), &Bivector::zero());
     let (mut longest, mut taut): (f64, f64) = (0.0, 0.0);
     while air.t < 2.0 {
         air.step(dt);
@@ -115,7 +115,7 @@ fn a_rope_at_rest_carries_the_weight() {
     let weight = body(&solids[0]).mass * G;
     let ends = [End { solid: None, at: Vector::zeros() }, End { solid: Some(0), at: point(0.0, -0.45) }];
     let rope = RopeSpec { name: "rope".into(), ends, length: None };
-    let mut air = Air::new(solids, Links { ropes: vec![rope], ..Links::default() }, G);
+    let mut air = Air::new(solids, Constraints { ropes: vec![rope], ..Constraints::default() }, G);
     air.run(1e-3, 1.0);
     assert!((air.rig.rope(0).tension / weight - 1.0).abs() < 1e-6, "{:?}", air.rig.rope(0));
 }

@@ -39,10 +39,10 @@ fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
     let (taker, silent) = (taker(Paddle::Piston, period), maker(0.4, Paddle::Piston).silent(period).unwrap());
     let run = |amplitude: f64, until: f64| {
         let level = |t: f64| if t < 60.0 { 0.4 + amplitude * (TAU * t / period).sin() } else { 0.4 };
-        let (mut now, mut most) = (Yielding::default(), (0.0_f64, 0.0_f64));
+        let (mut now, mut most) = (AbsorptionState::default(), (0.0_f64, 0.0_f64));
         for i in 0..(until / step) as usize {
             let t = i as f64 * step;
-            now = taker.steer(&silent, &now, t, Some(level(t)));
+            now = taker.update(&silent, &now, t, Some(level(t)));
             if t > 50.0 {
                 most = (most.0.max(now.at(t).0.abs()), most.1.max(now.at(t).1.abs()));
             }
@@ -60,7 +60,7 @@ fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
     assert!(far <= 0.5 * stroke * 1.001 && fast <= speed * 1.001, "{far} {fast} of {stroke} {speed}");
     assert!(left.abs() < 0.02 * 0.5 * stroke, "{left}");
     // Nothing to see: no water, no haste.
-    let dry = taker.steer(&silent, &Yielding::default(), 1.0, None);
+    let dry = taker.update(&silent, &AbsorptionState::default(), 1.0, None);
     assert_eq!(dry.at(2.0), (0.0, 0.0));
 }
 
@@ -70,11 +70,11 @@ fn a_paddle_alone_with_its_own_wave_does_not_yield() {
         let maker = maker(0.4, wave.paddle());
         let tuning = Tuning { period: None, gauge: 0.04, level: 0.4, stroke: None, speed: None };
         let own = Absorber::new(&maker, &wave, &tuning).unwrap();
-        let mut now = Yielding::default();
+        let mut now = AbsorptionState::default();
         for i in 0..4000 {
             let t = 2e-3 * f64::from(i);
             let place = wave.displacement(t).0 + now.at(t).0;
-            now = own.steer(&wave, &now, t, Some(0.4 + own.wanted(&wave, place + own.gauge, t)));
+            now = own.update(&wave, &now, t, Some(0.4 + own.wanted(&wave, place + own.gauge, t)));
             assert!(now.at(t).0.abs() < 1e-12, "{name} at {t}");
         }
     }

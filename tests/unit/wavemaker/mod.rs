@@ -6,8 +6,8 @@ use super::*;
 
 pub(super) const G: f64 = 9.81;
 
-pub(super) fn maker(depth: f64, paddle: Paddle) -> Maker {
-    Maker { depth, g: G, paddle }
+pub(super) fn maker(depth: f64, paddle: Paddle) -> Wavemaker {
+    Wavemaker { depth, g: G, paddle }
 }
 
 /// All kinds of waves in 0.4 m of water.
