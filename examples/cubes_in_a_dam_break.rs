@@ -6,7 +6,7 @@
 use pontoon::{
     Result,
     probe::{Energy, Probe},
-    scene::{AtWords, Scene, ShapeWords, SolidWords},
+    scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
 
@@ -25,11 +25,11 @@ fn main() -> Result<()> {
     let mut scene = Scene::new(2, dp, 5.0)
         .title("Cubes in a dam break")
         .water_box([0.0, 0.0], COLUMN)
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([TANK, 0.8])));
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([TANK, 0.8])));
     for i in 0..CUBES {
         // Let fall from 20 mm, each a millimetre above the one below.
-        let at = AtWords { bottom: Some(0.02 + i as f64 * (EDGE + 0.001)), ..AtWords::point(&[1.0]) };
-        let mut cube = SolidWords::free(format!("cube-{i}"), ShapeWords::cuboid([EDGE; 2]), 500.0).at(at);
+        let at = PlacementConfig { bottom: Some(0.02 + i as f64 * (EDGE + 0.001)), ..PlacementConfig::point(&[1.0]) };
+        let mut cube = SolidConfig::free(format!("cube-{i}"), ShapeConfig::cuboid([EDGE; 2]), 500.0).at(at);
         cube.friction = Some(0.5);
         scene = scene.solid(cube);
     }

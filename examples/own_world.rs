@@ -7,7 +7,7 @@
 use pontoon::{
     Result,
     probe::{Elevation, Probe},
-    scene::{Scene, ShapeWords, SolidWords},
+    scene::{Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
     solid::rapier2d::{self, rapier::prelude::*},
 };
@@ -81,7 +81,7 @@ fn world() -> (PhysicsWorld, RigidBodyHandle, RigidBodyHandle) {
 fn water(world: &PhysicsWorld, raft: RigidBodyHandle) -> Result<Simulation<2>> {
     let mut scene = Scene::new(2, 0.01, 3.0)
         .water_box([0.0, 0.0], [1.0, DEPTH])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 0.4])));
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([1.0, 0.4])));
     scene.model.c0_factor = Some(12.0);
     let mut water = Simulation::with_external_bodies(scene.build::<2>()?.setup)?;
     // The raft gets number 1, after the tank; the water in its place goes.

@@ -8,7 +8,7 @@ use pontoon::{
     Result,
     math::Vector,
     probe::{Elevation, Probe},
-    scene::{AtWords, Scene, ShapeWords, SolidWords},
+    scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
 
@@ -22,8 +22,8 @@ fn main() -> Result<()> {
     let mut scene = Scene::new(2, 0.01, 2.5)
         .title("A raft under a hand")
         .water_box([0.0, 0.0], [1.0, 0.2])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 0.4])))
-        .solid(SolidWords::free("raft", ShapeWords::cuboid(SIZE), 500.0).at(AtWords::afloat(&[0.5])));
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([1.0, 0.4])))
+        .solid(SolidConfig::free("raft", ShapeConfig::cuboid(SIZE), 500.0).at(PlacementConfig::afloat(&[0.5])));
     scene.model.c0_factor = Some(12.0);
     let built = scene.build::<2>()?;
     let until = built.plan.until;

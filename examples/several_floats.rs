@@ -9,7 +9,7 @@ use pontoon::{
     geometry::Shape,
     math::{Pose, Vector},
     probe::{Elevation, Probe},
-    scene::{AtWords, Scene, ShapeWords, SolidWords},
+    scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
     solid::{FreeBody, Role, SolidSpec},
 };
@@ -36,10 +36,10 @@ fn main() -> Result<()> {
     let mut scene = Scene::new(2, DP, 1.0)
         .title("Three blocks")
         .water_box([0.0, 0.0], [LENGTH, 0.2])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([LENGTH, 0.4])));
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([LENGTH, 0.4])));
     for (name, density, x) in BLOCKS {
-        let block = SolidWords::free(name, ShapeWords::cuboid(SIZE), density);
-        scene = scene.solid(block.at(AtWords::afloat(&[x])));
+        let block = SolidConfig::free(name, ShapeConfig::cuboid(SIZE), density);
+        scene = scene.solid(block.at(PlacementConfig::afloat(&[x])));
     }
     scene.model.c0_factor = Some(12.0);
     let built = scene.build::<2>()?;

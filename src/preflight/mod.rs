@@ -33,7 +33,7 @@ pub use waves::Wave;
 use crate::{
     error::Error,
     plan::Plan,
-    scene::Still,
+    scene::StillWater,
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
@@ -138,7 +138,7 @@ impl Preflight {
 struct Look<'a, const D: usize> {
     system: &'a System<D>,
     plan: &'a Plan,
-    still: Still,
+    still: StillWater,
     /// Gravity down the last axis, m/s²; 0 if it points elsewhere, and then nothing floats.
     g: f64,
     /// The outermost layer of each solid; empty where nobody asks.
@@ -150,7 +150,7 @@ struct Look<'a, const D: usize> {
 pub fn look<const D: usize>(
     sim: &Simulation<D>,
     plan: &Plan,
-    still: Still,
+    still: StillWater,
     overlapped: usize,
     columns: &[usize],
 ) -> Preflight {

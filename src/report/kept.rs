@@ -17,7 +17,7 @@ use crate::{
     output::{Film, Manifest, Readings},
     plan::{Plan, ProbeKind},
     run::{self, Asked, Told},
-    scene::{Scene, Stage},
+    scene::{Layout, Scene},
     solid::Role,
 };
 
@@ -185,7 +185,7 @@ impl Set {
     }
 
     fn built<const D: usize>(scene: &Scene) -> Result<Self> {
-        let Stage { solids, model, still } = scene.stage::<D>()?;
+        let Layout { solids, model, still } = scene.stage::<D>()?;
         let plan = scene.plan()?;
         let solids = solids.iter().map(|spec| Solid {
             name: spec.name.clone(),

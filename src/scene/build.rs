@@ -1,12 +1,15 @@
-//! From words to a simulation's start: opens the files that the scene names, makes shapes and poses, fills
-//! the water.
+//! Builds a scene: opens the files that it names, makes shapes and poses, fills the water.
 
 use super::{
-    FillWords, FrameWords, Frames, Plan, Scene,
-    build_waves::Pool,
-    flow::Flow,
-    geometry::{pose, shape, vector, world_bounds},
-    resolve::CHECKPOINT_WALL,
+    Scene,
+    context::Context,
+    section::{
+        analysis::Series,
+        model::verify_depth,
+        shape::{vector, world_bounds},
+        solid::SolidConfig,
+        water::{Body, StillWater, WaterExtent, verify_near_origin},
+    },
 };
 use crate::{
     error::{Error, Kind, Result},
@@ -15,122 +18,106 @@ use crate::{
         fill::{Region, fill},
     },
     math::{Bounds, Pose, Vector},
-    model::Model,
+    model::{Model, Scheme},
+    plan::Plan,
     simulation::Setup,
-    solid::{Role, SolidSpec},
+    solid::{
+        Constraints, Hold, Role, SolidSpec,
+        constraint::links::{check_force, check_rope, check_spring},
+    },
     system::periodic,
 };
 
 /// Most particles that a scene may ask for: about 100 GB of memory.
 const MOST_PARTICLES: f64 = 2e8;
 
-/// Least stiffness μ of the lattice, –: below it still water round a float has come to move at 0.07 to 0.13 √(g depth) within a
-/// second, above it at up to 0.08 (docs/stability.md).
-const SOFTEST: f64 = -0.07;
-
-/// Least depth of still water over the reach of the kernel, –: of 0.67 it rises by some per cent of dp, of 0.75 by none
-/// (docs/stability.md).
-const SHALLOW: f64 = 0.75;
-
-/// What a scene was built into.
+/// A scene that was built.
 pub struct Built<const D: usize> {
-    /// What a simulation starts from.
+    /// The start of a simulation.
     pub setup: Setup<D>,
-    /// What the run watches, keeps and judges.
+    /// The probes, files, checks and statistics of a run.
     pub plan: Plan,
-    /// Places of the water's lattice left empty because a solid is there.
+    /// Lattice points left empty because a solid is there.
     pub overlapped: usize,
-    /// Places left empty because an earlier body of water is there.
+    /// Lattice points left empty because an earlier body of water is there.
     pub doubled: usize,
     /// The water at rest.
-    pub still: Still,
+    pub still: StillWater,
 }
 
-/// The water at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Still {
-    /// The highest level, from which drafts are measured, m.
-    pub level: f64,
-    /// From the lowest water to there, m.
-    pub depth: f64,
-}
-
-/// What stands around the water: enough to draw a scene.
-pub(crate) struct Stage<const D: usize> {
+/// The solids around the water: enough to draw a scene.
+pub(crate) struct Layout<const D: usize> {
     /// The solids, where they start.
     pub(crate) solids: Vec<SolidSpec<D>>,
     /// The laws and constants.
     pub(crate) model: Model,
     /// The water at rest.
-    pub(crate) still: Still,
+    pub(crate) still: StillWater,
 }
 
-/// A body of water: where it is and how high it stands.
-pub(super) struct Body<const D: usize> {
-    pub(super) region: Region<D>,
-    bottom: f64,
-    pub(super) level: f64,
-    flow: Flow<D>,
+/// Estimated size of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particles of water.
+    pub fluid: f64,
+    /// Boundary particles.
+    pub boundary: f64,
+    /// The largest time step that sound and the Courant number allow, s.
+    pub dt: f64,
+    /// Steps to the end at that step; a run takes some more.
+    pub steps: f64,
+    /// Evaluations of the forces a step.
+    pub passes: f64,
 }
 
-impl<const D: usize> Body<D> {
-    /// Signed distance (m) of the point `x` (m) from this water, negative inside.
-    fn distance(&self, x: &Vector<D>) -> f64 {
-        self.region.shape.signed_distance(&self.region.pose.local(x))
-    }
-
-    /// Whether `x` (m) is in this water, or so near to it that only round-off says otherwise.
-    fn holds(&self, x: &Vector<D>) -> bool {
-        self.distance(x) < 1e-9
-    }
-}
-
-impl Still {
-    pub(super) fn of<const D: usize>(water: &[Body<D>]) -> Self {
-        let level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
-        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
-        Self { level, depth: level - bottom }
+impl Size {
+    /// Water particles × force evaluations: about proportional to the time of a run.
+    pub fn work(&self) -> f64 {
+        self.fluid * self.steps * self.passes
     }
 }
 
 impl Scene {
-    /// Opens the files that the scene names and makes what a [`Simulation`](crate::simulation::Simulation)
-    /// starts from, and the plan of the run.
+    /// Opens the files that the scene names and makes the start of a
+    /// [`Simulation`](crate::simulation::Simulation) and the plan of the run.
     ///
     /// # Errors
-    /// `Usage` if `D` is not the scene's dimension; `Scene` if the words contradict one another, a shape is
-    /// none, a body sinks that should float, the particles are too many; `File` if a table cannot be read.
+    /// `Usage` if `D` is not the scene's dimension; `Scene` if the scene is wrong, a shape is not valid,
+    /// a body sinks that should float, or the particles are too many; `File` if a table cannot be read.
     pub fn build<const D: usize>(&self) -> Result<Built<D>> {
         if self.dimension != D {
             return Err(Error::new(Kind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
         }
         let (scene, _) = self.filled()?;
+        let ctx = &scene.context();
         let water = scene.bodies_of_water::<D>()?;
-        let still = Still::of(&water);
-        let model = scene.laws(&water)?;
-        scene.steady::<D>(&model)?;
-        scene.deep_enough(&still, &model)?;
-        let solids = scene.solids::<D>(&Pool::of(&water))?;
-        let links = scene.links(&solids)?;
+        let still = StillWater::of(&water);
+        let model = scene.model.build(ctx, &scene.time, &still)?;
+        scene.model.verify_lattice::<D>(ctx, &model)?;
+        verify_depth(ctx, &still, &model)?;
+        let solids = scene.solids::<D>(&WaterExtent::of(&water))?;
+        let constraints = scene.constraints(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
-            scene.inside(domain, &water, &solids)?;
+            verify_inside(ctx, domain, &water, &solids)?;
         }
-        let periodic = scene.periods();
-        periodic::check(&periodic, &model, &solids).map_err(|e| scene.origin.place(e, "periodic"))?;
-        scene.affordable(&water, &solids)?;
+        let periodic = scene.periodic.clone().unwrap_or_default().build();
+        periodic::check(&periodic, &model, &solids).map_err(|e| ctx.place(e, "periodic"))?;
+        verify_size(ctx, &water, &solids)?;
         let regions: Vec<Region<D>> =
             water.iter().map(|b| Region { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
-        // A driven solid starts where its law says.
+        // A driven solid starts where its motion puts it.
         let starts: Vec<Pose<D>> = solids.iter().map(|s| s.start().pose).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
-        let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| scene.origin.place(e, "water"))?;
+        let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| ctx.place(e, "water"))?;
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
-            filled.r.retain(|x| water.iter().any(|body| body.holds(x) && x[D - 1] < body.level));
+            filled.r.retain(|x| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level));
         }
         if filled.r.is_empty() {
-            return Err(scene.dry(&water, &solids));
+            return Err(no_water(ctx, &water, &solids));
         }
         let plan = scene.planned(&still)?;
         // Packing may have moved a particle a little way out of its water.
@@ -138,25 +125,25 @@ impl Scene {
         let level = |x: &Vector<D>| nearest(x).map_or(still.level, |body| body.level);
         let levels = filled.r.iter().map(level).collect();
         let flow = |x: &Vector<D>| nearest(x).map_or((Vector::zeros(), 0.0), |body| body.flow.at(x));
-        let moves = scene.water.iter().any(|words| words.velocity.is_some() || words.pressure.is_some());
+        let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
         let (velocity, pressure) = filled.r.iter().filter(|_| moves).map(flow).unzip();
-        if let Some(part) = scene.scatter {
-            scatter(&mut filled.r, part * scene.dp);
+        if let Some(part) = scene.jitter {
+            jitter(&mut filled.r, part * scene.dp);
         }
-        let (limits, water) = (scene.limits(), filled.r);
-        let damping = scene.zones(&still);
+        let limits = scene.guard.clone().unwrap_or_default().build();
+        let sponge_layers = scene.damping.iter().map(|layer| layer.build(ctx, &still)).collect();
         let setup = Setup {
             model,
-            water,
+            water: filled.r,
             levels,
             velocity,
             pressure,
             solids,
-            constraints: links,
+            constraints,
             domain,
             periodic,
             limits,
-            sponge_layers: damping,
+            sponge_layers,
         };
         Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
     }
@@ -165,226 +152,207 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::build`].
-    pub(crate) fn stage<const D: usize>(&self) -> Result<Stage<D>> {
+    pub(crate) fn stage<const D: usize>(&self) -> Result<Layout<D>> {
         let (scene, _) = self.filled()?;
         let water = scene.bodies_of_water::<D>()?;
-        let still = Still::of(&water);
-        Ok(Stage { solids: scene.solids::<D>(&Pool::of(&water))?, model: scene.laws(&water)?, still })
+        let still = StillWater::of(&water);
+        let model = scene.model.build(&scene.context(), &scene.time, &still)?;
+        Ok(Layout { solids: scene.solids::<D>(&WaterExtent::of(&water))?, model, still })
     }
 
-    /// What a run watches, keeps and judges; makes no particles.
+    /// The probes, files, checks and statistics of a run; makes no particles.
     ///
     /// # Errors
-    /// `Scene` if the words contradict one another, or a table that a check names is missing or wrong.
+    /// `Scene` if the scene is wrong, or a table that a check names is missing or wrong.
     pub fn plan(&self) -> Result<Plan> {
         let (scene, _) = self.filled()?;
-        let still = match scene.dimension {
-            2 => Still::of(&scene.bodies_of_water::<2>()?),
-            _ => Still::of(&scene.bodies_of_water::<3>()?),
-        };
-        scene.planned(&still)
+        scene.planned(&scene.still_water()?)
     }
 
-    /// Speed of sound, m/s: given, or from the depth.
-    pub(super) fn sound_speed<const D: usize>(&self) -> Result<f64> {
-        Ok(self.laws(&self.bodies_of_water::<D>()?)?.c0)
-    }
-
-    pub(super) fn bodies_of_water<const D: usize>(&self) -> Result<Vec<Body<D>>> {
-        let mut bodies = Vec::new();
-        for (i, words) in self.water.iter().enumerate() {
-            let key = format!("water.{i}");
-            let place = |e: Error| self.origin.place(e, &format!("{key}.fill"));
-            let (shape, pose) = match &words.fill {
-                FillWords { corners: Some(corners), .. } => {
-                    let (min, mut max): (Vector<D>, Vector<D>) = (vector(&corners.min), vector(&corners.max));
-                    max[D - 1] = words.level.unwrap_or(f64::INFINITY).min(max[D - 1]).max(min[D - 1]);
-                    (Shape::Box { size: max - min }, Pose::at(0.5 * (min + max)))
-                }
-                FillWords { shape: words, at, .. } => {
-                    let Some(words) = words else { return Err(self.wrong(&key, "what does the water fill?")) };
-                    let shape = shape(self, words).map_err(place)?;
-                    let pose = at.as_ref().map_or_else(Pose::identity, |at| pose(at, &shape, 0.0));
-                    (shape, pose)
-                }
-            };
-            let bounds = world_bounds(&shape, &pose);
-            let (bottom, top) = (bounds.min[D - 1], bounds.max[D - 1]);
-            let level = words.level.unwrap_or(f64::INFINITY).min(top);
-            if level <= bottom {
-                let what = format!("the level is not above {bottom} m, the bottom of this water");
-                return Err(self.wrong(&format!("{key}.level"), what));
-            }
-            bodies.push(Body { region: Region { shape, pose }, bottom, level, flow: self.flow(&key, words)? });
+    /// Estimated size of a run of this scene.
+    ///
+    /// # Errors
+    /// `Scene` if the scene is wrong, a shape is not valid, or the particles are too many.
+    pub fn size(&self) -> Result<Size> {
+        let (scene, _) = self.filled()?;
+        match scene.dimension {
+            2 => scene.estimate::<2>(),
+            _ => scene.estimate::<3>(),
         }
-        Ok(bodies)
     }
 
-    pub(super) fn laws<const D: usize>(&self, water: &[Body<D>]) -> Result<Model> {
-        let (words, time) = (&self.model, &self.time);
-        let gravity = self.gravity.clone().unwrap_or_else(|| vec![0.0; D]);
-        let top = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
-        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
-        let g = gravity.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let c0 = words.c0.unwrap_or(words.c0_factor.unwrap_or_default() * (g * (top - bottom)).sqrt());
-        if !(c0.is_finite() && c0 > 0.0) {
-            let help = "write  c0 = ...  in [model]: 10 to 20 times the largest speed expected, m/s";
-            return Err(self.wrong_with("model.c0", "without gravity the depth gives no speed of sound", help));
+    fn estimate<const D: usize>(&self) -> Result<Size> {
+        let ctx = &self.context();
+        let water = self.bodies_of_water::<D>()?;
+        let model = self.model.build(ctx, &self.time, &StillWater::of(&water))?;
+        let solids = self.solids::<D>(&WaterExtent::of(&water))?;
+        verify_size(ctx, &water, &solids)?;
+        let (fluid, boundary) = counts(ctx, &water, &solids);
+        let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
+        let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1.0 } else { 2.0 };
+        Ok(Size { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
+    }
+
+    /// About how many particles of water there are, without the space of the solids; 0 if the water cannot be built.
+    pub(super) fn water_particles(&self) -> f64 {
+        fn count<const D: usize>(scene: &Scene) -> Result<f64> {
+            Ok(counts::<D>(&scene.context(), &scene.bodies_of_water()?, &[]).0)
         }
-        let missing = |key: &str| self.wrong(key, "this law has no value");
-        Ok(Model {
-            kernel: words.kernel.ok_or_else(|| missing("model.kernel"))?,
-            h: self.h(),
-            dp: self.dp,
-            rho0: words.rho0.ok_or_else(|| missing("model.rho0"))?,
-            c0,
-            gamma: words.gamma.ok_or_else(|| missing("model.gamma"))?,
-            gravity,
-            gradient: words.gradient.ok_or_else(|| missing("model.gradient"))?,
-            viscosity: words.viscosity.ok_or_else(|| missing("model.viscosity"))?,
-            diffusion: words.diffusion.ok_or_else(|| missing("model.diffusion"))?,
-            shifting: words.shifting.ok_or_else(|| missing("model.shifting"))?,
-            walls: words.walls.ok_or_else(|| missing("model.walls"))?,
-            slip: words.slip.ok_or_else(|| missing("model.slip"))?,
-            pair_loop: words.sweep.unwrap_or_default(),
-            scheme: time.scheme.ok_or_else(|| missing("time.scheme"))?,
-            cfl: time.cfl.ok_or_else(|| missing("time.cfl"))?,
-            dt_max: time.dt_max.unwrap_or(f64::INFINITY),
+        let counted = if self.dimension == 2 { count::<2>(self) } else { count::<3>(self) };
+        counted.unwrap_or(0.0)
+    }
+
+    /// The water at rest.
+    pub(super) fn still_water(&self) -> Result<StillWater> {
+        Ok(match self.dimension {
+            2 => StillWater::of(&self.bodies_of_water::<2>()?),
+            _ => StillWater::of(&self.bodies_of_water::<3>()?),
         })
     }
 
-    /// Refuses water and bodies outside the domain.
-    fn inside<const D: usize>(&self, domain: &Bounds<D>, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
-        let out = |shape: &Shape<D>, pose: &Pose<D>| {
-            let bounds = world_bounds(shape, pose);
-            !(domain.contains(&bounds.min) && domain.contains(&bounds.max))
-        };
-        let help =
-            "enlarge the domain: what leaves it stops the run. Leave [domain] out for one with room on all sides";
-        if let Some(i) = water.iter().position(|body| out(&body.region.shape, &body.region.pose)) {
-            return Err(self.wrong_with(&format!("water.{i}"), "this water is not wholly inside the domain", help));
-        }
-        let still = |solid: &SolidSpec<D>| matches!(solid.role, Role::Fixed);
-        match solids.iter().position(|solid| !still(solid) && out(&solid.shape, &solid.pose)) {
-            Some(i) => {
-                let what = format!("solid \"{}\" starts outside the domain", solids[i].name);
-                Err(self.wrong_with(&format!("solid.{i}.at"), what, help))
-            }
-            None => Ok(()),
-        }
+    fn bodies_of_water<const D: usize>(&self) -> Result<Vec<Body<D>>> {
+        let ctx = &self.context();
+        self.water.iter().enumerate().map(|(i, water)| water.build(ctx, &format!("water.{i}"))).collect()
     }
 
-    /// The error that no water is left: names the first free body that has no room in it.
-    fn dry<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Error {
-        let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
-        let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size();
-        let free = solids.iter().enumerate().filter(|(_, solid)| matches!(solid.role, Role::Free(_)));
-        let mut sizes = free.map(|(i, solid)| (i, world_bounds(&solid.shape, &solid.pose).size()));
-        let larger = |(i, size): (usize, Vector<D>)| Some((i, size, (0..D).find(|&axis| size[axis] >= room[axis])?));
-        let Some((i, size, axis)) = sizes.find_map(larger) else {
-            return self.wrong("water", "no water is left: it is thinner than dp, or solids fill it");
-        };
-        let way = if axis == D - 1 { "high" } else { ["long along x", "long along y"][axis] };
-        let (name, size, room) = (&solids[i].name, size[axis], room[axis]);
-        let what = format!("no water is left: \"{name}\" is {size:.4} m {way} and the water {room:.4} m");
-        self.wrong_with(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
+    /// The solids in the water `pool`, from whose level drafts are measured.
+    fn solids<const D: usize>(&self, pool: &WaterExtent<D>) -> Result<Vec<SolidSpec<D>>> {
+        let ctx = &self.context();
+        self.solid.iter().enumerate().map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), pool)).collect()
     }
 
-    /// Refuses laws that do not go together, and a kernel under which the lattice on which water starts gives way by its own
-    /// pressure.
-    fn steady<const D: usize>(&self, model: &Model) -> Result<()> {
-        if let Some(what) = model.conflict() {
-            let help = "write  kernel = \"wendland\"  and  shifting = \"none\", or  gradient = \"plain\"";
-            return Err(self.wrong_with("model.gradient", what, help));
+    /// The joints, force elements and contact rules of `solids`, which are in the order of the scene.
+    fn constraints<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
+        let ctx = &self.context();
+        let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
+        let mut constraints = Constraints::default();
+        for (i, joint) in self.joint.iter().enumerate() {
+            let key = format!("joint.{i}");
+            // One solid moves against the world.
+            let between = match &joint.between[..] {
+                [one] => [None, number(one)],
+                two => [0, 1].map(|k| two.get(k).and_then(number)),
+            };
+            constraints.joints.push(joint.build(ctx, &key, between)?);
+            constraints.check_joint(i, solids).map_err(|e| ctx.place(e, &key))?;
         }
-        if model.gravity.iter().all(|g| *g == 0.0) {
-            return Ok(());
+        for (i, spring) in self.spring.iter().enumerate() {
+            let spring = spring.build(&self.solid);
+            check_spring(&spring, solids).map_err(|e| ctx.place(e, &format!("spring.{i}")))?;
+            constraints.springs.push(spring);
         }
-        let (h, stiffness) = (model.h / model.dp, model.lattice_stiffness::<D>());
-        if stiffness > SOFTEST {
-            return Ok(());
+        for (i, rope) in self.rope.iter().enumerate() {
+            let rope = rope.build(&self.solid);
+            check_rope(&rope, solids).map_err(|e| ctx.place(e, &format!("rope.{i}")))?;
+            constraints.ropes.push(rope);
         }
-        let key = if self.model.c_h.is_some() { "model.c_h" } else { "model.h_over_dp" };
-        let what = format!(
-            "with this kernel at h = {h:.2} dp still water does not stay still: the lattice on which it starts gives way in shear \
-             (its stiffness over its pressure is {stiffness:.3}, and {SOFTEST} the least)"
-        );
-        Err(self.wrong_with(key, what, "write  h_over_dp = 1.7  and  kernel = \"wendland\""))
+        for (i, force) in self.force.iter().enumerate() {
+            let key = format!("force.{i}");
+            let force = force.build(ctx, &key, number(&force.on).unwrap_or_default())?;
+            check_force(&force, solids).map_err(|e| ctx.place(e, &key))?;
+            constraints.forces.push(force);
+        }
+        constraints.contacts = self.contact.iter().flat_map(|contact| contact.build(&self.solid)).collect();
+        let hold = |(solid, body): (usize, &SolidConfig)| Some(Hold { solid, until: body.free.as_ref()?.release? });
+        constraints.holds = self.solid.iter().enumerate().filter_map(hold).collect();
+        Ok(constraints)
     }
 
-    /// Refuses still water whose surface is so near its bed that no kernel is whole between them.
-    fn deep_enough(&self, still: &Still, model: &Model) -> Result<()> {
-        let reach = model.support_radius();
-        if model.gravity.last().is_none_or(|g| *g == 0.0) || still.depth > 0.999 * SHALLOW * reach {
-            return Ok(());
-        }
-        let what = format!(
-            "the water is {:.2} dp deep and the kernel reaches {:.2} dp: between bed and surface no sum is whole, and it would rise",
-            still.depth / self.dp,
-            reach / self.dp
-        );
-        let dp = still.depth * self.dp / (SHALLOW * reach);
-        Err(self.wrong_with(
-            "water",
-            what,
-            format!("{SHALLOW} of the reach is the least: write  dp = {dp:.2e}  or less"),
-        ))
-    }
-
-    /// About how many particles of water and of skins there will be.
-    pub(super) fn counts<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
-        let (volume, surface) = measures(water, solids);
-        let dimension = D as i32;
-        (volume / self.dp.powi(dimension), surface * self.layers() as f64 / self.dp.powi(dimension - 1))
-    }
-
-    /// Refuses a scene that asks for more particles than a machine holds, before any is made.
-    pub(super) fn affordable<const D: usize>(&self, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
-        self.near_enough(water)?;
-        let (fluid, boundary) = self.counts(water, solids);
-        let all = fluid + boundary;
-        if all.is_finite() && all <= MOST_PARTICLES {
-            return Ok(());
-        }
-        let (volume, surface) = measures(water, solids);
-        // Six digits say it: 0.3, not 0.30000000000000004.
-        let volume = format!("{volume:.5e}").parse().unwrap_or(volume);
-        let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
-        let what = format!(
-            "the scene asks for {all:.1e} particles: {volume} {space} of water / dp{} + {surface:.3} {face} of solids × \
-             {} layers / dp{}",
-            ["²", "³"][D - 2],
-            self.layers(),
-            ["", "²"][D - 2],
-        );
-        let dp = 1.05 * self.dp * (all / MOST_PARTICLES).powf(1.0 / D as f64);
-        let help = format!("the most is {MOST_PARTICLES:.0e}: write  dp = {dp:.1e}  or more");
-        Err(self.wrong_with("dp", what, help))
-    }
-
-    /// What the run watches, keeps and judges, from a scene with its defaults filled in.
-    fn planned(&self, still: &Still) -> Result<Plan> {
-        let frames = match &self.frames {
-            Some(Frames::On(words)) => Some(FrameWords {
-                every: words.every.unwrap_or(self.until),
-                fields: words.fields.clone().unwrap_or_default(),
-                crop: words.corners.as_ref().map(|corners| [corners.min.clone(), corners.max.clone()]),
-            }),
-            _ => None,
-        };
+    /// The plan of a run, from a scene with its defaults filled in.
+    fn planned(&self, still: &StillWater) -> Result<Plan> {
+        let ctx = &self.context();
+        let series = Series { probes: &self.probe, names: &self.probe_names() };
+        let statistics = self.statistic.iter().enumerate();
+        let checkpoint = self.checkpoint.clone().unwrap_or_default();
         Ok(Plan {
             title: self.title.clone().unwrap_or_default(),
             until: self.until,
             probes: self.probe.iter().filter_map(|probe| probe.planned(self.until)).collect(),
             contacts: self.probe.iter().filter_map(|probe| probe.listed(self.until)).collect(),
-            frames,
-            checkpoint_every: self.checkpoint.as_ref().and_then(|c| c.every),
-            checkpoint_wall: self.checkpoint.as_ref().and_then(|c| c.wall).unwrap_or(CHECKPOINT_WALL),
-            checks: self.check_words()?,
-            statistics: self.statistic_words(still)?,
+            frames: self.frames.as_ref().and_then(|frames| frames.build(ctx)),
+            checkpoint_every: checkpoint.every,
+            checkpoint_wall: checkpoint.wall_time(),
+            checks: (self.check.iter().enumerate())
+                .map(|(i, check)| check.build(ctx, &format!("check.{i}")))
+                .collect::<Result<_>>()?,
+            statistics: statistics
+                .map(|(i, statistic)| statistic.build(ctx, &format!("statistic.{i}"), &series, still))
+                .collect::<Result<_>>()?,
             folder: self.origin.folder.clone(),
         })
     }
+}
+
+/// Refuses water and moving solids that start outside the domain.
+fn verify_inside<const D: usize>(
+    ctx: &Context,
+    domain: &Bounds<D>,
+    water: &[Body<D>],
+    solids: &[SolidSpec<D>],
+) -> Result<()> {
+    let out = |shape: &Shape<D>, pose: &Pose<D>| {
+        let bounds = world_bounds(shape, pose);
+        !(domain.contains(&bounds.min) && domain.contains(&bounds.max))
+    };
+    let help = "enlarge the domain: what leaves it stops the run. Leave [domain] out for one with room on all sides";
+    if let Some(i) = water.iter().position(|body| out(&body.region.shape, &body.region.pose)) {
+        return Err(ctx.wrong_with(&format!("water.{i}"), "this water is not wholly inside the domain", help));
+    }
+    let still = |solid: &SolidSpec<D>| matches!(solid.role, Role::Fixed);
+    match solids.iter().position(|solid| !still(solid) && out(&solid.shape, &solid.pose)) {
+        Some(i) => {
+            let what = format!("solid \"{}\" starts outside the domain", solids[i].name);
+            Err(ctx.wrong_with(&format!("solid.{i}.at"), what, help))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The error that no water is left: names the first free body that has no room in it.
+fn no_water<const D: usize>(ctx: &Context, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Error {
+    let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
+    let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size();
+    let free = solids.iter().enumerate().filter(|(_, solid)| matches!(solid.role, Role::Free(_)));
+    let mut sizes = free.map(|(i, solid)| (i, world_bounds(&solid.shape, &solid.pose).size()));
+    let larger = |(i, size): (usize, Vector<D>)| Some((i, size, (0..D).find(|&axis| size[axis] >= room[axis])?));
+    let Some((i, size, axis)) = sizes.find_map(larger) else {
+        return ctx.wrong("water", "no water is left: it is thinner than dp, or solids fill it");
+    };
+    let way = if axis == D - 1 { "high" } else { ["long along x", "long along y"][axis] };
+    let (name, size, room) = (&solids[i].name, size[axis], room[axis]);
+    let what = format!("no water is left: \"{name}\" is {size:.4} m {way} and the water {room:.4} m");
+    ctx.wrong_with(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
+}
+
+/// About how many particles of water and of skins there will be.
+fn counts<const D: usize>(ctx: &Context, water: &[Body<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
+    let (volume, surface) = measures(water, solids);
+    let dimension = D as i32;
+    (volume / ctx.dp.powi(dimension), surface * ctx.layers() as f64 / ctx.dp.powi(dimension - 1))
+}
+
+/// Refuses a scene that asks for more particles than a machine holds, before any is made.
+fn verify_size<const D: usize>(ctx: &Context, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+    verify_near_origin(ctx, water)?;
+    let (fluid, boundary) = counts(ctx, water, solids);
+    let all = fluid + boundary;
+    if all.is_finite() && all <= MOST_PARTICLES {
+        return Ok(());
+    }
+    let (volume, surface) = measures(water, solids);
+    // Six digits say it: 0.3, not 0.30000000000000004.
+    let volume = format!("{volume:.5e}").parse().unwrap_or(volume);
+    let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
+    let what = format!(
+        "the scene asks for {all:.1e} particles: {volume} {space} of water / dp{} + {surface:.3} {face} of solids × \
+         {} layers / dp{}",
+        ["²", "³"][D - 2],
+        ctx.layers(),
+        ["", "²"][D - 2],
+    );
+    let dp = 1.05 * ctx.dp * (all / MOST_PARTICLES).powf(1.0 / D as f64);
+    let help = format!("the most is {MOST_PARTICLES:.0e}: write  dp = {dp:.1e}  or more");
+    Err(ctx.wrong_with("dp", what, help))
 }
 
 /// Volume of the water (m³; m² in 2-D) and surface of the solids (m²; m).
@@ -394,7 +362,7 @@ fn measures<const D: usize>(water: &[Body<D>], solids: &[SolidSpec<D>]) -> (f64,
 }
 
 /// Moves every point by up to `by` (m) in each direction, always to the same place: by its number.
-fn scatter<const D: usize>(points: &mut [Vector<D>], by: f64) {
+fn jitter<const D: usize>(points: &mut [Vector<D>], by: f64) {
     for (n, x) in (1u64..).zip(points.iter_mut().flat_map(|x| x.iter_mut())) {
         // The mixing of splitmix64 (Steele et al. 2014) makes a number of its place in a row.
         let mut z = n.wrapping_mul(0x9e37_79b9_7f4a_7c15);

@@ -8,7 +8,7 @@ use serde::{
     de::{MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
 };
 
-use super::{BoxWords, Numbers, ProbeKind, ProbeWords};
+use super::{BoxConfig, Numbers, ProbeKind, ProbeWords};
 use crate::plan::{ListWords, Surface};
 
 /// One `[[probe]]`: exactly one of the words that say what it looks at.
@@ -152,7 +152,7 @@ pub struct PatchWords {
     pub solid: String,
     /// The box in which that part lies at the start.
     #[serde(rename = "box")]
-    pub corners: BoxWords,
+    pub corners: BoxConfig,
 }
 
 impl Serialize for PointWords {

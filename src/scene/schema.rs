@@ -10,18 +10,18 @@ use super::Scene;
 
 /// Types whose choices may be written as bare words, as `viscosity = "artificial"`.
 const CHOICES: [&str; 9] =
-    ["Kernel", "Gradient", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "Sweeping", "Scheme"];
+    ["Kernel", "Gradient", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "PairLoopKind", "Scheme"];
 
 /// A type, and which of its keys are those of which exactly one is said.
 type Kinds = (&'static str, fn(&str) -> bool);
 
 /// What a solid, a body's weight, a water's room, a probe and a statistic are.
 const KINDS: [Kinds; 5] = [
-    ("SolidWords", |key| matches!(key, "fixed" | "driven" | "free")),
-    ("FreeWords", |key| matches!(key, "density" | "mass")),
-    ("FillWords", |key| matches!(key, "box" | "shape")),
+    ("SolidConfig", |key| matches!(key, "fixed" | "driven" | "free")),
+    ("FreeConfig", |key| matches!(key, "density" | "mass")),
+    ("FillConfig", |key| matches!(key, "box" | "shape")),
     ("ProbeEntry", |key| !matches!(key, "name" | "every" | "average")),
-    ("StatisticEntry", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
+    ("StatisticConfig", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
 ];
 
 /// The JSON schema (draft 2020-12) of a scene.

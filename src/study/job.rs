@@ -10,14 +10,14 @@ use crate::{
     error::{Error, Kind, Result},
     output::{Manifest, manifest::Status},
     run::{self, Options, Watch},
-    scene::{Frames, FramesWords, Scene, Size},
+    scene::{FrameOutputConfig, FramesConfig, Scene, Size, current_key},
 };
 
 /// How far further off its place the water of each repeat starts than that of the one before, dp.
 const APART: f64 = 1e-6;
 
 /// The key that tells repeats apart.
-const SCATTER: &str = "scatter";
+const JITTER: &str = "jitter";
 
 /// Keys of a scene that change what is kept or judged of a run, never the run.
 const BESIDE: [&str; 4] = ["title", "frames", "checkpoint", "check"];
@@ -78,20 +78,20 @@ impl Job {
     /// the first as the scene says: what then differs between them is chance.
     ///
     /// # Errors
-    /// `Usage` for no time, or if the job varies `scatter` itself; those of the scene's words.
+    /// `Usage` for no time, or if the job varies `jitter` itself; those of the scene's words.
     pub fn repeated(self, times: usize) -> Result<Vec<Self>> {
         if times == 0 {
             return Err(Error::new(Kind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
         }
-        if times > 1 && self.varied.iter().any(|(key, _)| key == SCATTER) {
-            return Err(Error::new(Kind::Usage, "scatter tells repeats apart: it cannot be varied too")
-                .help("leave out  --vary scatter  or  --repeat"));
+        if times > 1 && self.varied.iter().any(|(key, _)| current_key(key) == JITTER) {
+            return Err(Error::new(Kind::Usage, "jitter tells repeats apart: it cannot be varied too")
+                .help("leave out  --vary jitter  or  --repeat"));
         }
-        let own = if times > 1 { self.read()?.scatter.unwrap_or(0.0) } else { 0.0 };
+        let own = if times > 1 { self.read()?.jitter.unwrap_or(0.0) } else { 0.0 };
         let nth = |repeat: usize| {
             let mut job = Self { repeat, ..self.clone() };
             if repeat > 1 {
-                job.sets.push((SCATTER.into(), format!("{:?}", own + APART * (repeat - 1) as f64)));
+                job.sets.push((JITTER.into(), format!("{:?}", own + APART * (repeat - 1) as f64)));
                 job.folder.as_mut_os_string().push(format!("_repeat-{repeat}"));
             }
             job
@@ -218,7 +218,7 @@ impl Job {
 
 /// Whether a run kept the frames that its scene now asks for, if it names their times; there may be others between them.
 fn has_frames(scene: &Scene, manifest: &Manifest) -> bool {
-    let Some(Frames::On(FramesWords { every: Some(every), .. })) = &scene.frames else { return true };
+    let Some(FramesConfig::On(FrameOutputConfig { every: Some(every), .. })) = &scene.frames else { return true };
     let words = manifest.scene.parse::<toml::Table>().ok();
     let kept = words.and_then(|words| words.get("frames")?.get("every")?.as_float());
     kept.map(|kept| every / kept).is_some_and(|each| each > 0.5 && (each - each.round()).abs() < 1e-6)

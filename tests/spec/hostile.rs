@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     Error,
-    scene::{Scene, shipped},
+    scene::{Scene, bundled},
 };
 use proptest::prelude::*;
 
@@ -242,7 +242,7 @@ proptest! {
         which in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0usize..5, 0usize..PIECES.len()), 1..5)
     ) {
-        let all = shipped();
+        let all = bundled();
         let (name, text, _) = &all[which.index(all.len())];
         let mut text: Vec<char> = text.chars().collect();
         for (at, length, piece) in changes {

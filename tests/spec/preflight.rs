@@ -7,7 +7,7 @@ use pontoon::{
     model::Dimension,
     preflight::{self, Body, Preflight, Severity},
     run::{self, Options, Progress},
-    scene::{Built, Scene, shipped},
+    scene::{Built, Scene, bundled},
     simulation::Simulation,
     solid::Dim,
 };
@@ -315,7 +315,7 @@ fn solids_in_touch_have_no_gap_and_a_gate_that_is_lifted_pushes_no_water() {
 fn the_shipped_scenes_give_no_false_alarm() {
     // Waves of two dp: as coarse as its README says.
     const KNOWN: [(&str, &str); 1] = [("ren-box", "low_waves")];
-    for (name, ..) in shipped() {
+    for (name, ..) in bundled() {
         let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), &[]).unwrap();
         let found = if scene.dimension == 2 { look::<2>(&scene) } else { look::<3>(&scene) };
         let warnings = found.findings.iter().filter(|f| f.severity == Severity::Warning);

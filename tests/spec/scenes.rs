@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use pontoon::{
     model::Dimension,
     output::frame::particle_bytes,
-    scene::{Built, Scene, shipped},
+    scene::{Built, Scene, bundled},
     simulation::Simulation,
     solid::Dim,
 };
@@ -68,10 +68,10 @@ where
 fn every_scene_has_a_readme_and_is_built_into_the_program_with_all_its_files() {
     let names = names();
     assert!(names.len() >= 7);
-    let mut known: Vec<&str> = shipped().iter().map(|scene| scene.0).collect();
+    let mut known: Vec<&str> = bundled().iter().map(|scene| scene.0).collect();
     known.sort();
     assert_eq!(names, known);
-    for (name, text, files) in shipped() {
+    for (name, text, files) in bundled() {
         let mut expected: Vec<(String, String)> =
             files.iter().chain([&("scene.toml", *text)]).map(|(f, t)| (f.to_string(), t.to_string())).collect();
         expected.sort();

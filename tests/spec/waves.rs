@@ -7,7 +7,7 @@ use pontoon::{
     math::Vector,
     model::{Dimension, Model, Scheme, Viscosity},
     preflight::{self, Finding, Preflight, Wave},
-    scene::{Built, DampingWords, DrivenWords, ProbeEntry, Scene, ShapeWords, SolidWords, WaveWords},
+    scene::{Built, DrivenConfig, ProbeEntry, Scene, ShapeConfig, SolidConfig, SpongeLayerConfig, WaveConfig},
     simulation::{Setup, Simulation},
     solid::Dim,
     system::SpongeLayer,
@@ -128,22 +128,23 @@ fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
 
 #[test]
 fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
-    let paddle = |motion: DrivenWords| {
-        let at = pontoon::scene::AtWords { x: Some(-0.05), bottom: Some(0.0), ..Default::default() };
-        let tank = SolidWords::fixed("tank", ShapeWords::tank([5.2, 0.6])).at(pontoon::scene::AtWords::point(&[-0.2]));
+    let paddle = |motion: DrivenConfig| {
+        let at = pontoon::scene::PlacementConfig { x: Some(-0.05), bottom: Some(0.0), ..Default::default() };
+        let tank = SolidConfig::fixed("tank", ShapeConfig::tank([5.2, 0.6]))
+            .at(pontoon::scene::PlacementConfig::point(&[-0.2]));
         Scene::new(2, 0.02, 6.0)
             .title("A flume")
             .water_box([0.0, 0.0], [5.0, 0.3])
             .solid(tank)
-            .solid(SolidWords::driven("paddle", ShapeWords::cuboid([0.1, 0.6]), motion).at(at))
+            .solid(SolidConfig::driven("paddle", ShapeConfig::cuboid([0.1, 0.6]), motion).at(at))
             .without_frames()
     };
-    let piston = paddle(DrivenWords::piston([1.0, 0.0], WaveWords::regular(0.1, 1.2)));
+    let piston = paddle(DrivenConfig::piston([1.0, 0.0], WaveConfig::regular(0.1, 1.2)));
     assert_eq!(piston, Scene::parse(FLUME, Path::new(""), &[]).unwrap());
     let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
     assert_eq!(piston, again);
-    let flap = paddle(DrivenWords::flap([0.0, -0.1], WaveWords::jonswap(0.06, 1.4, 7)))
-        .damped(DampingWords::between([4.0, 0.0], [5.0, 0.0]))
+    let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
+        .damped(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
         .probe(ProbeEntry::motion("paddle"));
     assert_eq!(look(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
 }

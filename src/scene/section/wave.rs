@@ -1,42 +1,47 @@
-//! The words of waves that a paddle makes, and what holds them against one another.
+//! `wave`: the waves that a paddle makes, and its absorption of waves that come back.
+
+use std::fmt;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{
+    Deserialize, Deserializer, Serialize,
+    de::{self, MapAccess, Visitor, value::MapAccessDeserializer},
+};
 
-use super::{Absorb, AbsorbWords, DrivenWords, Scene, resolve::Filler, verify::said};
 use crate::{
     error::Result,
+    scene::context::{Context, Defaults, joined, set_keys},
     wavemaker::{COMPONENTS, Theory},
 };
 
 /// A wave by name: exactly one kind; none of a paddle that only absorbs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct WaveWords {
+pub struct WaveConfig {
     /// One height and one period.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub regular: Option<RegularWords>,
+    pub regular: Option<RegularWaveConfig>,
     /// A sea of JONSWAP's spectrum.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub jonswap: Option<SeaWords>,
+    pub jonswap: Option<IrregularWaveConfig>,
     /// A sea of Bretschneider's spectrum.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub bretschneider: Option<SeaWords>,
+    pub bretschneider: Option<IrregularWaveConfig>,
     /// A fully grown sea: its height says its period.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub pierson_moskowitz: Option<SeaWords>,
+    pub pierson_moskowitz: Option<IrregularWaveConfig>,
     /// A group with its crest at one place and time.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub focused: Option<FocusedWords>,
+    pub focused: Option<FocusedWaveConfig>,
     /// One crest.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub solitary: Option<SolitaryWords>,
+    pub solitary: Option<SolitaryWaveConfig>,
     /// A sum of components from a table.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub components: Option<ComponentsWords>,
+    pub components: Option<WaveComponentsConfig>,
     /// The surface that was measured somewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub elevation: Option<ElevationWords>,
+    pub elevation: Option<MeasuredWaveConfig>,
     /// How long the paddle takes to its full motion, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ramp: Option<f64>,
@@ -45,13 +50,13 @@ pub struct WaveWords {
     pub depth: Option<f64>,
     /// Whether the paddle takes the waves that come back to it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub absorb: Option<Absorb>,
+    pub absorb: Option<AbsorptionConfig>,
 }
 
 /// A regular wave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RegularWords {
+pub struct RegularWaveConfig {
     /// From trough to crest, m.
     pub height: f64,
     /// s.
@@ -67,7 +72,7 @@ pub struct RegularWords {
 /// An irregular sea.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SeaWords {
+pub struct IrregularWaveConfig {
     /// Significant height, 4 √m₀, m.
     pub height: f64,
     /// Period at the spectrum's peak, s.
@@ -87,7 +92,7 @@ pub struct SeaWords {
 /// A focused group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct FocusedWords {
+pub struct FocusedWaveConfig {
     /// Height of its crest over the still level, m.
     pub crest: f64,
     /// Period at the spectrum's peak, s.
@@ -107,7 +112,7 @@ pub struct FocusedWords {
 /// A solitary wave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SolitaryWords {
+pub struct SolitaryWaveConfig {
     /// Of its crest over the still level, m.
     pub height: f64,
     /// Whose theory.
@@ -118,7 +123,7 @@ pub struct SolitaryWords {
 /// A table of components.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ComponentsWords {
+pub struct WaveComponentsConfig {
     /// The table, beside the scene: `amplitude_m`; `period_s` or `frequency_hz`; `phase_rad` or `phase_deg`.
     pub file: String,
 }
@@ -126,7 +131,7 @@ pub struct ComponentsWords {
 /// A measured elevation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ElevationWords {
+pub struct MeasuredWaveConfig {
     /// The table, beside the scene.
     pub file: String,
     /// Its column of elevations, m.
@@ -145,43 +150,98 @@ pub struct ElevationWords {
     pub delay: Option<f64>,
 }
 
-impl WaveWords {
+/// Whether a paddle absorbs: `true`, or how.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum AbsorptionConfig {
+    /// As usual, or not at all.
+    Switch(bool),
+    /// As these words say.
+    Settings(AbsorberConfig),
+}
+
+/// How a paddle absorbs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct AbsorberConfig {
+    /// Period whose waves it takes whole, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period: Option<f64>,
+    /// How far it may go from end to end, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stroke: Option<f64>,
+    /// How fast it may go, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+}
+
+impl AbsorptionConfig {
+    /// The settings of the absorption; `None` if the paddle does not absorb.
+    pub(crate) fn settings(self) -> Option<AbsorberConfig> {
+        match self {
+            Self::Switch(absorbs) => absorbs.then(AbsorberConfig::default),
+            Self::Settings(words) => Some(words),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for AbsorptionConfig {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> std::result::Result<Self, De::Error> {
+        struct Form;
+        impl<'de> Visitor<'de> for Form {
+            type Value = AbsorptionConfig;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "true, or a table with `period`, `stroke`, `speed`")
+            }
+            fn visit_bool<E: de::Error>(self, absorbs: bool) -> std::result::Result<AbsorptionConfig, E> {
+                Ok(AbsorptionConfig::Switch(absorbs))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<AbsorptionConfig, A::Error> {
+                AbsorberConfig::deserialize(MapAccessDeserializer::new(map)).map(AbsorptionConfig::Settings)
+            }
+        }
+        deserializer.deserialize_any(Form)
+    }
+}
+
+impl WaveConfig {
     /// A regular wave of `height` (m) and `period` (s).
     pub fn regular(height: f64, period: f64) -> Self {
-        Self { regular: Some(RegularWords { height, period, ..Default::default() }), ..Self::default() }
+        Self { regular: Some(RegularWaveConfig { height, period, ..Default::default() }), ..Self::default() }
     }
 
     /// The sea number `seed` of significant height `height` (m) and JONSWAP's spectrum.
     pub fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self {
-        let sea = SeaWords { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
+        let sea =
+            IrregularWaveConfig { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
         Self { jonswap: Some(sea), ..Self::default() }
     }
 
     /// The group whose crest of `crest` (m) stands `distance` (m) from the paddle at `time` (s).
     pub fn focused(crest: f64, peak_period: f64, distance: f64, time: f64) -> Self {
-        let group = FocusedWords { crest, peak_period, distance, time, ..Default::default() };
+        let group = FocusedWaveConfig { crest, peak_period, distance, time, ..Default::default() };
         Self { focused: Some(group), ..Self::default() }
     }
 
     /// The solitary wave of `height` (m).
     pub fn solitary(height: f64) -> Self {
-        Self { solitary: Some(SolitaryWords { height, theory: None }), ..Self::default() }
+        Self { solitary: Some(SolitaryWaveConfig { height, theory: None }), ..Self::default() }
     }
 
     /// No wave: a paddle that takes those of `period` (s) that come to it.
     pub fn absorber(period: f64) -> Self {
-        let words = AbsorbWords { period: Some(period), ..AbsorbWords::default() };
-        Self { absorb: Some(Absorb::As(words)), ..Self::default() }
+        let words = AbsorberConfig { period: Some(period), ..AbsorberConfig::default() };
+        Self { absorb: Some(AbsorptionConfig::Settings(words)), ..Self::default() }
     }
 
     /// The same wave of a paddle that takes what comes back to it.
     pub fn absorbing(self) -> Self {
-        Self { absorb: Some(Absorb::Plainly(true)), ..self }
+        Self { absorb: Some(AbsorptionConfig::Switch(true)), ..self }
     }
 
     /// The kinds that it names.
     fn kinds(&self) -> Vec<&'static str> {
-        let all = [
+        set_keys([
             ("regular", self.regular.is_some()),
             ("jonswap", self.jonswap.is_some()),
             ("bretschneider", self.bretschneider.is_some()),
@@ -190,129 +250,133 @@ impl WaveWords {
             ("solitary", self.solitary.is_some()),
             ("components", self.components.is_some()),
             ("elevation", self.elevation.is_some()),
-        ];
-        all.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()
+        ])
     }
 
-    /// Fills in what a wave does not say.
-    pub(super) fn fill(&mut self, filler: &mut Filler, key: &str) {
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let peaked = "JONSWAP's mean";
         let many = "the spectrum's form, and a sea that does not repeat";
         if let Some(words) = &mut self.regular {
             let why = "without the free wave of twice the frequency that a plain paddle makes";
-            filler.fill(format!("{key}.regular.order"), &mut words.order, 2, why);
-            filler.fill(format!("{key}.regular.phase_deg"), &mut words.phase_deg, 0.0, "the paddle sets out forwards");
+            defaults.fill(format!("{key}.regular.order"), &mut words.order, 2, why);
+            defaults.fill(
+                format!("{key}.regular.phase_deg"),
+                &mut words.phase_deg,
+                0.0,
+                "the paddle sets out forwards",
+            );
         }
         for (word, sea) in self.seas() {
             let Some(sea) = sea else { continue };
             if word == "jonswap" {
-                filler.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
+                defaults.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
             }
-            filler.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
-            filler.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS, many);
+            defaults.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
+            defaults.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS, many);
         }
         if let Some(words) = &mut self.focused {
-            filler.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
-            filler.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS, many);
+            defaults.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
+            defaults.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS, many);
         }
         if let Some(words) = &mut self.solitary {
             let why = "its wave keeps its height better than Boussinesq's";
-            filler.fill(format!("{key}.solitary.theory"), &mut words.theory, Theory::Rayleigh, why);
+            defaults.fill(format!("{key}.solitary.theory"), &mut words.theory, Theory::Rayleigh, why);
         }
         if let Some(words) = &mut self.elevation {
             let key = format!("{key}.elevation");
-            filler.fill(format!("{key}.time"), &mut words.time, "t_s".into(), "the name our own tables have");
-            filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "as in the table");
-            filler.fill(format!("{key}.distance"), &mut words.distance, 0.0, "measured at the paddle");
-            filler.fill(format!("{key}.delay"), &mut words.delay, 0.0, "the clocks agree");
+            defaults.fill(format!("{key}.time"), &mut words.time, "t_s".into(), "the name our own tables have");
+            defaults.fill(format!("{key}.scale"), &mut words.scale, 1.0, "as in the table");
+            defaults.fill(format!("{key}.distance"), &mut words.distance, 0.0, "measured at the paddle");
+            defaults.fill(format!("{key}.delay"), &mut words.delay, 0.0, "the clocks agree");
         }
     }
 
-    fn seas(&mut self) -> [(&'static str, &mut Option<SeaWords>); 3] {
+    fn seas(&mut self) -> [(&'static str, &mut Option<IrregularWaveConfig>); 3] {
         [
             ("jonswap", &mut self.jonswap),
             ("bretschneider", &mut self.bretschneider),
             ("pierson_moskowitz", &mut self.pierson_moskowitz),
         ]
     }
-}
 
-impl DrivenWords {
-    /// A piston that makes `wave` in the direction `along`.
-    pub fn piston(along: impl Into<Vec<f64>>, wave: WaveWords) -> Self {
-        Self { along: Some(along.into()), wave: Some(wave), ..Self::default() }
-    }
-
-    /// A flap hinged at the world point `hinge` (m) that makes `wave`; 2-D, in 3-D it needs an `axis` too.
-    pub fn flap(hinge: impl Into<Vec<f64>>, wave: WaveWords) -> Self {
-        Self { hinge: Some(hinge.into()), wave: Some(wave), ..Self::default() }
-    }
-}
-
-impl Scene {
-    pub(super) fn verify_wave(&self, key: &str, words: &WaveWords) -> Result<()> {
-        let kinds = words.kinds();
-        let absorb = words.absorb.and_then(Absorb::words);
+    /// Refuses a wave that is not of exactly one kind, or whose numbers are out of range.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        let kinds = self.kinds();
+        let absorb = self.absorb.and_then(AbsorptionConfig::settings);
         if let Some(words) = &absorb {
-            self.verify_absorb(&format!("{key}.absorb"), words, !kinds.is_empty())?;
+            words.verify(ctx, &format!("{key}.absorb"), !kinds.is_empty())?;
         }
         if kinds.len() > 1 || (kinds.is_empty() && absorb.is_none()) {
             let what = match kinds.len() {
                 0 => "which wave?".to_string(),
-                _ => format!("a paddle makes one kind of wave; this one {}", said(&kinds)),
+                _ => format!("a paddle makes one kind of wave; this one {}", joined(&kinds)),
             };
-            return Err(self.wrong(key, what));
+            return Err(ctx.wrong(key, what));
         }
-        let gravity = self.gravity.as_ref().is_none_or(|g| {
+        let gravity = ctx.gravity.is_none_or(|g| {
             let (up, rest) = g.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
             up < 0.0 && rest.iter().all(|x| *x == 0.0)
         });
         if !gravity {
-            return Err(self.wrong_with(
-                "gravity",
-                "waves need gravity straight down",
-                "write  gravity = [0.0, -9.81]",
-            ));
+            return Err(ctx.wrong_with("gravity", "waves need gravity straight down", "write  gravity = [0.0, -9.81]"));
         }
-        self.positive(&format!("{key}.ramp"), words.ramp)?;
-        self.positive(&format!("{key}.depth"), words.depth)?;
+        ctx.positive(&format!("{key}.ramp"), self.ramp)?;
+        ctx.positive(&format!("{key}.depth"), self.depth)?;
         let Some(kind) = kinds.first() else { return Ok(()) };
         let key = &format!("{key}.{kind}");
         let mut numbers = Vec::new();
-        if let Some(words) = &words.regular {
+        if let Some(words) = &self.regular {
             numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
             if let Some(order) = words.order.filter(|order| !(1..=2).contains(order)) {
                 let help = "order = 1, or  order = 2  without free waves of twice the frequency";
-                return Err(self.wrong_with(&format!("{key}.order"), format!("order is 1 or 2, not {order}"), help));
+                return Err(ctx.wrong_with(&format!("{key}.order"), format!("order is 1 or 2, not {order}"), help));
             }
         }
-        for sea in [&words.jonswap, &words.bretschneider, &words.pierson_moskowitz].into_iter().flatten() {
+        for sea in [&self.jonswap, &self.bretschneider, &self.pierson_moskowitz].into_iter().flatten() {
             numbers.extend([("height", Some(sea.height)), ("peak_period", sea.peak_period), ("gamma", sea.gamma)]);
-            self.verify_sea(key, sea)?;
+            sea.verify(ctx, key)?;
         }
-        if let Some(words) = &words.focused {
+        if let Some(words) = &self.focused {
             numbers.extend([("crest", Some(words.crest)), ("peak_period", Some(words.peak_period))]);
             numbers.extend([("distance", Some(words.distance)), ("time", Some(words.time)), ("gamma", words.gamma)]);
         }
-        numbers.extend(words.solitary.iter().map(|words| ("height", Some(words.height))));
-        numbers.into_iter().try_for_each(|(word, x)| self.positive(&format!("{key}.{word}"), x))
+        numbers.extend(self.solitary.iter().map(|words| ("height", Some(words.height))));
+        numbers.into_iter().try_for_each(|(word, x)| ctx.positive(&format!("{key}.{word}"), x))
     }
+}
 
-    /// What belongs to which spectrum.
-    fn verify_sea(&self, key: &str, sea: &SeaWords) -> Result<()> {
+impl IrregularWaveConfig {
+    /// Refuses keys that do not belong to the spectrum.
+    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         let grown = key.ends_with("pierson_moskowitz");
         let place = |word: &str| format!("{key}.{word}");
-        if grown && sea.peak_period.is_some() {
+        if grown && self.peak_period.is_some() {
             let what = "the height of a fully grown sea says its period: 5 s √(height in m)";
             let help = "leave it out, or write  bretschneider = { height = 0.1, peak_period = 1.4 }";
-            return Err(self.wrong_with(&place("peak_period"), what, help));
+            return Err(ctx.wrong_with(&place("peak_period"), what, help));
         }
-        if !grown && sea.peak_period.is_none() {
-            return Err(self.wrong(&place("peak_period"), "peak_period is missing"));
+        if !grown && self.peak_period.is_none() {
+            return Err(ctx.wrong(&place("peak_period"), "peak_period is missing"));
         }
-        if sea.gamma.is_some() && !key.ends_with("jonswap") {
-            return Err(self.wrong_with(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
+        if self.gamma.is_some() && !key.ends_with("jonswap") {
+            return Err(ctx.wrong_with(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
         }
         Ok(())
+    }
+}
+
+impl AbsorberConfig {
+    /// Refuses numbers that are not positive, and a paddle without a wave and without a period.
+    fn verify(&self, ctx: &Context, key: &str, makes_waves: bool) -> Result<()> {
+        let all = [("period", self.period), ("stroke", self.stroke), ("speed", self.speed)];
+        all.into_iter().try_for_each(|(word, x)| ctx.positive(&format!("{key}.{word}"), x))?;
+        match makes_waves || self.period.is_some() {
+            true => Ok(()),
+            false => {
+                let what = "a paddle that makes no wave of its own absorbs those of a period, and none is said";
+                Err(ctx.wrong_with(key, what, "write  wave = { absorb = { period = 1.2 } }"))
+            }
+        }
     }
 }
