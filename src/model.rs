@@ -1,6 +1,6 @@
 //! The chosen laws, as data; the one place where a name becomes a type.
 
-pub use crate::sph::boundary::Slip;
+pub use crate::sph::{boundary::Slip, density_diffusion::Diffusion, viscosity::Viscosity};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,12 +15,12 @@ use crate::{
         FluidProperties, Term, Units,
         boundary::Repulsion,
         continuity::Continuity,
-        density_diffusion::{Fourtakas, Molteni},
+        density_diffusion::Fourtakas,
         gradient_correction::{CorrectedGradient, RenormalizationMatrix},
         kernel::{self, Kernel as _, SUPPORT_RATIO},
         particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
-        viscosity::{Artificial, Laminar, Sps},
+        viscosity::{Artificial, WithTerms},
     },
 };
 
@@ -42,20 +42,6 @@ fn yes() -> bool {
     true
 }
 
-/// Which viscosity acts. Scene word `model.viscosity`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Viscosity {
-    /// None: the ideal fluid.
-    None,
-    /// Monaghan's artificial viscosity.
-    Artificial(Artificial),
-    /// Laminar (Lo & Shao 2002; Morris 1997).
-    Laminar(Laminar),
-    /// Laminar with sub-particle-scale turbulence (Dalrymple & Rogers 2006).
-    Sps(Sps),
-}
-
 /// Which slope the pressure has. Scene word `model.gradient`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -65,18 +51,6 @@ pub enum Gradient {
     Plain,
     /// Corrected by how the neighbours of each particle lie (Bonet & Lok 1999); with the Wendland kernel and no shifting.
     Corrected,
-}
-
-/// Which density diffusion acts. Scene word `model.diffusion`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Diffusion {
-    /// None.
-    None,
-    /// Molteni & Colagrossi (2009).
-    Molteni(Molteni),
-    /// Fourtakas et al. (2019): the hydrostatic part of the density difference is left alone.
-    Fourtakas(Fourtakas),
 }
 
 /// Which particles are shifted. Scene word `model.shifting`.
@@ -91,6 +65,17 @@ pub enum Shifting {
     AwayFromFixed(Shift),
     /// All (type 3).
     Everywhere(Shift),
+}
+
+impl Shifting {
+    /// Whether water is not shifted beside a solid, which is `fixed` or not.
+    pub fn suppressed_beside(self, fixed: bool) -> bool {
+        match self {
+            Self::AwayFromSolids(_) => true,
+            Self::AwayFromFixed(_) => fixed,
+            Self::None | Self::Everywhere(_) => false,
+        }
+    }
 }
 
 /// Which sweep adds up the pairs. Scene word `model.sweep`.
@@ -277,17 +262,34 @@ impl Model {
         }
     }
 
-    /// The one sweep that does what this model names, and nothing else.
-    fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
+    /// The units in which the pair loop computes, and its instructions; SI and `None` for the reference.
+    fn units<const D: usize>(&self) -> (Units, Option<Level>) {
         let level = self.pair_loop.instruction_set();
-        let units = match level {
-            Some(_) => {
-                Units { length: NeighbourLists::<D>::length_unit(self.support_radius()), time: self.h / self.c0 }
-            }
-            None => Units::SI,
-        };
-        let make = PairLoopBuilder { model: self, medium: self.fluid_properties::<D>().in_units(&units), units, level };
-        let FluidProperties { h, dp, .. } = make.medium;
+        let length = NeighbourLists::<D>::length_unit(self.support_radius());
+        (level.map_or(Units::SI, |_| Units { length, time: self.h / self.c0 }), level)
+    }
+
+    /// A pair loop of your own terms under the Wendland kernel, for [`Simulation::with_pair_loop`]: `terms` gets the fluid
+    /// properties in the units of the pair loop, and those units, and returns the terms between water particles and those
+    /// between water and solids. The choices of this model that name terms do not apply. See `examples/own_law.rs`.
+    ///
+    /// [`Simulation::with_pair_loop`]: crate::simulation::Simulation::with_pair_loop
+    pub fn custom_pair_loop<T: Term<D> + 'static, W: Term<D> + 'static, const D: usize>(
+        &self,
+        terms: impl FnOnce(&FluidProperties<D>, &Units) -> (T, W),
+    ) -> Box<dyn PairLoop<D>> {
+        let (units, level) = self.units::<D>();
+        let properties = self.fluid_properties::<D>().in_units(&units);
+        let (fluid, wall) = terms(&properties, &units);
+        interaction::compile(kernel::Wendland::new(properties.h, D), fluid, wall, &properties, units, level)
+    }
+
+    /// The pair loop with the terms that this model names, and no others.
+    fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
+        let (units, level) = self.units::<D>();
+        let make =
+            PairLoopBuilder { model: self, properties: self.fluid_properties::<D>().in_units(&units), units, level };
+        let FluidProperties { h, dp, .. } = make.properties;
         let plain = (Pressure, Continuity);
         match self.kernel {
             Kernel::Wendland => match self.gradient {
@@ -301,7 +303,7 @@ impl Model {
             Kernel::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
             Kernel::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
-                let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.medium).w(dp * dp) };
+                let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.properties).w(dp * dp) };
                 make.with_shifting(kernel, ((Pressure, tensile), Continuity))
             }
         }
@@ -331,7 +333,7 @@ impl Dimension<3> for Dim<3> {
 /// The making of a sweep, choice by choice, in the units in which it counts.
 struct PairLoopBuilder<'a, const D: usize> {
     model: &'a Model,
-    medium: FluidProperties<D>,
+    properties: FluidProperties<D>,
     units: Units,
     level: Option<Level>,
 }
@@ -354,46 +356,32 @@ impl<const D: usize> PairLoopBuilder<'_, D> {
         base: T,
         wall: W,
     ) -> Box<dyn PairLoop<D>> {
-        let damped = || kernel.viscous_sum(&self.medium);
-        let held = (wall, Repulsion::new(kernel, &self.medium));
-        // Which part of the viscosity acts between water and solids.
-        let beside = if self.model.slip == Slip::Free { 0.0 } else { 1.0 };
-        match self.model.viscosity {
-            Viscosity::None => self.with_diffusion(kernel, base, held),
-            Viscosity::Artificial(v) => {
-                let wall = Artificial { alpha: v.alpha * beside };
-                self.with_diffusion(kernel, (base, v.term(&self.medium)), (held, wall.term(&self.medium)))
-            }
-            Viscosity::Laminar(v) => {
-                let wall = Laminar { nu0: v.nu0 * beside };
-                self.with_diffusion(
-                    kernel,
-                    (base, v.term(&self.units, damped())),
-                    (held, wall.term(&self.units, damped())),
-                )
-            }
-            Viscosity::Sps(v) => {
-                let wall = Sps { nu0: v.nu0 * beside, ..v };
-                self.with_diffusion(
-                    kernel,
-                    (base, v.terms(&self.units, damped())),
-                    (held, wall.terms(&self.units, damped())),
-                )
-            }
-        }
+        let wall = (wall, Repulsion::new(kernel, &self.properties));
+        let Model { viscosity, slip, .. } = *self.model;
+        let next = Diffusive { builder: self, kernel, fluid: base, wall };
+        viscosity.terms(&self.properties, &self.units, slip.wall_share(), || kernel.viscous_sum(&self.properties), next)
     }
+}
 
-    fn with_diffusion<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
-        &self,
-        kernel: K,
-        inner: T,
-        wall: W,
-    ) -> Box<dyn PairLoop<D>> {
-        let term = match self.model.diffusion {
-            Diffusion::None => return interaction::compile(kernel, inner, wall, &self.medium, self.units, self.level),
-            Diffusion::Molteni(d) => d.term(&self.medium),
-            Diffusion::Fourtakas(d) => d.term(&self.medium),
-        };
-        interaction::compile(kernel, (inner, term), wall, &self.medium, self.units, self.level)
+/// A pair loop that lacks its viscosity.
+struct Diffusive<'a, K, T, W, const D: usize> {
+    builder: &'a PairLoopBuilder<'a, D>,
+    kernel: K,
+    fluid: T,
+    wall: W,
+}
+
+impl<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static, const D: usize> WithTerms<D>
+    for Diffusive<'_, K, T, W, D>
+{
+    type Output = Box<dyn PairLoop<D>>;
+
+    fn with_terms<V: Term<D> + 'static, X: Term<D> + 'static>(self, fluid: V, wall: X) -> Self::Output {
+        let Self { builder: PairLoopBuilder { model, properties, units, level }, kernel, .. } = self;
+        let (fluid, wall) = ((self.fluid, fluid), (self.wall, wall));
+        match model.diffusion.term(properties) {
+            None => interaction::compile(kernel, fluid, wall, properties, *units, *level),
+            Some(term) => interaction::compile(kernel, (fluid, term), wall, properties, *units, *level),
+        }
     }
 }

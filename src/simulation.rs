@@ -24,6 +24,7 @@ use rescue::RollbackControl;
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
     error::{Error, Fault, Kind, Result},
+    interaction::PairLoop,
     math::{Bivector, Vector},
     model::Dimension,
     solid::{
@@ -91,11 +92,23 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        Self::with_bodies(setup, false)
+        let pair_loop = Dim::<D>::pair_loop(&setup.model);
+        Self::with_bodies(setup, pair_loop, false)
+    }
+
+    /// As [`Simulation::new`], with a pair loop of your own terms: see [`Model::custom_pair_loop`](crate::model::Model).
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_pair_loop(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>) -> Result<Self>
+    where
+        Dim<D>: Dimension<D>,
+    {
+        Self::with_bodies(setup, pair_loop, false)
     }
 
     /// Sets up a simulation whose free solids it moves itself, or lets be `hosted` by somebody else.
-    fn with_bodies(setup: Setup<D>, external: bool) -> Result<Self>
+    fn with_bodies(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
@@ -113,7 +126,7 @@ impl<const D: usize> Simulation<D> {
         };
         let rig = Assembly::new(&setup.constraints, start);
         let stepper = Stepper::new(&setup.model);
-        let mut system = System::new(setup)?;
+        let mut system = System::new(setup, pair_loop)?;
         let bodies = Bodies::new(engine, AcousticAddedMass::find(&mut system), rig, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
@@ -225,7 +238,8 @@ impl<const D: usize> Simulation<D> {
         let model = self.system.model();
         let water = step_size::water(&self.system.step_limits(), self.system.properties(), model.cfl);
         let ties = self.spring_limit().min(self.bodies.constraints().next_release(self.clock.time));
-        water.min(step_size::viscous(model)).min(model.dt_max).min(ties) * self.rollback.step_factor(self.clock.time)
+        water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
+            * self.rollback.step_factor(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.

@@ -6,11 +6,7 @@ use super::{
     Finding, Look, Step,
     format::{three, up},
 };
-use crate::{
-    math::format::bytes,
-    model::{Gradient, Viscosity},
-    output::frame::particle_bytes,
-};
+use crate::{math::format::bytes, model::Gradient, output::frame::particle_bytes};
 
 /// Disk that frames may take without a word, B.
 const BUDGET: f64 = 10e9;
@@ -102,7 +98,7 @@ impl<const D: usize> Look<'_, D> {
         let (d, number) = (D as f64, 8.0);
         let particle = 2.0 * d * number + number + 4.0;
         let tensor = |needed: bool| if needed { 3.0 * d * d * number } else { 0.0 };
-        let stress = tensor(matches!(system.model().viscosity, Viscosity::Sps(_)));
+        let stress = tensor(system.model().viscosity.stress().is_some());
         let forms = tensor(system.model().gradient == Gradient::Corrected);
         let extra = if system.model().shift().is_some() { (2.0 * d + 2.0) * number } else { 0.0 };
         // Twice the particles, as the step keeps its start; the sums; the places of the last lists.

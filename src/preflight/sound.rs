@@ -10,7 +10,6 @@ use crate::{
     model::Scheme,
     solid::{Role, Solid},
     sph::boundary::Slip,
-    time_integration::step_size,
 };
 
 /// Speed of sound over the largest speed, at least: densities vary by the square of its inverse, then 1 %.
@@ -144,7 +143,7 @@ impl<const D: usize> Look<'_, D> {
         let finite = |x: f64| (x > 0.0 && x.is_finite()).then_some(x);
         let sound_s = model.cfl * model.h / model.c0;
         let gravity_s = finite(model.cfl * (model.h / self.system.gravity().norm()).sqrt());
-        let (viscosity_s, dt_max_s) = (finite(step_size::viscous(model)), finite(model.dt_max));
+        let (viscosity_s, dt_max_s) = (finite(model.viscosity.step_limit(model.h)), finite(model.dt_max));
         let springs_s = finite(springs);
         let others = [("gravity", gravity_s), ("viscosity", viscosity_s), ("springs", springs_s), ("dt_max", dt_max_s)];
         let mut all = vec![("sound".to_string(), sound_s)];

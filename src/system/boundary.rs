@@ -10,7 +10,7 @@ use super::{System, boundary_extension::ExtensionParticle};
 use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
-    model::{Model, Shifting, Walls},
+    model::{Model, Walls},
     neighbours::NeighbourLists,
     particles::{PARTICLES_PER_TASK, Particles},
     solid::{Kinematics, Role, Solid, SolidSpec, boundary_motion},
@@ -149,7 +149,8 @@ impl<const D: usize> System<D> {
         }
         let mut suppressed = vec![false; self.boundary.particles.len()];
         for solid in &self.solids {
-            suppressed[solid.boundary.clone()].fill(suppresses_shifting(&self.model, solid));
+            let fixed = matches!(solid.spec.role, Role::Fixed);
+            suppressed[solid.boundary.clone()].fill(self.model.shifting.suppressed_beside(fixed));
         }
         self.boundary.shifting_suppressed = Some(suppressed);
     }
@@ -256,15 +257,6 @@ impl<const D: usize> System<D> {
     /// The solid of boundary particle `i`.
     fn owner(&self, i: usize) -> &Solid<D> {
         &self.solids[self.solids.partition_point(|solid| solid.boundary.end <= i)]
-    }
-}
-
-/// Whether water is not shifted beside `solid`.
-fn suppresses_shifting<const D: usize>(model: &Model, solid: &Solid<D>) -> bool {
-    match model.shifting {
-        Shifting::AwayFromSolids(_) => true,
-        Shifting::AwayFromFixed(_) => matches!(solid.spec.role, Role::Fixed),
-        Shifting::None | Shifting::Everywhere(_) => false,
     }
 }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Images, System};
 use crate::{
     math::{Matrix, Vector},
-    model::{Gradient, Model, Viscosity},
+    model::{Gradient, Model},
     particles::{PARTICLES_PER_TASK, Particles},
 };
 
@@ -33,7 +33,7 @@ impl<const D: usize> Fluid<D> {
         v.resize(r.len(), Vector::zeros());
         let zeros = |needed: bool| needed.then(|| vec![Matrix::zeros(); r.len()]);
         Self {
-            stress: zeros(matches!(model.viscosity, Viscosity::Sps(_))),
+            stress: zeros(model.viscosity.stress().is_some()),
             gradient_correction: zeros(model.gradient == Gradient::Corrected),
             particles: Particles { id: (0..r.len() as u32).collect(), r, v, rho },
             images,

@@ -34,10 +34,10 @@ use crate::{
     error::{Error, Result},
     interaction::{PairLoop, PairLoopInput, PairLoopOutput, PairSums},
     math::{Bounds, Matrix, Pose, Vector},
-    model::{Dimension, Model, Viscosity},
+    model::Model,
     neighbours::{CHUNK, NeighbourLists},
     particles::PARTICLES_PER_TASK,
-    solid::{Constraints, Dim, Load, Solid},
+    solid::{Constraints, Load, Solid},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
 
@@ -115,10 +115,7 @@ pub(crate) struct MomentumTransfer<const D: usize> {
 
 impl<const D: usize> System<D> {
     /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles.
-    pub(crate) fn new(setup: Setup<D>) -> Result<Self>
-    where
-        Dim<D>: Dimension<D>,
-    {
+    pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>) -> Result<Self> {
         let Setup {
             model,
             water,
@@ -153,7 +150,7 @@ impl<const D: usize> System<D> {
             initial_count: particles.len(),
         };
         let mut system = Self {
-            pair_loop: Dim::<D>::pair_loop(&model),
+            pair_loop,
             neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set()),
             rates: Rates {
                 fluid: vec![PairSums::zero(); fluid.particles.len()],
@@ -294,10 +291,10 @@ impl<const D: usize> System<D> {
     /// The stress and the corrected gradients that the next force pass reads, from the sums of this one.
     fn update_fluid_tensors(&mut self) {
         let (medium, auxiliary) = (&self.properties, &self.rates.auxiliary);
-        if let (Viscosity::Sps(sps), Some(stress)) = (self.model.viscosity, &mut self.fluid.stress) {
+        if let (Some(law), Some(stress)) = (self.model.viscosity.stress(), &mut self.fluid.stress) {
             let rho = &self.fluid.particles.rho;
             stress.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, stress)| {
-                let rows = sps.stress(&auxiliary[i].strain, medium.rho0 / rho[i], medium);
+                let rows = law.stress(&auxiliary[i].strain, medium.rho0 / rho[i], medium);
                 *stress = Matrix::from_fn(|i, j| rows[i][j]);
             });
         }

@@ -19,7 +19,7 @@ use super::{apply_shifts, shifts, step_boundary_density};
 use crate::{
     coupling::{Accounting, Interval},
     math::Vector,
-    model::{Diffusion, Model, Viscosity},
+    model::Model,
     particles::PARTICLES_PER_TASK,
     system::{Reordering, StepCheck, System, permute},
 };
@@ -46,15 +46,9 @@ pub struct Verlet<const D: usize> {
 impl<const D: usize> Verlet<D> {
     /// At the start of a run with this model; the first step is Euler's.
     pub fn new(euler_every: u32, model: &Model) -> Self {
-        let delta = match model.diffusion {
-            Diffusion::None => 0.0,
-            Diffusion::Molteni(d) => d.delta,
-            Diffusion::Fourtakas(d) => d.delta,
-        };
-        let alpha = if let Viscosity::Artificial(v) = model.viscosity { v.alpha } else { 0.0 };
         Self {
             euler_every: euler_every.max(1),
-            growth: (7.0 * delta + 3.5 * alpha) * model.c0 / model.h,
+            growth: (model.diffusion.damping() + model.viscosity.damping()) * model.c0 / model.h,
             steps: 0,
             foldings: 0.0,
             dt_before: 0.0,

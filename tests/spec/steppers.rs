@@ -75,9 +75,9 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
     // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀.
     assert_eq!(sim.dt(), model.cfl * (model.h / model.c0));
     // Morris' limit; artificial viscosity is in the other two.
-    assert_eq!(step_size::viscous(&model), f64::INFINITY);
+    assert_eq!(model.viscosity.step_limit(model.h), f64::INFINITY);
     let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
-    assert_eq!(step_size::viscous(&thick), model.h * model.h / 4.0);
+    assert_eq!(thick.viscosity.step_limit(model.h), model.h * model.h / 4.0);
     let peaks = pontoon::system::StepLimits { acceleration: 1e7, approach_rate: 0.0 };
     assert_eq!(step_size::water(&peaks, sim.system().properties(), 0.2), 0.2 * (model.h / 1e7).sqrt());
     let peaks = pontoon::system::StepLimits { acceleration: 0.0, approach_rate: 100.0 };

@@ -25,6 +25,13 @@ pub enum Slip {
     Free,
 }
 
+impl Slip {
+    /// Share of the viscosity that acts between water and solids, –.
+    pub fn wall_share(self) -> f64 {
+        if self == Self::Free { 0.0 } else { 1.0 }
+    }
+}
+
 /// Most d/d̄: at the rim of the support the mean of few particles says little.
 const MAX_RATIO: f64 = 4.0;
 
