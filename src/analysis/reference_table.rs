@@ -15,8 +15,8 @@ use crate::{
 /// # Errors
 /// `File` if it cannot be read; `Scene` if a column is missing (names the nearest), a field is no number, or
 /// fewer than two rows have both.
-pub fn read(path: &Path, time: &str, column: &str, delay: f64) -> Result<Series> {
-    let mut rows = rows(path, time, column)?;
+pub fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<Series> {
+    let mut rows = read_pairs(path, time, column)?;
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let groups = rows.chunk_by(|a, b| a.0 == b.0);
     let (t, x): (Vec<f64>, Vec<f64>) =
@@ -25,7 +25,7 @@ pub fn read(path: &Path, time: &str, column: &str, delay: f64) -> Result<Series>
 }
 
 /// The rows (time, value) in which both columns hold a number.
-fn rows(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>> {
+fn read_pairs(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>> {
     let broken = |why: csv::Error| Error::file(path, why);
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(broken)?;

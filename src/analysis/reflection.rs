@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use realfft::num_complex::Complex;
 
-use super::{harmonic, spectra, spectrum};
+use super::{harmonic, complex_amplitudes, spectrum};
 use crate::{math::time_series::Series, wavemaker::wave_number};
 
 /// Least determinant of the least squares over the square of the number of gauges, –: below, the gauges stand so that
@@ -52,23 +52,23 @@ pub fn reflection(gauges: &[(f64, &Series)], depth: f64, g: f64, period: Option<
             let omega = TAU / period;
             let fits: Option<Vec<_>> = gauges.iter().map(|(_, series)| harmonic(series, omega)).collect();
             let amplitudes: Vec<_> = fits?.iter().map(|h| Complex::from_polar(h.amplitude, h.phase)).collect();
-            let (i, r) = apart(&places, &amplitudes, wave_number(omega, depth, g))?;
+            let (i, r) = separate_waves(&places, &amplitudes, wave_number(omega, depth, g))?;
             Some(Reflection { incident: 2.0 * i.norm(), reflected: 2.0 * r.norm() })
         }
-        None => irregular(gauges, &places, depth, g),
+        None => irregular_reflection(gauges, &places, depth, g),
     }
 }
 
-fn irregular(gauges: &[(f64, &Series)], places: &[f64], depth: f64, g: f64) -> Option<Reflection> {
+fn irregular_reflection(gauges: &[(f64, &Series)], places: &[f64], depth: f64, g: f64) -> Option<Reflection> {
     let all: Vec<&Series> = gauges.iter().map(|(_, series)| *series).collect();
     let first = spectrum(all[0])?;
-    let [from, until] = BAND.map(|part| part * first.peak());
-    let (step, lines) = spectra(&all)?;
+    let [from, until] = BAND.map(|part| part * first.peak_frequency());
+    let (step, lines) = complex_amplitudes(&all)?;
     let (mut comes, mut goes, mut seen) = (0.0, 0.0, 0.0);
     for j in (1..lines[0].len()).filter(|&j| (from..=until).contains(&(j as f64 * step))) {
         let amplitudes: Vec<_> = lines.iter().map(|of| of[j]).collect();
         let k = wave_number(TAU * j as f64 * step, depth, g);
-        if let Some((i, r)) = apart(places, &amplitudes, k) {
+        if let Some((i, r)) = separate_waves(places, &amplitudes, k) {
             comes += i.norm_sqr();
             goes += r.norm_sqr();
             seen += lines[0][j].norm_sqr();
@@ -80,7 +80,7 @@ fn irregular(gauges: &[(f64, &Series)], places: &[f64], depth: f64, g: f64) -> O
 }
 
 /// Amplitudes of the waves of number `k` (1/m) that come and that go back, from those at `places` (m).
-fn apart(places: &[f64], amplitudes: &[Complex<f64>], k: f64) -> Option<(Complex<f64>, Complex<f64>)> {
+fn separate_waves(places: &[f64], amplitudes: &[Complex<f64>], k: f64) -> Option<(Complex<f64>, Complex<f64>)> {
     let n = places.len() as f64;
     let turn = |x: &f64| Complex::from_polar(1.0, k * x);
     let twice: Complex<f64> = places.iter().map(|x| turn(&(2.0 * x))).sum();

@@ -3,7 +3,7 @@
 use clap::Args;
 use pontoon::{
     Result,
-    bench::{self, Timing, Work},
+    bench::{self, BenchTiming, BenchCase},
     error::{Error, Kind},
     output::manifest::Machine,
 };
@@ -48,9 +48,9 @@ pub struct BenchArgs {
 struct Tables {
     version: &'static str,
     machine: Machine,
-    standard: Vec<Timing>,
-    oracle: Vec<Timing>,
-    terms: Vec<Timing>,
+    standard: Vec<BenchTiming>,
+    oracle: Vec<BenchTiming>,
+    terms: Vec<BenchTiming>,
     /// Time of the oracle's pairs over that of the fast sweep's, of each work.
     fast_over_oracle: Vec<f64>,
 }
@@ -58,13 +58,13 @@ struct Tables {
 /// Times and gives the text to print.
 pub fn bench(args: &BenchArgs) -> Result<String> {
     if let Some(steps) = args.fixed {
-        bench::fixed(steps, &args.work)?;
+        bench::run_fixed_steps(steps, &args.work)?;
         return Ok(String::new());
     }
     if args.size.iter().any(|&n| !(100..=50_000_000).contains(&n)) || args.threads == Some(0) {
         return Err(Error::new(Kind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
     }
-    let machine = Machine::this();
+    let machine = Machine::current();
     let threads = args.threads.unwrap_or(machine.cpus);
     let mut tables = Tables {
         version: env!("CARGO_PKG_VERSION"),
@@ -77,33 +77,33 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
     for &water in &args.size {
         if args.terms {
             for dimension in [3, 2] {
-                tables.terms.extend(bench::time(&bench::terms(dimension, water), &[1], 5)?);
+                tables.terms.extend(bench::time(&bench::term_cases(dimension, water), &[1], 5)?);
             }
             continue;
         }
         for dimension in [3, 2] {
-            let mut work = Work::standard(dimension, water);
+            let mut work = BenchCase::standard(dimension, water);
             if args.developed {
                 // 2.2 √(depth/g) after its release the water has run up the far wall.
-                work = Work { name: "wendland, developed".into(), until: 4.0, ..work };
+                work = BenchCase { name: "wendland, developed".into(), spin_up: 4.0, ..work };
             }
             let cubic = [("model.kernel", "cubic")];
             let works =
-                if args.developed { vec![work] } else { vec![work.clone(), work.with("cubic, tensile", &cubic)] };
+                if args.developed { vec![work] } else { vec![work.clone(), work.with_overrides("cubic, tensile", &cubic)] };
             let counts = if threads > 1 { vec![1, threads] } else { vec![1] };
             for work in works {
                 // One after the other, so that the peak of memory is that of one.
                 tables.standard.extend(bench::time(std::slice::from_ref(&work), &counts, 3)?);
                 // The oracle takes a minute and more for a larger one, and tells nothing new.
                 if !args.developed && water <= LARGEST_FOR_ORACLE {
-                    let sets = [&work.sets[..], &[("model.sweep", "reference")]].concat();
-                    tables.oracle.extend(bench::time(&[work.with(&work.name, &sets)], &[1], 2)?);
+                    let sets = [&work.overrides[..], &[("model.sweep", "reference")]].concat();
+                    tables.oracle.extend(bench::time(&[work.with_overrides(&work.name, &sets)], &[1], 2)?);
                 }
             }
         }
     }
     for oracle in &tables.oracle {
-        let same = |t: &&Timing| {
+        let same = |t: &&BenchTiming| {
             (t.threads, t.dimension, t.water, &t.work) == (1, oracle.dimension, oracle.water, &oracle.work)
         };
         tables.fast_over_oracle.extend(tables.standard.iter().find(same).map(|t| oracle.pair_ns / t.pair_ns));
@@ -143,7 +143,7 @@ fn text(tables: &Tables) -> String {
     text
 }
 
-fn rows(timings: &[Timing]) -> Vec<Vec<String>> {
+fn rows(timings: &[BenchTiming]) -> Vec<Vec<String>> {
     let head = [
         "work",
         "",
@@ -184,7 +184,7 @@ fn rows(timings: &[Timing]) -> Vec<Vec<String>> {
     rows
 }
 
-fn term_rows(timings: &[Timing]) -> Vec<Vec<String>> {
+fn term_rows(timings: &[BenchTiming]) -> Vec<Vec<String>> {
     let mut rows = vec![["work", "", "cpu ns", "÷ standard", "pairs ÷ standard", "ms/step"].map(String::from).to_vec()];
     for t in timings {
         let Some(base) = timings.iter().find(|b| b.dimension == t.dimension) else { continue };

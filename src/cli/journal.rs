@@ -11,8 +11,8 @@ use std::{
 
 use pontoon::{
     error::Error,
-    output::manifest::Status,
-    run::{Drift, Outcome, Progress, Start, Watch},
+    output::manifest::RunStatus,
+    run::{EnergyDrift, RunOutcome, Progress, RunStart, RunObserver},
     simulation::Rollback,
 };
 use serde_json::{Value, json};
@@ -49,8 +49,8 @@ impl Follower for Journal {
     }
 }
 
-impl Watch for Journal {
-    fn start(&mut self, start: &Start) {
+impl RunObserver for Journal {
+    fn start(&mut self, start: &RunStart) {
         let manifest = start.manifest;
         self.folder = Some(start.folder.to_owned());
         self.warnings = manifest.warnings.len();
@@ -64,7 +64,7 @@ impl Watch for Journal {
         manifest.warnings.iter().for_each(|text| warn(text));
     }
 
-    fn rescued(&mut self, how: &Rollback) {
+    fn rolled_back(&mut self, how: &Rollback) {
         self.warnings += 1;
         if !self.quiet {
             warn(&how.to_string());
@@ -83,8 +83,8 @@ impl Watch for Journal {
                 "wall_s": now.wall, "left_s": left, "particle_steps_per_second": now.rate, "warnings": self.warnings,
             });
             match now.energy {
-                Some(Drift::Unaccounted(share)) => event["energy_residual"] = json!(share),
-                Some(Drift::Changed(energy, unit)) => {
+                Some(EnergyDrift::Unaccounted(share)) => event["energy_residual"] = json!(share),
+                Some(EnergyDrift::Changed(energy, unit)) => {
                     event[if unit == "J" { "energy_change_J" } else { "energy_change_J_per_m" }] = json!(energy);
                 }
                 None => {}
@@ -101,16 +101,16 @@ pub fn warn(text: &str) {
 }
 
 /// How a run ended.
-pub fn ended(outcome: &Outcome) {
+pub fn ended(outcome: &RunOutcome) {
     let manifest = &outcome.manifest;
     let status = match manifest.status {
-        Status::Finished => "finished",
-        Status::Interrupted => "interrupted",
-        Status::Running | Status::Failed => "failed",
+        RunStatus::Finished => "finished",
+        RunStatus::Interrupted => "interrupted",
+        RunStatus::Running | RunStatus::Failed => "failed",
     };
     tell(&json!({
         "event": "end", "status": status, "folder": outcome.folder, "t_s": manifest.simulated_s, "steps": manifest.steps,
-        "wall_s": manifest.wall_s, "missed_checks": outcome.failed_checks(),
+        "wall_s": manifest.wall_s, "missed_checks": outcome.has_failed_checks(),
         "frames": manifest.frames.count, "frames_bytes": manifest.frames.bytes,
     }));
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use pontoon::{
     error::{Error, Kind, Result},
-    report::{self, Field, Page, Shot},
+    report::{self, ColourField, Page, PictureOptions},
 };
 
 use super::{
@@ -113,17 +113,17 @@ impl LookArgs {
     ///
     /// # Errors
     /// `Usage` if a time is none.
-    pub fn shot(&self) -> Result<Shot> {
+    pub fn shot(&self) -> Result<PictureOptions> {
         if let Some(t) = self.time.iter().find(|t| !t.is_finite()) {
             let help = "give seconds, as in --time 0.5,1";
             return Err(Error::new(Kind::Usage, format!("--time {t} is no time")).help(help));
         }
         let field = match self.by {
-            By::Pressure => Field::Pressure,
-            By::Excess => Field::Excess,
-            By::Speed => Field::Speed,
+            By::Pressure => ColourField::Pressure,
+            By::Excess => ColourField::ExcessPressure,
+            By::Speed => ColourField::Speed,
         };
-        Ok(Shot { times: self.time.clone(), field, range: self.range, width: self.width, heads: vec![] })
+        Ok(PictureOptions { times: self.time.clone(), field, range: self.range, width: self.width, column_titles: vec![] })
     }
 }
 
@@ -131,8 +131,8 @@ impl LookArgs {
 ///
 /// # Errors
 /// As [`report::picture`].
-pub fn draw(folders: &[PathBuf], shot: &Shot, out: &Path) -> Result<()> {
-    let (width, height) = report::picture(folders, shot, out)?;
+pub fn draw(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<()> {
+    let (width, height) = report::write_picture(folders, shot, out)?;
     say(&format!("{}: {width} × {height} pixels\n", out.display()));
     Ok(())
 }

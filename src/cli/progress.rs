@@ -12,8 +12,8 @@ use std::{
 use crossterm::terminal::size;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon::{
-    preflight::three,
-    run::{Progress, Start, Watch},
+    preflight::three_digits,
+    run::{Progress, RunStart, RunObserver},
     simulation::Rollback,
 };
 
@@ -45,7 +45,7 @@ pub struct Follow {
 }
 
 /// Someone who follows a run for the user.
-pub trait Follower: Watch {
+pub trait Follower: RunObserver {
     /// Ends what is shown; the folder of the run, if one has begun.
     fn close(&mut self) -> Option<PathBuf>;
 }
@@ -77,7 +77,7 @@ impl Follow {
         let speed = || format!("{} steps/s", report::short((now.steps - steps) as f64 / wall));
         let words = [
             (done > 0.0).then(left),
-            (now.dt > 0.0).then(|| format!("dt {} s", three(now.dt))),
+            (now.dt > 0.0).then(|| format!("dt {} s", three_digits(now.dt))),
             report::warnings(self.warnings),
             now.energy.map(|drift| drift.to_string()),
             Some(format!("step {}", now.steps)),
@@ -113,8 +113,8 @@ impl Follow {
     }
 }
 
-impl Watch for Follow {
-    fn start(&mut self, start: &Start) {
+impl RunObserver for Follow {
+    fn start(&mut self, start: &RunStart) {
         self.folder = Some(start.folder.to_owned());
         self.warnings = start.manifest.warnings.len();
         if !self.quiet {
@@ -122,7 +122,7 @@ impl Watch for Follow {
         }
     }
 
-    fn rescued(&mut self, how: &Rollback) {
+    fn rolled_back(&mut self, how: &Rollback) {
         self.warnings += 1;
         if !self.quiet {
             self.bar.suspend(|| complain(&format!("warning: {how}\n")));

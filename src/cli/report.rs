@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use pontoon::{
     analysis::{Verdict, format_verdicts},
-    output::manifest::{Pictures, Status},
-    run::{Body, Outcome, Start},
+    output::manifest::{FrameTotals, RunStatus},
+    run::{FinalBodyState, RunOutcome, RunStart},
 };
 
 pub use pontoon::math::format::{bytes, duration};
@@ -53,7 +53,7 @@ pub fn warnings(count: usize) -> Option<String> {
 }
 
 /// Said when a run begins.
-pub fn started(start: &Start) -> String {
+pub fn started(start: &RunStart) -> String {
     let (manifest, count) = (start.manifest, start.manifest.particles);
     let mut text = format!("{}\n", manifest.title);
     for warning in &manifest.warnings {
@@ -71,12 +71,12 @@ pub fn started(start: &Start) -> String {
 }
 
 /// Said when a run ends.
-pub fn ended(outcome: &Outcome) -> String {
+pub fn ended(outcome: &RunOutcome) -> String {
     let manifest = &outcome.manifest;
     let how = match manifest.status {
-        Status::Finished => "finished",
-        Status::Interrupted => "interrupted",
-        Status::Running | Status::Failed => "failed",
+        RunStatus::Finished => "finished",
+        RunStatus::Interrupted => "interrupted",
+        RunStatus::Running | RunStatus::Failed => "failed",
     };
     let mut text = format!("\n{}: {how}\n", manifest.title);
     text += &table(&[
@@ -110,11 +110,11 @@ pub fn ended(outcome: &Outcome) -> String {
         let _ = writeln!(text, "  {file}");
     }
     match manifest.frames {
-        Pictures { count: 0, .. } => {}
-        Pictures { count: 1, bytes: size } => text += &format!("  1 frame, {}, in frames/\n", bytes(size as f64)),
-        Pictures { count, bytes: size } => text += &format!("  {count} frames, {}, in frames/\n", bytes(size as f64)),
+        FrameTotals { count: 0, .. } => {}
+        FrameTotals { count: 1, bytes: size } => text += &format!("  1 frame, {}, in frames/\n", bytes(size as f64)),
+        FrameTotals { count, bytes: size } => text += &format!("  {count} frames, {}, in frames/\n", bytes(size as f64)),
     }
-    if manifest.status == Status::Interrupted {
+    if manifest.status == RunStatus::Interrupted {
         let _ = writeln!(text, "\ngo on with: pontoon resume {}", outcome.folder.display());
     } else if manifest.files.iter().any(|file| file.starts_with("series/")) {
         let _ = writeln!(text, "means, waves, spectra: pontoon stats {}", outcome.folder.display());
@@ -122,7 +122,7 @@ pub fn ended(outcome: &Outcome) -> String {
     text
 }
 
-fn bodies(bodies: &[Body]) -> String {
+fn bodies(bodies: &[FinalBodyState]) -> String {
     let axes = ["x", "y", "z"].iter().take(bodies[0].position.len()).map(|a| format!("{a} (m)"));
     let mut rows = vec![vec!["body".to_string()]];
     rows[0].extend(axes.chain(["speed (m/s)".into(), "turn (deg)".into()]));
@@ -130,7 +130,7 @@ fn bodies(bodies: &[Body]) -> String {
         let mut row = vec![body.name.clone()];
         row.extend(body.position.iter().map(|x| format!("{x:.4}")));
         row.push(format!("{:.4}", body.speed));
-        row.push(body.turn_deg.iter().map(|x| format!("{x:.2}")).collect::<Vec<_>>().join(" "));
+        row.push(body.rotation_deg.iter().map(|x| format!("{x:.2}")).collect::<Vec<_>>().join(" "));
         rows.push(row);
     }
     table(&rows)
@@ -138,7 +138,7 @@ fn bodies(bodies: &[Body]) -> String {
 
 fn checks(checks: &[Verdict]) -> String {
     let all: Vec<(&[String], &Verdict)> = checks.iter().map(|v| (&[][..], v)).collect();
-    table(&format_verdicts::rows(&all, &[]))
+    table(&format_verdicts::verdict_rows(&all, &[]))
 }
 
 /// What `scenes` prints.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use pontoon::{
     error::{Error, Result},
-    output::manifest::Status,
-    run::{self, Options, Outcome},
+    output::manifest::RunStatus,
+    run::{self, RunOptions, RunOutcome},
 };
 
 use super::{
@@ -100,7 +100,7 @@ enum Log {
 pub fn run(args: &RunArgs) -> Result<u8> {
     let started = |args: &RunArgs| {
         let found = shelf::find(&args.scene.scene)?;
-        let options = Options { out: args.out.clone(), sets: args.sets(), threads: args.threads };
+        let options = RunOptions { out: args.out.clone(), overrides: args.sets(), threads: args.threads };
         let mut follow = follower(&args.said)?;
         let outcome = found.named(run::run(found.path(), &options, &mut *follow));
         end(outcome, follow, &args.said)
@@ -138,16 +138,16 @@ fn follower(said: &SaidArgs) -> Result<Box<dyn Follower>> {
 }
 
 /// Closes the progress, prints the table, writes the page of the run if it is wanted, chooses the exit code.
-fn end(outcome: Result<Outcome>, mut follow: Box<dyn Follower>, said: &SaidArgs) -> Result<u8> {
+fn end(outcome: Result<RunOutcome>, mut follow: Box<dyn Follower>, said: &SaidArgs) -> Result<u8> {
     let (folder, json) = (follow.close(), said.log == Log::Json);
     match &outcome {
         _ if said.quiet => {}
         Ok(outcome) if json => {
-            outcome.late.iter().for_each(|text| journal::warn(text));
+            outcome.end_warnings.iter().for_each(|text| journal::warn(text));
             journal::ended(outcome);
         }
         Ok(outcome) => {
-            outcome.late.iter().for_each(|text| complain(&format!("warning: {text}\n")));
+            outcome.end_warnings.iter().for_each(|text| complain(&format!("warning: {text}\n")));
             say(&report::ended(outcome));
         }
         Err(_) => {}
@@ -161,8 +161,8 @@ fn end(outcome: Result<Outcome>, mut follow: Box<dyn Follower>, said: &SaidArgs)
     }
     let outcome = outcome?;
     Ok(match outcome.manifest.status {
-        Status::Interrupted => 130,
-        _ if outcome.failed_checks() => 3,
+        RunStatus::Interrupted => 130,
+        _ if outcome.has_failed_checks() => 3,
         _ => 0,
     })
 }

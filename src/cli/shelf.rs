@@ -7,7 +7,7 @@ use std::{
 
 use pontoon::{
     error::{Error, Kind, Result, nearest},
-    scene::{Shipped, shipped},
+    scene::{BundledScene, bundled_scenes},
 };
 
 /// A scene that was found; one that is built in lies in a temporary folder for as long as this lives.
@@ -67,7 +67,7 @@ pub fn find(word: &Path) -> Result<Found> {
             return Ok(Found { path: path.to_owned(), temporary: None });
         }
     }
-    let shelf = shipped();
+    let shelf = bundled_scenes();
     let name = word.to_string_lossy();
     if let Some(scene) = shelf.iter().find(|(known, ..)| *known == name) {
         return unpack(scene);
@@ -80,7 +80,7 @@ pub fn find(word: &Path) -> Result<Found> {
 }
 
 /// Lays a built-in scene out in a temporary folder.
-fn unpack((name, text, files): &Shipped) -> Result<Found> {
+fn unpack((name, text, files): &BundledScene) -> Result<Found> {
     let temporary = std::env::temp_dir().join(format!("pontoon-{}", std::process::id()));
     let found = Found { path: temporary.join(name), temporary: Some(temporary) };
     let refused = |why| Error::file(&found.path, format!("cannot be written: {why}"));
@@ -94,7 +94,7 @@ fn unpack((name, text, files): &Shipped) -> Result<Found> {
 
 /// All scenes that come with the program.
 pub fn all() -> Vec<Listed> {
-    let listed = |(name, text, files): &Shipped| {
+    let listed = |(name, text, files): &BundledScene| {
         let words = text.parse::<toml::Table>().ok();
         let readme = files.iter().find(|(file, _)| *file == "README.md").map_or("", |(_, readme)| readme);
         let folder = Path::new("scenes").join(name);
@@ -105,7 +105,7 @@ pub fn all() -> Vec<Listed> {
             folder: folder.join("scene.toml").is_file().then_some(folder),
         }
     };
-    shipped().iter().map(listed).collect()
+    bundled_scenes().iter().map(listed).collect()
 }
 
 /// The first sentence of `readme` that is no heading, of a line however long.

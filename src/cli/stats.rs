@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    preflight::three,
-    run::{Answer, Asked, Statistic, Told, statistics},
+    preflight::three_digits,
+    run::{RaoResult, StatisticsFilter, Statistic, RunStatistics, statistics},
 };
 use serde::Serialize;
 
@@ -41,15 +41,15 @@ const FIGURES: [&str; 12] =
 
 /// The tables, or the JSON.
 pub fn stats(args: &StatsArgs) -> Result<String> {
-    let asked = Asked { series: args.series.clone(), from: args.from, until: args.until };
+    let asked = StatisticsFilter { series: args.series.clone(), from: args.from, until: args.until };
     let told = statistics(&args.folder, &asked)?;
     told.remarks.iter().for_each(|remark| complain(&format!("warning: {remark}\n")));
-    if args.rao && told.answers.is_empty() {
+    if args.rao && told.raos.is_empty() {
         return Err(no_answer(args));
     }
     match (args.rao, args.json) {
-        (true, true) => json(&told.answers),
-        (true, false) => Ok(table(&answered(&told.answers))),
+        (true, true) => json(&told.raos),
+        (true, false) => Ok(table(&answered(&told.raos))),
         (false, true) => json(&told.rows),
         (false, false) => Ok(tables(&told)),
     }
@@ -71,14 +71,14 @@ fn json<T: Serialize>(rows: &[T]) -> Result<String> {
 }
 
 /// All tables that have rows.
-fn tables(told: &Told) -> String {
+fn tables(told: &RunStatistics) -> String {
     let (plain, declared): (Vec<_>, Vec<_>) = told.rows.iter().partition(|row| row.name.is_empty());
     let mut text = table(&every(&plain));
     if !declared.is_empty() {
         text += &format!("\n{}", table(&named(&declared)));
     }
-    if !told.answers.is_empty() {
-        text += &format!("\n{}", table(&answered(&told.answers)));
+    if !told.raos.is_empty() {
+        text += &format!("\n{}", table(&answered(&told.raos)));
     }
     text
 }
@@ -89,7 +89,7 @@ fn every(rows: &[&Statistic]) -> Vec<Vec<String>> {
     let head = ["series", "unit"].into_iter().chain(figures.iter().copied());
     let mut lines = vec![head.map(String::from).collect::<Vec<_>>()];
     for of in rows.chunk_by(|a, b| a.series == b.series) {
-        let value = |f: &&str| of.iter().find(|row| row.quantity == *f).map_or(String::new(), |row| three(row.value));
+        let value = |f: &&str| of.iter().find(|row| row.quantity == *f).map_or(String::new(), |row| three_digits(row.value));
         let mut line = vec![of[0].series.clone(), of[0].unit.clone()];
         line.extend(figures.iter().map(value));
         lines.push(line);
@@ -104,18 +104,18 @@ fn named(rows: &[&Statistic]) -> Vec<Vec<String>> {
     lines.extend(rows.iter().map(|row| {
         let span = [row.from_s, row.until_s].map(|t| format!("{t:.3}"));
         let [from, until] = span;
-        vec![row.name.clone(), row.series.clone(), row.quantity.into(), three(row.value), row.unit.clone(), from, until]
+        vec![row.name.clone(), row.series.clone(), row.quantity.into(), three_digits(row.value), row.unit.clone(), from, until]
     }));
     lines
 }
 
 /// A row for each frequency of each motion that answers irregular waves.
-fn answered(answers: &[Answer]) -> Vec<Vec<String>> {
+fn answered(answers: &[RaoResult]) -> Vec<Vec<String>> {
     let head = ["statistic", "series", "frequency (Hz)", "period (s)", "rao", "unit", "phase (°)", "coherence"];
-    let row = |answer: &Answer| {
-        let Answer { name, series, unit, band } = answer;
-        let (frequency, period) = (format!("{:.4}", band.frequency), format!("{:.3}", 1.0 / band.frequency));
-        let [ratio, phase, coherence] = [band.ratio, answer.degrees(), band.coherence].map(three);
+    let row = |answer: &RaoResult| {
+        let RaoResult { name, series, unit, point } = answer;
+        let (frequency, period) = (format!("{:.4}", point.frequency), format!("{:.3}", 1.0 / point.frequency));
+        let [ratio, phase, coherence] = [point.ratio, answer.phase_degrees(), point.coherence].map(three_digits);
         vec![name.clone(), series.clone(), frequency, period, ratio, unit.clone(), phase, coherence]
     };
     [head.map(String::from).to_vec()].into_iter().chain(answers.iter().map(row)).collect()

@@ -5,7 +5,7 @@ use std::{path::PathBuf, sync::atomic::Ordering};
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    study::stress::{EnergyBudget, Entry, Map, Outcome, choose, maps, said},
+    study::stress::{StressResults, CaseResult, StressMap, CaseOutcome, select_maps, maps, said},
 };
 
 use super::{
@@ -53,8 +53,8 @@ pub fn stress(args: StressArgs) -> Result<u8> {
     if args.threads == Some(0) {
         return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
     }
-    let mut ledger = EnergyBudget::open(choose(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
-    let due = ledger.entries.iter().filter(|entry| entry.trial.is_none()).count();
+    let mut ledger = StressResults::open(select_maps(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
+    let due = ledger.entries.iter().filter(|entry| entry.run.is_none()).count();
     if args.dry_run {
         ledger.entries.iter().for_each(|entry| say(&line(entry)));
         say(&format!("{} cases, {due} to be run\n", ledger.entries.len()));
@@ -63,7 +63,7 @@ pub fn stress(args: StressArgs) -> Result<u8> {
     let stop = stopper_saying("\nstopping after the cases in hand; Ctrl-C again stops at once, without them\n")?;
     let threads = args.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, |n| n.get()));
     let mut done = 0;
-    ledger.work(threads, &stop, |entry| {
+    ledger.run_missing(threads, &stop, |entry| {
         done += 1;
         if !args.quiet {
             complain(&format!("{done}/{due} {}", line(entry)));
@@ -71,9 +71,9 @@ pub fn stress(args: StressArgs) -> Result<u8> {
     })?;
     let pictures = ledger.write()?;
     say(&format!("\n{}", table(&ledger.table())));
-    let wrong = |entry: &&Entry| entry.verdict().is_some_and(|(outcome, _)| outcome == Outcome::Wrong);
+    let wrong = |entry: &&CaseResult| entry.verdict().is_some_and(|(outcome, _)| outcome == CaseOutcome::Wrong);
     ledger.entries.iter().filter(wrong).for_each(|entry| say(&line(entry)));
-    say(&format!("processor time {}\n{}\n", duration(ledger.seconds()), ledger.file().display()));
+    say(&format!("processor time {}\n{}\n", duration(ledger.cpu_seconds()), ledger.file().display()));
     say(&format!(
         "{} pictures, as {}\n",
         pictures.len(),
@@ -90,17 +90,17 @@ pub fn stress(args: StressArgs) -> Result<u8> {
 }
 
 /// A case in a line.
-fn line(entry: &Entry) -> String {
+fn line(entry: &CaseResult) -> String {
     format!("{} {}\n", entry.case.map, said(entry))
 }
 
 /// The list of maps.
-fn listed(all: &[Map]) -> String {
+fn listed(all: &[StressMap]) -> String {
     let mut rows = vec![["map", "cases", "along", "about"].map(String::from).to_vec()];
     rows.extend(all.iter().map(|map| {
         let axes: Vec<&str> = std::iter::once(&map.x).chain(&map.y).map(|axis| axis.label.as_str()).collect();
         vec![map.name.clone(), map.count().to_string(), axes.join(" × "), map.about.clone()]
     }));
-    let sum: usize = all.iter().map(Map::count).sum();
+    let sum: usize = all.iter().map(StressMap::count).sum();
     format!("{}\n{sum} cases; run one map with: pontoon stress MAP; without a name all are run\n", table(&rows))
 }

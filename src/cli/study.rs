@@ -8,10 +8,10 @@ use std::{
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    output::has_folder,
-    report::Shot,
+    output::require_parent_folder,
+    report::PictureOptions,
     scene::Scene,
-    study::{CHANCE, Grid, Job, Planned, Ran, Row, Sheet, State, USUAL, Vary, heads, interval, plan, split, spreads},
+    study::{REPEATS_NOTE, ParameterGrid, Job, TimeEstimate, JobResult, ResultRow, StudyResults, JobState, DEFAULT_SPEED, VariedKey, distinguishing_labels, frame_interval, estimate_times, split_values, spread_table},
 };
 
 use super::{
@@ -66,7 +66,7 @@ pub struct StudyArgs {
 /// How a list of runs ended.
 pub struct Done {
     /// What came out, of the first runs if it was interrupted.
-    pub ran: Vec<Ran>,
+    pub ran: Vec<JobResult>,
     /// Whether Ctrl-C ended it.
     pub interrupted: bool,
 }
@@ -84,8 +84,8 @@ pub struct List<'a> {
 impl List<'_> {
     /// Says what is to come, even to who wants quiet if nothing else will be said. Nothing is written.
     pub fn announce(&self, alone: bool) -> Result<()> {
-        let ran = self.jobs.iter().map(Job::look).collect::<Result<Vec<Ran>>>()?;
-        let planned = plan(self.jobs, &ran, self.count())?;
+        let ran = self.jobs.iter().map(Job::existing_result).collect::<Result<Vec<JobResult>>>()?;
+        let planned = estimate_times(self.jobs, &ran, self.count())?;
         if alone || !self.quiet {
             say(&announced(self.jobs, &ran, &planned));
         }
@@ -93,25 +93,25 @@ impl List<'_> {
     }
 
     /// Runs what is to be run; `after` is told after every run.
-    pub fn work(&self, stop: &Arc<AtomicBool>, mut after: impl FnMut(&[Ran]) -> Result<()>) -> Result<Done> {
-        let mut ran: Vec<Ran> = Vec::new();
+    pub fn work(&self, stop: &Arc<AtomicBool>, mut after: impl FnMut(&[JobResult]) -> Result<()>) -> Result<Done> {
+        let mut ran: Vec<JobResult> = Vec::new();
         for (i, job) in self.jobs.iter().enumerate() {
-            let known = job.look()?;
-            if known.state == State::Finished {
+            let known = job.existing_result()?;
+            if known.state == JobState::Finished {
                 ran.push(known);
                 continue;
             }
             if !self.quiet {
-                complain(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.said()));
+                complain(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.display_name()));
             }
             let mut follow = Box::new(Follow::new(self.quiet, stop.clone()));
-            let outcome = job.attempt(self.threads, &mut *follow);
+            let outcome = job.run_or_resume(self.threads, &mut *follow);
             follow.close();
             let outcome = outcome?;
-            if let State::Failed(why) = &outcome.state {
-                complain(&format!("{} failed: {why}\n", job.said()));
+            if let JobState::Failed(why) = &outcome.state {
+                complain(&format!("{} failed: {why}\n", job.display_name()));
             }
-            let interrupted = outcome.state == State::Interrupted;
+            let interrupted = outcome.state == JobState::Interrupted;
             ran.push(outcome);
             after(&ran)?;
             if interrupted {
@@ -128,30 +128,30 @@ impl List<'_> {
 }
 
 /// The table of runs to come.
-fn announced(jobs: &[Job], ran: &[Ran], planned: &[Planned]) -> String {
+fn announced(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> String {
     let mut rows =
         vec![["run", "water", "boundary, at most", "steps, at least", "time", ""].map(String::from).to_vec()];
     for ((job, ran), planned) in jobs.iter().zip(ran).zip(planned) {
         let standing = match &ran.state {
-            State::Finished => "has been run",
-            State::Failed(_) => "failed before",
-            State::Interrupted => "goes on",
-            State::Planned if planned.told => "",
-            State::Planned => "at the usual speed",
+            JobState::Finished => "has been run",
+            JobState::Failed(_) => "failed before",
+            JobState::Interrupted => "goes on",
+            JobState::Planned if planned.measured => "",
+            JobState::Planned => "at the usual speed",
         };
         rows.push(vec![
-            job.said(),
+            job.display_name(),
             short(planned.size.fluid),
             short(planned.size.boundary),
             short(planned.size.steps),
-            if ran.state == State::Finished { String::new() } else { format!("about {}", duration(planned.seconds)) },
+            if ran.state == JobState::Finished { String::new() } else { format!("about {}", duration(planned.seconds)) },
             standing.into(),
         ]);
     }
     let total: f64 = planned.iter().map(|p| p.seconds).sum();
     let mut text = format!("{}in all about {}\n", table(&rows), duration(total));
-    if planned.iter().any(|p| !p.told && p.seconds > 0.0) {
-        let [plane, space] = USUAL.map(short);
+    if planned.iter().any(|p| !p.measured && p.seconds > 0.0) {
+        let [plane, space] = DEFAULT_SPEED.map(short);
         text += &format!(
             "the usual speed: {plane} water particles × force passes a second and thread in 2-D, {space} in 3-D\n"
         );
@@ -171,16 +171,16 @@ pub fn study(args: StudyArgs) -> Result<u8> {
     let name = name(&args.scene);
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
     let shot = args.png.as_deref().map(|png| shot(&args.look, png, &out, scene.until)).transpose()?;
-    let grid = Grid {
+    let grid = ParameterGrid {
         dp: if args.dp.is_empty() { vec![scene.dp] } else { args.dp.clone() },
-        vary: args.vary.iter().map(|(key, values)| Vary { key: key.clone(), values: split(values) }).collect(),
+        vary: args.vary.iter().map(|(key, values)| VariedKey { key: key.clone(), values: split_values(values) }).collect(),
         scene: found.path().to_owned(),
-        sets,
+        overrides: sets,
         name: name.clone(),
-        frames: shot.as_ref().map(|shot| interval(&shot.times, scene.until)),
+        frames: shot.as_ref().map(|shot| frame_interval(&shot.times, scene.until)),
         repeat: args.repeat,
     };
-    let sheet = found.named(Sheet::new(&grid, out, super::command_line()))?;
+    let sheet = found.named(StudyResults::new(&grid, out, super::command_line()))?;
     let list = List { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
     found.named(list.announce(args.dry_run))?;
     if args.dry_run {
@@ -200,16 +200,16 @@ pub fn study(args: StudyArgs) -> Result<u8> {
 }
 
 /// How far repeats lie apart; nothing if no run is repeated.
-pub fn chance(rows: &[Row]) -> String {
-    let told = spreads(rows);
-    if told.is_empty() { String::new() } else { format!("\n{}{CHANCE}\n\n", table(&told)) }
+pub fn chance(rows: &[ResultRow]) -> String {
+    let told = spread_table(rows);
+    if told.is_empty() { String::new() } else { format!("\n{}{REPEATS_NOTE}\n\n", table(&told)) }
 }
 
 /// The picture that is to be drawn to `png` of runs that end at `until` (s), the folder `out` being made by them: what is wrong
 /// with it is told before anything is run.
-fn shot(look: &LookArgs, png: &Path, out: &Path, until: f64) -> Result<Shot> {
+fn shot(look: &LookArgs, png: &Path, out: &Path, until: f64) -> Result<PictureOptions> {
     if png.parent() != Some(out) {
-        has_folder(png)?;
+        require_parent_folder(png)?;
     }
     let shot = look.shot()?;
     match shot.times.iter().find(|t| !(0.0..=until).contains(*t)) {
@@ -220,14 +220,14 @@ fn shot(look: &LookArgs, png: &Path, out: &Path, until: f64) -> Result<Shot> {
 }
 
 /// Draws the runs that came to have frames, what is varied over their columns.
-fn picture(jobs: &[Job], ran: &[Ran], mut shot: Shot, png: &Path) -> Result<()> {
+fn picture(jobs: &[Job], ran: &[JobResult], mut shot: PictureOptions, png: &Path) -> Result<()> {
     let mut folders = Vec::new();
-    for ((job, head), ran) in jobs.iter().zip(heads(jobs)).zip(ran) {
+    for ((job, head), ran) in jobs.iter().zip(distinguishing_labels(jobs)).zip(ran) {
         if ran.manifest.as_ref().is_some_and(|manifest| manifest.frames.count > 0) {
             folders.push(job.folder.clone());
-            shot.heads.push(head);
+            shot.column_titles.push(head);
         } else {
-            complain(&format!("warning: {} has no frames: it is not in the picture\n", job.said()));
+            complain(&format!("warning: {} has no frames: it is not in the picture\n", job.display_name()));
         }
     }
     if folders.is_empty() {
@@ -241,7 +241,7 @@ pub fn code(done: &Done) -> u8 {
     if done.interrupted {
         complain("interrupted: the same command goes on\n");
         130
-    } else if done.ran.iter().any(|r| matches!(r.state, State::Failed(_))) {
+    } else if done.ran.iter().any(|r| matches!(r.state, JobState::Failed(_))) {
         1
     } else if done.ran.iter().flat_map(|r| &r.verdicts).any(|v| v.passed == Some(false)) {
         3

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    study::{Case, State, Validation, cases, find},
+    study::{ValidationCase, JobState, Validation, validation_cases, select_cases},
 };
 
 use super::{
@@ -50,13 +50,13 @@ pub struct ValidateArgs {
 /// Runs the cases, or lists them.
 pub fn validate(args: ValidateArgs) -> Result<u8> {
     if args.list {
-        say(&listed(&cases()?));
+        say(&listed(&validation_cases()?));
         return Ok(0);
     }
     if args.threads == Some(0) {
         return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
     }
-    let cases = find(&args.names, args.full)?;
+    let cases = select_cases(&args.names, args.full)?;
     let scenes = cases.iter().map(|case| shelf::find(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
     let placed = cases.into_iter().zip(scenes.iter().map(shelf::Found::path)).collect();
     let validation = Validation::new(placed, args.full, args.repeat, args.out.clone(), super::command_line())?;
@@ -71,14 +71,14 @@ pub fn validate(args: ValidateArgs) -> Result<u8> {
     for file in validation.files() {
         say(&format!("{}\n", file.display()));
     }
-    if done.ran.iter().any(|r| matches!(r.state, State::Failed(_))) {
+    if done.ran.iter().any(|r| matches!(r.state, JobState::Failed(_))) {
         complain("a case could not be run to its end\n");
     }
     Ok(code(&done))
 }
 
 /// The list of cases.
-fn listed(cases: &[Case]) -> String {
+fn listed(cases: &[ValidationCase]) -> String {
     let mut rows = vec![["case", "quick", "scene", "about"].map(String::from).to_vec()];
     rows.extend(cases.iter().map(|case| {
         let usual = if case.quick.usual { "usual" } else { "" };

@@ -16,9 +16,9 @@ use crossterm::{
 use pontoon::{
     error::{Error, Kind, Result, nearest},
     math::format::unit,
-    output::{Manifest, Readings, manifest::Status},
-    preflight::three,
-    run::{self, Drift},
+    output::{Manifest, SeriesTable, manifest::RunStatus},
+    preflight::three_digits,
+    run::{self, EnergyDrift},
 };
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
@@ -78,7 +78,7 @@ fn follow(args: &WatchArgs) -> Result<()> {
         // A raw terminal does not go back to the first column by itself.
         let _ = stdout().write_all(text.replace('\n', "\r\n").as_bytes());
         let _ = stdout().flush();
-        if seen.manifest.status != Status::Running || left(Duration::from_secs_f64(args.every)) {
+        if seen.manifest.status != RunStatus::Running || left(Duration::from_secs_f64(args.every)) {
             return Ok(());
         }
     }
@@ -99,7 +99,7 @@ fn left(wait: Duration) -> bool {
 
 /// The process that the lock in `folder` names, and whether it lives, where the system keeps /proc.
 fn process(folder: &Path) -> Option<(u32, Option<bool>)> {
-    let id = run::owner(folder)?;
+    let id = run::lock_owner(folder)?;
     let all = Path::new("/proc");
     Some((id, all.join("self").exists().then(|| all.join(id.to_string()).exists())))
 }
@@ -127,7 +127,7 @@ struct Seen {
     manifest: Manifest,
     /// The process that writes here, if one is named, and whether it lives, if the system tells.
     process: Option<(u32, Option<bool>)>,
-    tables: Vec<(String, Readings)>,
+    tables: Vec<(String, SeriesTable)>,
 }
 
 impl Seen {
@@ -136,7 +136,7 @@ impl Seen {
         let files = manifest.files.iter().filter_map(|file| file.strip_prefix("series/")?.strip_suffix(".csv"));
         let read = |name: &str| {
             let path = folder.join("series").join(format!("{name}.csv"));
-            Some((name.to_string(), Readings::read(&path).ok()?))
+            Some((name.to_string(), SeriesTable::read(&path).ok()?))
         };
         Ok(Self { tables: files.filter_map(read).collect(), process: process(folder), manifest })
     }
@@ -165,7 +165,7 @@ impl Seen {
     fn curve(&self, series: &str) -> Option<(&[f64], &[f64])> {
         let (name, column) = series.split_once('.')?;
         let (_, of) = self.tables.iter().find(|(known, _)| known == name)?;
-        Some((&of.t, &of.x[of.columns.iter().position(|known| known == column)?]))
+        Some((&of.times, &of.values[of.columns.iter().position(|known| known == column)?]))
     }
 
     /// What a terminal of so many columns and lines shows.
@@ -190,14 +190,14 @@ impl Seen {
     fn status(&self) -> String {
         let m = &self.manifest;
         let how = match (m.status, self.process) {
-            (Status::Running, Some((id, Some(true)))) => format!("running (process {id})"),
-            (Status::Running, Some((id, Some(false)))) => format!("killed (process {id} is gone)"),
-            (Status::Running, _) => "running, or killed".into(),
-            (Status::Finished, _) => "finished".into(),
-            (Status::Interrupted, _) => "interrupted".into(),
-            (Status::Failed, _) => "failed".into(),
+            (RunStatus::Running, Some((id, Some(true)))) => format!("running (process {id})"),
+            (RunStatus::Running, Some((id, Some(false)))) => format!("killed (process {id} is gone)"),
+            (RunStatus::Running, _) => "running, or killed".into(),
+            (RunStatus::Finished, _) => "finished".into(),
+            (RunStatus::Interrupted, _) => "interrupted".into(),
+            (RunStatus::Failed, _) => "failed".into(),
         };
-        let t = self.tables.iter().filter_map(|(_, of)| of.t.last()).copied().fold(m.simulated_s, f64::max);
+        let t = self.tables.iter().filter_map(|(_, of)| of.times.last()).copied().fold(m.simulated_s, f64::max);
         let words = self.drift().map(|drift| drift.to_string()).into_iter().chain(warnings(m.warnings.len()));
         let more: String = words.map(|word| format!(", {word}")).collect();
         let text = format!(
@@ -206,7 +206,7 @@ impl Seen {
             duration(m.wall_s)
         );
         let cost = m.wall_s / m.simulated_s;
-        if m.status == Status::Finished || !(cost > 0.0 && cost.is_finite()) {
+        if m.status == RunStatus::Finished || !(cost > 0.0 && cost.is_finite()) {
             return text;
         }
         format!(
@@ -217,15 +217,15 @@ impl Seen {
     }
 
     /// What became of the energy, if a table tells it.
-    fn drift(&self) -> Option<Drift> {
+    fn drift(&self) -> Option<EnergyDrift> {
         let table = |first: &str| self.tables.iter().find(|(_, of)| of.columns.iter().any(|c| c.starts_with(first)));
-        let row = |of: &Readings, i: usize| of.x.iter().map(|x| x.get(i).copied()).collect::<Option<Vec<f64>>>();
+        let row = |of: &SeriesTable, i: usize| of.values.iter().map(|x| x.get(i).copied()).collect::<Option<Vec<f64>>>();
         if let Some((_, of)) = table("residual_J") {
-            return Drift::of_budget(&row(of, of.t.len().checked_sub(1)?)?);
+            return EnergyDrift::from_budget(&row(of, of.times.len().checked_sub(1)?)?);
         }
         let (_, of) = table("total_J")?;
         let unit = unit(of.columns.last()?);
-        Drift::of_energy(&row(of, 0)?, &row(of, of.t.len().checked_sub(1)?)?, unit)
+        EnergyDrift::from_energy(&row(of, 0)?, &row(of, of.times.len().checked_sub(1)?)?, unit)
     }
 
     /// The last reading of each series, its least and its largest.
@@ -236,7 +236,7 @@ impl Seen {
             let known = || x.iter().copied().filter(|x| x.is_finite());
             let Some((t, x)) = t.iter().zip(x).rev().find(|(_, x)| x.is_finite()) else { continue };
             let ends = [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)];
-            rows.push(vec![name, format!("{t:.3}"), three(*x), three(ends[0]), three(ends[1])]);
+            rows.push(vec![name, format!("{t:.3}"), three_digits(*x), three_digits(ends[0]), three_digits(ends[1])]);
         }
         let left_out = rows.len().saturating_sub(most);
         rows.truncate(most);
@@ -255,7 +255,7 @@ impl Seen {
         let (wide, high) = (2 * u32::from(wide.clamp(60, 200) - 12), 4 * (lines - 3) as u32);
         let mut chart = Chart::new(wide, high, first.0, last.0);
         let shape = Shape::Lines(&points);
-        let digits = || LabelFormat::Custom(Box::new(|x| three(f64::from(x))));
+        let digits = || LabelFormat::Custom(Box::new(|x| three_digits(f64::from(x))));
         let chart = chart.x_label_format(digits()).y_label_format(digits()).lineplot(&shape);
         chart.axis();
         chart.figures();

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 /// A mean in the making: all that it needs to go on to the same bits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Mean {
+pub struct IntervalMean {
     /// Time (s) and values of the last reading.
     last: Option<(f64, Vec<f64>)>,
     /// ∫ x dt since the last row by the trapezoid, and how long x was known (s): two for each column.
     sums: Vec<(f64, f64)>,
 }
 
-impl Mean {
+impl IntervalMean {
     /// Time (s) and values of the last reading.
     pub fn last(&self) -> Option<(f64, &[f64])> {
         self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
@@ -47,11 +47,11 @@ impl Mean {
 
 #[cfg(test)]
 mod tests {
-    use super::Mean;
+    use super::IntervalMean;
 
     #[test]
     fn a_mean_is_that_of_the_line_through_the_readings_and_gaps_do_not_count() {
-        let mut mean = Mean::default();
+        let mut mean = IntervalMean::default();
         mean.add(0.0, vec![1.0, f64::NAN, 0.0]);
         assert_eq!(mean.take(1)[0], 1.0, "of a single reading it is the reading");
         mean.add(1.0, vec![3.0, 5.0, 1.0]);

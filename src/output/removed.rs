@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::write_whole;
+use super::write_atomically;
 use crate::{
     error::{Error, Result},
     simulation::RemovedParticle,
@@ -31,5 +31,5 @@ pub fn write<const D: usize>(folder: &Path, lost: &[(f64, RemovedParticle<D>)]) 
         table.write_record(row.iter().chain(&[exit.to_string()])).map_err(wrong)?;
     }
     let bytes = table.into_inner().map_err(|why| Error::file(&path, format!("cannot be written: {why}")))?;
-    write_whole(&path, &bytes)
+    write_atomically(&path, &bytes)
 }

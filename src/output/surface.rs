@@ -8,9 +8,9 @@ use vtkio::model::{CellType, Cells, ElementType, VertexNumbers};
 
 use super::{
     cannot_write,
-    frame::{array, film, grid},
-    frame_sequence::{Cloud, Film},
-    write_whole,
+    frame::{data_array, pvd_index, mesh_vtu},
+    frame_sequence::{FramePoints, FrameSequence},
+    write_atomically,
 };
 use crate::error::{Error, Kind, Result};
 
@@ -20,11 +20,11 @@ const REACH: f64 = 3.0;
 const CUBE: f64 = 0.75;
 /// Share of the water at which its surface lies: with this the still surface is 0.005 dp above the true one, half a dp above the
 /// uppermost particles.
-const SHARE: f32 = 0.64;
+const ISO_LEVEL: f32 = 0.64;
 
 /// A closed surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surface {
+pub struct FreeSurfaceMesh {
     /// Corners, m.
     pub corners: Vec<[f32; 3]>,
     /// Triangles: numbers of their corners, counter-clockwise as seen from outside.
@@ -33,18 +33,18 @@ pub struct Surface {
     pub velocity: Vec<[f32; 3]>,
 }
 
-impl Surface {
+impl FreeSurfaceMesh {
     /// The surface of `water` in space, of particles `dp` (m) apart. Bodies are not water, so they are outside it.
     ///
     /// # Errors
     /// `Usage` if it cannot be made.
-    pub fn of(water: &Cloud, dp: f64) -> Result<Self> {
-        if water.r.is_empty() {
+    pub fn reconstruct(water: &FramePoints, dp: f64) -> Result<Self> {
+        if water.position.is_empty() {
             return Ok(Self::default());
         }
-        let points: Vec<Vector3<f32>> = water.r.iter().map(|x| Vector3::from(*x)).collect();
+        let points: Vec<Vector3<f32>> = water.position.iter().map(|x| Vector3::from(*x)).collect();
         let mut how = Parameters::new((0.5 * dp) as f32, (REACH * dp) as f32, (CUBE * dp) as f32);
-        how.iso_surface_threshold = SHARE;
+        how.iso_surface_threshold = ISO_LEVEL;
         let made = reconstruct_surface::<i64, f32>(&points, &how)
             .map_err(|why| Error::new(Kind::Usage, format!("no surface can be made: {why}")))?;
         let corners = made.mesh.vertices;
@@ -65,7 +65,7 @@ impl Surface {
     }
 
     /// The text of a .vtu file.
-    fn picture(&self) -> std::result::Result<Vec<u8>, vtkio::Error> {
+    fn to_vtu(&self) -> std::result::Result<Vec<u8>, vtkio::Error> {
         let cells = Cells {
             cell_verts: VertexNumbers::XML {
                 connectivity: self.triangles.iter().flatten().map(|i| *i as u64).collect(),
@@ -74,8 +74,8 @@ impl Surface {
             types: vec![CellType::Triangle; self.triangles.len()],
         };
         let velocity = (!self.velocity.is_empty())
-            .then(|| array("velocity", ElementType::Vectors, self.velocity.iter().flatten().copied().collect()));
-        grid(self.corners.iter().flatten().copied().collect(), cells, velocity.into_iter().collect())
+            .then(|| data_array("velocity", ElementType::Vectors, self.velocity.iter().flatten().copied().collect()));
+        mesh_vtu(self.corners.iter().flatten().copied().collect(), cells, velocity.into_iter().collect())
     }
 }
 
@@ -83,16 +83,16 @@ impl Surface {
 ///
 /// # Errors
 /// `File` if a frame cannot be read or a picture written; `Usage` if a surface cannot be made.
-pub fn write(folder: &Path, shown: &Film, dp: f64) -> Result<usize> {
+pub fn write(folder: &Path, shown: &FrameSequence, dp: f64) -> Result<usize> {
     let pictures = folder.join("surface");
     std::fs::create_dir_all(&pictures).map_err(|why| cannot_write(&pictures, &why))?;
     for number in 0..shown.times().len() {
         let path = pictures.join(format!("surface_{number:05}.vtu"));
-        let surface = Surface::of(&shown.water(number)?, dp)?;
-        let text = surface.picture().map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
-        write_whole(&path, &text)?;
+        let surface = FreeSurfaceMesh::reconstruct(&shown.water(number)?, dp)?;
+        let text = surface.to_vtu().map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
+        write_atomically(&path, &text)?;
     }
-    write_whole(&folder.join("surface.pvd"), film(shown.times(), "surface", &["surface"]).as_bytes())?;
+    write_atomically(&folder.join("surface.pvd"), pvd_index(shown.times(), "surface", &["surface"]).as_bytes())?;
     Ok(shown.times().len())
 }
 
@@ -101,11 +101,11 @@ mod tests {
     use super::*;
 
     /// Still water on a lattice, 20 × 20 × 10 dp, that turns about z.
-    fn block(dp: f32) -> Cloud {
-        let mut water = Cloud::default();
+    fn block(dp: f32) -> FramePoints {
+        let mut water = FramePoints::default();
         for n in 0..4000 {
             let r = [n % 20, n / 20 % 20, n / 400].map(|i| (i as f32 + 0.5) * dp);
-            water.r.push(r);
+            water.position.push(r);
             water.velocity.push([-r[1], r[0], 0.0]);
         }
         water
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn the_surface_of_a_block_encloses_its_volume_and_is_level() -> Result<()> {
         let dp = 0.02_f32;
-        let surface = Surface::of(&block(dp), f64::from(dp))?;
+        let surface = FreeSurfaceMesh::reconstruct(&block(dp), f64::from(dp))?;
         let corner = |i: usize| Vector3::from(surface.corners[i]).cast::<f64>();
         let cone = |t: &[usize; 3]| corner(t[0]).dot(&corner(t[1]).cross(&corner(t[2]))) / 6.0;
         let volume: f64 = surface.triangles.iter().map(cone).sum();
@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn every_edge_has_two_triangles_and_every_corner_a_velocity() -> Result<()> {
         let dp = 0.02_f32;
-        let surface = Surface::of(&block(dp), f64::from(dp))?;
+        let surface = FreeSurfaceMesh::reconstruct(&block(dp), f64::from(dp))?;
         let mut edges = std::collections::HashMap::new();
         for t in &surface.triangles {
             for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn no_water_has_no_surface() -> Result<()> {
-        assert_eq!(Surface::of(&Cloud::default(), 0.1)?, Surface::default());
+        assert_eq!(FreeSurfaceMesh::reconstruct(&FramePoints::default(), 0.1)?, FreeSurfaceMesh::default());
         Ok(())
     }
 }

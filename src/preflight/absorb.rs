@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Look;
+use super::PreflightContext;
 use crate::solid::Role;
 
 /// A shorter and a longer wave than that to which a paddle is tuned, over its period.
@@ -10,7 +10,7 @@ const BESIDE: [f64; 2] = [2.0 / 3.0, 1.5];
 
 /// A paddle that takes the waves which come to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Absorber {
+pub struct AbsorberSummary {
     /// Name of the solid.
     pub solid: String,
     /// The period whose waves it takes whole, s.
@@ -25,14 +25,14 @@ pub struct Absorber {
     pub sends_back: [(f64, f64); 2],
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     /// The paddles that absorb.
-    pub(super) fn absorbers(&self) -> Vec<Absorber> {
+    pub(super) fn absorbers(&self) -> Vec<AbsorberSummary> {
         let one = |solid: &crate::solid::Solid<D>| {
             let Role::Driven(motion) = &solid.spec.role else { return None };
             let own = motion.absorber()?;
             let (stroke_m, speed_mps) = own.limits();
-            Some(Absorber {
+            Some(AbsorberSummary {
                 solid: solid.spec.name.clone(),
                 period_s: own.period(),
                 gauge_m: own.gauge(),

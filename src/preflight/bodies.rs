@@ -14,10 +14,10 @@ use std::f64::consts::{PI, TAU};
 use serde::Serialize;
 
 use super::{
-    Finding, Look,
-    faces::Face,
-    format::{down, three, up},
-    thickness::thinnest,
+    Finding, PreflightContext,
+    faces::SurfaceSample,
+    format::{two_digits_down, three_digits, two_digits_up},
+    thickness::thinnest_part,
 };
 use crate::{
     math::{Bivector, Pose, Vector},
@@ -33,7 +33,7 @@ const LEVEL: f64 = 0.5 * PI / 180.0;
 
 /// A free body before its first step. In 2-D masses are kg/m and volumes m².
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Body {
+pub struct BodySummary {
     /// Its name.
     pub name: String,
     /// Mass, kg.
@@ -47,7 +47,7 @@ pub struct Body {
     /// Depth of its lowest point below the still level where it starts, m: negative above.
     pub draft_m: f64,
     /// How it floats, as it is turned; absent if it sinks, is held in its height, or nothing floats.
-    pub afloat: Option<Afloat>,
+    pub afloat: Option<Equilibrium>,
     /// Its thinnest part, m, but for tips.
     pub thinnest_m: f64,
     /// The same over dp.
@@ -60,7 +60,7 @@ pub struct Body {
 
 /// How a body floats.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Afloat {
+pub struct Equilibrium {
     /// Draft at rest, m.
     pub draft_m: f64,
     /// Area of its waterplane, m²; its breadth, m, in 2-D.
@@ -88,53 +88,53 @@ pub struct Tilt {
     pub period_s: Option<f64>,
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     /// The free bodies; `touching`: which solids touch another.
-    pub(super) fn bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<Body> {
+    pub(super) fn bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<BodySummary> {
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
             let Role::Free(body) = &solid.spec.role else { continue };
-            let found = self.body(solid, body, &self.faces[i]);
-            self.floats(&found, touching[i], findings);
-            self.carried(&found, findings);
+            let found = self.body(solid, body, &self.surface_samples[i]);
+            self.flotation_findings(&found, touching[i], findings);
+            self.resolution_findings(&found, findings);
             bodies.push(found);
         }
-        self.slender(&bodies, findings);
+        self.thin_bodies(&bodies, findings);
         bodies
     }
 
     /// Bodies through which water does not see, but whose middle sees the water of both sides.
-    fn slender(&self, bodies: &[Body], findings: &mut Vec<Finding>) {
+    fn thin_bodies(&self, bodies: &[BodySummary], findings: &mut Vec<Finding>) {
         let reach = self.system.model().support_radius() * (1.0 - 1e-6);
-        let thin: Vec<&Body> = bodies.iter().filter(|b| (reach..2.0 * reach).contains(&b.thinnest_m)).collect();
+        let thin: Vec<&BodySummary> = bodies.iter().filter(|b| (reach..2.0 * reach).contains(&b.thinnest_m)).collect();
         let Some(thinnest) = thin.iter().map(|b| b.thinnest_m).reduce(f64::min) else { return };
         let names: Vec<String> = thin.iter().map(|b| format!("\"{}\"", b.name)).collect();
         let what = format!(
             "thinner than twice the kernel's reach, {} dp: {}; boundary particles in their middle see the water of both \
              sides",
-            three(2.0 * self.reach_dp()),
+            three_digits(2.0 * self.support_radius_dp()),
             names.join(", ")
         );
-        let mend = format!("none would be with  dp = {}", down(0.5 * thinnest / self.reach_dp()));
+        let mend = format!("none would be with  dp = {}", two_digits_down(0.5 * thinnest / self.support_radius_dp()));
         findings.push(Finding::note("slender_body", what, mend));
     }
 
-    fn body(&self, solid: &Solid<D>, body: &FreeBody<D>, faces: &[Face<D>]) -> Body {
+    fn body(&self, solid: &Solid<D>, body: &FreeBody<D>, faces: &[SurfaceSample<D>]) -> BodySummary {
         let (model, shape, pose) = (self.system.model(), &solid.spec.shape, &solid.kinematics.pose);
         let volume = shape.volume().volume;
-        let rest = self.at_rest(solid, body);
-        let wet = |face: &&Face<D>| rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still.level);
+        let rest = self.equilibrium_pose(solid, body);
+        let wet = |face: &&SurfaceSample<D>| rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
         let share = faces.iter().filter(wet).count() as f64 / faces.len().max(1) as f64;
         let least = 0.5 * model.cfl * model.rho0 * model.h * share * shape.surface();
-        let thinnest_m = thinnest(shape, faces, model.dp).unwrap_or(model.dp);
-        let displaced = if self.g > 0.0 { shape.submerged(pose, self.still.level).0 } else { volume };
-        Body {
+        let thinnest_m = thinnest_part(shape, faces, model.dp).unwrap_or(model.dp);
+        let displaced = if self.g > 0.0 { shape.submerged(pose, self.still_water.level).0 } else { volume };
+        BodySummary {
             name: solid.spec.name.clone(),
             mass_kg: body.mass,
             volume_m3: volume,
             density_ratio: body.mass / (model.rho0 * volume),
             displaced_kg: model.rho0 * displaced,
-            draft_m: self.still.level - self.lowest(solid),
+            draft_m: self.still_water.level - self.lowest_point(solid),
             afloat: rest.map(|pose| self.afloat(solid, body, &pose)),
             thinnest_m,
             thinnest_dp: thinnest_m / model.dp,
@@ -144,18 +144,18 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// Where the body floats at rest, as it is turned.
-    fn at_rest(&self, solid: &Solid<D>, body: &FreeBody<D>) -> Option<Pose<D>> {
-        if self.g == 0.0 || body.locked_translations[D - 1] || self.pinned(solid) {
+    fn equilibrium_pose(&self, solid: &Solid<D>, body: &FreeBody<D>) -> Option<Pose<D>> {
+        if self.g == 0.0 || body.locked_translations[D - 1] || self.is_pinned(solid) {
             return None;
         }
         let mut pose = solid.kinematics.pose;
         let rho0 = self.system.model().rho0;
-        pose.position[D - 1] += equilibrium_height(&solid.spec.shape, &pose, body.mass, rho0, self.still.level).ok()?;
+        pose.position[D - 1] += equilibrium_height(&solid.spec.shape, &pose, body.mass, rho0, self.still_water.level).ok()?;
         Some(pose)
     }
 
     /// Whether a joint to what is not free holds a point of the solid.
-    fn pinned(&self, solid: &Solid<D>) -> bool {
+    fn is_pinned(&self, solid: &Solid<D>) -> bool {
         let number = self.system.find_solid(&solid.spec.name);
         let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
         self.system.constraints().joints.iter().any(|joint| {
@@ -166,8 +166,8 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// The body at rest at `pose`.
-    fn afloat(&self, solid: &Solid<D>, body: &FreeBody<D>, pose: &Pose<D>) -> Afloat {
-        let (shape, level, rho0) = (&solid.spec.shape, self.still.level, self.system.model().rho0);
+    fn afloat(&self, solid: &Solid<D>, body: &FreeBody<D>, pose: &Pose<D>) -> Equilibrium {
+        let (shape, level, rho0) = (&solid.spec.shape, self.still_water.level, self.system.model().rho0);
         let bounds = world_bounds(shape, pose);
         let step = 1e-4 * bounds.size()[D - 1];
         let area = (shape.submerged(pose, level + step).0 - shape.submerged(pose, level - step).0) / (2.0 * step);
@@ -181,7 +181,7 @@ impl<const D: usize> Look<'_, D> {
         // A body of revolution on its side has no GM; nor does it list.
         let heel = |t: &Tilt| if t.gm_m > 0.0 { along(&t.axis) / t.gm_m } else { 0.0 };
         let turned = tilts.iter().map(|t| heel(t).powi(2)).sum::<f64>().sqrt();
-        Afloat {
+        Equilibrium {
             draft_m: level - bounds.min[D - 1],
             waterplane_m2: area,
             heave_s: heave(body.mass),
@@ -197,7 +197,7 @@ impl<const D: usize> Look<'_, D> {
         let rho0 = self.system.model().rho0;
         let size = solid.spec.shape.bounds().size().max();
         let gm = |axis: &[f64]| {
-            let gm = metacentric_height(&solid.spec.shape, pose, body, rho0, self.still.level, axis).unwrap_or(0.0);
+            let gm = metacentric_height(&solid.spec.shape, pose, body, rho0, self.still_water.level, axis).unwrap_or(0.0);
             // Round-off and facets: a ball has none.
             if gm.abs() < 1e-4 * size { 0.0 } else { gm }
         };
@@ -226,18 +226,18 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// What is to be said of how a body floats.
-    fn floats(&self, body: &Body, touches: bool, findings: &mut Vec<Finding>) {
+    fn flotation_findings(&self, body: &BodySummary, touches: bool, findings: &mut Vec<Finding>) {
         let (name, Some(afloat)) = (&body.name, &body.afloat) else { return };
         let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
         if least < 0.0 {
-            let what = format!("\"{name}\" will turn over: its metacentric height is {} m", three(least));
+            let what = format!("\"{name}\" will turn over: its metacentric height is {} m", three_digits(least));
             let mend =
-                format!("lower its centre of mass by {} m or more (centre_offset), or lock its turn", up(-least));
+                format!("lower its centre of mass by {} m or more (centre_offset), or lock its turn", two_digits_up(-least));
             findings.push(Finding::warning("capsizes", what, mend));
         } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
             let heel = afloat.heel_deg.unwrap_or_default();
             // The metacentre speaks of small tilts.
-            let far = if heel > 45.0 { "more than 45".into() } else { format!("about {}", three(heel)) };
+            let far = if heel > 45.0 { "more than 45".into() } else { format!("about {}", three_digits(heel)) };
             let what = format!("\"{name}\" starts {far}° out of the trim in which it rests");
             let mend = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy".into();
             findings.push(Finding::note("lists", what, mend));
@@ -248,9 +248,9 @@ impl<const D: usize> Look<'_, D> {
             let side = if off > 0.0 { "below" } else { "above" };
             let what = format!(
                 "\"{name}\" starts {} m, {} dp, {side} its draft of {} m",
-                three(off.abs()),
-                three(off.abs() / self.dp()),
-                three(afloat.draft_m)
+                three_digits(off.abs()),
+                three_digits(off.abs() / self.dp()),
+                three_digits(afloat.draft_m)
             );
             let mend = "it starts at rest with  draft = \"equilibrium\"".into();
             findings.push(Finding::note("off_draft", what, mend));
@@ -258,38 +258,38 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// What is to be said of whether the particles carry a body.
-    fn carried(&self, body: &Body, findings: &mut Vec<Finding>) {
+    fn resolution_findings(&self, body: &BodySummary, findings: &mut Vec<Finding>) {
         let (model, name) = (self.system.model(), &body.name);
         let density = body.density_ratio * model.rho0;
         let reach = model.support_radius();
         if body.thinnest_m < reach * (1.0 - 1e-6) {
             let what = format!(
                 "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water sees through it",
-                three(body.thinnest_m),
-                three(body.thinnest_dp),
-                three(self.reach_dp())
+                three_digits(body.thinnest_m),
+                three_digits(body.thinnest_dp),
+                three_digits(self.support_radius_dp())
             );
-            let mend = format!("make it {} m thick, or dp = {}", up(reach), down(body.thinnest_m / self.reach_dp()));
+            let mend = format!("make it {} m thick, or dp = {}", two_digits_up(reach), two_digits_down(body.thinnest_m / self.support_radius_dp()));
             findings.push(Finding::warning("thin_body", what, mend));
         }
         if body.over_limit < 1.0 {
             let what = format!(
                 "\"{name}\" is lighter than the water that a step sets moving with it, {} kg/m³ for {} kg/m³: it answers with \
                  that water's inertia, and its draft may be a dp off",
-                three(density),
-                three(body.least_ratio * model.rho0)
+                three_digits(density),
+                three_digits(body.least_ratio * model.rho0)
             );
             let mend = format!(
                 "density = {} would not need it, nor dp = {}",
-                up(body.least_ratio * model.rho0),
-                down(model.dp * body.over_limit)
+                two_digits_up(body.least_ratio * model.rho0),
+                two_digits_down(model.dp * body.over_limit)
             );
             findings.push(Finding::note("light_body", what, mend));
         }
     }
 
     /// Height (m) of the lowest point of `solid`.
-    pub(super) fn lowest(&self, solid: &Solid<D>) -> f64 {
+    pub(super) fn lowest_point(&self, solid: &Solid<D>) -> f64 {
         world_bounds(&solid.spec.shape, &solid.kinematics.pose).min[D - 1]
     }
 }

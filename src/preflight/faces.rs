@@ -8,7 +8,7 @@ use crate::{
 
 /// A place on the true face of a solid, in its own frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Face<const D: usize> {
+pub struct SurfaceSample<const D: usize> {
     /// The place, m.
     pub x: Vector<D>,
     /// Outward normal, unit length.
@@ -16,7 +16,7 @@ pub struct Face<const D: usize> {
 }
 
 /// The faces of `solid`, dp (m) apart; none of a fixed tank or polyline, whose skin is as thick as is needed.
-pub fn of<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<Face<D>> {
+pub fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     match (&solid.spec.role, &solid.spec.shape) {
         (Role::Fixed, Shape::Tank { .. } | Shape::Polyline { .. }) => Vec::new(),
         (_, shape) => of_shape(shape, dp),
@@ -24,16 +24,16 @@ pub fn of<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<Face<D>> {
 }
 
 /// The faces of `shape`, dp (m) apart, but for those at which the parts of a compound join.
-pub fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<Face<D>> {
-    let free = |face: &Face<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
-    shape.skin(dp, 1).into_iter().flat_map(|point| before(shape, &point.r, dp)).filter(free).collect()
+pub fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
+    let free = |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
+    shape.skin(dp, 1).into_iter().flat_map(|point| nearest_samples(shape, &point.r, dp)).filter(free).collect()
 }
 
 /// The face before `r` (m); both, where that is midway between two, as in a plate of a single row.
-fn before<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Vec<Face<D>> {
+fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     let face = |r: Vector<D>| {
         let n = shape.outward(&r, 0.05 * dp);
-        Face { x: r - n * shape.signed_distance(&r), n }
+        SurfaceSample { x: r - n * shape.signed_distance(&r), n }
     };
     let own = face(*r);
     if own.n.norm() > 0.5 {
@@ -50,6 +50,6 @@ fn before<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Vec<Face<
 }
 
 /// Every so many-th of `faces`, `most` of them or fewer.
-pub fn some<const D: usize>(faces: &[Face<D>], most: usize) -> impl Iterator<Item = &Face<D>> {
+pub fn thinned<const D: usize>(faces: &[SurfaceSample<D>], most: usize) -> impl Iterator<Item = &SurfaceSample<D>> {
     faces.iter().step_by(faces.len().div_ceil(most).max(1))
 }

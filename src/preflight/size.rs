@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::{
-    Finding, Look, Step,
-    format::{three, up},
+    Finding, PreflightContext, StepSizeLimits,
+    format::{three_digits, two_digits_up},
 };
 use crate::{math::format::bytes, model::Gradient, output::frame::particle_bytes};
 
@@ -19,7 +19,7 @@ const NUMBER: f64 = 19.0;
 
 /// How large a run is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Size {
+pub struct RunSize {
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of water.
@@ -39,12 +39,12 @@ pub struct Size {
     /// Memory of its arrays, lists and frames while it runs, B: about.
     pub memory_bytes: f64,
     /// What it will write.
-    pub disk: Disk,
+    pub disk: DiskUse,
 }
 
 /// What a run will write, about, B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Disk {
+pub struct DiskUse {
     /// Tables of the probes.
     pub tables_bytes: f64,
     /// Number of frames.
@@ -55,15 +55,15 @@ pub struct Disk {
     pub checkpoint_bytes: f64,
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     /// How large the run is; `columns`: how many each probe writes beside the time.
-    pub(super) fn size(&self, step: &Step, columns: &[usize], removed: usize, findings: &mut Vec<Finding>) -> Size {
+    pub(super) fn size(&self, step: &StepSizeLimits, columns: &[usize], removed: usize, findings: &mut Vec<Finding>) -> RunSize {
         let (system, model) = (self.system, self.system.model());
         let (fluid, boundary) = (system.fluid().len(), system.boundary().len());
         let disk = self.disk(step, columns);
         let share = removed as f64 / (removed + fluid) as f64;
         if share > TAKEN[0] {
-            let what = format!("solids take {} % of what the water was to fill", three(100.0 * share));
+            let what = format!("solids take {} % of what the water was to fill", three_digits(100.0 * share));
             let mend = "if that is not meant, see where they are".to_string();
             findings.push(if share > TAKEN[1] {
                 Finding::warning("water_removed", what, mend)
@@ -74,17 +74,17 @@ impl<const D: usize> Look<'_, D> {
         if disk.frames_bytes > BUDGET {
             let what = format!("{} frames will take {}", disk.frames, bytes(disk.frames_bytes));
             let every = self.plan.frames.as_ref().map_or(0.0, |f| f.every).max(step.dt_s);
-            let mend = format!("frames.every = {} keeps them to 10 GB", up(every * disk.frames_bytes / BUDGET));
+            let mend = format!("frames.every = {} keeps them to 10 GB", two_digits_up(every * disk.frames_bytes / BUDGET));
             findings.push(Finding::warning("large_frames", what, mend));
         }
-        Size {
+        RunSize {
             dimension: D,
             fluid,
             boundary,
             wet: system.boundary_near_fluid_count(),
             layers: model.boundary_layers(),
-            depth_m: self.still.depth,
-            depth_dp: self.still.depth / model.dp,
+            depth_m: self.still_water.depth,
+            depth_dp: self.still_water.depth / model.dp,
             removed,
             memory_bytes: self.memory(),
             disk,
@@ -111,16 +111,16 @@ impl<const D: usize> Look<'_, D> {
         fluid * water + boundary * skin + states + system.list_bytes() as f64 + fluid.max(boundary) * picture
     }
 
-    fn disk(&self, step: &Step, columns: &[usize]) -> Disk {
+    fn disk(&self, step: &StepSizeLimits, columns: &[usize]) -> DiskUse {
         let (fluid, boundary) = (self.system.fluid().len() as f64, self.system.boundary().len() as f64);
         // An output comes at every step at most.
-        let count = |every: f64| (self.until() / every.max(step.dt_s)).floor() + 1.0;
+        let count = |every: f64| (self.end_time() / every.max(step.dt_s)).floor() + 1.0;
         let tables = self.plan.probes.iter().zip(columns);
         let tables_bytes = tables.map(|(probe, n)| count(probe.every) * (n + 1) as f64 * NUMBER).sum();
         let frames = self.plan.frames.as_ref().map_or(0.0, |f| count(f.every));
         let (water, solids) = self.plan.frames.as_ref().map_or((0.0, 0.0), |frames| particle_bytes(&frames.fields));
         let d = D as f64;
-        Disk {
+        DiskUse {
             tables_bytes,
             frames: frames as usize,
             frames_bytes: frames * (fluid * water + boundary * solids),

@@ -1,6 +1,6 @@
 //! How the face of a driven solid goes to and fro at the still level.
 
-use super::Look;
+use super::PreflightContext;
 use crate::{
     math::{Bounds, Vector},
     solid::{Motion, Solid},
@@ -13,29 +13,29 @@ const TIMES_SEEN: usize = 2000;
 const TURN: f64 = 0.05;
 
 /// How a solid's face goes at the still level.
-pub(super) struct Swing<const D: usize> {
+pub(super) struct DrivenStroke<const D: usize> {
     /// Sideways, where it goes furthest, or where the waves of its law go; a unit vector.
-    pub(super) way: Vector<D>,
+    pub(super) direction: Vector<D>,
     /// The largest swing, m, and half its period, s; no period if it does not turn.
     pub(super) stroke: f64,
-    pub(super) half: Option<f64>,
+    pub(super) half_period: Option<f64>,
     /// The largest speed, m/s.
     pub(super) speed: f64,
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     /// How the material point in the still level goes sideways.
-    pub(super) fn swing(&self, solid: &Solid<D>, motion: &Motion<D>, bounds: &Bounds<D>) -> Option<Swing<D>> {
+    pub(super) fn driven_stroke(&self, solid: &Solid<D>, motion: &Motion<D>, bounds: &Bounds<D>) -> Option<DrivenStroke<D>> {
         let mut mark = 0.5 * (bounds.min + bounds.max);
-        mark[D - 1] = self.still.level;
+        mark[D - 1] = self.still_water.level;
         if let Some(law) = motion.wave() {
-            let (way, speed): (Vec<f64>, Vec<f64>) = law.course(self.until()).into_iter().unzip();
-            let stroke = swing(&way).map_or_else(|| range(&way), |(stroke, _)| stroke);
+            let (way, speed): (Vec<f64>, Vec<f64>) = law.course(self.end_time()).into_iter().unzip();
+            let stroke = largest_stroke(&way).map_or_else(|| range(&way), |(stroke, _)| stroke);
             let speed = speed.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-            return Some(Swing { way: heading(motion, &mark)?, stroke, half: None, speed });
+            return Some(DrivenStroke { direction: wave_direction(motion, &mark)?, stroke, half_period: None, speed });
         }
         let local = solid.kinematics.pose.local(&mark);
-        let step = self.until() / TIMES_SEEN as f64;
+        let step = self.end_time() / TIMES_SEEN as f64;
         let sideways: Vec<Vector<D>> = (0..=TIMES_SEEN)
             .map(|k| {
                 let mut way = motion.kinematics(&solid.spec.pose, k as f64 * step).pose.point(&local) - mark;
@@ -46,16 +46,16 @@ impl<const D: usize> Look<'_, D> {
         let far = sideways.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?.try_normalize(0.0)?;
         let way: Vec<f64> = sideways.iter().map(|x| x.dot(&far)).collect();
         let speed = way.windows(2).map(|ab| (ab[1] - ab[0]).abs() / step).fold(0.0, f64::max);
-        let (stroke, half) = match swing(&way) {
+        let (stroke, half) = match largest_stroke(&way) {
             Some((stroke, steps)) => (stroke, Some(steps as f64 * step)),
             None => (range(&way), None),
         };
-        Some(Swing { way: far, stroke, half, speed })
+        Some(DrivenStroke { direction: far, stroke, half_period: half, speed })
     }
 }
 
 /// Where the waves of a paddle by name go, whose point at `mark` (m) is in the still level; level, a unit vector.
-pub(super) fn heading<const D: usize>(motion: &Motion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
+pub(super) fn wave_direction<const D: usize>(motion: &Motion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
     let mut way = *motion.headings(mark).first()?;
     way[D - 1] = 0.0;
     way.try_normalize(0.0)
@@ -69,7 +69,7 @@ fn range(way: &[f64]) -> f64 {
 }
 
 /// The largest swing of `way` from one turn to the next, and how many samples it takes; `None` if it never turns.
-fn swing(way: &[f64]) -> Option<(f64, usize)> {
+fn largest_stroke(way: &[f64]) -> Option<(f64, usize)> {
     let range = range(way);
     let mut turns = vec![0];
     // The furthest sample since the last turn, in the present sense.
@@ -103,9 +103,9 @@ mod tests {
     fn the_largest_swing_is_found_under_a_ramp_and_past_noise() {
         let way = |t: f64| 0.1 * (t / 4.0).min(1.0) * (TAU * t).sin() + 1e-3 * (57.0 * t).sin();
         let samples: Vec<f64> = (0..=1000).map(|i| way(0.01 * i as f64)).collect();
-        let (stroke, steps) = swing(&samples).unwrap_or((0.0, 0));
+        let (stroke, steps) = driven_stroke(&samples).unwrap_or((0.0, 0));
         // Noise moves the turns by a few samples and the stroke by its own 2 per cent.
         assert!((stroke - 0.2).abs() < 0.005 && (45..=55).contains(&steps), "{stroke} {steps}");
-        assert_eq!(swing(&[0.0, 0.1, 0.3, 0.4]), None, "it never turns");
+        assert_eq!(driven_stroke(&[0.0, 0.1, 0.3, 0.4]), None, "it never turns");
     }
 }

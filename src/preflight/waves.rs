@@ -4,10 +4,10 @@
 use serde::Serialize;
 
 use super::{
-    Finding, Look,
-    format::{down, three},
-    stands::Stand,
-    thickness::layered,
+    Finding, PreflightContext,
+    format::{two_digits_down, three_digits},
+    stands::WavemakerSite,
+    thickness::has_full_layers,
 };
 use crate::{
     scene::world_bounds,
@@ -23,7 +23,7 @@ const SHORTEST: f64 = 15.0;
 
 /// The wave of a driven solid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Wave {
+pub struct GeneratedWave {
     /// Name of the solid.
     pub solid: String,
     /// Its kind, in the words of a scene; absent if the solid's motion was given instead.
@@ -70,78 +70,78 @@ pub struct Wave {
     pub back_s: f64,
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     /// The waves of the solids that are driven to and fro through the surface.
-    pub(super) fn waves(&self, findings: &mut Vec<Finding>) -> Vec<Wave> {
+    pub(super) fn generated_waves(&self, findings: &mut Vec<Finding>) -> Vec<GeneratedWave> {
         let mut waves = Vec::new();
-        let depth = self.still.depth;
+        let depth = self.still_water.depth;
         if self.g > 0.0 && depth < 10.0 * self.dp() * (1.0 - 1e-9) {
             let what = format!(
                 "the water is {} m deep, {} dp: too few for waves and floats, which take 10",
-                three(depth),
-                three(depth / self.dp())
+                three_digits(depth),
+                three_digits(depth / self.dp())
             );
-            findings.push(Finding::warning("shallow", what, format!("dp = {}", down(0.1 * depth))));
+            findings.push(Finding::warning("shallow", what, format!("dp = {}", two_digits_down(0.1 * depth))));
         }
         for solid in self.solids() {
             let Role::Driven(motion) = &solid.spec.role else { continue };
             if let Some(law) = motion.wave() {
-                self.placed(solid, motion, law, findings);
+                self.check_site(solid, motion, law, findings);
             }
-            let Some((wave, stand)) = self.wave(solid, motion) else { continue };
-            self.low(&wave, findings);
-            self.zones(&wave, &stand, findings);
+            let Some((wave, stand)) = self.generated_wave(solid, motion) else { continue };
+            self.check_resolution(&wave, findings);
+            self.misplaced_zones(&wave, &stand, findings);
             if let Some(law) = motion.wave() {
-                self.named(&wave, solid, law, findings);
-                self.quick(&wave, law, findings);
-                self.focus(&wave, &stand, law, findings);
+                self.check_wave(&wave, solid, law, findings);
+                self.check_speed(&wave, law, findings);
+                self.check_focus(&wave, &stand, law, findings);
             }
             waves.push(wave);
         }
-        self.idle(findings);
-        self.stale(&waves, findings);
+        self.dry_zones(findings);
+        self.check_statistic_periods(&waves, findings);
         waves
     }
 
     /// What is too small for dp.
-    fn low(&self, wave: &Wave, findings: &mut Vec<Finding>) {
+    fn check_resolution(&self, wave: &GeneratedWave, findings: &mut Vec<Finding>) {
         let name = &wave.solid;
         if wave.height_dp < LEAST {
             let what = format!(
                 "\"{name}\" makes waves about {} m high, {} dp; with less than {LEAST} dp they lose height",
-                three(wave.height_m),
-                three(wave.height_dp)
+                three_digits(wave.height_m),
+                three_digits(wave.height_dp)
             );
-            findings.push(Finding::warning("low_waves", what, format!("dp = {}", down(wave.height_m / LEAST))));
+            findings.push(Finding::warning("low_waves", what, format!("dp = {}", two_digits_down(wave.height_m / LEAST))));
         }
         if wave.length_dp < SHORTEST {
             let what = format!(
                 "\"{name}\" makes waves {} m long, {} dp; with less than {SHORTEST} dp they die away",
-                three(wave.length_m),
-                three(wave.length_dp)
+                three_digits(wave.length_m),
+                three_digits(wave.length_dp)
             );
-            findings.push(Finding::warning("short_waves", what, format!("dp = {}", down(wave.length_m / SHORTEST))));
+            findings.push(Finding::warning("short_waves", what, format!("dp = {}", two_digits_down(wave.length_m / SHORTEST))));
         }
     }
 
-    fn wave(&self, solid: &Solid<D>, motion: &Motion<D>) -> Option<(Wave, Stand<D>)> {
-        let level = self.still.level;
+    fn generated_wave(&self, solid: &Solid<D>, motion: &Motion<D>) -> Option<(GeneratedWave, WavemakerSite<D>)> {
+        let level = self.still_water.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
         // A tank that is shaken holds the water rather than pushing it.
-        if layered(&solid.spec.shape) || self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
+        if has_full_layers(&solid.spec.shape) || self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
             return None;
         }
-        let swing = self.swing(solid, motion, &bounds)?;
+        let swing = self.driven_stroke(solid, motion, &bounds)?;
         let named = motion.wave();
-        let [stand, behind] = [swing.way, -swing.way].map(|way| Stand::of(&bounds, way, level));
+        let [stand, behind] = [swing.direction, -swing.direction].map(|way| WavemakerSite::new(&bounds, way, level));
         // A given motion makes waves to both sides: those count that go the longer way.
-        let stand = if named.is_none() && self.end(&behind) > self.end(&stand) { behind } else { stand };
-        let depth = named.map_or(self.still.depth, |wave| wave.depth());
+        let stand = if named.is_none() && self.water_end(&behind) > self.water_end(&stand) { behind } else { stand };
+        let depth = named.map_or(self.still_water.depth, |wave| wave.depth());
         let facts = named.map(|wave| wave.facts());
         let kind = facts.map(|facts| facts.kind);
         let (order, ramp) = (facts.map_or(1, |f| f.order), named.map_or(0.0, |wave| wave.ramp_time()));
         let mut wave = match facts.and_then(|facts| facts.solitary) {
-            Some(own) => Wave {
+            Some(own) => GeneratedWave {
                 period_s: None,
                 height_m: own.height,
                 length_m: own.length(),
@@ -150,15 +150,15 @@ impl<const D: usize> Look<'_, D> {
                 region: Region::Solitary,
                 celerity_mps: own.celerity,
                 group_mps: own.celerity,
-                ..Wave::none(&solid.spec.name)
+                ..GeneratedWave::empty(&solid.spec.name)
             },
             None => {
                 let train = match facts.and_then(|facts| facts.train) {
                     Some(train) => train,
-                    None => Train::of(std::f64::consts::PI / swing.half?, depth, self.g),
+                    None => Train::of(std::f64::consts::PI / swing.half_period?, depth, self.g),
                 };
-                let height = facts.map_or_else(|| swing.stroke * self.paddle(motion).transfer(&train), |f| f.height);
-                Wave {
+                let height = facts.map_or_else(|| swing.stroke * self.equivalent_paddle(motion).transfer(&train), |f| f.height);
+                GeneratedWave {
                     period_s: Some(train.period()),
                     height_m: height,
                     length_m: train.length(),
@@ -167,38 +167,38 @@ impl<const D: usize> Look<'_, D> {
                     region: train.region(height),
                     celerity_mps: train.celerity(),
                     group_mps: train.group(),
-                    ..Wave::none(&solid.spec.name)
+                    ..GeneratedWave::empty(&solid.spec.name)
                 }
             }
         };
         (wave.kind, wave.order, wave.depth_m, wave.ramp_s) = (kind, order, depth, ramp);
         (wave.stroke_m, wave.paddle_mps) = (swing.stroke, swing.speed);
         (wave.height_dp, wave.length_dp) = (wave.height_m / self.dp(), wave.length_m / self.dp());
-        (wave.reach_m, wave.answers) = self.answer(solid, &stand);
-        wave.damping_m = self.damped(&stand).filter(|begins| *begins < wave.reach_m);
+        (wave.reach_m, wave.answers) = self.first_reflector(solid, &stand);
+        wave.damping_m = self.damping_start(&stand).filter(|begins| *begins < wave.reach_m);
         (wave.far_s, wave.back_s) = (wave.reach_m / wave.group_mps, 2.0 * wave.reach_m / wave.group_mps);
         (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some((wave, stand))
     }
 
     /// The motion as a paddle's.
-    fn paddle(&self, motion: &Motion<D>) -> Paddle {
+    fn equivalent_paddle(&self, motion: &Motion<D>) -> Paddle {
         match motion.hinge_height() {
-            Some(height) if height < self.still.level => Paddle::Flap { arm: self.still.level - height },
+            Some(height) if height < self.still_water.level => Paddle::Flap { arm: self.still_water.level - height },
             _ => Paddle::Piston,
         }
     }
 }
 
-impl Wave {
+impl GeneratedWave {
     /// When the first answer is back at the paddle, and from where, in one line.
-    pub fn first_answer(&self) -> String {
-        let (reach, far, back) = (three(self.reach_m), three(self.far_s), three(self.back_s));
+    pub fn first_reflection(&self) -> String {
+        let (reach, far, back) = (three_digits(self.reach_m), three_digits(self.far_s), three_digits(self.back_s));
         let what = self.answers.as_ref().map_or("the far end".into(), |name| format!("\"{name}\""));
-        let zone = self.damping_m.map(|begins| format!("; a damping zone begins at {} m", three(begins)));
+        let zone = self.damping_m.map(|begins| format!("; a damping zone begins at {} m", three_digits(begins)));
         format!("{reach} m to {what}: there after {far} s, back after {back} s{}", zone.unwrap_or_default())
     }
 
-    fn none(solid: &str) -> Self {
+    fn empty(solid: &str) -> Self {
         Self {
             solid: solid.into(),
             kind: None,

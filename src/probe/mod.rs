@@ -20,22 +20,22 @@ mod row;
 mod runup;
 mod velocity;
 
-pub use balance::Balance;
-pub use budget::{Budget, unaccounted};
-pub use elevation::Elevation;
-pub use energy::Energy;
-pub use flow::Flow;
-pub use force::Force;
-pub use front::Front;
-pub use joint::Joint;
-pub use line::Line;
-pub use motion::Motion;
-pub use patch::Patch;
-pub use press::{Contacts, Press};
-pub use pressure::Pressure;
-pub use row::{Row, named};
-pub use runup::Runup;
-pub use velocity::Velocity;
+pub use balance::LoadBalanceProbe;
+pub use budget::{EnergyBudgetProbe, relative_residual};
+pub use elevation::ElevationProbe;
+pub use energy::EnergyProbe;
+pub use flow::FlowProbe;
+pub use force::ForceProbe;
+pub use front::FrontProbe;
+pub use joint::JointProbe;
+pub use line::LineProbe;
+pub use motion::MotionProbe;
+pub use patch::PatchProbe;
+pub use press::{ContactList, ContactForceProbe};
+pub use pressure::PressureProbe;
+pub use row::{ProbeRow, column_at_place};
+pub use runup::RunupProbe;
+pub use velocity::VelocityProbe;
 
 use crate::{
     error::{Error, Kind, Result},
@@ -50,16 +50,16 @@ pub trait Probe<const D: usize>: Send {
     fn columns(&self) -> Vec<String>;
 
     /// A number for each column, now. NaN where there is nothing to measure, as in a dry place.
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64>;
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64>;
 
     /// Makes the reading `now` continue the reading `before` it, for quantities that wind round, such as
     /// an angle past 180°, or add up, such as a volume; `dt` (s) lies between them. By default leaves it as it is.
-    fn follow(&self, before: &[f64], now: &mut [f64], dt: f64) {
+    fn continue_from(&self, before: &[f64], now: &mut [f64], dt: f64) {
         let _ = (before, now, dt);
     }
 
     /// How many of the last columns are sums since the start, of which no mean over time is taken.
-    fn totals(&self) -> usize {
+    fn cumulative_columns(&self) -> usize {
         0
     }
 }

@@ -5,11 +5,11 @@ use crate::{error::Result, math::Vector, simulation::Simulation, solid::Contact,
 
 /// Watches the contact of two solids in the last step: the sum of the normal forces (N), the force on the second, friction
 /// included (N), and where it acts (m); NaN there while they do not touch.
-pub struct Press {
+pub struct ContactForceProbe {
     solids: [usize; 2],
 }
 
-impl Press {
+impl ContactForceProbe {
     /// The probe of the solids of these names.
     ///
     /// # Errors
@@ -19,16 +19,16 @@ impl Press {
     }
 }
 
-impl<const D: usize> Probe<D> for Press {
+impl<const D: usize> Probe<D> for ContactForceProbe {
     fn columns(&self) -> Vec<String> {
         columns::<D>().collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let [first, second] = self.solids;
         let pair = [first.min(second), first.max(second)];
         match sim.contacts().iter().find(|contact| contact.between == pair) {
-            Some(contact) => numbers(contact, &contact.loads[usize::from(first < second)].force),
+            Some(contact) => contact_values(contact, &contact.loads[usize::from(first < second)].force),
             None => [0.0; D].into_iter().chain([0.0]).chain([f64::NAN; D]).collect(),
         }
     }
@@ -36,20 +36,20 @@ impl<const D: usize> Probe<D> for Press {
 
 /// Lists all contacts in the last step: a row for each pair that presses on each other, with the columns of [`Press`] behind
 /// the names of the two. The force is that on the second.
-pub struct Contacts;
+pub struct ContactList;
 
-impl Contacts {
+impl ContactList {
     /// Names of the columns.
     pub fn columns<const D: usize>() -> Vec<String> {
         ["first", "second"].map(String::from).into_iter().chain(columns::<D>()).collect()
     }
 
     /// The names of the two solids of each pair and its numbers, in the order of the scene.
-    pub fn look<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> {
+    pub fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> {
         let solids = sim.system().solids();
         let row = |contact: Contact<D>| {
             let names = contact.between.map(|i| solids[i].spec.name.as_str());
-            (names, numbers(&contact, &contact.loads[1].force))
+            (names, contact_values(&contact, &contact.loads[1].force))
         };
         sim.contacts().into_iter().map(row).collect()
     }
@@ -64,6 +64,6 @@ fn columns<const D: usize>() -> impl Iterator<Item = String> {
 }
 
 /// What is told of a contact with such a `force` (N) on one of the two.
-fn numbers<const D: usize>(contact: &Contact<D>, force: &Vector<D>) -> Vec<f64> {
+fn contact_values<const D: usize>(contact: &Contact<D>, force: &Vector<D>) -> Vec<f64> {
     [contact.pressing].into_iter().chain(force.iter().copied()).chain(contact.at.iter().copied()).collect()
 }

@@ -4,11 +4,11 @@ use super::Probe;
 use crate::simulation::Simulation;
 
 /// Watches with several probes; a column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
-pub struct Row<const D: usize> {
+pub struct ProbeRow<const D: usize> {
     members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>,
 }
 
-impl<const D: usize> Row<D> {
+impl<const D: usize> ProbeRow<D> {
     /// The probes of `members`, each with its place (m).
     pub fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self {
         Self { members }
@@ -16,7 +16,7 @@ impl<const D: usize> Row<D> {
 }
 
 /// The name of the column `column` at the place `at` (m), to a micrometre.
-pub fn named(column: &str, at: &[f64]) -> String {
+pub fn column_at_place(column: &str, at: &[f64]) -> String {
     let rounded = at.iter().map(|x| format!("{}", (x * 1e6).round() / 1e6 + 0.0));
     let place = rounded.collect::<Vec<_>>().join("_");
     match column.rsplit_once('_') {
@@ -25,24 +25,24 @@ pub fn named(column: &str, at: &[f64]) -> String {
     }
 }
 
-impl<const D: usize> Probe<D> for Row<D> {
+impl<const D: usize> Probe<D> for ProbeRow<D> {
     fn columns(&self) -> Vec<String> {
         let each = self.members.iter();
-        each.flat_map(|(at, probe)| probe.columns().into_iter().map(|column| named(&column, at))).collect()
+        each.flat_map(|(at, probe)| probe.columns().into_iter().map(|column| column_at_place(&column, at))).collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
-        self.members.iter().flat_map(|(_, probe)| probe.look(sim)).collect()
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        self.members.iter().flat_map(|(_, probe)| probe.sample(sim)).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::named;
+    use super::column_at_place;
 
     #[test]
     fn a_place_is_written_without_the_noise_of_round_off() {
-        let columns = [named("eta_m", &[0.1 + 0.2]), named("vx_mps", &[-0.5, 2.0]), named("p_Pa", &[-1e-9, 0.0])];
+        let columns = [column_at_place("eta_m", &[0.1 + 0.2]), column_at_place("vx_mps", &[-0.5, 2.0]), column_at_place("p_Pa", &[-1e-9, 0.0])];
         assert_eq!(columns, ["eta_at_0.3_m", "vx_at_-0.5_2_mps", "p_at_0_0_Pa"]);
     }
 }

@@ -7,18 +7,18 @@ use flate2::{Compression, write::DeflateEncoder};
 
 /// Numbers as bytes, little-endian.
 #[derive(Clone, Debug, Default)]
-pub struct Blob(Vec<u8>);
+pub struct BinaryData(Vec<u8>);
 
-impl Blob {
+impl BinaryData {
     /// Adds single-precision numbers; where they begin, in bytes.
-    pub fn floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> usize {
+    pub fn push_floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> usize {
         let begin = self.0.len();
         self.0.extend(numbers.into_iter().flat_map(f32::to_le_bytes));
         begin
     }
 
     /// Adds whole numbers, first all low bytes, then all high ones, which are alike and pack well; where they begin.
-    pub fn planes(&mut self, numbers: &[u16]) -> usize {
+    pub fn push_byte_planes(&mut self, numbers: &[u16]) -> usize {
         let begin = self.0.len();
         self.0.extend(numbers.iter().map(|n| *n as u8));
         self.0.extend(numbers.iter().map(|n| (n >> 8) as u8));
@@ -31,7 +31,7 @@ impl Blob {
     }
 
     /// All of it, deflated (without a header) and in base 64.
-    pub fn text(&self) -> String {
+    pub fn to_base64(&self) -> String {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());
         // Memory takes every byte.
         let packed = encoder.write_all(&self.0).and_then(|()| encoder.finish()).unwrap_or_default();

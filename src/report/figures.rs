@@ -1,40 +1,40 @@
 //! Figures of series in tables: extremes, means, waves; the budget of energies.
 
-use super::{format, kept::Table};
+use super::{format, kept::ProbeTable};
 use crate::{
-    analysis::{moments, waves},
+    analysis::{moments, zero_crossing_waves},
     math::time_series::Series,
-    probe::unaccounted,
+    probe::relative_residual,
 };
 
 /// The numbers of the column `x` over `t` (s) as a series; none if there are less than two.
-pub(super) fn series(t: &[f64], x: &[f64]) -> Option<Series> {
+pub(super) fn column_series(t: &[f64], x: &[f64]) -> Option<Series> {
     let (t, x): (Vec<f64>, Vec<f64>) = t.iter().zip(x).filter(|(_, x)| x.is_finite()).unzip();
     Series::new(t, x).ok()
 }
 
 /// The figures of all columns of `tables`, a row for each, but for entries of a budget or a balance that are 0 throughout; the first
 /// row is the head.
-pub fn rows(tables: &[Table]) -> Vec<Vec<String>> {
+pub fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
     let head = ["series", "unit", "least", "at, s", "largest", "at, s", "mean", "std", "last", "waves", "period, s"];
     let mut rows =
         vec![head.into_iter().chain(["mean height", "highest third", "highest"]).map(String::from).collect::<Vec<_>>()];
-    let digits = format::digits;
+    let digits = format::four_digits;
     let time = |t: f64| format!("{t:.3}");
     for table in tables {
-        for (i, (name, x)) in table.columns.iter().zip(&table.x).enumerate() {
-            if table.books() && table.idle(i) {
+        for (i, (name, x)) in table.columns.iter().zip(&table.values).enumerate() {
+            if table.is_breakdown() && table.is_zero(i) {
                 continue;
             }
-            let Some(series) = series(&table.t, x) else { continue };
+            let Some(series) = column_series(&table.times, x) else { continue };
             let f = moments(&series);
             let mut row =
                 vec![format!("{} · {}", table.name, format::name_without_unit(name)), format::unit(name).into()];
-            row.extend([digits(f.least.0), time(f.least.1), digits(f.largest.0), time(f.largest.1)]);
-            row.extend([digits(f.mean), digits(f.deviation), digits(f.last)]);
-            row.extend(waves(&series).map_or_else(
+            row.extend([digits(f.min.0), time(f.min.1), digits(f.max.0), time(f.max.1)]);
+            row.extend([digits(f.mean), digits(f.standard_deviation), digits(f.last)]);
+            row.extend(zero_crossing_waves(&series).map_or_else(
                 || vec![String::new(); 5],
-                |w| vec![w.count.to_string(), digits(w.period), digits(w.mean), digits(w.third), digits(w.largest)],
+                |w| vec![w.count.to_string(), digits(w.mean_period), digits(w.mean_height), digits(w.significant_height), digits(w.max_height)],
             ));
             rows.push(row);
         }
@@ -44,7 +44,7 @@ pub fn rows(tables: &[Table]) -> Vec<Vec<String>> {
 
 /// The budget of an energy table: what each part was at the start and the end, and its extremes; and what it comes to
 /// in words. None of any other table.
-pub fn energy(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
+pub fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy" {
         return None;
     }
@@ -52,17 +52,17 @@ pub fn energy(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
     let head = ["part", "start", "end", "change", "least", "largest"];
     let heads = head.iter().map(|h| if *h == "part" { h.to_string() } else { format!("{h}, {unit}") });
     let mut rows = vec![heads.collect::<Vec<String>>()];
-    let digits = format::digits;
+    let digits = format::four_digits;
     let find = |part: &str| table.columns.iter().position(|name| format::name_without_unit(name) == part);
-    for (name, x) in table.columns.iter().zip(&table.x) {
-        let (first, f) = (*x.first()?, moments(&series(&table.t, x)?));
-        let cells = [first, f.last, f.last - first, f.least.0, f.largest.0];
+    for (name, x) in table.columns.iter().zip(&table.values) {
+        let (first, f) = (*x.first()?, moments(&column_series(&table.times, x)?));
+        let cells = [first, f.last, f.last - first, f.min.0, f.max.0];
         rows.push(std::iter::once(format::name_without_unit(name)).chain(cells.map(digits)).collect());
     }
-    let total = &table.x[find("total")?];
+    let total = &table.values[find("total")?];
     let change = total.last()? - total.first()?;
     let moving =
-        find("water kinetic").and_then(|i| series(&table.t, &table.x[i])).map_or(0.0, |s| moments(&s).largest.0);
+        find("water kinetic").and_then(|i| column_series(&table.times, &table.values[i])).map_or(0.0, |s| moments(&s).max.0);
     let mut said =
         format!("The total {} by {} {unit}", if change < 0.0 { "falls" } else { "rises" }, digits(change.abs()));
     if moving > 0.0 {
@@ -74,23 +74,23 @@ pub fn energy(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
 
 /// What a budget table comes to at the end: each entry, and its share of all that was turned over; and how well it closes, in
 /// words. None of any other table.
-pub fn budget(table: &Table) -> Option<(Vec<Vec<String>>, String)> {
+pub fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy budget" {
         return None;
     }
     let unit = format::unit(table.columns.first()?);
-    let last = table.x.iter().map(|x| x.last().copied()).collect::<Option<Vec<f64>>>()?;
+    let last = table.values.iter().map(|x| x.last().copied()).collect::<Option<Vec<f64>>>()?;
     let entries = last.get(1..last.len().checked_sub(1)?)?;
     let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
     let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
     let row = |(name, energy): (&String, &f64)| {
-        vec![format::name_without_unit(name), format::digits(*energy), format::minus(&format!("{:.2}", share(*energy)))]
+        vec![format::name_without_unit(name), format::four_digits(*energy), format::with_minus_sign(&format!("{:.2}", share(*energy)))]
     };
     let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
     let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();
     let said = format!(
         "The entries add up to what water and bodies have stored, but for {} % of all that was turned over.",
-        format::digits(100.0 * unaccounted(&last).unwrap_or_default())
+        format::four_digits(100.0 * relative_residual(&last).unwrap_or_default())
     );
     Some((rows, said))
 }

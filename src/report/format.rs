@@ -22,20 +22,20 @@ pub fn table(rows: &[Vec<String>]) -> String {
 }
 
 /// A number with four digits that count.
-pub fn digits(x: f64) -> String {
+pub fn four_digits(x: f64) -> String {
     match x.abs() {
         _ if !x.is_finite() => "–".into(),
         0.0 => "0".into(),
         size if (1e-3..1e5).contains(&size) => {
             let places = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
-            minus(&format!("{x:.places$}"))
+            with_minus_sign(&format!("{x:.places$}"))
         }
-        _ => minus(&format!("{x:.3e}")),
+        _ => with_minus_sign(&format!("{x:.3e}")),
     }
 }
 
 /// A number as it is set in print: with a minus, not a hyphen.
-pub fn minus(number: &str) -> String {
+pub fn with_minus_sign(number: &str) -> String {
     number.replace('-', "−")
 }
 
@@ -53,7 +53,7 @@ mod tests {
     #[test]
     fn numbers_are_said_as_in_print() {
         assert_eq!(
-            [digits(-0.0123449), digits(1234.4), digits(0.0), digits(1e-7)],
+            [four_digits(-0.0123449), four_digits(1234.4), four_digits(0.0), four_digits(1e-7)],
             ["−0.01234", "1234", "0", "1.000e−7"]
         );
         assert_eq!([thousands(999), thousands(1234567)], ["999", "1\u{202f}234\u{202f}567"]);

@@ -9,7 +9,7 @@ use crate::error::{Error, Kind, Result};
 const FONT: &[u8] = include_bytes!("assets/inter.otf");
 
 /// A pen.
-pub struct Ink {
+pub struct TextRenderer {
     face: Face<'static>,
 }
 
@@ -24,7 +24,7 @@ pub enum Anchor {
     End,
 }
 
-impl Ink {
+impl TextRenderer {
     /// The pen of the embedded font.
     ///
     /// # Errors
@@ -48,13 +48,13 @@ impl Ink {
             Anchor::End => 1.0,
         };
         let scale = self.scale(size);
-        let mut pen = Pen { path: PathBuilder::new(), x: x - share * self.width(text, size), y, scale };
+        let mut pen = GlyphOutline { path: PathBuilder::new(), x: x - share * self.width(text, size), y, scale };
         for glyph in text.chars().filter_map(|c| self.face.glyph_index(c)) {
             self.face.outline_glyph(glyph, &mut pen);
             pen.x += f32::from(self.face.glyph_hor_advance(glyph).unwrap_or(0)) * scale;
         }
         if let Some(path) = pen.path.finish() {
-            fill(on, &path, colour, 255);
+            fill_path(on, &path, colour, 255);
         }
     }
 
@@ -64,32 +64,32 @@ impl Ink {
 }
 
 /// Fills `path` with `colour` of `cover` (0 … 255).
-pub fn fill(on: &mut Pixmap, path: &Path, colour: [u8; 3], cover: u8) {
-    on.fill_path(path, &paint(colour, cover), FillRule::Winding, Transform::identity(), None);
+pub fn fill_path(on: &mut Pixmap, path: &Path, colour: [u8; 3], cover: u8) {
+    on.fill_path(path, &solid_paint(colour, cover), FillRule::Winding, Transform::identity(), None);
 }
 
 /// A paint of `colour` and `cover` (0 … 255).
-pub fn paint(colour: [u8; 3], cover: u8) -> Paint<'static> {
+pub fn solid_paint(colour: [u8; 3], cover: u8) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color(Color::from_rgba8(colour[0], colour[1], colour[2], cover));
     paint
 }
 
 /// Glyphs on their way to a path.
-struct Pen {
+struct GlyphOutline {
     path: PathBuilder,
     x: f32,
     y: f32,
     scale: f32,
 }
 
-impl Pen {
+impl GlyphOutline {
     fn at(&self, x: f32, y: f32) -> (f32, f32) {
         (self.x + x * self.scale, self.y - y * self.scale)
     }
 }
 
-impl OutlineBuilder for Pen {
+impl OutlineBuilder for GlyphOutline {
     fn move_to(&mut self, x: f32, y: f32) {
         let (x, y) = self.at(x, y);
         self.path.move_to(x, y);
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn the_font_has_every_sign_that_pictures_use() -> Result<()> {
-        let ink = Ink::new()?;
+        let ink = TextRenderer::new()?;
         for c in "t = 0.50 s, pressure − still water (Pa) m/s ² ³ δ ρ · ° é".chars() {
             assert!(ink.face.glyph_index(c).is_some(), "{c:?} is missing");
         }

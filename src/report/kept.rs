@@ -9,20 +9,20 @@ use std::{
 use super::{
     outline::{Outline, outlines},
     pose::Placement,
-    rim::Rim,
+    rim::ContactSkinOutline,
 };
 use crate::{
-    analysis::{Check, Curves},
+    analysis::{ReferenceCheck, CheckCurves},
     error::{Error, Result},
-    output::{Film, Manifest, Readings},
+    output::{FrameSequence, Manifest, SeriesTable},
     plan::{Plan, ProbeKind},
-    run::{self, Asked, Told},
-    scene::{Scene, Stage},
+    run::{self, StatisticsFilter, RunStatistics},
+    scene::{Scene, SceneLayout},
     solid::Role,
 };
 
 /// A run's folder.
-pub struct Kept {
+pub struct RunData {
     /// The folder.
     pub folder: PathBuf,
     /// A short name, told apart from those of the runs beside it.
@@ -32,23 +32,23 @@ pub struct Kept {
     /// When the manifest was written last.
     pub written: Option<SystemTime>,
     /// The words of the scene as the user wrote them.
-    pub words: String,
+    pub scene_text: String,
     /// What was watched and what stands around the water; none if the kept scene cannot be built again.
-    pub set: Option<Set>,
+    pub geometry: Option<SceneGeometry>,
     /// Its frames.
-    pub film: Option<Film>,
+    pub frames: Option<FrameSequence>,
     /// Its tables.
-    pub tables: Vec<Table>,
+    pub tables: Vec<ProbeTable>,
     /// What is said of its series.
-    pub told: Told,
+    pub statistics: RunStatistics,
     /// Its checks with their curves; as many as the manifest has verdicts if the run has finished.
-    pub checks: Vec<(Check, Option<Curves>)>,
+    pub checks: Vec<(ReferenceCheck, Option<CheckCurves>)>,
     /// What could not be read, and why.
     pub remarks: Vec<String>,
 }
 
 /// What stands around the water.
-pub struct Set {
+pub struct SceneGeometry {
     /// 2 or 3.
     pub dimension: usize,
     /// Particle spacing, m.
@@ -60,13 +60,13 @@ pub struct Set {
     /// Weight of a mass down the last axis, m/s²; 0 where gravity is otherwise.
     pub g: f64,
     /// The solids at the start.
-    pub solids: Vec<Solid>,
+    pub solids: Vec<DrawnSolid>,
     /// What is watched, judged and kept.
     pub plan: Plan,
 }
 
 /// A solid as it is drawn.
-pub struct Solid {
+pub struct DrawnSolid {
     /// Its name.
     pub name: String,
     /// `fixed`, `driven` or `free`.
@@ -74,13 +74,13 @@ pub struct Solid {
     /// Its lines, in its own frame.
     pub lines: Vec<Outline>,
     /// Where others touch it, if that is not at its faces, in its own frame.
-    pub rim: Rim,
+    pub contact_skin: ContactSkinOutline,
     /// Where that frame is at the start.
     pub start: Placement,
 }
 
 /// A table of a probe.
-pub struct Table {
+pub struct ProbeTable {
     /// Name of the probe.
     pub name: String,
     /// What it watches, in a word.
@@ -88,12 +88,12 @@ pub struct Table {
     /// Names of the columns after the time.
     pub columns: Vec<String>,
     /// Times, s.
-    pub t: Vec<f64>,
+    pub times: Vec<f64>,
     /// A row of numbers for each column; NaN where there was nothing to measure.
-    pub x: Vec<Vec<f64>>,
+    pub values: Vec<Vec<f64>>,
 }
 
-impl Kept {
+impl RunData {
     /// The run in `folder`.
     ///
     /// # Errors
@@ -104,9 +104,9 @@ impl Kept {
         let mut remarks = Vec::new();
         let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.what));
         let sets: Vec<(String, String)> = manifest.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
-        let set = Scene::read(&file, &sets).and_then(|scene| Set::of(&scene));
+        let set = Scene::read(&file, &sets).and_then(|scene| SceneGeometry::from_scene(&scene));
         let set = set.map_err(|why| noted("bodies and gauges are not drawn, for the scene cannot be built", why)).ok();
-        let film = Film::open(folder).unwrap_or_else(|why| {
+        let film = FrameSequence::open(folder).unwrap_or_else(|why| {
             noted("there is no player, for the frames cannot be read", why);
             None
         });
@@ -114,20 +114,20 @@ impl Kept {
         let series = run::series_folder(folder);
         let mut tables = Vec::new();
         for name in names(&series, plan) {
-            match Table::read(&series, &name, plan) {
+            match ProbeTable::read(&series, &name, plan) {
                 Ok(table) => tables.push(table),
                 Err(why) => noted("a table is left out", why),
             }
         }
         let mut checks = Vec::new();
         for words in plan.iter().flat_map(|plan| &plan.checks) {
-            match Check::new(words, &folder.join("scene")) {
+            match ReferenceCheck::new(words, &folder.join("scene")) {
                 Ok(check) => checks.push((check.curves(&series).ok(), check)),
                 Err(why) => noted("a reference is not drawn", why),
             }
         }
         let checks = checks.into_iter().map(|(curves, check)| (check, curves)).collect();
-        let told = plan.map_or_else(Told::default, |plan| run::told(folder, plan, &Asked::default()));
+        let told = plan.map_or_else(RunStatistics::default, |plan| run::run_statistics(folder, plan, &StatisticsFilter::default()));
         Ok(Self {
             name: folder
                 .canonicalize()
@@ -135,13 +135,13 @@ impl Kept {
                 .and_then(|f| Some(f.file_name()?.to_string_lossy().into_owned()))
                 .unwrap_or_default(),
             written: fs::metadata(folder.join("manifest.json")).and_then(|file| file.modified()).ok(),
-            words: fs::read_to_string(&file).unwrap_or_else(|_| manifest.scene.clone()),
+            scene_text: fs::read_to_string(&file).unwrap_or_else(|_| manifest.scene.clone()),
             folder: folder.to_owned(),
             manifest,
-            set,
-            film,
+            geometry: set,
+            frames: film,
             tables,
-            told,
+            statistics: told,
             checks,
             remarks,
         })
@@ -151,7 +151,7 @@ impl Kept {
     ///
     /// # Errors
     /// As [`Kept::read`], for the first that is none.
-    pub fn all(folders: &[PathBuf]) -> Result<Vec<Self>> {
+    pub fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>> {
         let mut runs = folders.iter().map(|folder| Self::read(folder)).collect::<Result<Vec<_>>>()?;
         let names: Vec<String> = runs.iter().map(|run| run.name.clone()).collect();
         for run in &mut runs {
@@ -176,18 +176,18 @@ fn names(series: &Path, plan: Option<&Plan>) -> Vec<String> {
     names
 }
 
-impl Set {
-    fn of(scene: &Scene) -> Result<Self> {
+impl SceneGeometry {
+    fn from_scene(scene: &Scene) -> Result<Self> {
         match scene.dimension {
-            2 => Self::built::<2>(scene),
-            _ => Self::built::<3>(scene),
+            2 => Self::from_scene_in::<2>(scene),
+            _ => Self::from_scene_in::<3>(scene),
         }
     }
 
-    fn built<const D: usize>(scene: &Scene) -> Result<Self> {
-        let Stage { solids, model, still } = scene.stage::<D>()?;
+    fn from_scene_in<const D: usize>(scene: &Scene) -> Result<Self> {
+        let SceneLayout { solids, model, still_water } = scene.layout::<D>()?;
         let plan = scene.plan()?;
-        let solids = solids.iter().map(|spec| Solid {
+        let solids = solids.iter().map(|spec| DrawnSolid {
             name: spec.name.clone(),
             role: match spec.role {
                 Role::Fixed => "fixed",
@@ -195,14 +195,14 @@ impl Set {
                 Role::Free(_) => "free",
             },
             lines: outlines(&spec.shape),
-            rim: Rim::of(&spec.shape, spec.contact_skin, scene.dp),
-            start: Placement::of(&spec.start().pose),
+            contact_skin: ContactSkinOutline::of_shape(&spec.shape, spec.contact_skin, scene.dp),
+            start: Placement::from_pose(&spec.start().pose),
         });
         let solids = solids.collect();
         let (down, beside) =
             model.gravity.split_last().map_or((0.0, false), |(g, rest)| (-g, rest.iter().any(|x| *x != 0.0)));
         let g = if beside || scene.periodic.is_some() { 0.0 } else { down };
-        Ok(Self { dimension: D, dp: scene.dp, level: still.level, rho0: model.rho0, g, solids, plan })
+        Ok(Self { dimension: D, dp: scene.dp, level: still_water.level, rho0: model.rho0, g, solids, plan })
     }
 
     /// Where gauges stand: the name of each, what it measures, and its place (m) with as many coordinates as it has.
@@ -221,20 +221,20 @@ impl Set {
     }
 }
 
-impl Table {
+impl ProbeTable {
     /// Whether it is a budget or a balance: an entry for each kind, most of which a run does not have.
-    pub fn books(&self) -> bool {
+    pub fn is_breakdown(&self) -> bool {
         matches!(self.what, "energy budget" | "loads by kind")
     }
 
     /// Whether a column was measured and is 0 throughout.
-    pub fn idle(&self, column: usize) -> bool {
-        let mut known = self.x[column].iter().filter(|x| x.is_finite()).peekable();
+    pub fn is_zero(&self, column: usize) -> bool {
+        let mut known = self.values[column].iter().filter(|x| x.is_finite()).peekable();
         known.peek().is_some() && known.all(|x| *x == 0.0)
     }
 
     fn read(series: &Path, name: &str, plan: Option<&Plan>) -> Result<Self> {
-        let Readings { columns, t, x } = Readings::read(&series.join(format!("{name}.csv")))?;
+        let SeriesTable { columns, times, values } = SeriesTable::read(&series.join(format!("{name}.csv")))?;
         let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));
         let what = probe.map_or("table", |probe| match &probe.what {
             ProbeKind::Motion { .. } => "motion",
@@ -254,6 +254,6 @@ impl Table {
             ProbeKind::Contact { .. } => "contact",
             ProbeKind::Budget => "energy budget",
         });
-        Ok(Self { name: name.into(), what, columns, t, x })
+        Ok(Self { name: name.into(), what, columns, times: times, values: values })
     }
 }

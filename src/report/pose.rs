@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use super::outline::spread;
+use super::outline::to_3d;
 use crate::math::Pose;
 
 /// A pose in three coordinates; in 2-D the third stays as it is.
@@ -17,25 +17,25 @@ pub struct Placement {
 
 impl Placement {
     /// The same as `pose`.
-    pub fn of<const D: usize>(pose: &Pose<D>) -> Self {
+    pub fn from_pose<const D: usize>(pose: &Pose<D>) -> Self {
         let entry = |i: usize, j: usize| if i < D && j < D { pose.rotation[(i, j)] } else { f64::from(i == j) };
         let turn = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
-        Self { at: spread(&pose.position), turn }
+        Self { at: to_3d(&pose.position), turn }
     }
 
     /// World position (m) of the local point `x` (m).
-    pub fn point(&self, x: &[f64; 3]) -> [f64; 3] {
+    pub fn to_world(&self, x: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|i| self.at[i] + (0..3).map(|j| self.turn[i][j] * x[j]).sum::<f64>())
     }
 
     /// Local coordinates (m) of the world point `x` (m).
-    pub fn local(&self, x: &[f32; 3]) -> [f64; 3] {
+    pub fn to_local(&self, x: &[f32; 3]) -> [f64; 3] {
         std::array::from_fn(|i| (0..3).map(|j| self.turn[j][i] * (f64::from(x[j]) - self.at[j])).sum())
     }
 
     /// This pose once the solid has moved as its points have `from` → `to`: least squares over all of them
     /// (Kabsch 1976).
-    pub fn moved(&self, from: &[[f32; 3]], to: &[[f32; 3]]) -> Self {
+    pub fn fitted_to(&self, from: &[[f32; 3]], to: &[[f32; 3]]) -> Self {
         let mean = |x: &[[f32; 3]]| {
             let total = |i: usize| x.iter().map(|x| f64::from(x[i])).sum::<f64>();
             Vector3::from_fn(|i, _| total(i) / x.len().max(1) as f64)
@@ -72,10 +72,10 @@ mod tests {
             Pose::<3>::rotated(Vector::from([1.5, 2.0, 2.0]), &[-1.0, 2.0, 0.7]),
         );
         let points = |pose: &Pose<3>| local.iter().map(|x| single(pose.point(x))).collect::<Vec<_>>();
-        let found = Placement::of(&start).moved(&points(&start), &points(&end));
-        let asked = Placement::of(&end);
+        let found = Placement::from_pose(&start).fitted_to(&points(&start), &points(&end));
+        let asked = Placement::from_pose(&end);
         let x = [0.3, -0.2, 0.1];
-        let off = found.point(&x).iter().zip(asked.point(&x)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off = found.to_world(&x).iter().zip(asked.to_world(&x)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 1e-6, "the points are known in single precision: 1e-7 of 3 m; off by {off}");
     }
 
@@ -85,9 +85,9 @@ mod tests {
         let end = Pose::<2>::rotated(Vector::from([1.0, 0.0]), &[0.5]);
         let points = |pose: &Pose<2>| {
             [[0.1, 0.0], [0.0, 0.2], [-0.1, 0.0], [0.0, -0.2]]
-                .map(|x| spread(&pose.point(&Vector::from(x))).map(|c| c as f32))
+                .map(|x| to_3d(&pose.point(&Vector::from(x))).map(|c| c as f32))
         };
-        let found = Placement::of(&start).moved(&points(&start), &points(&end));
+        let found = Placement::from_pose(&start).fitted_to(&points(&start), &points(&end));
         assert!((found.turn[1][0] - 0.5_f64.sin()).abs() < 1e-6 && (found.turn[2][2] - 1.0).abs() < 1e-6, "{found:?}");
     }
 }

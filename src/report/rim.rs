@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-use super::outline::{Outline, outlines, placed, spread};
+use super::outline::{Outline, outlines, transformed, to_3d};
 use crate::{geometry::Shape, math::Vector, preflight::faces};
 
 /// Largest turn from one point of a round corner to the next, rad.
@@ -24,37 +24,37 @@ const OUTSIDE: f64 = 0.98;
 
 /// The outer side of a contact skin, in the frame of the solid; nothing if it has none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Rim {
+pub struct ContactSkinOutline {
     /// In 2-D its lines; in 3-D those of the solid, moved out to it.
     pub lines: Vec<Outline>,
     /// In 3-D places on it, m, about dp apart.
     pub dots: Vec<[f64; 3]>,
 }
 
-impl Rim {
+impl ContactSkinOutline {
     /// That of `shape` with a contact skin so thick (m), in a scene of spacing `dp` (m).
-    pub fn of<const D: usize>(shape: &Shape<D>, skin: f64, dp: f64) -> Self {
+    pub fn of_shape<const D: usize>(shape: &Shape<D>, skin: f64, dp: f64) -> Self {
         if skin == 0.0 {
             return Self::default();
         }
         if D == 2 {
-            return Self { lines: lines(shape, skin), dots: Vec::new() };
+            return Self { lines: skin_lines_2d(shape, skin), dots: Vec::new() };
         }
         let outside = |x: &Vector<D>| shape.signed_distance(x) > OUTSIDE * skin;
         let places = faces::of_shape(shape, dp).into_iter().map(|face| face.x + face.n * skin).filter(outside);
         // Rounded to a thousandth of dp: many of them stand on a page.
         let round = |x: f64| (x / (1e-3 * dp)).round() * 1e-3 * dp;
-        let mut lines = wires(shape, skin, dp);
+        let mut lines = skin_lines_3d(shape, skin, dp);
         lines.iter_mut().flat_map(|line| &mut line.points).for_each(|x| *x = x.map(round));
-        Self { lines, dots: places.map(|x| spread(&x).map(round)).collect() }
+        Self { lines, dots: places.map(|x| to_3d(&x).map(round)).collect() }
     }
 }
 
 /// The lines of a contact skin in 3-D: those of the solid, about `step` (m) fine, each point moved outwards by the skin. What lies
 /// within the solid or in a corner between two parts, as lines of a compound's parts may, is left out.
-fn wires<const D: usize>(shape: &Shape<D>, skin: f64, step: f64) -> Vec<Outline> {
+fn skin_lines_3d<const D: usize>(shape: &Shape<D>, skin: f64, step: f64) -> Vec<Outline> {
     let moved = |line: Outline| {
-        let found: Vec<Option<[f64; 3]>> = fine(&line, step).iter().map(|x| outside(shape, x, skin, step)).collect();
+        let found: Vec<Option<[f64; 3]>> = refined(&line, step).iter().map(|x| skin_point(shape, x, skin, step)).collect();
         let closed = line.closed && found.iter().all(Option::is_some);
         let runs = found.split(Option::is_none).filter(|run| run.len() > 1);
         runs.map(|run| Outline { closed, points: run.iter().flatten().copied().collect() }).collect::<Vec<_>>()
@@ -64,7 +64,7 @@ fn wires<const D: usize>(shape: &Shape<D>, skin: f64, step: f64) -> Vec<Outline>
 
 /// Where the outer side of the skin is above the point `x` (m) of the faces, in the direction in which the distance from `shape`
 /// grows: at an edge between the normals of both its faces. None above what is inside, or where that is too far off.
-fn outside<const D: usize>(shape: &Shape<D>, x: &[f64; 3], skin: f64, step: f64) -> Option<[f64; 3]> {
+fn skin_point<const D: usize>(shape: &Shape<D>, x: &[f64; 3], skin: f64, step: f64) -> Option<[f64; 3]> {
     let from = Vector::<D>::from_fn(|i, _| x[i]);
     if shape.signed_distance(&from) < -NEAR * skin {
         return None;
@@ -81,7 +81,7 @@ fn outside<const D: usize>(shape: &Shape<D>, x: &[f64; 3], skin: f64, step: f64)
         let there = from + normal * far;
         let left = skin - shape.signed_distance(&there);
         if left < NEAR * skin {
-            return Some(spread(&there));
+            return Some(to_3d(&there));
         }
         // No part of the outer side is nearer than what is left, so that none is passed by.
         far += left;
@@ -93,9 +93,9 @@ fn outside<const D: usize>(shape: &Shape<D>, x: &[f64; 3], skin: f64, step: f64)
 }
 
 /// The lines of a contact skin in 2-D: of a compound those of its parts, where they lie in no other's skin.
-fn lines<const D: usize>(shape: &Shape<D>, skin: f64) -> Vec<Outline> {
+fn skin_lines_2d<const D: usize>(shape: &Shape<D>, skin: f64) -> Vec<Outline> {
     let Shape::Compound(parts) = shape else {
-        let around = |line: Outline| Outline { closed: true, points: parallel(&line.points, skin) };
+        let around = |line: Outline| Outline { closed: true, points: offset_polygon(&line.points, skin) };
         return outlines(shape).into_iter().map(around).collect();
     };
     let mut found = Vec::new();
@@ -105,13 +105,13 @@ fn lines<const D: usize>(shape: &Shape<D>, skin: f64) -> Vec<Outline> {
             let mut others = parts.iter().enumerate().filter(|(j, _)| *j != i);
             others.all(|(_, (there, other))| other.signed_distance(&there.local(&x)) > OUTSIDE * skin)
         };
-        found.extend(placed(pose, lines(part, skin)).into_iter().flat_map(|line| cut(line, skin, outside)));
+        found.extend(transformed(pose, skin_lines_2d(part, skin)).into_iter().flat_map(|line| clipped(line, skin, outside)));
     }
     found
 }
 
 /// The closed line `by` (m) outside the closed line through `points`, round about its corners.
-fn parallel(points: &[[f64; 3]], by: f64) -> Vec<[f64; 3]> {
+fn offset_polygon(points: &[[f64; 3]], by: f64) -> Vec<[f64; 3]> {
     let n = points.len();
     let edge = |i: usize| {
         let (a, b) = (points[i % n], points[(i + 1) % n]);
@@ -140,8 +140,8 @@ fn parallel(points: &[[f64; 3]], by: f64) -> Vec<[f64; 3]> {
 }
 
 /// The parts of a line that are `kept`, to about `step` (m).
-fn cut(line: Outline, step: f64, kept: impl Fn(&[f64; 3]) -> bool) -> Vec<Outline> {
-    let fine = fine(&line, step);
+fn clipped(line: Outline, step: f64, kept: impl Fn(&[f64; 3]) -> bool) -> Vec<Outline> {
+    let fine = refined(&line, step);
     let Some(gap) = fine.iter().position(|x| !kept(x)) else { return vec![line] };
     let from = if line.closed { gap } else { 0 };
     let round: Vec<[f64; 3]> = fine[from..].iter().chain(&fine[..from]).copied().collect();
@@ -150,15 +150,15 @@ fn cut(line: Outline, step: f64, kept: impl Fn(&[f64; 3]) -> bool) -> Vec<Outlin
 }
 
 /// The points of a line and others between them, about `step` (m) apart.
-fn fine(line: &Outline, step: f64) -> Vec<[f64; 3]> {
+fn refined(line: &Outline, step: f64) -> Vec<[f64; 3]> {
     let (first, last) = (line.points.first(), line.points.last());
     let sides = line.points.iter().zip(line.points.iter().skip(1).chain(first.filter(|_| line.closed)));
-    let between = sides.flat_map(|(a, b)| divided(a, b, step));
+    let between = sides.flat_map(|(a, b)| subdivided(a, b, step));
     between.chain(last.filter(|_| !line.closed).copied()).collect()
 }
 
 /// Points from `a` to before `b`, about `step` (m) apart, but not more than a thousand.
-fn divided(a: &[f64; 3], b: &[f64; 3], step: f64) -> Vec<[f64; 3]> {
+fn subdivided(a: &[f64; 3], b: &[f64; 3], step: f64) -> Vec<[f64; 3]> {
     let length = (b[0] - a[0]).hypot(b[1] - a[1]).hypot(b[2] - a[2]);
     let count = (length / step).ceil().clamp(1.0, 1000.0);
     (0..count as usize).map(|k| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * k as f64 / count)).collect()
@@ -175,7 +175,7 @@ mod tests {
 
     /// How far the points of the rim of `shape`, 0.02 m thick, are off it, m.
     fn off<const D: usize>(shape: &Shape<D>) -> Vec<f64> {
-        let Rim { lines, dots } = Rim::of(shape, 0.02, 0.05);
+        let ContactSkinOutline { lines, dots } = ContactSkinOutline::of_shape(shape, 0.02, 0.05);
         let points = lines.iter().flat_map(|line| &line.points).chain(&dots);
         points.map(|x| shape.signed_distance(&Vector::from_fn(|i, _| x[i])) - 0.02).collect()
     }
@@ -211,13 +211,13 @@ mod tests {
             // Dots and lines are rounded to a thousandth of dp.
             assert!(off.len() > 50 && off.iter().all(|x| x.abs() < 1e-4), "{shape:?}: {off:?}");
         }
-        assert_eq!(Rim::of(&Shape::<2>::Ball { radius: 0.1 }, 0.0, 0.05), Rim::default());
+        assert_eq!(ContactSkinOutline::of_shape(&Shape::<2>::Ball { radius: 0.1 }, 0.0, 0.05), ContactSkinOutline::default());
     }
 
     #[test]
     fn the_rim_of_a_box_is_one_closed_line_and_that_of_a_pile_is_cut_where_its_parts_meet() {
         let block = |at: [f64; 2]| (Pose::at(flat(at)), Shape::Box { size: flat([0.2, 0.1]) });
-        let lines = |shape: &Shape<2>| Rim::of(shape, 0.02, 0.05).lines;
+        let lines = |shape: &Shape<2>| ContactSkinOutline::of_shape(shape, 0.02, 0.05).lines;
         let single = lines(&Shape::Box { size: flat([0.2, 0.1]) });
         assert!(single.len() == 1 && single[0].closed, "{single:?}");
         let pile = lines(&Shape::Compound(vec![block([0.0, 0.0]), block([0.15, 0.1])]));
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn in_space_the_rim_of_a_box_lies_between_the_normals_of_its_faces_all_along_its_edges() {
         let size = Vector::<3>::from([0.4, 0.2, 0.3]);
-        let lines = Rim::of(&Shape::Box { size }, 0.02, 0.05).lines;
+        let lines = ContactSkinOutline::of_shape(&Shape::Box { size }, 0.02, 0.05).lines;
         assert_eq!(lines.len(), 6, "two rings and four uprights, uncut: {lines:?}");
         for x in lines.iter().flat_map(|line| &line.points) {
             let beyond = (0..3).filter(|&i| x[i].abs() - 0.5 * size[i] > 0.01).count();
@@ -254,7 +254,7 @@ mod tests {
         let mesh = std::sync::Arc::new(Mesh::new(&points, facets.as_chunks::<3>().0)?);
         // Points are rounded to a thousandth of dp.
         let places = |shape: &Shape<3>| -> BTreeSet<[i64; 3]> {
-            let lines = Rim::of(shape, 0.02, 0.05).lines;
+            let lines = ContactSkinOutline::of_shape(shape, 0.02, 0.05).lines;
             lines.iter().flat_map(|line| &line.points).map(|x| x.map(|x| (x / 5e-5).round() as i64)).collect()
         };
         let drawn = places(&Shape::Mesh { mesh, contact: Touchable::default() });

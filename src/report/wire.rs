@@ -18,12 +18,12 @@ const MOST_EDGES: usize = 3000;
 const CUTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
 /// An edge by the numbers of its two corners, the lower first.
-type Edge = [u32; 2];
+type EdgeCorners = [u32; 2];
 
 /// The lines of a mesh: edges at which its faces turn sharply, and unless all faces are flat, cuts across its sides.
-pub fn wires(mesh: &Mesh) -> Vec<Outline> {
-    let turns = turns(mesh);
-    let sharp: Vec<&Edge> = turns.iter().filter(|(_, turn)| **turn >= SHARP).map(|(edge, _)| edge).collect();
+pub fn mesh_lines(mesh: &Mesh) -> Vec<Outline> {
+    let turns = dihedral_angles(mesh);
+    let sharp: Vec<&EdgeCorners> = turns.iter().filter(|(_, turn)| **turn >= SHARP).map(|(edge, _)| edge).collect();
     let smooth = turns.values().any(|turn| (FLAT..SHARP).contains(turn));
     let mut lines = Vec::new();
     if sharp.len() <= MOST_EDGES {
@@ -35,15 +35,15 @@ pub fn wires(mesh: &Mesh) -> Vec<Outline> {
         let longest = size.imax();
         for axis in 0..3 {
             let places = if axis == longest { &CUTS[..] } else { &[0.5] };
-            lines.extend(places.iter().flat_map(|place| cut(mesh, axis, low[axis] + place * size[axis])));
+            lines.extend(places.iter().flat_map(|place| plane_section(mesh, axis, low[axis] + place * size[axis])));
         }
     }
     lines
 }
 
 /// By how much the two facets at each edge are turned against each other, rad.
-fn turns(mesh: &Mesh) -> BTreeMap<Edge, f64> {
-    let mut normals: BTreeMap<Edge, Vec<Vector<3>>> = BTreeMap::new();
+fn dihedral_angles(mesh: &Mesh) -> BTreeMap<EdgeCorners, f64> {
+    let mut normals: BTreeMap<EdgeCorners, Vec<Vector<3>>> = BTreeMap::new();
     for facet in mesh.facets() {
         let [a, b, c] = facet.map(|i| mesh.points()[i as usize]);
         let normal = (b - a).cross(&(c - a)).normalize();
@@ -58,16 +58,16 @@ fn turns(mesh: &Mesh) -> BTreeMap<Edge, f64> {
     normals.iter().map(|(edge, normals)| (*edge, turn(normals))).collect()
 }
 
-fn edge(a: u32, b: u32) -> Edge {
+fn edge(a: u32, b: u32) -> EdgeCorners {
     [a.min(b), a.max(b)]
 }
 
 /// The closed lines in which the plane across `axis` at `at` (m) cuts a mesh.
 ///
 /// Round each facet that it cuts one edge leads up through it and one down; where one facet has it down, its neighbour has it up.
-fn cut(mesh: &Mesh, axis: usize, at: f64) -> Vec<Outline> {
+fn plane_section(mesh: &Mesh, axis: usize, at: f64) -> Vec<Outline> {
     let above = |i: u32| mesh.points()[i as usize][axis] >= at;
-    let mut next: BTreeMap<Edge, Edge> = BTreeMap::new();
+    let mut next: BTreeMap<EdgeCorners, EdgeCorners> = BTreeMap::new();
     for facet in mesh.facets() {
         let ends = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (facet[i], facet[j]));
         let leads =
@@ -76,7 +76,7 @@ fn cut(mesh: &Mesh, axis: usize, at: f64) -> Vec<Outline> {
             next.insert(up, down);
         }
     }
-    let place = |[a, b]: Edge| -> [f64; 3] {
+    let place = |[a, b]: EdgeCorners| -> [f64; 3] {
         let [a, b] = [a, b].map(|i| mesh.points()[i as usize]);
         (a + (b - a) * ((at - a[axis]) / (b[axis] - a[axis]))).into()
     };
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_block_is_drawn_by_its_twelve_edges() -> Result<()> {
-        let lines = wires(&block([0.4, 0.2, 0.1])?);
+        let lines = skin_lines_3d(&block([0.4, 0.2, 0.1])?);
         let length = |line: &Outline| (Vector::from(line.points[0]) - Vector::from(line.points[1])).norm();
         assert_eq!(lines.len(), 12, "no diagonals, no cuts");
         assert!((lines.iter().map(length).sum::<f64>() - 4.0 * 0.7).abs() < 1e-12);
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn a_ball_is_drawn_by_closed_cuts_that_lie_on_it() -> Result<()> {
         let mesh = ball(24)?;
-        let lines = wires(&mesh);
+        let lines = skin_lines_3d(&mesh);
         assert_eq!(lines.len(), CUTS.len() + 2);
         for line in &lines {
             assert!(line.closed);

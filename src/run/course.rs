@@ -5,8 +5,8 @@ use std::{path::PathBuf, time::Instant};
 use cpu_time::ProcessTime;
 
 use super::{
-    Body, Origin, Outcome, Progress, Start, Watch,
-    drift::Teller,
+    FinalBodyState, RunOrigin, RunOutcome, Progress, RunStart, RunObserver,
+    drift::DriftMonitor,
     folder, kept,
     lock::Lock,
     looks,
@@ -14,69 +14,69 @@ use super::{
     statistics,
 };
 use crate::{
-    analysis::{Check, Verdict},
+    analysis::{ReferenceCheck, Verdict},
     error::{Error, Kind, Result},
     model::Dimension,
     output::{
-        Checkpoint, Extent, Manifest, checkpoint,
-        manifest::{Count, InForce, Machine, Pictures, Status},
-        removed, write_whole,
+        Checkpoint, OutputPositions, Manifest, checkpoint,
+        manifest::{ParticleCounts, ValueInForce, Machine, FrameTotals, RunStatus},
+        removed, write_atomically,
     },
     preflight,
-    scene::{Built, Plan, Resolved, Scene},
+    scene::{BuiltScene, Plan, ResolvedValue, Scene},
     simulation::Simulation,
     solid::{Dim, HasEngine as _, Role},
 };
 
 /// A run in progress.
-pub struct Course<const D: usize> {
+pub struct Runner<const D: usize> {
     sim: Simulation<D>,
     outputs: Outputs<D>,
-    teller: Option<Teller>,
-    checks: Vec<Check>,
+    drift_monitor: Option<DriftMonitor>,
+    checks: Vec<ReferenceCheck>,
     plan: Plan,
     manifest: Manifest,
     folder: PathBuf,
     /// What the next checkpoint says, but for what changes.
     checkpoint: Checkpoint,
     /// How far the outputs were at each time (s) to which the simulation may go back, the older first.
-    marks: Vec<(f64, Extent)>,
+    rollback_positions: Vec<(f64, OutputPositions)>,
     resumed: bool,
     /// Whether the last checkpoint in the folder, if there is one, may become the one before.
-    good: bool,
+    last_checkpoint_valid: bool,
     /// How many removed particles are listed; more than there are if others may be listed than those.
-    listed: usize,
+    removed_written: usize,
     /// When the last checkpoint was written, and how long after it the next is due (s).
-    saved: (Instant, f64),
-    begun: Instant,
+    last_checkpoint: (Instant, f64),
+    started_at: Instant,
     /// Processor time of the program when the run began, where the system tells.
-    begun_cpu: Option<ProcessTime>,
+    cpu_at_start: Option<ProcessTime>,
     _lock: Lock,
 }
 
-impl<const D: usize> Course<D>
+impl<const D: usize> Runner<D>
 where
     Dim<D>: Dimension<D>,
 {
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
-    pub fn new(scene: &Scene, origin: Origin) -> Result<Self> {
+    pub fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
-        let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
-        let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?;
-        let probes = looks::probes(&plan, &mut sim)?;
-        let checks = looks::checks(&plan, &probes)?;
+        let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
+        let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
+        let probes = looks::probes_from_plan(&plan, &mut sim)?;
+        let checks = looks::checks_from_plan(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
-        let mut warnings = preflight::look(&sim, &plan, still, overlapped, &columns).warnings();
+        let mut warnings = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns).warnings();
         let text = scene.to_toml()?;
-        let values = scene.resolve()?.into_iter().map(InForce::from).collect();
+        let values = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
         let (folder, mut checkpoint, resumed, warning, lock) = match origin {
-            Origin::Fresh { file, out, sets } => {
-                let folder = folder::create(file, out)?;
-                let lock = Lock::take(&folder)?;
-                folder::keep_scene(file, &text, &folder)?;
-                (folder, Checkpoint::first(&text, sets), false, None, lock)
+            RunOrigin::Fresh { file, out, overrides } => {
+                let folder = folder::create_run_folder(file, out)?;
+                let lock = Lock::acquire(&folder)?;
+                folder::copy_scene(file, &text, &folder)?;
+                (folder, Checkpoint::initial(&text, overrides), false, None, lock)
             }
-            Origin::Resumed { folder, checkpoint, warning, lock } => {
+            RunOrigin::Resumed { folder, checkpoint, warning, lock } => {
                 (folder.to_owned(), *checkpoint, true, warning, lock)
             }
         };
@@ -86,7 +86,7 @@ where
         }
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
         if resumed {
-            folder::forget_failure(&folder)?;
+            folder::remove_failure_report(&folder)?;
         }
         let good = warning.is_none();
         // The list of a killed run may be ahead of its checkpoint.
@@ -95,158 +95,158 @@ where
         warnings.extend(sim.rollbacks().iter().map(ToString::to_string));
         let (name, version) = Dim::<D>::VERSION;
         let engine = format!("{name} {version}");
-        let manifest = Manifest { engine, warnings, values, scene: text, ..first_manifest(&sim, &plan, &checkpoint) };
+        let manifest = Manifest { engine, warnings, values, scene: text, ..initial_manifest(&sim, &plan, &checkpoint) };
         let saved = (Instant::now(), plan.checkpoint_wall);
         Ok(Self {
             sim,
             outputs,
-            teller: Teller::of(&plan, D),
+            drift_monitor: DriftMonitor::from_plan(&plan, D),
             checks,
             plan,
             manifest,
             folder,
             checkpoint,
-            marks: Vec::new(),
+            rollback_positions: Vec::new(),
             resumed,
-            good,
-            listed,
-            saved,
-            begun,
-            begun_cpu,
+            last_checkpoint_valid: good,
+            removed_written: listed,
+            last_checkpoint: saved,
+            started_at: begun,
+            cpu_at_start: begun_cpu,
             _lock: lock,
         })
     }
 }
 
-impl<const D: usize> Course<D> {
+impl<const D: usize> Runner<D> {
     /// Runs to the end, or until `watch` says stop.
-    pub fn run(mut self, watch: &mut dyn Watch) -> Result<Outcome> {
-        self.update();
+    pub fn run(mut self, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+        self.update_manifest();
         self.manifest.write(&self.folder)?;
-        watch.start(&Start { folder: &self.folder, manifest: &self.manifest });
+        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest });
         match self.advance(watch) {
             Ok(status) => {
                 self.manifest.status = status;
                 let mut late = Vec::new();
-                self.judge();
-                if status == Status::Finished {
+                self.evaluate_checks();
+                if status == RunStatus::Finished {
                     late = statistics::write(&self.folder, &self.plan)?;
                     late.extend(self.sim.violated_joints());
                     self.manifest.warnings.extend(late.iter().cloned());
                 }
-                self.update();
+                self.update_manifest();
                 self.manifest.write(&self.folder)?;
-                Ok(Outcome { bodies: bodies(&self.sim), folder: self.folder, manifest: self.manifest, late })
+                Ok(RunOutcome { bodies: final_body_states(&self.sim), folder: self.folder, manifest: self.manifest, end_warnings: late })
             }
-            Err(error) => Err(self.fail(error)),
+            Err(error) => Err(self.record_failure(error)),
         }
     }
 
     /// Steps and writes; says whether the end was reached.
-    fn advance(&mut self, watch: &mut dyn Watch) -> Result<Status> {
+    fn advance(&mut self, watch: &mut dyn RunObserver) -> Result<RunStatus> {
         if !self.resumed {
-            self.outputs.look(&self.sim)?;
+            self.outputs.write_due(&self.sim)?;
         }
         let until = self.manifest.until_s;
         let mut going = watch.step(&self.progress());
         while going && self.sim.time() < until {
             if self.sim.needs_rollback_state() {
-                self.marks.retain(|(time, _)| self.sim.has_rollback_state(*time));
-                self.marks.push((self.sim.time(), self.outputs.extent()));
+                self.rollback_positions.retain(|(time, _)| self.sim.has_rollback_state(*time));
+                self.rollback_positions.push((self.sim.time(), self.outputs.positions()));
             }
             let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rollbacks().len());
             let stepped = self.sim.step_to(until);
-            self.checkpoint.stepping += clock.elapsed().as_secs_f64();
+            self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not moved on and do not count.
             let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
             // A run that went back has made fewer passes than before.
             self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
             stepped?;
-            self.follow(rescued, watch)?;
-            let mut written = self.outputs.look(&self.sim)?;
+            self.follow_rollback(rescued, watch)?;
+            let mut written = self.outputs.write_due(&self.sim)?;
             // The clock on the wall decides when the state is kept, never what it is.
-            written.checkpoint |= self.saved.0.elapsed().as_secs_f64() >= self.saved.1;
+            written.checkpoint |= self.last_checkpoint.0.elapsed().as_secs_f64() >= self.last_checkpoint.1;
             if written.checkpoint {
-                self.save()?;
+                self.save_checkpoint()?;
             }
             if written.checkpoint || written.frame {
-                self.list_removed()?;
-                self.update();
+                self.write_removed()?;
+                self.update_manifest();
                 self.manifest.write(&self.folder)?;
             }
             going = watch.step(&self.progress());
         }
         if self.sim.time() < until {
-            self.save()?;
-            self.list_removed()?;
-            return Ok(Status::Interrupted);
+            self.save_checkpoint()?;
+            self.write_removed()?;
+            return Ok(RunStatus::Interrupted);
         }
         self.outputs.finish(&self.sim)?;
-        self.list_removed()?;
-        Ok(Status::Finished)
+        self.write_removed()?;
+        Ok(RunStatus::Finished)
     }
 
     /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
     /// manifest, and takes back what was written of the course that ended in the alarm.
-    fn follow(&mut self, known: usize, watch: &mut dyn Watch) -> Result<()> {
+    fn follow_rollback(&mut self, known: usize, watch: &mut dyn RunObserver) -> Result<()> {
         let Some(how) = self.sim.rollbacks().get(known).cloned() else {
             return Ok(());
         };
-        watch.rescued(&how);
+        watch.rolled_back(&how);
         self.manifest.warnings.push(how.to_string());
         // As many may leave again, and be others.
-        self.listed = if self.listed > 0 { usize::MAX } else { 0 };
-        let Some((_, extent)) = self.marks.iter().rfind(|(time, _)| *time == how.back_to).cloned() else {
+        self.removed_written = if self.removed_written > 0 { usize::MAX } else { 0 };
+        let Some((_, extent)) = self.rollback_positions.iter().rfind(|(time, _)| *time == how.back_to).cloned() else {
             return Ok(());
         };
         // Both checkpoints first: those there may be of the course that ended, and ask for rows that are about to go. The state
         // knows of no alarm yet: it is met again, or another guard is set.
-        self.good = false;
+        self.last_checkpoint_valid = false;
         self.outputs.sync()?;
         let state = self.sim.save_with_rollbacks(known)?;
-        self.keep(state.clone(), extent.clone())?;
-        self.keep(state, extent.clone())?;
-        self.outputs.cut(&extent)
+        self.write_checkpoint(state.clone(), extent.clone())?;
+        self.write_checkpoint(state, extent.clone())?;
+        self.outputs.roll_back_to(&extent)
     }
 
     /// Lists the particles that were removed, if that is news.
-    fn list_removed(&mut self) -> Result<()> {
+    fn write_removed(&mut self) -> Result<()> {
         let lost = self.sim.removed_particles();
-        if lost.len() != self.listed {
+        if lost.len() != self.removed_written {
             removed::write(&self.folder, lost)?;
-            self.listed = lost.len();
+            self.removed_written = lost.len();
         }
         Ok(())
     }
 
     /// Writes the checkpoint, of outputs that are on the disk.
-    fn save(&mut self) -> Result<()> {
+    fn save_checkpoint(&mut self) -> Result<()> {
         self.outputs.sync()?;
-        self.keep(self.sim.save()?, self.outputs.extent())
+        self.write_checkpoint(self.sim.save()?, self.outputs.positions())
     }
 
     /// Writes the checkpoint of the simulation's `state` of now and of `outputs`.
-    fn keep(&mut self, state: Vec<u8>, outputs: Extent) -> Result<()> {
-        let (time, wall, cpu) = (self.sim.time(), self.wall(), self.cpu());
-        let now = Checkpoint { state, time, wall, cpu, outputs, ..self.checkpoint.clone() };
-        now.write(&self.folder, self.good)?;
-        (self.good, self.saved.0) = (true, Instant::now());
+    fn write_checkpoint(&mut self, state: Vec<u8>, outputs: OutputPositions) -> Result<()> {
+        let (time, wall, cpu) = (self.sim.time(), self.wall_seconds(), self.cpu_seconds());
+        let now = Checkpoint { state, time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };
+        now.write(&self.folder, self.last_checkpoint_valid)?;
+        (self.last_checkpoint_valid, self.last_checkpoint.0) = (true, Instant::now());
         Ok(())
     }
 
     /// Keeps what can be kept of a run that cannot go on; the error with where that is.
-    fn fail(mut self, mut error: Error) -> Error {
+    fn record_failure(mut self, mut error: Error) -> Error {
         let mut reports = Vec::new();
         if let Some(fault) = &error.fault {
             // Whatever of this fails, the fault itself is what the user must hear.
-            reports.push(self.outputs.last_frame(&self.sim));
-            reports.push(self.list_removed());
+            reports.push(self.outputs.write_last_frame(&self.sim));
+            reports.push(self.write_removed());
             let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
-            reports.push(write_whole(&self.folder.join(folder::FAILURE), &text));
+            reports.push(write_atomically(&self.folder.join(folder::FAILURE), &text));
         }
-        self.update();
-        self.manifest.fail(&error);
-        self.judge();
+        self.update_manifest();
+        self.manifest.record_failure(&error);
+        self.evaluate_checks();
         reports.push(self.manifest.write(&self.folder));
         let kept =
             if reports.iter().all(Result::is_ok) { "everything recorded so far is" } else { "what could be kept is" };
@@ -254,17 +254,17 @@ impl<const D: usize> Course<D> {
         if self.folder.exists() {
             help += &format!("{kept} in {}", self.folder.display());
         }
-        if error.kind == Kind::File && kept::any(&self.folder) {
+        if error.kind == Kind::File && kept::has_checkpoint(&self.folder) {
             help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
         }
         error.help(help)
     }
 
     /// Holds the series against their references. A run that has not come to its end keeps and misses no bound.
-    fn judge(&mut self) {
+    fn evaluate_checks(&mut self) {
         let series = series_folder(&self.folder);
-        let whole = self.manifest.status == Status::Finished;
-        let judge = |check: &Check| match check.judge(&series) {
+        let whole = self.manifest.status == RunStatus::Finished;
+        let judge = |check: &ReferenceCheck| match check.verdict(&series) {
             verdict if whole || verdict.passed.is_none() => verdict,
             part => Verdict { passed: None, note: Some("the run has not finished: not judged".into()), ..part },
         };
@@ -272,21 +272,21 @@ impl<const D: usize> Course<D> {
     }
 
     /// Brings the manifest's figures up to date.
-    fn update(&mut self) {
+    fn update_manifest(&mut self) {
         let now = self.progress();
         self.manifest.removed = self.sim.removed_particles().len();
         self.manifest.steps = now.steps;
         self.manifest.simulated_s = now.time;
         self.manifest.wall_s = now.wall;
-        self.manifest.cpu_s = self.cpu();
+        self.manifest.cpu_s = self.cpu_seconds();
         self.manifest.particle_steps = self.checkpoint.particle_steps;
         self.manifest.particle_steps_per_second = now.rate;
-        self.manifest.frames = self.outputs.frames();
+        self.manifest.frames = self.outputs.frame_totals();
         let there = |name: &&str| self.folder.join(name).exists();
         let fixed = [
-            statistics::STATISTICS,
-            statistics::SPECTRA,
-            statistics::RAO,
+            statistics::STATISTICS_FILE,
+            statistics::SPECTRA_FILE,
+            statistics::RAO_FILE,
             "frames.pvd",
             checkpoint::LAST,
             checkpoint::PREVIOUS,
@@ -294,50 +294,50 @@ impl<const D: usize> Course<D> {
             folder::FAILURE,
             folder::SCENE,
         ];
-        let mut files: Vec<String> = self.outputs.paths().collect();
+        let mut files: Vec<String> = self.outputs.table_paths().collect();
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
         files.push("manifest.json".into());
         self.manifest.files = files;
     }
 
     /// Wall time so far, s.
-    fn wall(&self) -> f64 {
-        self.checkpoint.wall + self.begun.elapsed().as_secs_f64()
+    fn wall_seconds(&self) -> f64 {
+        self.checkpoint.wall_seconds + self.started_at.elapsed().as_secs_f64()
     }
 
     /// Processor time so far, s; where the system does not tell, what all threads together could have used.
-    fn cpu(&self) -> f64 {
-        let spent = self.begun_cpu.and_then(|begun| begun.try_elapsed().ok());
+    fn cpu_seconds(&self) -> f64 {
+        let spent = self.cpu_at_start.and_then(|begun| begun.try_elapsed().ok());
         let threads = rayon::current_num_threads() as f64;
-        self.checkpoint.cpu
-            + spent.map_or_else(|| threads * self.begun.elapsed().as_secs_f64(), |spent| spent.as_secs_f64())
+        self.checkpoint.cpu_seconds
+            + spent.map_or_else(|| threads * self.started_at.elapsed().as_secs_f64(), |spent| spent.as_secs_f64())
     }
 
     fn progress(&self) -> Progress {
         let work = self.checkpoint.particle_steps as f64;
-        let stepping = self.checkpoint.stepping;
+        let stepping = self.checkpoint.stepping_seconds;
         Progress {
             time: self.sim.time(),
             until: self.manifest.until_s,
             dt: self.sim.dt(),
             steps: self.sim.steps(),
-            wall: self.wall(),
+            wall: self.wall_seconds(),
             rate: if stepping > 0.0 { work / stepping } else { 0.0 },
-            energy: self.teller.and_then(|teller| teller.told(self.outputs.table(teller.probe))),
+            energy: self.drift_monitor.and_then(|teller| teller.drift(self.outputs.table(teller.probe))),
         }
     }
 }
 
 /// The manifest before the first step.
-fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: &Checkpoint) -> Manifest {
+fn initial_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: &Checkpoint) -> Manifest {
     Manifest {
-        status: Status::Running,
+        status: RunStatus::Running,
         title: plan.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         commit: option_env!("PONTOON_COMMIT").map(String::from),
         engine: String::new(),
         threads: rayon::current_num_threads(),
-        particles: Count { fluid: sim.system().fluid().len(), boundary: sim.system().boundary().len() },
+        particles: ParticleCounts { fluid: sim.system().fluid().len(), boundary: sim.system().boundary().len() },
         removed: 0,
         steps: 0,
         simulated_s: 0.0,
@@ -348,31 +348,31 @@ fn first_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: 
         particle_steps_per_second: 0.0,
         checks: vec![],
         files: vec![],
-        frames: Pictures::default(),
+        frames: FrameTotals::default(),
         error: None,
         fault: None,
         warnings: vec![],
-        machine: Machine::this(),
-        set: checkpoint.sets.iter().cloned().collect(),
+        machine: Machine::current(),
+        set: checkpoint.overrides.iter().cloned().collect(),
         values: vec![],
         scene: String::new(),
     }
 }
 
-impl From<Resolved> for InForce {
-    fn from(of: Resolved) -> Self {
+impl From<ResolvedValue> for ValueInForce {
+    fn from(of: ResolvedValue) -> Self {
         Self { key: of.key, value: of.value, source: of.source.to_string() }
     }
 }
 
 /// The free bodies as they are now.
-fn bodies<const D: usize>(sim: &Simulation<D>) -> Vec<Body> {
+fn final_body_states<const D: usize>(sim: &Simulation<D>) -> Vec<FinalBodyState> {
     let free = sim.system().solids().iter().filter(|s| matches!(s.spec.role, Role::Free(_)));
-    free.map(|s| Body {
+    free.map(|s| FinalBodyState {
         name: s.spec.name.clone(),
         position: s.kinematics.centre.iter().copied().collect(),
         speed: s.kinematics.velocity.norm(),
-        turn_deg: s.kinematics.pose.rotation_vector().into_iter().map(f64::to_degrees).collect(),
+        rotation_deg: s.kinematics.pose.rotation_vector().into_iter().map(f64::to_degrees).collect(),
     })
     .collect()
 }

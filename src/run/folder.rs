@@ -23,7 +23,7 @@ pub fn scene_file(path: &Path) -> PathBuf {
 }
 
 /// A short name for the scene in `file`: its folder's, or its own if it is not called `scene.toml`.
-fn name(file: &Path) -> String {
+fn scene_name(file: &Path) -> String {
     let whole = fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
     let own = if whole.file_name().is_some_and(|n| n == "scene.toml") { whole.parent() } else { Some(whole.as_path()) };
     own.and_then(Path::file_stem).map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned())
@@ -34,7 +34,7 @@ fn name(file: &Path) -> String {
 ///
 /// # Errors
 /// `Usage` if `out` holds something; `File` if the folder cannot be made.
-pub fn create(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
+pub fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
     let refused = |path: &Path, why: std::io::Error| {
         Error::file(path, format!("cannot be made: {why}")).help("choose another folder with --out")
     };
@@ -52,7 +52,7 @@ pub fn create(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
     }
     let runs = Path::new("runs");
     fs::create_dir_all(runs).map_err(|why| refused(runs, why))?;
-    let name = name(file);
+    let name = scene_name(file);
     let mut number = 1;
     loop {
         let folder = runs.join(if number == 1 { name.clone() } else { format!("{name}-{number}") });
@@ -68,7 +68,7 @@ pub fn create(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
 ///
 /// # Errors
 /// `File` if one cannot be removed.
-pub fn forget_failure(folder: &Path) -> Result<()> {
+pub fn remove_failure_report(folder: &Path) -> Result<()> {
     [FAILURE, checkpoint::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
         Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
             Err(Error::file(&path, format!("cannot be removed: {why}")))
@@ -82,7 +82,7 @@ pub fn forget_failure(folder: &Path) -> Result<()> {
 ///
 /// # Errors
 /// `File` if something cannot be read or written.
-pub fn keep_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
+pub fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
     let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let copy = |source: &Path, target: &Path| -> Result<()> {
         let parent = target.parent().unwrap_or(&to);
@@ -90,25 +90,25 @@ pub fn keep_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
         fs::copy(source, target).map(|_| ()).map_err(|why| Error::file(target, format!("cannot be written: {why}")))
     };
     copy(file, &folder.join(SCENE))?;
-    named(words)
+    referenced_files(words)
         .iter()
-        .filter(|name| from.join(name).is_file() && table::within(from, &from.join(name)))
+        .filter(|name| from.join(name).is_file() && table::is_within(from, &from.join(name)))
         .try_for_each(|name| copy(&from.join(name), &to.join(name)))
 }
 
 /// Whether the tables that `words` names, but for those of `apart`, are in the run's `folder` as they are beside
 /// the scene in `file`.
-pub fn same_tables(file: &Path, words: &str, folder: &Path, apart: &[&str]) -> bool {
+pub fn tables_unchanged(file: &Path, words: &str, folder: &Path, apart: &[&str]) -> bool {
     let (beside, kept) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let same = |name: &String| fs::read(beside.join(name)).ok() == fs::read(kept.join(name)).ok();
-    named(words).iter().filter(|name| !apart.contains(&name.as_str())).all(same)
+    referenced_files(words).iter().filter(|name| !apart.contains(&name.as_str())).all(same)
 }
 
 /// All words in the TOML `words` that could name a file beside it.
-fn named(words: &str) -> Vec<String> {
+fn referenced_files(words: &str) -> Vec<String> {
     let mut names = Vec::new();
     if let Ok(table) = words.parse::<toml::Table>() {
-        table.values().for_each(|value| strings(value, &mut names));
+        table.values().for_each(|value| collect_strings(value, &mut names));
     }
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     names.retain(|name| !name.is_empty() && Path::new(name).components().all(inside));
@@ -116,11 +116,11 @@ fn named(words: &str) -> Vec<String> {
 }
 
 /// All strings in a TOML value.
-fn strings(value: &toml::Value, found: &mut Vec<String>) {
+fn collect_strings(value: &toml::Value, found: &mut Vec<String>) {
     match value {
         toml::Value::String(word) => found.push(word.clone()),
-        toml::Value::Array(items) => items.iter().for_each(|item| strings(item, found)),
-        toml::Value::Table(items) => items.values().for_each(|item| strings(item, found)),
+        toml::Value::Array(items) => items.iter().for_each(|item| collect_strings(item, found)),
+        toml::Value::Table(items) => items.values().for_each(|item| collect_strings(item, found)),
         _ => {}
     }
 }
@@ -140,13 +140,13 @@ mod tests {
         fs::write(scene.join("other.csv"), "")?;
         fs::write(home.join("secret.csv"), "")?;
         let file = scene_file(&scene);
-        assert_eq!(name(&file), "bay");
+        assert_eq!(scene_name(&file), "bay");
         let out = home.join("out");
-        let folder = create(&file, Some(&out)).map_err(std::io::Error::other)?;
-        keep_scene(&file, words, &folder).map_err(std::io::Error::other)?;
+        let folder = create_run_folder(&file, Some(&out)).map_err(std::io::Error::other)?;
+        copy_scene(&file, words, &folder).map_err(std::io::Error::other)?;
         assert!(out.join("scene/data/flap.csv").is_file() && out.join(SCENE).is_file());
         assert!(!out.join("scene/other.csv").exists() && !out.join("secret.csv").exists());
-        let again = create(&file, Some(&out)).err().map(|e| e.kind);
+        let again = create_run_folder(&file, Some(&out)).err().map(|e| e.kind);
         assert_eq!(again, Some(Kind::Usage), "a folder that holds something is never written to");
         fs::remove_dir_all(home)
     }

@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 
 use super::{
     folder,
-    outputs::{list_of, series_folder},
+    outputs::{contact_list_path, series_folder},
 };
 use crate::{
     error::{Error, Kind, Result},
@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// What a run goes on from.
-pub struct Kept {
+pub struct ResumePoint {
     /// The checkpoint.
     pub checkpoint: Checkpoint,
     /// The scene, as it was at the start; its guards may have been set since.
@@ -23,12 +23,12 @@ pub struct Kept {
     pub warning: Option<String>,
 }
 
-impl Kept {
+impl ResumePoint {
     /// The run in `folder` goes on with other guards: they tell when it stops, and no law that moves it hangs on them.
     ///
     /// # Errors
     /// `Usage` for a key of anything else; `Scene` for guards that no scene may have.
-    pub fn guard(mut self, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
+    pub fn with_guard_overrides(mut self, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
         if sets.is_empty() {
             return Ok(self);
         }
@@ -39,10 +39,10 @@ impl Kept {
             return Err(Error::new(Kind::Usage, what).help(help));
         }
         let known = &mut self.checkpoint;
-        known.sets.retain(|(key, _)| sets.iter().all(|(set, _)| set != key));
-        known.sets.extend_from_slice(sets);
-        self.scene = Scene::read(&folder.join(folder::SCENE), &known.sets)?;
-        known.scene = checkpoint::hash(self.scene.to_toml()?.as_bytes());
+        known.overrides.retain(|(key, _)| sets.iter().all(|(set, _)| set != key));
+        known.overrides.extend_from_slice(sets);
+        self.scene = Scene::read(&folder.join(folder::SCENE), &known.overrides)?;
+        known.scene_hash = checkpoint::fnv1a(self.scene.to_toml()?.as_bytes());
         Ok(self)
     }
 }
@@ -51,12 +51,12 @@ impl Kept {
 ///
 /// # Errors
 /// What is wrong with the last one, if the one before is of no use either.
-pub fn newest(folder: &Path) -> Result<Kept> {
-    let last = match usable(folder, checkpoint::LAST) {
-        Ok((checkpoint, scene)) => return Ok(Kept { checkpoint, scene, warning: None }),
+pub fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
+    let last = match load_matching(folder, checkpoint::LAST) {
+        Ok((checkpoint, scene)) => return Ok(ResumePoint { checkpoint, scene, warning: None }),
         Err(why) => why,
     };
-    match usable(folder, checkpoint::PREVIOUS) {
+    match load_matching(folder, checkpoint::PREVIOUS) {
         Ok((checkpoint, scene)) => {
             let warning = format!(
                 "{}; the run goes on from the checkpoint before, {}, at t = {:.6} s",
@@ -64,7 +64,7 @@ pub fn newest(folder: &Path) -> Result<Kept> {
                 checkpoint::PREVIOUS,
                 checkpoint.time
             );
-            Ok(Kept { checkpoint, scene, warning: Some(warning) })
+            Ok(ResumePoint { checkpoint, scene, warning: Some(warning) })
         }
         // Said once where both say the same, and nothing of one that never was.
         Err(why) if why.what == last.what || !folder.join(checkpoint::PREVIOUS).exists() => Err(last),
@@ -76,22 +76,22 @@ pub fn newest(folder: &Path) -> Result<Kept> {
 }
 
 /// Whether `folder` holds a checkpoint, be it of use or not.
-pub fn any(folder: &Path) -> bool {
+pub fn has_checkpoint(folder: &Path) -> bool {
     [checkpoint::LAST, checkpoint::PREVIOUS].iter().any(|name| folder.join(name).exists())
 }
 
 /// The checkpoint `name` in `folder`, if the scene and the tables there are those that it was made with.
-fn usable(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
+fn load_matching(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
     let checkpoint = Checkpoint::read(&folder.join(name))?;
-    let scene = Scene::read(&folder.join(folder::SCENE), &checkpoint.sets)?;
-    if checkpoint::hash(scene.to_toml()?.as_bytes()) != checkpoint.scene {
+    let scene = Scene::read(&folder.join(folder::SCENE), &checkpoint.overrides)?;
+    if checkpoint::fnv1a(scene.to_toml()?.as_bytes()) != checkpoint.scene_hash {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
     }
     let plan = scene.plan()?;
     let series = plan.probes.iter().map(|probe| series_folder(folder).join(format!("{}.csv", probe.name)));
-    let lists = plan.contacts.iter().map(|list| list_of(folder, &list.name));
-    for (table, &bytes) in series.chain(lists).zip(&checkpoint.outputs.tables) {
+    let lists = plan.contacts.iter().map(|list| contact_list_path(folder, &list.name));
+    for (table, &bytes) in series.chain(lists).zip(&checkpoint.outputs.table_bytes) {
         let there = fs::metadata(&table).map_or(0, |file| file.len());
         if there < bytes {
             let what = format!("{} has {there} bytes, fewer than the {bytes} of {name}", table.display());

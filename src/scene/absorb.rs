@@ -8,7 +8,7 @@ use serde::{
     de::{self, MapAccess, Visitor, value::MapAccessDeserializer},
 };
 
-use super::{Scene, build_waves::Site};
+use super::{Scene, build_waves::AbsorberSite};
 use crate::{
     error::Result,
     math::Vector,
@@ -22,17 +22,17 @@ const GAUGE: f64 = 2.0;
 /// Whether a paddle absorbs: `true`, or how.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Absorb {
+pub enum AbsorbChoice {
     /// As usual, or not at all.
-    Plainly(bool),
+    Switch(bool),
     /// As these words say.
-    As(AbsorbWords),
+    Parameters(AbsorptionConfig),
 }
 
 /// How a paddle absorbs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct AbsorbWords {
+pub struct AbsorptionConfig {
     /// Period whose waves it takes whole, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub period: Option<f64>,
@@ -44,29 +44,29 @@ pub struct AbsorbWords {
     pub speed: Option<f64>,
 }
 
-impl Absorb {
+impl AbsorbChoice {
     /// How, if at all.
-    pub(super) fn words(self) -> Option<AbsorbWords> {
+    pub(super) fn parameters(self) -> Option<AbsorptionConfig> {
         match self {
-            Self::Plainly(absorbs) => absorbs.then(AbsorbWords::default),
-            Self::As(words) => Some(words),
+            Self::Switch(absorbs) => absorbs.then(AbsorptionConfig::default),
+            Self::Parameters(words) => Some(words),
         }
     }
 }
 
-impl<'de> Deserialize<'de> for Absorb {
+impl<'de> Deserialize<'de> for AbsorbChoice {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> std::result::Result<Self, De::Error> {
         struct Words;
         impl<'de> Visitor<'de> for Words {
-            type Value = Absorb;
+            type Value = AbsorbChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "true, or a table with `period`, `stroke`, `speed`")
             }
-            fn visit_bool<E: de::Error>(self, absorbs: bool) -> std::result::Result<Absorb, E> {
-                Ok(Absorb::Plainly(absorbs))
+            fn visit_bool<E: de::Error>(self, absorbs: bool) -> std::result::Result<AbsorbChoice, E> {
+                Ok(AbsorbChoice::Switch(absorbs))
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<Absorb, A::Error> {
-                AbsorbWords::deserialize(MapAccessDeserializer::new(map)).map(Absorb::As)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<AbsorbChoice, A::Error> {
+                AbsorptionConfig::deserialize(MapAccessDeserializer::new(map)).map(AbsorbChoice::Parameters)
             }
         }
         deserializer.deserialize_any(Words)
@@ -75,40 +75,40 @@ impl<'de> Deserialize<'de> for Absorb {
 
 impl Scene {
     /// Whether the words of a paddle that makes `waves` or none can be meant.
-    pub(super) fn verify_absorb(&self, key: &str, words: &AbsorbWords, waves: bool) -> Result<()> {
+    pub(super) fn verify_absorb(&self, key: &str, words: &AbsorptionConfig, waves: bool) -> Result<()> {
         let all = [("period", words.period), ("stroke", words.stroke), ("speed", words.speed)];
-        all.into_iter().try_for_each(|(word, x)| self.positive(&format!("{key}.{word}"), x))?;
+        all.into_iter().try_for_each(|(word, x)| self.require_positive(&format!("{key}.{word}"), x))?;
         match waves || words.period.is_some() {
             true => Ok(()),
             false => {
                 let what = "a paddle that makes no wave of its own absorbs those of a period, and none is said";
-                Err(self.wrong_with(key, what, "write  wave = { absorb = { period = 1.2 } }"))
+                Err(self.error_with_help(key, what, "write  wave = { absorb = { period = 1.2 } }"))
             }
         }
     }
 
     /// The `motion` of the paddle of `maker` at this `site`, which absorbs as `words` say.
-    pub(super) fn absorbing<const D: usize>(
+    pub(super) fn with_absorption<const D: usize>(
         &self,
         key: &str,
-        words: &AbsorbWords,
+        words: &AbsorptionConfig,
         maker: &Wavemaker,
-        site: &Site<D>,
+        site: &AbsorberSite<D>,
         motion: Motion<D>,
     ) -> Result<Motion<D>> {
         let Some(wave) = motion.wave() else { return Ok(motion) };
-        let AbsorbWords { period, stroke, speed } = *words;
-        let tuning = Tuning { period, gauge: GAUGE * self.h(), level: site.level, stroke, speed };
-        let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| self.origin.place(e, key))?;
-        let gauge: Vector<D> = site.face + site.way * absorber.gauge();
-        Ok(motion.absorbing(absorber, gauge, site.way))
+        let AbsorptionConfig { period, stroke, speed } = *words;
+        let tuning = Tuning { period, gauge: GAUGE * self.smoothing_length(), level: site.level, stroke, speed };
+        let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| self.origin.with_location(e, key))?;
+        let gauge: Vector<D> = site.face + site.direction * absorber.gauge();
+        Ok(motion.absorbing(absorber, gauge, site.direction))
     }
 
     /// The still paddle's own wave: none, before those that it absorbs.
-    pub(super) fn silence(&self, key: &str, words: Option<AbsorbWords>, maker: &Wavemaker) -> Result<Wave> {
+    pub(super) fn zero_wave(&self, key: &str, words: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<Wave> {
         match words.and_then(|words| words.period) {
-            Some(period) => maker.silent(period).map_err(|e| self.origin.place(e, key)),
-            None => Err(self.wrong(key, "which wave?")),
+            Some(period) => maker.silent(period).map_err(|e| self.origin.with_location(e, key)),
+            None => Err(self.error_at(key, "which wave?")),
         }
     }
 }

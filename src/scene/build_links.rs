@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::{
-    ContactWords, ForceWords, FrameOf, JointKindWords, JointWords, LimitsWords, Mode, MotorWords, Scene, SolidWords,
-    ValueWords, build_solids::Unit, geometry::vector,
+    ContactConfig, ForceConfig, ForceFrame, JointKindConfig, JointConfig, LimitsConfig, MotionMode, MotorConfig, Scene, SolidConfig,
+    TimeValueConfig, build_solids::CoordinateUnit, geometry::vector,
 };
 use crate::{
     error::{Error, Result},
@@ -17,14 +17,14 @@ use crate::{
 
 impl Scene {
     /// The ties of `solids`, which are in the order of the scene.
-    pub(super) fn links<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
+    pub(super) fn build_constraints<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let ends = |between: &[String], from: &[f64], to: &[f64]| {
             [(0, from), (1, to)].map(|(k, at)| End { solid: between.get(k).and_then(number), at: vector(at) })
         };
         let place = |kind: &str, i: usize| {
             let key = format!("{kind}.{i}");
-            move |e: Error| self.origin.place(e, &key)
+            move |e: Error| self.origin.with_location(e, &key)
         };
         let mut links = Constraints::default();
         for (i, words) in self.joint.iter().enumerate() {
@@ -63,16 +63,16 @@ impl Scene {
             let touch = words.touch.unwrap_or(true);
             let (friction, restitution) = (words.friction, words.restitution);
             let spec = |between| ContactSpec { between, touch, friction, restitution };
-            links.contacts.extend(self.pairs(words).into_iter().map(spec));
+            links.contacts.extend(self.contact_pairs(words).into_iter().map(spec));
         }
-        let release = |(solid, words): (usize, &SolidWords)| Some(Hold { solid, until: words.free.as_ref()?.release? });
+        let release = |(solid, words): (usize, &SolidConfig)| Some(Hold { solid, until: words.free.as_ref()?.release? });
         links.holds = self.solid.iter().enumerate().filter_map(release).collect();
         Ok(links)
     }
 
     /// The pairs of solids, one at least of them free, that a contact is about: numbers, the lower first.
-    pub(super) fn pairs(&self, contact: &ContactWords) -> BTreeSet<[usize; 2]> {
-        let numbers = |named: &dyn Fn(&SolidWords) -> bool| -> Vec<usize> {
+    pub(super) fn contact_pairs(&self, contact: &ContactConfig) -> BTreeSet<[usize; 2]> {
+        let numbers = |named: &dyn Fn(&SolidConfig) -> bool| -> Vec<usize> {
             (0..self.solid.len()).filter(|&i| named(&self.solid[i])).collect()
         };
         let meant = |name: &String| numbers(&|solid| solid.name == *name || solid.group.as_ref() == Some(name));
@@ -89,46 +89,46 @@ impl Scene {
     fn joint_spec<const D: usize>(
         &self,
         key: &str,
-        words: &JointWords,
+        words: &JointConfig,
         between: [Option<usize>; 2],
     ) -> Result<JointSpec<D>> {
         let kind = match words.kind {
-            JointKindWords::Hinge => JointKind::Hinge,
-            JointKindWords::Slider => JointKind::Slider,
-            JointKindWords::Fixed => JointKind::Fixed,
-            JointKindWords::Ball => JointKind::Ball,
-            JointKindWords::Tow => JointKind::Tow,
-            JointKindWords::Generic => JointKind::Generic,
+            JointKindConfig::Hinge => JointKind::Hinge,
+            JointKindConfig::Slider => JointKind::Slider,
+            JointKindConfig::Fixed => JointKind::Fixed,
+            JointKindConfig::Ball => JointKind::Ball,
+            JointKindConfig::Tow => JointKind::Tow,
+            JointKindConfig::Generic => JointKind::Generic,
         };
         let axis = vector(words.axis.as_ref().or(words.along.as_ref()).map_or(&[], |x| x));
         let mut joint = JointSpec::new(&words.name, kind, between, vector(&words.at), axis);
         joint.contacts = words.contacts.unwrap_or_default();
         let stops = [(&words.limits, 1.0), (&words.limits_deg, 1f64.to_radians())];
-        let stop = |mode: Option<&Mode>| {
+        let stop = |mode: Option<&MotionMode>| {
             stops.iter().find_map(|(limits, unit)| match (limits, mode) {
-                (Some(LimitsWords::One(pair)), None) => Some([pair[0] * unit, pair[1] * unit]),
-                (Some(LimitsWords::Each(all)), Some(mode)) => {
+                (Some(LimitsConfig::One(pair)), None) => Some([pair[0] * unit, pair[1] * unit]),
+                (Some(LimitsConfig::Each(all)), Some(mode)) => {
                     all.get(mode).map(|pair| [pair[0] * unit, pair[1] * unit])
                 }
                 _ => None,
             })
         };
         joint.limits = stop(None);
-        let number = |mode: &Mode| Some(FreeMode { mode: mode.number(D)?, limits: stop(Some(mode)) });
+        let number = |mode: &MotionMode| Some(FreeMode { mode: mode.index(D)?, limits: stop(Some(mode)) });
         joint.free = words.free.iter().flatten().filter_map(number).collect();
         joint.motor = words.motor.as_ref().map(|motor| self.motor(&format!("{key}.motor"), motor)).transpose()?;
         Ok(joint)
     }
 
-    fn motor(&self, key: &str, words: &MotorWords) -> Result<Motor> {
+    fn motor(&self, key: &str, words: &MotorConfig) -> Result<Motor> {
         let mut motor = Motor { strongest: words.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
-        for (word, value) in words.laws() {
+        for (word, value) in words.time_values() {
             let unit = match word {
-                "position_deg" => Unit::Degrees,
-                "position" | "velocity" => Unit::Radians,
-                _ => Unit::Metres,
+                "position_deg" => CoordinateUnit::Degrees,
+                "position" | "velocity" => CoordinateUnit::Radians,
+                _ => CoordinateUnit::Metres,
             };
-            let law = self.law(&format!("{key}.{word}"), &value.0, unit)?;
+            let law = self.time_function(&format!("{key}.{word}"), &value.0, unit)?;
             match word {
                 "force" | "torque" => motor.force = law,
                 "position" | "position_deg" => motor.position = law,
@@ -140,9 +140,9 @@ impl Scene {
         Ok(motor)
     }
 
-    fn force_spec<const D: usize>(&self, key: &str, words: &ForceWords, solid: usize) -> Result<ForceSpec<D>> {
-        let laws = |word: &str, values: &[ValueWords]| -> Result<Vec<Law>> {
-            values.iter().map(|value| self.law(&format!("{key}.{word}"), &value.0, Unit::Metres)).collect()
+    fn force_spec<const D: usize>(&self, key: &str, words: &ForceConfig, solid: usize) -> Result<ForceSpec<D>> {
+        let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<Law>> {
+            values.iter().map(|value| self.time_function(&format!("{key}.{word}"), &value.0, CoordinateUnit::Metres)).collect()
         };
         Ok(ForceSpec {
             name: words.name.clone(),
@@ -150,7 +150,7 @@ impl Scene {
             at: words.at.as_ref().map(|at| vector(at)),
             force: laws("force", words.force.as_ref().map_or(&[], |values| values.components()))?,
             torque: laws("torque", words.torque.as_ref().map_or(&[], |values| values.components()))?,
-            turns: words.frame == Some(FrameOf::Body),
+            turns: words.frame == Some(ForceFrame::Body),
         })
     }
 }

@@ -36,7 +36,7 @@ pub(super) const CHOICES: [&str; 9] = [
 
 /// Where the words of a scene were written. Two scenes that say the same are equal wherever it was written.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Origin {
+pub(super) struct SceneSource {
     /// The file as the user named it; empty if a program built the scene.
     pub file: String,
     /// Where the files that the scene names are looked for.
@@ -48,12 +48,12 @@ pub(super) struct Origin {
     /// Where every key begins in it.
     places: BTreeMap<String, usize>,
     /// Keys set on the command line.
-    sets: Vec<String>,
+    overrides: Vec<String>,
     /// Names of the solids, in order, so that a key can say `solid.box` for `solid.2`.
-    names: Vec<String>,
+    solid_names: Vec<String>,
 }
 
-impl PartialEq for Origin {
+impl PartialEq for SceneSource {
     fn eq(&self, _: &Self) -> bool {
         true
     }
@@ -61,7 +61,7 @@ impl PartialEq for Origin {
 
 /// Who said it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum ValueSource {
     /// Nobody: the default, with its reason.
     Default(String),
     /// This line of the scene.
@@ -72,44 +72,44 @@ pub enum Source {
     Program,
 }
 
-impl Origin {
+impl SceneSource {
     /// The place of `key`, or of the nearest key above it that was written, put on `error`.
-    pub fn place(&self, error: Error, key: &str) -> Error {
+    pub fn with_location(&self, error: Error, key: &str) -> Error {
         if self.is_set(key) {
-            return error.at("--set", None, self.shown(key));
+            return error.at("--set", None, self.key_with_names(key));
         }
         if self.file.is_empty() {
-            return error.at("a scene built by a program", None, self.shown(key));
+            return error.at("a scene built by a program", None, self.key_with_names(key));
         }
         let mut above = key;
         while !self.places.contains_key(above) && above.contains('.') {
             above = above.rsplit_once('.').map_or("", |(parent, _)| parent);
         }
         let at = self.places.get(above).map(|&start| line_column(&self.text, start));
-        error.at(self.file.clone(), at, self.shown(key))
+        error.at(self.file.clone(), at, self.key_with_names(key))
     }
 
     /// Who said `key`; `None` if nobody did.
-    pub fn source(&self, key: &str) -> Option<Source> {
+    pub fn source(&self, key: &str) -> Option<ValueSource> {
         if self.is_set(key) {
-            return Some(Source::Set);
+            return Some(ValueSource::Set);
         }
         if self.file.is_empty() {
             return None;
         }
-        self.places.get(key).map(|start| Source::Line(self.lines.partition_point(|line| line <= start)))
+        self.places.get(key).map(|start| ValueSource::Line(self.lines.partition_point(|line| line <= start)))
     }
 
     /// Whether `key`, or one above it, was set on the command line.
     fn is_set(&self, key: &str) -> bool {
-        self.sets.iter().any(|set| key == set || key.starts_with(&format!("{set}.")))
+        self.overrides.iter().any(|set| key == set || key.starts_with(&format!("{set}.")))
     }
 
     /// `key` with the names of solids in place of their numbers.
-    pub fn shown(&self, key: &str) -> String {
+    pub fn key_with_names(&self, key: &str) -> String {
         let mut parts: Vec<&str> = key.split('.').collect();
         if let ["solid", number, ..] = parts[..]
-            && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.names.get(i))
+            && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.solid_names.get(i))
             && !name.contains(['.', '/'])
         {
             parts[1] = name;
@@ -129,24 +129,24 @@ pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, Strin
     })?;
     let mut entries = Vec::new();
     walk(root.get_ref(), "", &mut entries);
-    let mut origin = Origin { file: file.into(), folder: folder.into(), ..Origin::default() };
+    let mut origin = SceneSource { file: file.into(), folder: folder.into(), ..SceneSource::default() };
     origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
     origin.text = text.into();
     origin.lines = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
-    spell_out(root.get_mut());
-    let mut marks = Marks { first: text.len() + 1, keys: Vec::new() };
+    expand_bare_choices(root.get_mut());
+    let mut marks = OverrideLocations { first: text.len() + 1, keys: Vec::new() };
     for (key, value) in sets {
-        let key = sets::set(root.get_mut(), key, value, &mut marks).map_err(|e| e.at("--set", None, key.clone()))?;
-        origin.sets.push(key);
+        let key = sets::apply_override(root.get_mut(), key, value, &mut marks).map_err(|e| e.at("--set", None, key.clone()))?;
+        origin.overrides.push(key);
     }
-    spell_out(root.get_mut());
-    origin.names = names(root.get_ref());
-    finite(root.get_ref(), "", &origin)?;
+    expand_bare_choices(root.get_mut());
+    origin.solid_names = solid_names(root.get_ref());
+    require_finite(root.get_ref(), "", &origin)?;
     let mut scene = Scene::deserialize(toml::Deserializer::from(root)).map_err(|e| {
         let start = e.span().map_or(0, |span| span.start);
         let key = marks.key(start).unwrap_or_else(|| key_at(&entries, &e.span().unwrap_or(0..0)));
         let (error, key) = wording::explain(e.message(), &key);
-        let shown = origin.shown(&key);
+        let shown = origin.key_with_names(&key);
         match start > text.len() {
             true => error.at("--set", None, shown),
             false => error.at(file, Some(line_column(text, start)), shown),
@@ -157,14 +157,14 @@ pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, Strin
 }
 
 /// Where the words of `--set` stand: beyond the text, each key at a place of its own.
-pub(super) struct Marks {
+pub(super) struct OverrideLocations {
     /// The first such place.
     first: usize,
     /// The keys, from there on.
     keys: Vec<String>,
 }
 
-impl Marks {
+impl OverrideLocations {
     /// A place for `key`.
     pub fn place(&mut self, key: &str) -> Range<usize> {
         let place = self.first + self.keys.len();
@@ -190,32 +190,32 @@ fn line_column(text: &str, at: usize) -> (usize, usize) {
 }
 
 /// A key that was written.
-struct Entry {
+struct WrittenKey {
     path: String,
     key: Range<usize>,
     value: Range<usize>,
 }
 
 /// The key `part` inside the key `path`.
-pub(super) fn under(path: &str, part: impl std::fmt::Display) -> String {
+pub(super) fn subkey(path: &str, part: impl std::fmt::Display) -> String {
     if path.is_empty() { part.to_string() } else { format!("{path}.{part}") }
 }
 
-fn walk(table: &DeTable, path: &str, entries: &mut Vec<Entry>) {
+fn walk(table: &DeTable, path: &str, entries: &mut Vec<WrittenKey>) {
     for (key, value) in table {
-        let path = under(path, key.get_ref());
-        entries.push(Entry { path: path.clone(), key: key.span(), value: value.span() });
+        let path = subkey(path, key.get_ref());
+        entries.push(WrittenKey { path: path.clone(), key: key.span(), value: value.span() });
         walk_value(value, &path, entries);
     }
 }
 
-fn walk_value(value: &Spanned<DeValue>, path: &str, entries: &mut Vec<Entry>) {
+fn walk_value(value: &Spanned<DeValue>, path: &str, entries: &mut Vec<WrittenKey>) {
     match value.get_ref() {
         DeValue::Table(inner) => walk(inner, path, entries),
         DeValue::Array(items) => {
             for (i, item) in items.iter().enumerate() {
-                let path = under(path, i);
-                entries.push(Entry { path: path.clone(), key: item.span(), value: item.span() });
+                let path = subkey(path, i);
+                entries.push(WrittenKey { path: path.clone(), key: item.span(), value: item.span() });
                 walk_value(item, &path, entries);
             }
         }
@@ -224,16 +224,16 @@ fn walk_value(value: &Spanned<DeValue>, path: &str, entries: &mut Vec<Entry>) {
 }
 
 /// The key that was written at `span`, or whose value encloses it most closely.
-fn key_at(entries: &[Entry], span: &Range<usize>) -> String {
+fn key_at(entries: &[WrittenKey], span: &Range<usize>) -> String {
     let exact = entries.iter().find(|e| e.key == *span);
     let enclosing = || {
-        let holds = |e: &&Entry| e.value.start <= span.start && span.end <= e.value.end;
+        let holds = |e: &&WrittenKey| e.value.start <= span.start && span.end <= e.value.end;
         entries.iter().filter(holds).min_by_key(|e| e.value.end - e.value.start)
     };
     exact.or_else(enclosing).map(|e| e.path.clone()).unwrap_or_default()
 }
 
-fn names(root: &DeTable) -> Vec<String> {
+fn solid_names(root: &DeTable) -> Vec<String> {
     let solids = root.get("solid").and_then(|s| s.get_ref().as_array());
     let name = |solid: &Spanned<DeValue>| {
         let name = solid.get_ref().as_table()?.get("name")?.get_ref().as_str()?;
@@ -243,7 +243,7 @@ fn names(root: &DeTable) -> Vec<String> {
 }
 
 /// Writes out every choice given as a bare word.
-fn spell_out(root: &mut DeTable) {
+fn expand_bare_choices(root: &mut DeTable) {
     for choice in CHOICES {
         let Some((section, key)) = choice.split_once('.') else { continue };
         let Some(DeValue::Table(section)) = root.get_mut(section).map(Spanned::get_mut) else { continue };
@@ -258,20 +258,20 @@ fn spell_out(root: &mut DeTable) {
 }
 
 /// Refuses numbers that are not numbers.
-fn finite(table: &DeTable, path: &str, origin: &Origin) -> Result<()> {
-    table.iter().try_for_each(|(key, value)| finite_value(value, &under(path, key.get_ref()), origin))
+fn require_finite(table: &DeTable, path: &str, origin: &SceneSource) -> Result<()> {
+    table.iter().try_for_each(|(key, value)| require_finite_value(value, &subkey(path, key.get_ref()), origin))
 }
 
-fn finite_value(value: &Spanned<DeValue>, path: &str, origin: &Origin) -> Result<()> {
+fn require_finite_value(value: &Spanned<DeValue>, path: &str, origin: &SceneSource) -> Result<()> {
     match value.get_ref() {
         DeValue::Float(x) if !x.as_str().replace('_', "").parse::<f64>().is_ok_and(f64::is_finite) => {
             let error = Error::scene(format!("{} is not a finite number", x.as_str()))
                 .help("write a number; where you mean \"no limit\", leave the line out");
-            Err(origin.place(error, path))
+            Err(origin.with_location(error, path))
         }
-        DeValue::Table(inner) => finite(inner, path, origin),
+        DeValue::Table(inner) => require_finite(inner, path, origin),
         DeValue::Array(items) => {
-            items.iter().enumerate().try_for_each(|(i, item)| finite_value(item, &under(path, i), origin))
+            items.iter().enumerate().try_for_each(|(i, item)| require_finite_value(item, &subkey(path, i), origin))
         }
         _ => Ok(()),
     }

@@ -8,23 +8,23 @@ use serde::{
     de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
 };
 
-use super::{BoxWords, Mode};
+use super::{BoxConfig, MotionMode};
 
 /// Frames for ParaView: `"off"`, or when and which fields.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(rename_all = "snake_case")]
-pub enum Frames {
+pub enum FramesChoice {
     /// None are written.
     Off,
     /// Some are.
     #[schemars(untagged)]
-    On(FramesWords),
+    On(FramesConfig),
 }
 
 /// When frames are written, and with which fields.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct FramesWords {
+pub struct FramesConfig {
     /// Simulated time between frames, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub every: Option<f64>,
@@ -33,10 +33,10 @@ pub struct FramesWords {
     pub fields: Option<Vec<String>>,
     /// Only water in this box is kept.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
-    pub corners: Option<BoxWords>,
+    pub corners: Option<BoxConfig>,
 }
 
-impl Serialize for Frames {
+impl Serialize for FramesChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Off => serializer.serialize_str("off"),
@@ -45,22 +45,22 @@ impl Serialize for Frames {
     }
 }
 
-impl<'de> Deserialize<'de> for Frames {
+impl<'de> Deserialize<'de> for FramesChoice {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Words;
         impl<'de> Visitor<'de> for Words {
-            type Value = Frames;
+            type Value = FramesChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a table with `every` and `fields`, or \"off\"")
             }
-            fn visit_str<E: de::Error>(self, word: &str) -> Result<Frames, E> {
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<FramesChoice, E> {
                 match word {
-                    "off" => Ok(Frames::Off),
+                    "off" => Ok(FramesChoice::Off),
                     _ => Err(E::invalid_value(de::Unexpected::Str(word), &self)),
                 }
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Frames, A::Error> {
-                FramesWords::deserialize(MapAccessDeserializer::new(map)).map(Frames::On)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<FramesChoice, A::Error> {
+                FramesConfig::deserialize(MapAccessDeserializer::new(map)).map(FramesChoice::On)
             }
         }
         deserializer.deserialize_any(Words)
@@ -70,7 +70,7 @@ impl<'de> Deserialize<'de> for Frames {
 /// A draft: in metres, or the one at which the body floats at rest.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
 #[schemars(rename_all = "snake_case")]
-pub enum Draft {
+pub enum DraftChoice {
     /// Where weight and buoyancy balance.
     Equilibrium,
     /// Depth of the lowest point below the still level, m.
@@ -78,7 +78,7 @@ pub enum Draft {
     Metres(f64),
 }
 
-impl Serialize for Draft {
+impl Serialize for DraftChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Equilibrium => serializer.serialize_str("equilibrium"),
@@ -87,25 +87,25 @@ impl Serialize for Draft {
     }
 }
 
-impl<'de> Deserialize<'de> for Draft {
+impl<'de> Deserialize<'de> for DraftChoice {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Words;
         impl Visitor<'_> for Words {
-            type Value = Draft;
+            type Value = DraftChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "\"equilibrium\" or a number of metres")
             }
-            fn visit_str<E: de::Error>(self, word: &str) -> Result<Draft, E> {
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<DraftChoice, E> {
                 match word {
-                    "equilibrium" => Ok(Draft::Equilibrium),
+                    "equilibrium" => Ok(DraftChoice::Equilibrium),
                     _ => Err(E::invalid_value(de::Unexpected::Str(word), &self)),
                 }
             }
-            fn visit_f64<E: de::Error>(self, metres: f64) -> Result<Draft, E> {
-                Ok(Draft::Metres(metres))
+            fn visit_f64<E: de::Error>(self, metres: f64) -> Result<DraftChoice, E> {
+                Ok(DraftChoice::Metres(metres))
             }
-            fn visit_i64<E: de::Error>(self, metres: i64) -> Result<Draft, E> {
-                Ok(Draft::Metres(metres as f64))
+            fn visit_i64<E: de::Error>(self, metres: i64) -> Result<DraftChoice, E> {
+                Ok(DraftChoice::Metres(metres as f64))
             }
         }
         deserializer.deserialize_any(Words)
@@ -114,35 +114,35 @@ impl<'de> Deserialize<'de> for Draft {
 
 /// A formula in the place, or a number.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct FieldWords(#[schemars(with = "NumberOrText")] pub String);
+pub struct FieldFormulaConfig(#[schemars(with = "NumberOrFormula")] pub String);
 
 /// How a formula may be written, for the schema.
 #[derive(JsonSchema)]
 #[schemars(untagged)]
 #[allow(dead_code, reason = "only its shape counts")]
-pub(super) enum NumberOrText {
+pub(super) enum NumberOrFormula {
     /// A number.
     Number(f64),
     /// A formula.
     Text(String),
 }
 
-impl<'de> Deserialize<'de> for FieldWords {
+impl<'de> Deserialize<'de> for FieldFormulaConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Words;
         impl Visitor<'_> for Words {
-            type Value = FieldWords;
+            type Value = FieldFormulaConfig;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a number, or a formula such as \"0.1*sin(2*pi*x)\"")
             }
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<FieldWords, E> {
-                Ok(FieldWords(text.into()))
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<FieldFormulaConfig, E> {
+                Ok(FieldFormulaConfig(text.into()))
             }
-            fn visit_f64<E: de::Error>(self, x: f64) -> Result<FieldWords, E> {
-                Ok(FieldWords(format!("{x:?}")))
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<FieldFormulaConfig, E> {
+                Ok(FieldFormulaConfig(format!("{x:?}")))
             }
-            fn visit_i64<E: de::Error>(self, x: i64) -> Result<FieldWords, E> {
-                Ok(FieldWords(x.to_string()))
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<FieldFormulaConfig, E> {
+                Ok(FieldFormulaConfig(x.to_string()))
             }
         }
         deserializer.deserialize_any(Words)
@@ -152,7 +152,7 @@ impl<'de> Deserialize<'de> for FieldWords {
 /// A number, a list of numbers, or a list of rows.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Numbers {
+pub enum NumberOrArray {
     /// One.
     One(f64),
     /// A list.
@@ -161,32 +161,32 @@ pub enum Numbers {
     Rows(Vec<Vec<f64>>),
 }
 
-impl<'de> Deserialize<'de> for Numbers {
+impl<'de> Deserialize<'de> for NumberOrArray {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Words;
         impl<'de> Visitor<'de> for Words {
-            type Value = Numbers;
+            type Value = NumberOrArray;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a number, a list of numbers, or a list of rows")
             }
-            fn visit_f64<E: de::Error>(self, x: f64) -> Result<Numbers, E> {
-                Ok(Numbers::One(x))
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<NumberOrArray, E> {
+                Ok(NumberOrArray::One(x))
             }
-            fn visit_i64<E: de::Error>(self, x: i64) -> Result<Numbers, E> {
-                Ok(Numbers::One(x as f64))
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<NumberOrArray, E> {
+                Ok(NumberOrArray::One(x as f64))
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Numbers, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<NumberOrArray, A::Error> {
                 let (mut list, mut rows) = (Vec::new(), Vec::new());
-                while let Some(entry) = seq.next_element::<Numbers>()? {
+                while let Some(entry) = seq.next_element::<NumberOrArray>()? {
                     match entry {
-                        Numbers::One(x) => list.push(x),
-                        Numbers::List(row) => rows.push(row),
-                        Numbers::Rows(_) => return Err(de::Error::custom("a list nested too deep")),
+                        NumberOrArray::One(x) => list.push(x),
+                        NumberOrArray::List(row) => rows.push(row),
+                        NumberOrArray::Rows(_) => return Err(de::Error::custom("a list nested too deep")),
                     }
                 }
                 match (list.is_empty(), rows.is_empty()) {
-                    (_, true) => Ok(Numbers::List(list)),
-                    (true, false) => Ok(Numbers::Rows(rows)),
+                    (_, true) => Ok(NumberOrArray::List(list)),
+                    (true, false) => Ok(NumberOrArray::Rows(rows)),
                     (false, false) => Err(de::Error::custom("a list that mixes numbers and lists")),
                 }
             }
@@ -198,7 +198,7 @@ impl<'de> Deserialize<'de> for Numbers {
 /// The unit of lengths in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Unit {
+pub enum LengthUnit {
     /// Metres.
     #[default]
     M,
@@ -212,7 +212,7 @@ pub enum Unit {
     Ft,
 }
 
-impl Unit {
+impl LengthUnit {
     /// Its length, m.
     pub fn metres(self) -> f64 {
         match self {
@@ -228,7 +228,7 @@ impl Unit {
 /// A line: its points, a table with the columns `x_m` and `y_m`, or a drawing; as a wall it may have a thickness.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 #[schemars(with = "PointsOrTable")]
-pub struct LineWords {
+pub struct PolylineConfig {
     /// Points, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<Vec<Vec<f64>>>,
@@ -243,13 +243,13 @@ pub struct LineWords {
     pub scale: Option<f64>,
     /// Unit of the drawing's lengths; m if not said.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
+    pub unit: Option<LengthUnit>,
     /// Thickness of a wall, m; as many dp as the kernel reaches if not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
 }
 
-impl LineWords {
+impl PolylineConfig {
     /// The line through `points` (m).
     pub fn through<const N: usize>(points: [[f64; 2]; N]) -> Self {
         Self { points: Some(points.iter().map(|p| p.to_vec()).collect()), ..Self::default() }
@@ -264,7 +264,7 @@ impl LineWords {
 /// A line as a table.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-struct LineTable {
+struct PolylineTable {
     /// Points, m.
     points: Option<Vec<Vec<f64>>>,
     /// A table of points, or a drawing (.svg), beside the scene.
@@ -274,7 +274,7 @@ struct LineTable {
     /// Factor on the drawing's lengths, –; 1 if not said.
     scale: Option<f64>,
     /// Unit of the drawing's lengths; m if not said.
-    unit: Option<Unit>,
+    unit: Option<LengthUnit>,
     /// Thickness of a wall, m; as many dp as the kernel reaches if not said.
     thickness: Option<f64>,
 }
@@ -287,25 +287,25 @@ enum PointsOrTable {
     /// Points, m.
     Points(Vec<Vec<f64>>),
     /// A table.
-    Table(LineTable),
+    Table(PolylineTable),
 }
 
-impl<'de> Deserialize<'de> for LineWords {
+impl<'de> Deserialize<'de> for PolylineConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Words;
         impl<'de> Visitor<'de> for Words {
-            type Value = LineWords;
+            type Value = PolylineConfig;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a list of points, or a table with `points` or `file`")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<LineWords, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PolylineConfig, A::Error> {
                 let points = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
-                Ok(LineWords { points: Some(points), ..LineWords::default() })
+                Ok(PolylineConfig { points: Some(points), ..PolylineConfig::default() })
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LineWords, A::Error> {
-                let LineTable { points, file, id, scale, unit, thickness } =
-                    LineTable::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(LineWords { points, file, id, scale, unit, thickness })
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PolylineConfig, A::Error> {
+                let PolylineTable { points, file, id, scale, unit, thickness } =
+                    PolylineTable::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(PolylineConfig { points, file, id, scale, unit, thickness })
             }
         }
         deserializer.deserialize_any(Words)
@@ -315,26 +315,26 @@ impl<'de> Deserialize<'de> for LineWords {
 /// End stops: least and greatest value, or such a pair for each of several motions.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum LimitsWords {
+pub enum LimitsConfig {
     /// Of a joint with one way to go.
     One(Vec<f64>),
     /// Of a generic joint.
-    Each(BTreeMap<Mode, Vec<f64>>),
+    Each(BTreeMap<MotionMode, Vec<f64>>),
 }
 
-impl<'de> Deserialize<'de> for LimitsWords {
+impl<'de> Deserialize<'de> for LimitsConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Words;
         impl<'de> Visitor<'de> for Words {
-            type Value = LimitsWords;
+            type Value = LimitsConfig;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "[least, greatest], or of a generic joint a table such as {{ x = [-0.1, 0.2] }}")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<LimitsWords, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(LimitsWords::One)
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<LimitsConfig, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(LimitsConfig::One)
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LimitsWords, A::Error> {
-                BTreeMap::deserialize(MapAccessDeserializer::new(map)).map(LimitsWords::Each)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LimitsConfig, A::Error> {
+                BTreeMap::deserialize(MapAccessDeserializer::new(map)).map(LimitsConfig::Each)
             }
         }
         deserializer.deserialize_any(Words)

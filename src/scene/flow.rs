@@ -3,13 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Scene, WaterWords, flexible::FieldWords};
+use super::{Scene, WaterConfig, flexible::FieldFormulaConfig};
 use crate::{error::Result, math::Vector, math::expression::Field, system::Periodic};
 
 /// Where a period begins and ends along each axis that has one, m.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct PeriodicWords {
+pub struct PeriodicConfig {
     /// m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<[f64; 2]>,
@@ -29,10 +29,10 @@ impl Scene {
             let Some([from, to]) = side else { continue };
             let key = format!("periodic.{axis}");
             if axis == "z" && self.dimension == 2 {
-                return Err(self.wrong_with(&key, "a 2-D scene has no z", "its axes are x and y"));
+                return Err(self.error_with_help(&key, "a 2-D scene has no z", "its axes are x and y"));
             }
             if !(from < to && from.is_finite() && to.is_finite()) {
-                return Err(self.wrong(&key, format!("{axis} goes from {from} to {to}: nothing lies between")));
+                return Err(self.error_at(&key, format!("{axis} goes from {from} to {to}: nothing lies between")));
             }
         }
         Ok(())
@@ -46,21 +46,21 @@ impl Scene {
     }
 
     /// Refuses what cannot be read of the motion of the water `water` at `key`.
-    pub(super) fn verify_flow(&self, key: &str, water: &WaterWords) -> Result<()> {
+    pub(super) fn verify_flow(&self, key: &str, water: &WaterConfig) -> Result<()> {
         match self.dimension {
-            2 => self.flow::<2>(key, water).map(|_| ()),
-            _ => self.flow::<3>(key, water).map(|_| ()),
+            2 => self.initial_flow::<2>(key, water).map(|_| ()),
+            _ => self.initial_flow::<3>(key, water).map(|_| ()),
         }
     }
 
     /// How the water `water` at `key` moves at the start.
-    pub(super) fn flow<const D: usize>(&self, key: &str, water: &WaterWords) -> Result<Flow<D>> {
-        let field = |key: &str, words: &FieldWords| Field::parse(&words.0).map_err(|e| self.origin.place(e, key));
-        let mut flow = Flow { velocity: Vec::new(), pressure: None };
+    pub(super) fn initial_flow<const D: usize>(&self, key: &str, water: &WaterConfig) -> Result<InitialFlow<D>> {
+        let field = |key: &str, words: &FieldFormulaConfig| Field::parse(&words.0).map_err(|e| self.origin.with_location(e, key));
+        let mut flow = InitialFlow { velocity: Vec::new(), pressure: None };
         if let Some(words) = &water.velocity {
             let key = format!("{key}.velocity");
             if words.len() != D {
-                return Err(self.wrong(&key, format!("velocity has {} entries, not {D}", words.len())));
+                return Err(self.error_at(&key, format!("velocity has {} entries, not {D}", words.len())));
             }
             flow.velocity = words.iter().map(|words| field(&key, words)).collect::<Result<_>>()?;
         }
@@ -72,12 +72,12 @@ impl Scene {
 }
 
 /// How a body of water moves at the start.
-pub(super) struct Flow<const D: usize> {
+pub(super) struct InitialFlow<const D: usize> {
     velocity: Vec<Field<D>>,
     pressure: Option<Field<D>>,
 }
 
-impl<const D: usize> Flow<D> {
+impl<const D: usize> InitialFlow<D> {
     /// Velocity (m/s) and pressure beyond that of water at rest (Pa) at `r` (m).
     pub(super) fn at(&self, r: &Vector<D>) -> (Vector<D>, f64) {
         let velocity = Vector::from_fn(|i, _| self.velocity.get(i).map_or(0.0, |field| field.at(r)));

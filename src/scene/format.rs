@@ -8,15 +8,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    bodies::{AtWords, ShapeWords, SolidWords},
-    damping::DampingWords,
-    document::Origin,
-    flexible::{FieldWords, Frames},
-    flow::PeriodicWords,
-    guard::GuardWords,
-    links::{ContactWords, ForceWords, JointWords, RopeWords, SpringWords},
-    probes::ProbeEntry,
-    statistics::StatisticEntry,
+    bodies::{PlacementConfig, ShapeConfig, SolidConfig},
+    damping::DampingConfig,
+    document::SceneSource,
+    flexible::{FieldFormulaConfig, FramesChoice},
+    flow::PeriodicConfig,
+    guard::GuardConfig,
+    links::{ContactConfig, ForceConfig, JointConfig, RopeConfig, SpringConfig},
+    probes::ProbeConfig,
+    statistics::StatisticConfig,
 };
 use crate::{
     model::{Diffusion, Gradient, Kernel, PairLoopKind, Scheme, Shifting, Slip, Viscosity, Walls},
@@ -44,67 +44,67 @@ pub struct Scene {
     pub scatter: Option<f64>,
     /// Box that nothing may leave.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub domain: Option<BoxWords>,
+    pub domain: Option<BoxConfig>,
     /// Periodic sides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub periodic: Option<PeriodicWords>,
+    pub periodic: Option<PeriodicConfig>,
     /// What the guards let pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub guard: Option<GuardWords>,
+    pub guard: Option<GuardConfig>,
     /// Bodies of water.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub water: Vec<WaterWords>,
+    pub water: Vec<WaterConfig>,
     /// Where water loses its motion.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub damping: Vec<DampingWords>,
+    pub damping: Vec<DampingConfig>,
     /// Solids.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub solid: Vec<SolidWords>,
+    pub solid: Vec<SolidConfig>,
     /// Joints between them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub joint: Vec<JointWords>,
+    pub joint: Vec<JointConfig>,
     /// Springs and mooring lines.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub spring: Vec<SpringWords>,
+    pub spring: Vec<SpringConfig>,
     /// Ropes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub rope: Vec<RopeWords>,
+    pub rope: Vec<RopeConfig>,
     /// Forces after a law of time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub force: Vec<ForceWords>,
+    pub force: Vec<ForceConfig>,
     /// Pairs that touch in their own way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub contact: Vec<ContactWords>,
+    pub contact: Vec<ContactConfig>,
     /// The chosen laws.
     #[serde(default)]
-    pub model: ModelWords,
+    pub model: ModelConfig,
     /// The time scheme.
     #[serde(default)]
-    pub time: TimeWords,
+    pub time: TimeSteppingConfig,
     /// What is watched.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub probe: Vec<ProbeEntry>,
+    pub probe: Vec<ProbeConfig>,
     /// Frames for ParaView.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub frames: Option<Frames>,
+    pub frames: Option<FramesChoice>,
     /// Checkpoints.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub checkpoint: Option<CheckpointWords>,
+    pub checkpoint: Option<CheckpointConfig>,
     /// What the run is held against.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub check: Vec<CheckEntry>,
+    pub check: Vec<CheckConfig>,
     /// What is said of its series.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub statistic: Vec<StatisticEntry>,
+    pub statistic: Vec<StatisticConfig>,
     /// Where each word was written.
     #[serde(skip)]
-    pub(super) origin: Origin,
+    pub(super) origin: SceneSource,
 }
 
 /// A box given by two corners.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BoxWords {
+pub struct BoxConfig {
     /// Lowest corner, m.
     pub min: Vec<f64>,
     /// Highest corner, m.
@@ -114,39 +114,39 @@ pub struct BoxWords {
 /// A body of water.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct WaterWords {
+pub struct WaterConfig {
     /// What it fills, minus the solids.
-    pub fill: FillWords,
+    pub fill: FillConfig,
     /// Height of its surface, m, where that lies below the top of `fill`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<f64>,
     /// Velocity at the start, m/s: a formula in the place or a number for each axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<Vec<FieldWords>>,
+    pub velocity: Option<Vec<FieldFormulaConfig>>,
     /// Pressure at the start beyond that of water at rest, Pa: a formula in the place or a number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pressure: Option<FieldWords>,
+    pub pressure: Option<FieldFormulaConfig>,
 }
 
 /// What a body of water fills: a box by its corners, or any shape somewhere.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct FillWords {
+pub struct FillConfig {
     /// A box by its corners.
     #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
-    pub corners: Option<BoxWords>,
+    pub corners: Option<BoxConfig>,
     /// Any shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shape: Option<ShapeWords>,
+    pub shape: Option<ShapeConfig>,
     /// Where that shape is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub at: Option<AtWords>,
+    pub at: Option<PlacementConfig>,
 }
 
 /// The chosen laws.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct ModelWords {
+pub struct ModelConfig {
     /// Kernel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kernel: Option<Kernel>,
@@ -194,7 +194,7 @@ pub struct ModelWords {
 /// The time scheme.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct TimeWords {
+pub struct TimeSteppingConfig {
     /// Scheme.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scheme: Option<Scheme>,
@@ -209,7 +209,7 @@ pub struct TimeWords {
 /// Checkpoints.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct CheckpointWords {
+pub struct CheckpointConfig {
     /// Simulated time between them, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub every: Option<f64>,
@@ -221,7 +221,7 @@ pub struct CheckpointWords {
 /// One `[[check]]`: a column of a probe held against a column of a reference table, or against a formula.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct CheckEntry {
+pub struct CheckConfig {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
     /// The reference table, beside the scene.
@@ -283,14 +283,14 @@ impl Scene {
             rope: Vec::new(),
             force: Vec::new(),
             contact: Vec::new(),
-            model: ModelWords::default(),
-            time: TimeWords::default(),
+            model: ModelConfig::default(),
+            time: TimeSteppingConfig::default(),
             probe: Vec::new(),
             frames: None,
             checkpoint: None,
             check: Vec::new(),
             statistic: Vec::new(),
-            origin: Origin::default(),
+            origin: SceneSource::default(),
         }
     }
 
@@ -302,33 +302,33 @@ impl Scene {
 
     /// The same scene with water in the box from corner `min` to corner `max` (m) too.
     pub fn water_box(mut self, min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
-        let corners = Some(BoxWords { min: min.into(), max: max.into() });
-        let fill = FillWords { corners, ..FillWords::default() };
-        self.water.push(WaterWords { fill, level: None, velocity: None, pressure: None });
+        let corners = Some(BoxConfig { min: min.into(), max: max.into() });
+        let fill = FillConfig { corners, ..FillConfig::default() };
+        self.water.push(WaterConfig { fill, level: None, velocity: None, pressure: None });
         self
     }
 
     /// The same scene with a solid more.
-    pub fn solid(mut self, solid: SolidWords) -> Self {
+    pub fn solid(mut self, solid: SolidConfig) -> Self {
         self.solid.push(solid);
         self
     }
 
     /// The same scene with these laws.
-    pub fn model(mut self, model: ModelWords) -> Self {
+    pub fn model(mut self, model: ModelConfig) -> Self {
         self.model = model;
         self
     }
 
     /// The same scene with a probe more.
-    pub fn probe(mut self, probe: ProbeEntry) -> Self {
+    pub fn probe(mut self, probe: ProbeConfig) -> Self {
         self.probe.push(probe);
         self
     }
 
     /// The same scene without frames.
     pub fn without_frames(mut self) -> Self {
-        self.frames = Some(Frames::Off);
+        self.frames = Some(FramesChoice::Off);
         self
     }
 }

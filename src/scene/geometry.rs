@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{AtWords, Axis, LineWords, MeshWords, Scene, ShapeWords, drawing, mesh, table};
+use super::{PlacementConfig, AxisName, PolylineConfig, MeshConfig, Scene, ShapeConfig, drawing, mesh, table};
 
 use crate::{
     error::Result,
@@ -19,26 +19,26 @@ pub(super) fn vector<const D: usize>(x: &[f64]) -> Vector<D> {
 }
 
 /// The shape that `words` say.
-pub(super) fn shape<const D: usize>(scene: &Scene, words: &ShapeWords) -> Result<Shape<D>> {
-    let thickness = |given: Option<f64>| given.unwrap_or(scene.layers() as f64 * scene.dp);
-    let number = |axis: Option<Axis>| axis.map_or(D - 1, |axis| axis as usize);
+pub(super) fn shape<const D: usize>(scene: &Scene, words: &ShapeConfig) -> Result<Shape<D>> {
+    let thickness = |given: Option<f64>| given.unwrap_or(scene.boundary_layers() as f64 * scene.dp);
+    let number = |axis: Option<AxisName>| axis.map_or(D - 1, |axis| axis as usize);
     let shape = match words {
-        ShapeWords::Box { size } => Shape::Box { size: vector(size) },
-        ShapeWords::Ball { radius } => Shape::Ball { radius: *radius },
-        ShapeWords::Capsule { length, radius, axis } => {
+        ShapeConfig::Box { size } => Shape::Box { size: vector(size) },
+        ShapeConfig::Ball { radius } => Shape::Ball { radius: *radius },
+        ShapeConfig::Capsule { length, radius, axis } => {
             Shape::Capsule { length: *length, radius: *radius, axis: number(*axis) }
         }
-        ShapeWords::Cylinder { length, radius, axis } => {
+        ShapeConfig::Cylinder { length, radius, axis } => {
             Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
         }
-        ShapeWords::Polygon(words) => Shape::Polygon { points: points(scene, words)? },
-        ShapeWords::Polyline(words) => {
+        ShapeConfig::Polygon(words) => Shape::Polygon { points: points(scene, words)? },
+        ShapeConfig::Polyline(words) => {
             Shape::Polyline { points: points(scene, words)?, thickness: thickness(words.thickness) }
         }
-        ShapeWords::Tank { size, thickness: given } => Shape::Tank { size: vector(size), thickness: thickness(*given) },
-        ShapeWords::Mesh(words) => solid(scene, words)?,
-        ShapeWords::Compound(parts) => {
-            let part = |part: &super::PartWords| {
+        ShapeConfig::Tank { size, thickness: given } => Shape::Tank { size: vector(size), thickness: thickness(*given) },
+        ShapeConfig::Mesh(words) => mesh_shape(scene, words)?,
+        ShapeConfig::Compound(parts) => {
+            let part = |part: &super::CompoundPartConfig| {
                 let inner = self::shape(scene, &part.shape)?;
                 let pose = part.at.as_ref().map_or_else(Pose::identity, |at| pose(at, &inner, 0.0));
                 Ok((pose, inner))
@@ -50,29 +50,29 @@ pub(super) fn shape<const D: usize>(scene: &Scene, words: &ShapeWords) -> Result
     Ok(shape)
 }
 
-fn solid<const D: usize>(scene: &Scene, words: &MeshWords) -> Result<Shape<D>> {
-    let path = table::beside(&scene.origin.folder, &words.file)?;
+fn mesh_shape<const D: usize>(scene: &Scene, words: &MeshConfig) -> Result<Shape<D>> {
+    let path = table::path_beside(&scene.origin.folder, &words.file)?;
     let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
     let mesh = mesh::read(&path, unit, words.flip.unwrap_or(false))?;
     Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: words.contact.unwrap_or_default() })
 }
 
-fn points<const D: usize>(scene: &Scene, words: &LineWords) -> Result<Vec<Vector<D>>> {
+fn points<const D: usize>(scene: &Scene, words: &PolylineConfig) -> Result<Vec<Vector<D>>> {
     if let Some(points) = &words.points {
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let path = table::beside(&scene.origin.folder, words.file.as_deref().unwrap_or(""))?;
+    let path = table::path_beside(&scene.origin.folder, words.file.as_deref().unwrap_or(""))?;
     if words.is_drawing() {
         let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
         let points = drawing::outline(&path, words.id.as_deref(), unit, FLAT * scene.dp)?;
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let columns = table::columns(&path, &["x_m", "y_m"])?;
+    let columns = table::read_columns(&path, &["x_m", "y_m"])?;
     Ok(columns[0].iter().zip(&columns[1]).map(|(&x, &y)| vector(&[x, y])).collect())
 }
 
 /// Where `at` puts `shape`; a draft in metres is below `level`, and one of equilibrium is left at zero.
-pub(super) fn pose<const D: usize>(at: &AtWords, shape: &Shape<D>, level: f64) -> Pose<D> {
+pub(super) fn pose<const D: usize>(at: &PlacementConfig, shape: &Shape<D>, level: f64) -> Pose<D> {
     let position = vector(&[at.x.unwrap_or(0.0), at.y.unwrap_or(0.0), at.z.unwrap_or(0.0)]);
     let turn: Vec<f64> = match (&at.angle_deg, &at.turn_deg) {
         (Some(angle), _) => vec![angle.to_radians()],
@@ -81,8 +81,8 @@ pub(super) fn pose<const D: usize>(at: &AtWords, shape: &Shape<D>, level: f64) -
     };
     let mut pose = Pose::rotated(position, &turn);
     let bottom = match at.draft {
-        Some(super::Draft::Metres(draft)) => Some(level - draft),
-        Some(super::Draft::Equilibrium) => Some(level),
+        Some(super::DraftChoice::Metres(draft)) => Some(level - draft),
+        Some(super::DraftChoice::Equilibrium) => Some(level),
         None => at.bottom,
     };
     if let Some(bottom) = bottom {
@@ -97,13 +97,13 @@ pub(crate) fn world_bounds<const D: usize>(shape: &Shape<D>, pose: &Pose<D>) -> 
     let extent = |i: usize, sign: f64| {
         let mut direction = Vector::<D>::zeros();
         direction[i] = sign;
-        sign * pose.position[i] + reach(shape, &(pose.rotation.transpose() * direction))
+        sign * pose.position[i] + support_function(shape, &(pose.rotation.transpose() * direction))
     };
     Bounds { min: Vector::from_fn(|i, _| -extent(i, -1.0)), max: Vector::from_fn(|i, _| extent(i, 1.0)) }
 }
 
 /// The support function: how far the shape reaches in the direction `n`, a unit vector of its own frame, m.
-fn reach<const D: usize>(shape: &Shape<D>, n: &Vector<D>) -> f64 {
+fn support_function<const D: usize>(shape: &Shape<D>, n: &Vector<D>) -> f64 {
     match shape {
         Shape::Box { size } => 0.5 * n.abs().dot(size),
         Shape::Ball { radius } => *radius,
@@ -118,7 +118,7 @@ fn reach<const D: usize>(shape: &Shape<D>, n: &Vector<D>) -> f64 {
         }
         Shape::Compound(parts) => parts
             .iter()
-            .map(|(pose, part)| pose.position.dot(n) + reach(part, &(pose.rotation.transpose() * n)))
+            .map(|(pose, part)| pose.position.dot(n) + support_function(part, &(pose.rotation.transpose() * n)))
             .fold(f64::NEG_INFINITY, f64::max),
         Shape::Polyline { .. } | Shape::Tank { .. } => {
             let bounds = shape.bounds();
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn a_turned_box_reaches_as_far_as_its_corner() {
         let shape = Shape::<2>::Box { size: vector(&[0.2, 0.2]) };
-        let at = AtWords { bottom: Some(0.5), angle_deg: Some(45.0), ..AtWords::default() };
+        let at = PlacementConfig { bottom: Some(0.5), angle_deg: Some(45.0), ..PlacementConfig::default() };
         let bounds = world_bounds(&shape, &pose(&at, &shape, 0.0));
         let half_diagonal = 0.1 * 2f64.sqrt();
         // round-off of a sine and a product: a few 1e-16

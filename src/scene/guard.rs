@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Scene, resolve::Filler};
+use super::{Scene, resolve::Defaults};
 use crate::{
     error::Result,
     simulation::{Escape, Limits},
@@ -12,7 +12,7 @@ use crate::{
 /// What a run's guards let pass.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct GuardWords {
+pub struct GuardConfig {
     /// Largest speed of water over c₀, –.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
@@ -32,18 +32,18 @@ impl Scene {
             && !(speed > 0.0 && speed <= 1.0)
         {
             let help = "write a part of the speed of sound, above 0 and at most 1: speed = 0.5";
-            return Err(self.wrong_with("guard.speed", format!("a largest speed of {speed} c0"), help));
+            return Err(self.error_with_help("guard.speed", format!("a largest speed of {speed} c0"), help));
         }
         if let Some([least, most]) = words.density
             && !(0.0 < least && least < 1.0 && 1.0 < most && most.is_finite())
         {
             let help = "write two parts of ρ₀, one on either side of 1: density = [0.5, 1.5]";
-            return Err(self.wrong_with("guard.density", format!("densities from {least} to {most} ρ₀"), help));
+            return Err(self.error_with_help("guard.density", format!("densities from {least} to {most} ρ₀"), help));
         }
         Ok(())
     }
 
-    pub(super) fn fill_guard(&mut self, filler: &mut Filler) {
+    pub(super) fn fill_guard_defaults(&mut self, filler: &mut Defaults) {
         let (words, usual) = (self.guard.get_or_insert_default(), Limits::default());
         let why = "of c₀: beyond, the water is compressed by an eighth";
         filler.fill("guard.speed", &mut words.speed, usual.speed, why);

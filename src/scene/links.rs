@@ -4,18 +4,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LimitsWords, Mode, Scene,
-    values::{ValueWords, ValuesWords},
+    LimitsConfig, MotionMode, Scene,
+    values::{TimeValueConfig, TimeVectorConfig},
 };
 
 /// One `[[joint]]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct JointWords {
+pub struct JointConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
     /// What it leaves free.
-    pub kind: JointKindWords,
+    pub kind: JointKindConfig,
     /// The two solids, of which the second moves against the first; or one, which moves against the world.
     pub between: Vec<String>,
     /// The point of the world at which it sits at the start, m.
@@ -28,16 +28,16 @@ pub struct JointWords {
     pub along: Option<Vec<f64>>,
     /// Motions that a generic joint leaves free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub free: Option<Vec<Mode>>,
+    pub free: Option<Vec<MotionMode>>,
     /// Least and greatest value from the start, m or rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limits: Option<LimitsWords>,
+    pub limits: Option<LimitsConfig>,
     /// The same of turns, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limits_deg: Option<LimitsWords>,
+    pub limits_deg: Option<LimitsConfig>,
     /// What moves or brakes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub motor: Option<MotorWords>,
+    pub motor: Option<MotorConfig>,
     /// Whether its two solids touch one another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contacts: Option<bool>,
@@ -46,7 +46,7 @@ pub struct JointWords {
 /// What a joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum JointKindWords {
+pub enum JointKindConfig {
     /// Turning about an axis.
     #[serde(alias = "revolute")]
     #[schemars(extend("also" = "revolute"))]
@@ -70,36 +70,36 @@ pub enum JointKindWords {
 /// A motor, brake or power take-off: F = F₀ + k (x* − x) + c (v* − ẋ).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct MotorWords {
+pub struct MotorConfig {
     /// F₀ of a slider, N.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub force: Option<ValueWords>,
+    pub force: Option<TimeValueConfig>,
     /// F₀ of a hinge, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub torque: Option<ValueWords>,
+    pub torque: Option<TimeValueConfig>,
     /// x*, m or rad.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub position: Option<ValueWords>,
+    pub position: Option<TimeValueConfig>,
     /// x* of a hinge, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub position_deg: Option<ValueWords>,
+    pub position_deg: Option<TimeValueConfig>,
     /// v*, m/s or rad/s.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<ValueWords>,
+    pub velocity: Option<TimeValueConfig>,
     /// k, N/m or N m/rad.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub stiffness: Option<ValueWords>,
+    pub stiffness: Option<TimeValueConfig>,
     /// c, N s/m or N m s/rad.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub damping: Option<ValueWords>,
+    pub damping: Option<TimeValueConfig>,
     /// The strongest that it can be, N or N m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strongest: Option<f64>,
 }
 
-impl MotorWords {
+impl MotorConfig {
     /// The words that are given, with their laws.
-    pub(super) fn laws(&self) -> impl Iterator<Item = (&'static str, &ValueWords)> {
+    pub(super) fn time_values(&self) -> impl Iterator<Item = (&'static str, &TimeValueConfig)> {
         let all = [
             ("force", &self.force),
             ("torque", &self.torque),
@@ -113,7 +113,7 @@ impl MotorWords {
     }
 
     /// All laws, to be filled in.
-    pub(super) fn laws_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut ValueWords)> {
+    pub(super) fn time_values_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut TimeValueConfig)> {
         let all = [
             ("force", &mut self.force),
             ("torque", &mut self.torque),
@@ -130,7 +130,7 @@ impl MotorWords {
 /// One `[[spring]]`: a spring or, if it goes slack, a mooring line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SpringWords {
+pub struct SpringConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
     /// The solids at its two ends; or one, the other end on the ground.
@@ -155,7 +155,7 @@ pub struct SpringWords {
 /// One `[[rope]]`: it goes slack and cannot be stretched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RopeWords {
+pub struct RopeConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
     /// The solids at its two ends; or one, the other end on the ground.
@@ -172,7 +172,7 @@ pub struct RopeWords {
 /// One `[[force]]`: a force and a torque on a free solid, after laws of time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ForceWords {
+pub struct ForceConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
     /// The solid.
@@ -182,19 +182,19 @@ pub struct ForceWords {
     pub at: Option<Vec<f64>>,
     /// Its components, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub force: Option<ValuesWords>,
+    pub force: Option<TimeVectorConfig>,
     /// Its components, N m: one in 2-D.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub torque: Option<ValuesWords>,
+    pub torque: Option<TimeVectorConfig>,
     /// Whether the axes turn with the solid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub frame: Option<FrameOf>,
+    pub frame: Option<ForceFrame>,
 }
 
 /// Whose axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum FrameOf {
+pub enum ForceFrame {
     /// The world's.
     World,
     /// The world's at the start, turning with the solid.
@@ -204,7 +204,7 @@ pub enum FrameOf {
 /// One `[[contact]]`: how solids touch, pair by pair; of several of the same pair the last counts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ContactWords {
+pub struct ContactConfig {
     /// The two, each a solid or a group of them; or one, for its contacts with all others.
     pub between: Vec<String>,
     /// `false`: they pass through one another.
@@ -218,11 +218,11 @@ pub struct ContactWords {
     pub restitution: Option<f64>,
 }
 
-impl JointWords {
+impl JointConfig {
     /// A joint that sits at `at` (m) at the start.
     pub fn new<const N: usize>(
         name: impl Into<String>,
-        kind: JointKindWords,
+        kind: JointKindConfig,
         between: [&str; N],
         at: impl Into<Vec<f64>>,
     ) -> Self {
@@ -242,13 +242,13 @@ impl JointWords {
     }
 
     /// The same joint with a linear power take-off of `damping` (N s/m, or N m s/rad of a hinge).
-    pub fn damped(mut self, damping: f64) -> Self {
+    pub fn with_damping(mut self, damping: f64) -> Self {
         self.motor.get_or_insert_default().damping = Some(damping.into());
         self
     }
 }
 
-impl SpringWords {
+impl SpringConfig {
     /// A mooring line of `stiffness` (N/m) from the point `from` of `solid` to the point `to` of the ground, as long as it starts.
     pub fn mooring(
         name: impl Into<String>,
@@ -266,13 +266,13 @@ impl SpringWords {
 
 impl Scene {
     /// The same scene with a joint more.
-    pub fn joint(mut self, joint: JointWords) -> Self {
+    pub fn joint(mut self, joint: JointConfig) -> Self {
         self.joint.push(joint);
         self
     }
 
     /// The same scene with a spring or mooring line more.
-    pub fn spring(mut self, spring: SpringWords) -> Self {
+    pub fn spring(mut self, spring: SpringConfig) -> Self {
         self.spring.push(spring);
         self
     }

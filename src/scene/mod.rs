@@ -38,29 +38,29 @@ mod verify_probes;
 mod wording;
 
 pub use crate::plan::{
-    Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score, StatisticKind, StatisticWords,
-    Surface,
+    Align, CheckPlan, FramesPlan, Plan, ProbeKind, ProbePlan, Reference, Score, StatisticKind, StatisticPlan,
+    GaugeSurface,
 };
-pub use absorb::{Absorb, AbsorbWords};
-pub use bodies::{AtWords, Axis, DrivenWords, FreeWords, LawWords, MeshWords, Mode, PartWords, ShapeWords, SolidWords};
-pub(crate) use build::Stage;
-pub use build::{Built, Still};
-pub use damping::DampingWords;
-pub use document::Source;
-pub use flexible::{Draft, FieldWords, Frames, FramesWords, LimitsWords, LineWords, Numbers, Unit};
-pub use flow::PeriodicWords;
-pub use format::{BoxWords, CheckEntry, CheckpointWords, FillWords, ModelWords, Scene, TimeWords, WaterWords};
+pub use absorb::{AbsorbChoice, AbsorptionConfig};
+pub use bodies::{PlacementConfig, AxisName, DrivenConfig, FreeBodyConfig, TimeFunctionConfig, MeshConfig, MotionMode, CompoundPartConfig, ShapeConfig, SolidConfig};
+pub(crate) use build::SceneLayout;
+pub use build::{BuiltScene, StillWaterLevel};
+pub use damping::DampingConfig;
+pub use document::ValueSource;
+pub use flexible::{DraftChoice, FieldFormulaConfig, FramesChoice, FramesConfig, LimitsConfig, PolylineConfig, NumberOrArray, LengthUnit};
+pub use flow::PeriodicConfig;
+pub use format::{BoxConfig, CheckConfig, CheckpointConfig, FillConfig, ModelConfig, Scene, TimeSteppingConfig, WaterConfig};
 pub(crate) use geometry::world_bounds;
-pub use guard::GuardWords;
-pub use links::{ContactWords, ForceWords, FrameOf, JointKindWords, JointWords, MotorWords, RopeWords, SpringWords};
-pub use probes::{GaugeWords, PatchWords, PointWords, ProbeEntry, RowWords, SectionWords};
-pub use resolve::Resolved;
+pub use guard::GuardConfig;
+pub use links::{ContactConfig, ForceConfig, ForceFrame, JointKindConfig, JointConfig, MotorConfig, RopeConfig, SpringConfig};
+pub use probes::{GaugeConfig, PatchConfig, PointsConfig, ProbeConfig, PointRowConfig, SectionConfig};
+pub use resolve::ResolvedValue;
 pub use schema::schema;
-pub use shipped::{Shipped, shipped};
-pub use size::Size;
-pub use statistics::{RaoWords, StatisticEntry};
-pub use values::{ValueWords, ValuesWords};
-pub use waves::{ComponentsWords, ElevationWords, FocusedWords, RegularWords, SeaWords, SolitaryWords, WaveWords};
+pub use shipped::{BundledScene, bundled_scenes};
+pub use size::SizeEstimate;
+pub use statistics::{RaoConfig, StatisticConfig};
+pub use values::{TimeValueConfig, TimeVectorConfig};
+pub use waves::{WaveComponentsConfig, MeasuredElevationConfig, FocusedWaveConfig, RegularWaveConfig, IrregularWaveConfig, SolitaryWaveConfig, WaveConfig};
 
 use std::{
     io::Read,
@@ -105,9 +105,9 @@ impl Scene {
 
     /// An error of a simulation that this scene was built into, with the file and the line of the key that it speaks of, if it
     /// speaks of one.
-    pub fn place(&self, mut error: Error) -> Error {
+    pub fn with_location(&self, mut error: Error) -> Error {
         match error.place.take() {
-            Some(place) if place.file.is_empty() => self.origin.place(error, &place.key),
+            Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
             place => Error { place, ..error },
         }
     }

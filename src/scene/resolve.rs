@@ -3,34 +3,34 @@
 use std::{collections::BTreeMap, fmt};
 
 use super::{
-    AtWords, Axis, FrameOf, Frames, FramesWords, LawWords, LineWords, Scene, ShapeWords, Unit, document::Source,
+    PlacementConfig, AxisName, ForceFrame, FramesChoice, FramesConfig, TimeFunctionConfig, PolylineConfig, Scene, ShapeConfig, LengthUnit, document::ValueSource,
     verify::FIELDS,
 };
 use crate::{
     error::Result,
     geometry::Touchable,
     model::{C0_FACTOR, Model, Scheme},
-    plan::Surface,
+    plan::GaugeSurface,
 };
 
 /// A value in force and who said it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resolved {
+pub struct ResolvedValue {
     /// The key, as in `solid.box.free.density`.
     pub key: String,
     /// The value, as TOML.
     pub value: String,
     /// Who said it.
-    pub source: Source,
+    pub source: ValueSource,
 }
 
-impl fmt::Display for Resolved {
+impl fmt::Display for ResolvedValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} = {}  ({})", self.key, self.value, self.source)
     }
 }
 
-impl fmt::Display for Source {
+impl fmt::Display for ValueSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Default(reason) => write!(f, "default: {reason}"),
@@ -47,9 +47,9 @@ pub(super) type Reasons = BTreeMap<String, String>;
 /// Wall time from one checkpoint to the next where nobody says it, s.
 pub(super) const CHECKPOINT_WALL: f64 = 600.0;
 
-pub(super) struct Filler(Reasons);
+pub(super) struct Defaults(Reasons);
 
-impl Filler {
+impl Defaults {
     pub(super) fn fill<T>(
         &mut self,
         key: impl Into<String>,
@@ -75,31 +75,31 @@ impl Scene {
     }
 
     /// Layers of boundary particles: as many as the kernel reaches.
-    pub(super) fn layers(&self) -> usize {
-        (2.0 * self.h() / self.dp - 1e-9).ceil() as usize
+    pub(super) fn boundary_layers(&self) -> usize {
+        (2.0 * self.smoothing_length() / self.dp - 1e-9).ceil() as usize
     }
 
     /// The scene with every default filled in, and the reason of each.
     ///
     /// # Errors
     /// `Scene` if the words contradict one another or cannot be meant.
-    pub(super) fn filled(&self) -> Result<(Self, Reasons)> {
+    pub(super) fn with_defaults(&self) -> Result<(Self, Reasons)> {
         self.verify()?;
         let mut scene = self.clone();
-        let mut filler = Filler(Reasons::new());
+        let mut filler = Defaults(Reasons::new());
         filler.fill("title", &mut scene.title, "untitled".into(), "the scene has no title");
         let usual = Model::water(scene.dimension, scene.dp, 1.0);
         filler.fill("gravity", &mut scene.gravity, usual.gravity.clone(), "the earth's, down the last axis");
-        scene.fill_laws(&mut filler, &usual);
-        scene.fill_guard(&mut filler);
-        scene.fill_damping(&mut filler);
-        scene.fill_solids(&mut filler);
-        scene.fill_links(&mut filler);
-        scene.fill_records(&mut filler);
+        scene.fill_model_defaults(&mut filler, &usual);
+        scene.fill_guard_defaults(&mut filler);
+        scene.fill_damping_defaults(&mut filler);
+        scene.fill_solid_defaults(&mut filler);
+        scene.fill_constraint_defaults(&mut filler);
+        scene.fill_output_defaults(&mut filler);
         Ok((scene, filler.0))
     }
 
-    fn fill_laws(&mut self, filler: &mut Filler, usual: &Model) {
+    fn fill_model_defaults(&mut self, filler: &mut Defaults, usual: &Model) {
         let (ratio, why) = self.default_h_over_dp();
         let (model, time) = (&mut self.model, &mut self.time);
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
@@ -144,9 +144,9 @@ impl Scene {
         filler.fill("time.cfl", &mut time.cfl, cfl, why);
     }
 
-    fn fill_solids(&mut self, filler: &mut Filler) {
+    fn fill_solid_defaults(&mut self, filler: &mut Defaults) {
         let sheet =
-            Sheet { thickness: self.layers() as f64 * self.dp, upright: [Axis::Y, Axis::Z][self.dimension - 2] };
+            ShapeDefaults { thickness: self.boundary_layers() as f64 * self.dp, upright: [AxisName::Y, AxisName::Z][self.dimension - 2] };
         for (i, water) in self.water.iter_mut().enumerate() {
             if let Some(shape) = &mut water.fill.shape {
                 sheet.fill(filler, &format!("water.{i}.fill.shape"), shape);
@@ -155,7 +155,7 @@ impl Scene {
         for (i, solid) in self.solid.iter_mut().enumerate() {
             let key = format!("solid.{i}");
             sheet.fill(filler, &format!("{key}.shape"), &mut solid.shape);
-            filler.fill(format!("{key}.at"), &mut solid.at, AtWords::default(), "the shape's frame is the world's");
+            filler.fill(format!("{key}.at"), &mut solid.at, PlacementConfig::default(), "the shape's frame is the world's");
             filler.fill(format!("{key}.friction"), &mut solid.friction, 0.3, "wet wood or plastic");
             let why = "the water between bodies takes the bounce";
             filler.fill(format!("{key}.restitution"), &mut solid.restitution, 0.0, why);
@@ -165,12 +165,12 @@ impl Scene {
         }
     }
 
-    fn fill_links(&mut self, filler: &mut Filler) {
+    fn fill_constraint_defaults(&mut self, filler: &mut Defaults) {
         for (i, joint) in self.joint.iter_mut().enumerate() {
             let key = format!("joint.{i}");
             filler.fill(format!("{key}.contacts"), &mut joint.contacts, false, "what is jointed may overlap");
-            for (word, value) in joint.motor.iter_mut().flat_map(|motor| motor.laws_mut()) {
-                fill_law(filler, &format!("{key}.motor.{word}"), &mut value.0);
+            for (word, value) in joint.motor.iter_mut().flat_map(|motor| motor.time_values_mut()) {
+                fill_time_function(filler, &format!("{key}.motor.{word}"), &mut value.0);
             }
         }
         let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
@@ -187,28 +187,28 @@ impl Scene {
         }
         for (i, force) in self.force.iter_mut().enumerate() {
             let key = format!("force.{i}");
-            filler.fill(format!("{key}.frame"), &mut force.frame, FrameOf::World, "as wind, not as a thruster");
+            filler.fill(format!("{key}.frame"), &mut force.frame, ForceFrame::World, "as wind, not as a thruster");
             for (word, values) in [("force", &mut force.force), ("torque", &mut force.torque)] {
                 for value in values.iter_mut().flat_map(|values| values.components_mut()) {
-                    fill_law(filler, &format!("{key}.{word}"), &mut value.0);
+                    fill_time_function(filler, &format!("{key}.{word}"), &mut value.0);
                 }
             }
         }
     }
 
-    fn fill_records(&mut self, filler: &mut Filler) {
+    fn fill_output_defaults(&mut self, filler: &mut Defaults) {
         for (i, name) in self.probe_names().into_iter().enumerate() {
             let probe = &mut self.probe[i];
             filler.fill(format!("probe.{i}.name"), &mut probe.name, name, "after what it looks at");
             filler.fill(format!("probe.{i}.every"), &mut probe.every, self.until / 1000.0, "1000 readings a run");
             if let Some(gauge) = &mut probe.elevation {
                 let key = format!("probe.{i}.elevation.surface");
-                filler.fill(key, &mut gauge.surface, Surface::Highest, "a jet counts, spray does not");
+                filler.fill(key, &mut gauge.surface, GaugeSurface::Highest, "a jet counts, spray does not");
             }
         }
         let (count, why) = self.default_frames();
-        let frames = self.frames.get_or_insert(Frames::On(FramesWords::default()));
-        if let Frames::On(words) = frames {
+        let frames = self.frames.get_or_insert(FramesChoice::On(FramesConfig::default()));
+        if let FramesChoice::On(words) = frames {
             filler.fill("frames.every", &mut words.every, self.until / count, why);
             let fields = FIELDS.map(String::from).to_vec();
             filler.fill("frames.fields", &mut words.fields, fields, "all that there are");
@@ -229,8 +229,8 @@ impl Scene {
     /// # Errors
     /// `Scene` if the words contradict one another or cannot be meant, or a file that gives a shape is
     /// missing or wrong.
-    pub fn resolve(&self) -> Result<Vec<Resolved>> {
-        let (scene, reasons) = self.filled()?;
+    pub fn resolve(&self) -> Result<Vec<ResolvedValue>> {
+        let (scene, reasons) = self.with_defaults()?;
         let words = toml::Table::try_from(&scene).unwrap_or_default();
         let mut lines = Vec::new();
         for section in ORDER {
@@ -238,16 +238,16 @@ impl Scene {
                 self.flatten(section.into(), value, &reasons, &mut lines);
             }
         }
-        let derived = |key: &str, value: f64, why: &str| Resolved {
+        let derived = |key: &str, value: f64, why: &str| ResolvedValue {
             key: key.into(),
             value: format!("{value}"),
-            source: Source::Default(why.into()),
+            source: ValueSource::Default(why.into()),
         };
         let c0 = match self.dimension {
             2 => scene.sound_speed::<2>()?,
             _ => scene.sound_speed::<3>()?,
         };
-        for (zone, strength) in scene.usual_strengths()? {
+        for (zone, strength) in scene.default_strengths()? {
             let at = lines.iter().rposition(|line| line.key.starts_with(&zone)).map_or(lines.len(), |at| at + 1);
             lines.insert(at, derived(&format!("{zone}strength"), strength, "of a long wave e⁻⁴ comes back, 1/s"));
         }
@@ -255,11 +255,11 @@ impl Scene {
         if scene.model.c0.is_none() {
             lines.insert(at, derived("model.c0", c0, "c0_factor · √(g · depth), m/s"));
         }
-        lines.insert(at, derived("model.h", scene.h(), "smoothing length from dp, m"));
+        lines.insert(at, derived("model.h", scene.smoothing_length(), "smoothing length from dp, m"));
         Ok(lines)
     }
 
-    fn flatten(&self, key: String, value: &toml::Value, reasons: &Reasons, lines: &mut Vec<Resolved>) {
+    fn flatten(&self, key: String, value: &toml::Value, reasons: &Reasons, lines: &mut Vec<ResolvedValue>) {
         match value {
             toml::Value::Table(table) if !table.is_empty() => {
                 table.iter().for_each(|(part, value)| self.flatten(format!("{key}.{part}"), value, reasons, lines));
@@ -272,18 +272,18 @@ impl Scene {
             }
             leaf => {
                 let source = self.source(&key, reasons);
-                lines.push(Resolved { key: self.origin.shown(&key), value: leaf.to_string(), source });
+                lines.push(ResolvedValue { key: self.origin.key_with_names(&key), value: leaf.to_string(), source });
             }
         }
     }
 
     /// Who said `key`: the default above it, its line, or else the law's or shape's own default.
-    fn source(&self, key: &str, reasons: &Reasons) -> Source {
+    fn source(&self, key: &str, reasons: &Reasons) -> ValueSource {
         let above = |key: &str| key.rsplit_once('.').map(|(parent, _)| parent.to_string());
         let mut place = Some(key.to_string());
         while let Some(at) = place {
             if let Some(reason) = reasons.get(&at) {
-                return Source::Default(reason.clone());
+                return ValueSource::Default(reason.clone());
             }
             if at == key
                 && let Some(source) = self.origin.source(&at)
@@ -292,18 +292,18 @@ impl Scene {
             }
             place = above(&at);
         }
-        if self.origin.file.is_empty() { Source::Program } else { self.inherited(key) }
+        if self.origin.file.is_empty() { ValueSource::Program } else { self.inherited_source(key) }
     }
 
     /// The source of a value that was not written itself, but whose table may have been.
-    fn inherited(&self, key: &str) -> Source {
+    fn inherited_source(&self, key: &str) -> ValueSource {
         let written = |parent: &str| self.origin.source(parent);
         match key.rsplit_once('.') {
-            Some((parent, "points")) => written(parent).unwrap_or(Source::Program),
+            Some((parent, "points")) => written(parent).unwrap_or(ValueSource::Program),
             Some((parent, _)) if written(parent).is_some() => {
-                Source::Default("of this choice, see docs/scene.md".into())
+                ValueSource::Default("of this choice, see docs/scene.md".into())
             }
-            _ => Source::Default("see docs/scene.md".into()),
+            _ => ValueSource::Default("see docs/scene.md".into()),
         }
     }
 }
@@ -337,7 +337,7 @@ const ORDER: [&str; 24] = [
 ];
 
 /// Fills in what a law that is a table does not say.
-pub(super) fn fill_law(filler: &mut Filler, key: &str, law: &mut LawWords) {
+pub(super) fn fill_time_function(filler: &mut Defaults, key: &str, law: &mut TimeFunctionConfig) {
     if law.file.is_some() {
         filler.fill(format!("{key}.time"), &mut law.time, "t_s".into(), "the name our own tables have");
         filler.fill(format!("{key}.scale"), &mut law.scale, 1.0, "as in the table");
@@ -345,45 +345,45 @@ pub(super) fn fill_law(filler: &mut Filler, key: &str, law: &mut LawWords) {
 }
 
 /// What a shape needs to know of the scene for its defaults.
-struct Sheet {
+struct ShapeDefaults {
     thickness: f64,
-    upright: Axis,
+    upright: AxisName,
 }
 
-impl Sheet {
-    fn fill(&self, filler: &mut Filler, key: &str, shape: &mut ShapeWords) {
+impl ShapeDefaults {
+    fn fill(&self, filler: &mut Defaults, key: &str, shape: &mut ShapeConfig) {
         let thick = "as many dp as the kernel reaches";
         match shape {
-            ShapeWords::Capsule { axis, .. } => {
+            ShapeConfig::Capsule { axis, .. } => {
                 filler.fill(format!("{key}.capsule.axis"), axis, self.upright, "upright");
             }
-            ShapeWords::Cylinder { axis, .. } => {
+            ShapeConfig::Cylinder { axis, .. } => {
                 filler.fill(format!("{key}.cylinder.axis"), axis, self.upright, "upright");
             }
-            ShapeWords::Polyline(LineWords { thickness, .. }) => {
+            ShapeConfig::Polyline(PolylineConfig { thickness, .. }) => {
                 filler.fill(format!("{key}.polyline.thickness"), thickness, self.thickness, thick);
             }
-            ShapeWords::Tank { thickness, .. } => {
+            ShapeConfig::Tank { thickness, .. } => {
                 filler.fill(format!("{key}.tank.thickness"), thickness, self.thickness, thick);
             }
-            ShapeWords::Mesh(words) => {
+            ShapeConfig::Mesh(words) => {
                 let key = format!("{key}.mesh");
                 filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the file's own size");
-                filler.fill(format!("{key}.unit"), &mut words.unit, Unit::M, "neither STL nor OBJ tells its unit");
+                filler.fill(format!("{key}.unit"), &mut words.unit, LengthUnit::M, "neither STL nor OBJ tells its unit");
                 let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
                 filler.fill(format!("{key}.contact"), &mut words.contact, Touchable::Fitting, why);
             }
-            ShapeWords::Polygon(words) if words.is_drawing() => {
+            ShapeConfig::Polygon(words) if words.is_drawing() => {
                 let key = format!("{key}.polygon");
                 filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the drawing's own size");
-                filler.fill(format!("{key}.unit"), &mut words.unit, Unit::M, "a unit of the drawing is a metre");
+                filler.fill(format!("{key}.unit"), &mut words.unit, LengthUnit::M, "a unit of the drawing is a metre");
             }
-            ShapeWords::Compound(parts) => {
+            ShapeConfig::Compound(parts) => {
                 for (i, part) in parts.iter_mut().enumerate() {
                     self.fill(filler, &format!("{key}.compound.{i}.shape"), &mut part.shape);
                 }
             }
-            ShapeWords::Box { .. } | ShapeWords::Ball { .. } | ShapeWords::Polygon(_) => {}
+            ShapeConfig::Box { .. } | ShapeConfig::Ball { .. } | ShapeConfig::Polygon(_) => {}
         }
     }
 }

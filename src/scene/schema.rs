@@ -30,21 +30,21 @@ pub fn schema() -> Value {
     let mut schema = settings.into_generator().into_root_schema_for::<Scene>().to_value();
     schema["title"] = json!("A scene of pontoon");
     required_only(&mut schema);
-    second_names(&mut schema);
+    expand_aliases(&mut schema);
     if let Some(types) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
         types
             .iter_mut()
             .filter(|(name, _)| CHOICES.contains(&name.as_str()))
-            .for_each(|(_, choice)| bare_words(choice));
+            .for_each(|(_, choice)| allow_bare_words(choice));
         for (name, is_kind) in KINDS {
-            types.get_mut(name).into_iter().for_each(|words| one_of(words, is_kind));
+            types.get_mut(name).into_iter().for_each(|words| require_one_of(words, is_kind));
         }
     }
     schema
 }
 
 /// Says of a type that exactly one of the keys that are its kinds is there.
-fn one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
+fn require_one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
     let keys = words["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
     let kinds: Value = keys.filter(|key| is_kind(key)).map(|key| json!({ "required": [key] })).collect();
     words["oneOf"] = kinds;
@@ -80,7 +80,7 @@ fn required_only(schema: &mut Value) {
 }
 
 /// Takes a word's second name, which its type has noted as `also` beside its alias, for as good as its first.
-fn second_names(schema: &mut Value) {
+fn expand_aliases(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
             if let Some(also) = map.remove("also")
@@ -88,15 +88,15 @@ fn second_names(schema: &mut Value) {
             {
                 map.insert("enum".into(), json!([word, also]));
             }
-            map.values_mut().for_each(second_names);
+            map.values_mut().for_each(expand_aliases);
         }
-        Value::Array(items) => items.iter_mut().for_each(second_names),
+        Value::Array(items) => items.iter_mut().for_each(expand_aliases),
         _ => {}
     }
 }
 
 /// Adds to a choice of several that each of them may be written as a bare word, or as a table of nothing.
-fn bare_words(choice: &mut Value) {
+fn allow_bare_words(choice: &mut Value) {
     let mut tables = Map::new();
     let kinds = choice.get("oneOf").and_then(Value::as_array).into_iter().flatten().chain([&*choice]);
     for kind in kinds {

@@ -2,7 +2,7 @@
 
 /// A scene of the program's own: the name of its folder, its `scene.toml`, and the other files of the folder
 /// by name.
-pub type Shipped = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+pub type BundledScene = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 /// Text of a file of the folder of a scene.
 macro_rules! text {
@@ -22,7 +22,7 @@ macro_rules! scene {
 }
 
 /// All of them.
-pub fn shipped() -> &'static [Shipped] {
+pub fn bundled_scenes() -> &'static [BundledScene] {
     &[
         scene!("raft"),
         scene!("hinged-raft"),

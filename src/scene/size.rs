@@ -1,11 +1,11 @@
 //! What a run of a scene will take, told from its words: no particle is made.
 
-use super::{Frames, FramesWords, Scene, build::Body, build_waves::Pool, geometry::world_bounds, verify::FIELDS};
+use super::{FramesChoice, FramesConfig, Scene, build::WaterBody, build_waves::StillWater, geometry::world_bounds, verify::FIELDS};
 use crate::{error::Result, math::format::bytes, model::Scheme, output::frame::particle_bytes};
 
 /// About how large a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Size {
+pub struct SizeEstimate {
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of water.
@@ -20,9 +20,9 @@ pub struct Size {
     pub passes: f64,
 }
 
-impl Size {
+impl SizeEstimate {
     /// Water particles × force passes: what a run's time is about proportional to.
-    pub fn work(&self) -> f64 {
+    pub fn particle_passes(&self) -> f64 {
         self.fluid * self.steps * self.passes
     }
 }
@@ -36,16 +36,16 @@ const FRAMES: [f64; 2] = [20.0, 100.0];
 
 impl Scene {
     /// Refuses water so far from the origin that numbers cannot tell its particles' places apart.
-    pub(super) fn near_enough<const D: usize>(&self, water: &[Body<D>]) -> Result<()> {
-        let most = FARTHEST * 2.0 * self.h();
-        let far = |body: &Body<D>| {
+    pub(super) fn require_near_origin<const D: usize>(&self, water: &[WaterBody<D>]) -> Result<()> {
+        let most = FARTHEST * 2.0 * self.smoothing_length();
+        let far = |body: &WaterBody<D>| {
             let bounds = world_bounds(&body.region.shape, &body.region.pose);
             bounds.min.iter().chain(bounds.max.iter()).map(|x| x.abs()).fold(0.0, f64::max)
         };
         match water.iter().map(far).enumerate().find(|(_, far)| *far > most) {
             Some((i, far)) => {
                 let what = format!("this water is {far:.1e} m from the origin; places are exact up to {most:.1e} m");
-                Err(self.wrong_with(
+                Err(self.error_with_help(
                     &format!("water.{i}.fill"),
                     what,
                     "move the scene to the origin, or make dp larger",
@@ -59,8 +59,8 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the words contradict one another, a shape is none, or the particles are too many.
-    pub fn size(&self) -> Result<Size> {
-        let (scene, _) = self.filled()?;
+    pub fn estimate_size(&self) -> Result<SizeEstimate> {
+        let (scene, _) = self.with_defaults()?;
         match scene.dimension {
             2 => scene.sized::<2>(),
             _ => scene.sized::<3>(),
@@ -70,7 +70,7 @@ impl Scene {
     /// About how many particles of water there are, solids not taken off; none of water that is no shape.
     fn water_particles(&self) -> f64 {
         fn count<const D: usize>(scene: &Scene) -> Result<f64> {
-            Ok(scene.counts::<D>(&scene.bodies_of_water()?, &[]).0)
+            Ok(scene.estimated_counts::<D>(&scene.water_bodies()?, &[]).0)
         }
         let counted = if self.dimension == 2 { count::<2>(self) } else { count::<3>(self) };
         counted.unwrap_or(0.0)
@@ -79,7 +79,7 @@ impl Scene {
     /// How many frames a run has where nobody says it, and why.
     pub(super) fn default_frames(&self) -> (f64, String) {
         let fields = match &self.frames {
-            Some(Frames::On(FramesWords { fields: Some(fields), .. })) => fields.clone(),
+            Some(FramesChoice::On(FramesConfig { fields: Some(fields), .. })) => fields.clone(),
             _ => FIELDS.map(String::from).to_vec(),
         };
         let frame = particle_bytes(&fields).0 * self.water_particles();
@@ -93,14 +93,14 @@ impl Scene {
         }
     }
 
-    fn sized<const D: usize>(&self) -> Result<Size> {
-        let water = self.bodies_of_water::<D>()?;
-        let model = self.laws(&water)?;
-        let solids = self.solids::<D>(&Pool::of(&water))?;
-        self.affordable(&water, &solids)?;
-        let (fluid, boundary) = self.counts(&water, &solids);
+    fn sized<const D: usize>(&self) -> Result<SizeEstimate> {
+        let water = self.water_bodies::<D>()?;
+        let model = self.build_model(&water)?;
+        let solids = self.solids::<D>(&StillWater::of(&water))?;
+        self.require_affordable(&water, &solids)?;
+        let (fluid, boundary) = self.estimated_counts(&water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
         let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1.0 } else { 2.0 };
-        Ok(Size { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
+        Ok(SizeEstimate { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
     }
 }

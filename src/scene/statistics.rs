@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Scene,
-    build::Still,
-    verify::{guess, said},
+    build::StillWaterLevel,
+    verify::{suggestion, quoted_list},
 };
 use crate::{
     error::Result,
-    plan::{ProbeKind, ProbeWords, StatisticKind, StatisticWords},
+    plan::{ProbeKind, ProbePlan, StatisticKind, StatisticPlan},
     probe,
 };
 
@@ -18,7 +18,7 @@ use crate::{
 /// means the elevations of a gauge or of a row of them, the displacements and turns of a motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct StatisticEntry {
+pub struct StatisticConfig {
     /// What it is called.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -30,7 +30,7 @@ pub struct StatisticEntry {
     pub reflection: Option<Vec<String>>,
     /// How a motion answers a wave.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub rao: Option<RaoWords>,
+    pub rao: Option<RaoConfig>,
     /// Period of regular waves, s; all waves about the peak if not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub period: Option<f64>,
@@ -48,7 +48,7 @@ pub struct StatisticEntry {
 /// A motion and the wave that it answers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RaoWords {
+pub struct RaoConfig {
     /// A series, or the name of a motion.
     pub motion: String,
     /// A series, or the name of a gauge.
@@ -56,9 +56,9 @@ pub struct RaoWords {
 }
 
 /// A series, and the gauge's place (m) if it is an elevation.
-type Found = (String, Option<Vec<f64>>);
+type SeriesAtPlace = (String, Option<Vec<f64>>);
 
-impl StatisticEntry {
+impl StatisticConfig {
     fn kinds(&self) -> Vec<&'static str> {
         let given =
             [("waves", self.waves.is_some()), ("reflection", self.reflection.is_some()), ("rao", self.rao.is_some())];
@@ -72,17 +72,17 @@ impl Scene {
         for (i, entry) in self.statistic.iter().enumerate() {
             let key = format!("statistic.{i}");
             if entry.kinds().len() != 1 {
-                let what = format!("a statistic is of one kind; this one of {}", said(&entry.kinds()));
-                return Err(self.wrong_with(
+                let what = format!("a statistic is of one kind; this one of {}", quoted_list(&entry.kinds()));
+                return Err(self.error_with_help(
                     &key,
                     what,
                     "one of waves, reflection, rao; a [[statistic]] section for each",
                 ));
             }
-            self.positive(&format!("{key}.period"), entry.period)?;
-            self.positive(&format!("{key}.depth"), entry.depth)?;
+            self.require_positive(&format!("{key}.period"), entry.period)?;
+            self.require_positive(&format!("{key}.depth"), entry.depth)?;
             if let Some(name) = &entry.name {
-                self.good_name(&format!("{key}.name"), name)?;
+                self.require_file_name(&format!("{key}.name"), name)?;
             }
             let words = [
                 ("period", entry.period.is_some() && entry.waves.is_some()),
@@ -90,13 +90,13 @@ impl Scene {
             ];
             if let Some((word, _)) = words.into_iter().find(|(_, odd)| *odd) {
                 let what = format!("{} needs no {word}", entry.kinds()[0]);
-                return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
+                return Err(self.error_with_help(&format!("{key}.{word}"), what, "remove it"));
             }
             if let (Some(from), Some(until)) = (entry.from, entry.until)
                 && from >= until
             {
                 let what = format!("nothing lies between from = {from} and until = {until}");
-                return Err(self.wrong_with(&format!("{key}.until"), what, "until is the later time of the run"));
+                return Err(self.error_with_help(&format!("{key}.until"), what, "until is the later time of the run"));
             }
             self.kind_of(&key, entry, 1.0, 1.0)?;
         }
@@ -104,11 +104,11 @@ impl Scene {
     }
 
     /// What is said of the series, from a scene with its defaults filled in, over water as it is at rest.
-    pub(super) fn statistic_words(&self, still: &Still) -> Result<Vec<StatisticWords>> {
+    pub(super) fn statistic_plans(&self, still: &StillWaterLevel) -> Result<Vec<StatisticPlan>> {
         let g = self.gravity.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
-        let words = |(i, entry): (usize, &super::StatisticEntry)| {
+        let words = |(i, entry): (usize, &super::StatisticConfig)| {
             let depth = entry.depth.unwrap_or(still.depth);
-            Ok(StatisticWords {
+            Ok(StatisticPlan {
                 name: entry.name.clone().unwrap_or_default(),
                 what: self.kind_of(&format!("statistic.{i}"), entry, depth, g)?,
                 from: entry.from,
@@ -118,41 +118,41 @@ impl Scene {
         self.statistic.iter().enumerate().map(words).collect()
     }
 
-    fn kind_of(&self, key: &str, entry: &StatisticEntry, depth: f64, g: f64) -> Result<StatisticKind> {
+    fn kind_of(&self, key: &str, entry: &StatisticConfig, depth: f64, g: f64) -> Result<StatisticKind> {
         let period = entry.period;
-        let plain = |found: Vec<Found>| found.into_iter().map(|(series, _)| series).collect::<Vec<_>>();
+        let plain = |found: Vec<SeriesAtPlace>| found.into_iter().map(|(series, _)| series).collect::<Vec<_>>();
         match entry {
-            StatisticEntry { waves: Some(word), .. } => {
-                Ok(StatisticKind::Waves { series: plain(self.series_of(&format!("{key}.waves"), word)?) })
+            StatisticConfig { waves: Some(word), .. } => {
+                Ok(StatisticKind::Waves { series: plain(self.find_series(&format!("{key}.waves"), word)?) })
             }
-            StatisticEntry { reflection: Some(words), .. } => {
+            StatisticConfig { reflection: Some(words), .. } => {
                 let key = format!("{key}.reflection");
                 let mut gauges = Vec::new();
                 for word in words {
-                    gauges.extend(self.series_of(&key, word)?);
+                    gauges.extend(self.find_series(&key, word)?);
                 }
-                Ok(StatisticKind::Reflection { gauges: self.along(&key, gauges)?, depth, g, period })
+                Ok(StatisticKind::Reflection { gauges: self.gauges_along(&key, gauges)?, depth, g, period })
             }
-            StatisticEntry { rao: Some(RaoWords { motion, wave }), .. } => {
-                let motions = plain(self.series_of(&format!("{key}.rao.motion"), motion)?);
+            StatisticConfig { rao: Some(RaoConfig { motion, wave }), .. } => {
+                let motions = plain(self.find_series(&format!("{key}.rao.motion"), motion)?);
                 let key = format!("{key}.rao.wave");
-                match &plain(self.series_of(&key, wave)?)[..] {
+                match &plain(self.find_series(&key, wave)?)[..] {
                     [wave] => Ok(StatisticKind::Rao { motions, wave: wave.clone(), period }),
-                    _ => Err(self.wrong_with(
+                    _ => Err(self.error_with_help(
                         &key,
                         format!("\"{wave}\" is more than one series"),
                         "name one, as in \"gauge.eta_m\"",
                     )),
                 }
             }
-            _ => Err(self.wrong(key, "what is it of?")),
+            _ => Err(self.error_at(key, "what is it of?")),
         }
     }
 
     /// Gauges, by how far they are from the first in the direction of the last, m.
-    fn along(&self, key: &str, gauges: Vec<Found>) -> Result<Vec<(String, f64)>> {
+    fn gauges_along(&self, key: &str, gauges: Vec<SeriesAtPlace>) -> Result<Vec<(String, f64)>> {
         let help = "name three elevation gauges, or a row of them, in the order in which waves pass them";
-        let wrong = |what: String| self.wrong_with(key, what, help);
+        let wrong = |what: String| self.error_with_help(key, what, help);
         let places: Option<Vec<Vec<f64>>> = gauges.iter().map(|(_, at)| at.clone()).collect();
         let Some(places) = places else {
             return Err(wrong("what is reflected is told by elevation gauges, and one of these is none".into()));
@@ -170,23 +170,23 @@ impl Scene {
     }
 
     /// The series that `word` means.
-    fn series_of(&self, key: &str, word: &str) -> Result<Vec<Found>> {
+    fn find_series(&self, key: &str, word: &str) -> Result<Vec<SeriesAtPlace>> {
         let names = self.probe_names();
         let (name, column) = word.split_once('.').map_or((word, None), |(name, column)| (name, Some(column)));
         let Some(i) = names.iter().position(|known| known == name) else {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let what = format!("no probe is called \"{name}\"{}", guess(name, &names));
-            return Err(self.wrong_with(key, what, format!("known: {}", names.join(", "))));
+            let what = format!("no probe is called \"{name}\"{}", suggestion(name, &names));
+            return Err(self.error_with_help(key, what, format!("known: {}", names.join(", "))));
         };
-        let Some(ProbeWords { what: kind, .. }) = self.probe[i].planned(self.until) else {
-            return Err(self.no_series(key, name));
+        let Some(ProbePlan { what: kind, .. }) = self.probe[i].to_plan(self.until) else {
+            return Err(self.list_has_no_series(key, name));
         };
-        let all: Vec<Found> = match &kind {
+        let all: Vec<SeriesAtPlace> = match &kind {
             ProbeKind::Elevation { places, .. } if places.len() == 1 => {
                 vec![(format!("{name}.eta_m"), Some(places[0].clone()))]
             }
             ProbeKind::Elevation { places, .. } => {
-                places.iter().map(|at| (format!("{name}.{}", probe::named("eta_m", at)), Some(at.clone()))).collect()
+                places.iter().map(|at| (format!("{name}.{}", probe::column_at_place("eta_m", at)), Some(at.clone()))).collect()
             }
             ProbeKind::Motion { .. } => {
                 let columns: &[&str] = match self.dimension {
@@ -201,7 +201,7 @@ impl Scene {
             Some(_) => Ok(vec![all.into_iter().find(|(series, _)| series == word).unwrap_or((word.into(), None))]),
             None if all.is_empty() => {
                 let help = "a series is a probe and its column with a point between, as in \"box.heave_m\"";
-                Err(self.wrong_with(key, format!("which column of \"{name}\" is meant?"), help))
+                Err(self.error_with_help(key, format!("which column of \"{name}\" is meant?"), help))
             }
             None => Ok(all),
         }
@@ -210,7 +210,7 @@ impl Scene {
     /// Stem of each statistic's name where it has none: its kind, with a number from the second on.
     pub(super) fn statistic_names(&self) -> Vec<String> {
         let mut kinds: Vec<&str> = Vec::new();
-        let name = |entry: &StatisticEntry| {
+        let name = |entry: &StatisticConfig| {
             let kind = entry.kinds().first().copied().unwrap_or("statistic");
             kinds.push(kind);
             match kinds.iter().filter(|before| **before == kind).count() {

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::{
-    ContactWords, ForceWords, JointKindWords, JointWords, LawWords, LimitsWords, Mode, MotorWords, ProbeEntry, Scene,
-    SolidWords, SpringWords, ValueWords,
-    verify::{guess, last},
+    ContactConfig, ForceConfig, JointKindConfig, JointConfig, TimeFunctionConfig, LimitsConfig, MotionMode, MotorConfig, ProbeConfig, Scene,
+    SolidConfig, SpringConfig, TimeValueConfig,
+    verify::{suggestion, last_part},
 };
 use crate::{error::Result, math::expression::Formula};
 
@@ -25,10 +25,10 @@ impl Scene {
             .try_for_each(|(i, spring)| self.verify_spring(&format!("spring.{i}"), spring))?;
         for (i, rope) in self.rope.iter().enumerate() {
             let key = format!("rope.{i}");
-            self.ends(&key, &rope.between)?;
-            self.vector(&format!("{key}.from"), &rope.from)?;
-            self.vector(&format!("{key}.to"), &rope.to)?;
-            self.positive(&format!("{key}.length"), rope.length)?;
+            self.verify_ends(&key, &rope.between)?;
+            self.require_dimension(&format!("{key}.from"), &rope.from)?;
+            self.require_dimension(&format!("{key}.to"), &rope.to)?;
+            self.require_positive(&format!("{key}.length"), rope.length)?;
         }
         self.force.iter().enumerate().try_for_each(|(i, force)| self.verify_force(&format!("force.{i}"), force))?;
         (0..self.contact.len()).try_for_each(|i| self.verify_contact(&format!("contact.{i}"), i))
@@ -37,66 +37,66 @@ impl Scene {
     /// Refuses contact number `i` if it says nothing, or two things.
     fn verify_contact(&self, key: &str, i: usize) -> Result<()> {
         let contact = &self.contact[i];
-        self.touching(&format!("{key}.between"), contact)?;
+        self.verify_contact_ends(&format!("{key}.between"), contact)?;
         let plain = contact.friction.is_none() && contact.restitution.is_none();
         if contact.touch == Some(false) && !plain {
             let what = "what does not touch has neither friction nor restitution";
-            return Err(self.wrong(&format!("{key}.touch"), what));
+            return Err(self.error_at(&format!("{key}.touch"), what));
         }
-        let pairs = self.pairs(contact);
+        let pairs = self.contact_pairs(contact);
         // `touch = true` has a meaning after a rule for some of the same pairs.
-        let rules = |earlier: &ContactWords| contact.touch.is_some() && !self.pairs(earlier).is_disjoint(&pairs);
+        let rules = |earlier: &ContactConfig| contact.touch.is_some() && !self.contact_pairs(earlier).is_disjoint(&pairs);
         if contact.touch != Some(false) && plain && !self.contact[..i].iter().any(rules) {
-            return Err(self.wrong(key, "this contact is as any other"));
+            return Err(self.error_at(key, "this contact is as any other"));
         }
-        self.within(&format!("{key}.friction"), contact.friction, 10.0)?;
-        self.within(&format!("{key}.restitution"), contact.restitution, 1.0)
+        self.require_range(&format!("{key}.friction"), contact.friction, 10.0)?;
+        self.require_range(&format!("{key}.restitution"), contact.restitution, 1.0)
     }
 
     /// Refuses what is not one or two solids or groups that can touch.
-    fn touching(&self, key: &str, contact: &ContactWords) -> Result<()> {
+    fn verify_contact_ends(&self, key: &str, contact: &ContactConfig) -> Result<()> {
         let between = &contact.between;
         if !(1..=2).contains(&between.len()) {
             let what = format!("between names two solids or groups, or one, not {}", between.len());
             let help = "write  between = [\"box\", \"tank\"]; one alone means its contacts with all others";
-            return Err(self.wrong_with(key, what, help));
+            return Err(self.error_with_help(key, what, help));
         }
         let groups: BTreeSet<&str> = self.solid.iter().filter_map(|solid| solid.group.as_deref()).collect();
         let known: Vec<&str> =
             self.solid.iter().map(|solid| solid.name.as_str()).chain(groups.iter().copied()).collect();
         if let Some(name) = between.iter().find(|name| !known.contains(&name.as_str())) {
-            let what = format!("no solid or group is called \"{name}\"{}", guess(name, &known));
-            return Err(self.wrong_with(key, what, format!("known: {}", known.join(", "))));
+            let what = format!("no solid or group is called \"{name}\"{}", suggestion(name, &known));
+            return Err(self.error_with_help(key, what, format!("known: {}", known.join(", "))));
         }
         let of_group = between.iter().any(|name| groups.contains(name.as_str()));
         let twice = between.len() == 2 && between[0] == between[1];
         if twice && !of_group {
             let help = "name two; one alone means its contacts with all others";
-            return Err(self.wrong_with(key, format!("\"{}\" is named twice", between[0]), help));
+            return Err(self.error_with_help(key, format!("\"{}\" is named twice", between[0]), help));
         }
-        if (of_group || between.len() == 2) && self.pairs(contact).is_empty() {
+        if (of_group || between.len() == 2) && self.contact_pairs(contact).is_empty() {
             let names = if twice { &between[..1] } else { &between[..] };
             let what = format!("of \"{}\" no two solids can touch", names.join("\" and \""));
             let help = "it takes two, of which one at least must be  free = { density = 500.0 }";
-            return Err(self.wrong_with(key, what, help));
+            return Err(self.error_with_help(key, what, help));
         }
         Ok(())
     }
 
     /// Refuses a probe of a joint, spring or rope that there is not.
-    pub(super) fn known_ties(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+    pub(super) fn require_constraint(&self, key: &str, probe: &ProbeConfig) -> Result<()> {
         let joints = self.joint.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>();
         let springs = self.spring.iter().map(|spring| spring.name.as_str()).collect();
         let ropes = self.rope.iter().map(|rope| rope.name.as_str()).collect();
         let ties = [("joint", &probe.joint, joints), ("spring", &probe.spring, springs), ("rope", &probe.rope, ropes)];
         for (word, name, known) in ties {
             let Some(name) = name.as_ref().filter(|name| !known.contains(&name.as_str())) else { continue };
-            let what = format!("no {word} is called \"{name}\"{}", guess(name, &known));
+            let what = format!("no {word} is called \"{name}\"{}", suggestion(name, &known));
             let help = match known.is_empty() {
                 true => format!("the scene has no {word}"),
                 false => format!("known: {}", known.join(", ")),
             };
-            return Err(self.wrong_with(&format!("{key}.{word}"), what, help));
+            return Err(self.error_with_help(&format!("{key}.{word}"), what, help));
         }
         Ok(())
     }
@@ -105,10 +105,10 @@ impl Scene {
     fn names(&self, kind: &str, names: &[&str]) -> Result<()> {
         names.iter().enumerate().try_for_each(|(i, name)| {
             let key = format!("{kind}.{i}.name");
-            self.good_name(&key, name)?;
+            self.require_file_name(&key, name)?;
             match names[..i].contains(name) {
                 true => {
-                    Err(self.wrong_with(&key, format!("two {kind}s are called \"{name}\""), "give each its own name"))
+                    Err(self.error_with_help(&key, format!("two {kind}s are called \"{name}\""), "give each its own name"))
                 }
                 false => Ok(()),
             }
@@ -116,47 +116,47 @@ impl Scene {
     }
 
     /// Refuses ends that are not one or two solids, of which one is free.
-    fn ends(&self, key: &str, between: &[String]) -> Result<()> {
+    fn verify_ends(&self, key: &str, between: &[String]) -> Result<()> {
         let key = format!("{key}.between");
         if !(1..=2).contains(&between.len()) {
-            return Err(self.wrong(&key, format!("between names one solid or two, not {}", between.len())));
+            return Err(self.error_at(&key, format!("between names one solid or two, not {}", between.len())));
         }
-        between.iter().try_for_each(|name| self.known_solid(&key, name))?;
+        between.iter().try_for_each(|name| self.require_solid(&key, name))?;
         if between.len() == 2 && between[0] == between[1] {
-            return Err(self.wrong(&key, format!("\"{}\" is named twice", between[0])));
+            return Err(self.error_at(&key, format!("\"{}\" is named twice", between[0])));
         }
-        let free = |solid: &&SolidWords| between.contains(&solid.name) && solid.free.is_some();
+        let free = |solid: &&SolidConfig| between.contains(&solid.name) && solid.free.is_some();
         if self.solid.iter().any(|solid| free(&solid)) {
             return Ok(());
         }
         let verb = if between.len() == 2 { "are" } else { "is" };
         let what = format!("\"{}\" {verb} not free: nothing here can move otherwise", between.join("\" and \""));
-        Err(self.wrong_with(&key, what, "one of them at least must be  free = { density = 500.0 }"))
+        Err(self.error_with_help(&key, what, "one of them at least must be  free = { density = 500.0 }"))
     }
 
-    fn verify_joint(&self, key: &str, joint: &JointWords) -> Result<()> {
-        self.ends(key, &joint.between)?;
-        self.vector(&format!("{key}.at"), &joint.at)?;
+    fn verify_joint(&self, key: &str, joint: &JointConfig) -> Result<()> {
+        self.verify_ends(key, &joint.between)?;
+        self.require_dimension(&format!("{key}.at"), &joint.at)?;
         let three = self.dimension == 3;
-        let (hinge, slider) = (joint.kind == JointKindWords::Hinge, joint.kind == JointKindWords::Slider);
-        if joint.kind == JointKindWords::Ball && !three {
+        let (hinge, slider) = (joint.kind == JointKindConfig::Hinge, joint.kind == JointKindConfig::Slider);
+        if joint.kind == JointKindConfig::Ball && !three {
             let help = "in 2-D  kind = \"hinge\"  turns freely about its point";
-            return Err(self.wrong_with(&format!("{key}.kind"), "a plane has no ball joint", help));
+            return Err(self.error_with_help(&format!("{key}.kind"), "a plane has no ball joint", help));
         }
-        let (along, generic) = (slider || joint.kind == JointKindWords::Tow, joint.kind == JointKindWords::Generic);
+        let (along, generic) = (slider || joint.kind == JointKindConfig::Tow, joint.kind == JointKindConfig::Generic);
         let needs = [("axis", &joint.axis, hinge && three, false), ("along", &joint.along, along, generic)];
         for (word, vector, needed, allowed) in needs {
             let key = format!("{key}.{word}");
             match vector {
-                None if needed => return Err(self.wrong(&key, format!("{word} is missing: which way?"))),
+                None if needed => return Err(self.error_at(&key, format!("{word} is missing: which way?"))),
                 Some(_) if !(needed || allowed) => {
                     let help = "a slider, a tow and a generic joint have  along, a hinge in 3-D has  axis; no other joint has a direction";
-                    return Err(self.wrong_with(&key, format!("{word} has no meaning here"), help));
+                    return Err(self.error_with_help(&key, format!("{word} has no meaning here"), help));
                 }
                 Some(vector) => {
-                    self.vector(&key, vector)?;
+                    self.require_dimension(&key, vector)?;
                     if vector.iter().all(|x| x.abs() < 1e-12) {
-                        return Err(self.wrong(&key, format!("{word} points nowhere")));
+                        return Err(self.error_at(&key, format!("{word} points nowhere")));
                     }
                 }
                 None => {}
@@ -166,7 +166,7 @@ impl Scene {
         match &joint.motor {
             Some(_) if !(hinge || slider) => {
                 let help = "a hinge or a slider has a motor";
-                Err(self.wrong_with(&format!("{key}.motor"), "this joint has no way to go", help))
+                Err(self.error_with_help(&format!("{key}.motor"), "this joint has no way to go", help))
             }
             Some(motor) => self.verify_motor(&format!("{key}.motor"), motor, hinge),
             None => Ok(()),
@@ -174,134 +174,134 @@ impl Scene {
     }
 
     /// Refuses modes that a joint cannot leave free, and end stops that are not of what it leaves free.
-    fn verify_limits(&self, key: &str, joint: &JointWords) -> Result<()> {
-        let generic = joint.kind == JointKindWords::Generic;
+    fn verify_limits(&self, key: &str, joint: &JointConfig) -> Result<()> {
+        let generic = joint.kind == JointKindConfig::Generic;
         let free = joint.free.as_deref().unwrap_or_default();
-        self.modes(&format!("{key}.free"), free)?;
+        self.verify_modes(&format!("{key}.free"), free)?;
         if generic && free.is_empty() {
-            return Err(self.wrong_with(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]"));
+            return Err(self.error_with_help(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]"));
         }
         if !generic && joint.free.is_some() {
             let help = "the other kinds say what they leave free; a list has  kind = \"generic\"";
-            return Err(self.wrong_with(&format!("{key}.free"), "free has no meaning here", help));
+            return Err(self.error_with_help(&format!("{key}.free"), "free has no meaning here", help));
         }
-        let hinge = joint.kind == JointKindWords::Hinge;
-        let way = hinge || joint.kind == JointKindWords::Slider;
-        let mut seen: Vec<Mode> = Vec::new();
+        let hinge = joint.kind == JointKindConfig::Hinge;
+        let way = hinge || joint.kind == JointKindConfig::Slider;
+        let mut seen: Vec<MotionMode> = Vec::new();
         for (word, limits) in [("limits", &joint.limits), ("limits_deg", &joint.limits_deg)] {
             let Some(limits) = limits else { continue };
             let key = format!("{key}.{word}");
             match limits {
-                LimitsWords::One(_) if generic => {
+                LimitsConfig::One(_) if generic => {
                     let help = "name the motion: limits = { x = [-0.1, 0.2] }, limits_deg = { turn = [-10.0, 10.0] }";
-                    return Err(self.wrong_with(&key, "which motion is limited?", help));
+                    return Err(self.error_with_help(&key, "which motion is limited?", help));
                 }
-                LimitsWords::One(pair) if way => self.stop(&key, pair)?,
-                LimitsWords::Each(all) if generic => {
+                LimitsConfig::One(pair) if way => self.verify_stop(&key, pair)?,
+                LimitsConfig::Each(all) if generic => {
                     for (mode, pair) in all {
-                        let far = mode.number(self.dimension).is_some_and(|number| number < self.dimension);
+                        let far = mode.index(self.dimension).is_some_and(|number| number < self.dimension);
                         if !free.contains(mode) || (word == "limits_deg" && far) || seen.contains(mode) {
                             let help = "each motion in  free  may have one pair, a turn's in rad or in degrees";
-                            return Err(self.wrong_with(&key, "limits of what is not free, or twice the same", help));
+                            return Err(self.error_with_help(&key, "limits of what is not free, or twice the same", help));
                         }
                         seen.push(*mode);
-                        self.stop(&key, pair)?;
+                        self.verify_stop(&key, pair)?;
                     }
                 }
-                LimitsWords::Each(_) if way => {
-                    return Err(self.wrong_with(&key, "this joint has one way to go", "limits = [-0.1, 0.2]"));
+                LimitsConfig::Each(_) if way => {
+                    return Err(self.error_with_help(&key, "this joint has one way to go", "limits = [-0.1, 0.2]"));
                 }
                 _ => {
                     let help = "a hinge, a slider or a generic joint has limits";
-                    return Err(self.wrong_with(&key, "this joint has no way to go", help));
+                    return Err(self.error_with_help(&key, "this joint has no way to go", help));
                 }
             }
         }
         match (&joint.limits, &joint.limits_deg) {
             (Some(_), Some(_)) if !generic => {
-                Err(self.wrong(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"))
+                Err(self.error_at(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"))
             }
             (_, Some(_)) if !(hinge || generic) => {
-                Err(self.wrong(&format!("{key}.limits_deg"), "only turns have limits in degrees"))
+                Err(self.error_at(&format!("{key}.limits_deg"), "only turns have limits in degrees"))
             }
             _ => Ok(()),
         }
     }
 
     /// Refuses end stops that do not have the start between them, or all of a turn.
-    fn stop(&self, key: &str, pair: &[f64]) -> Result<()> {
+    fn verify_stop(&self, key: &str, pair: &[f64]) -> Result<()> {
         match pair {
             [min, max] if *min <= 0.0 && 0.0 <= *max && min < max => {
-                if last(key) != "limits_deg" || max - min < 360.0 {
+                if last_part(key) != "limits_deg" || max - min < 360.0 {
                     return Ok(());
                 }
                 let help = "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees";
-                Err(self.wrong_with(key, format!("from {min} to {max} degrees it would turn all the way round"), help))
+                Err(self.error_with_help(key, format!("from {min} to {max} degrees it would turn all the way round"), help))
             }
             _ => {
                 let what = format!("{pair:?} does not reach from 0 or less to 0 or more; 0 is where it starts");
-                Err(self.wrong(key, what))
+                Err(self.error_at(key, what))
             }
         }
     }
 
-    fn verify_motor(&self, key: &str, motor: &MotorWords, hinge: bool) -> Result<()> {
+    fn verify_motor(&self, key: &str, motor: &MotorConfig, hinge: bool) -> Result<()> {
         let foreign: &[&str] = if hinge { &["force"] } else { &["torque", "position_deg"] };
-        if let Some((word, _)) = motor.laws().find(|(word, _)| foreign.contains(word)) {
+        if let Some((word, _)) = motor.time_values().find(|(word, _)| foreign.contains(word)) {
             let help = "a hinge has a torque, N m, and angles in rad or degrees; a slider a force, N, and metres";
-            return Err(self.wrong_with(&format!("{key}.{word}"), format!("{word} has no meaning here"), help));
+            return Err(self.error_with_help(&format!("{key}.{word}"), format!("{word} has no meaning here"), help));
         }
         let position = motor.position.is_some() || motor.position_deg.is_some();
         let drives = [&motor.force, &motor.torque, &motor.stiffness, &motor.damping];
         if drives.iter().all(|law| law.is_none()) {
-            return Err(self.wrong(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
+            return Err(self.error_at(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
         }
         if motor.position.is_some() && motor.position_deg.is_some() {
-            return Err(self.wrong(&format!("{key}.position_deg"), "position and position_deg say the same twice"));
+            return Err(self.error_at(&format!("{key}.position_deg"), "position and position_deg say the same twice"));
         }
         if position && motor.stiffness.is_none() {
             let what = "a position needs a stiffness with which it is held";
-            return Err(self.wrong(&format!("{key}.stiffness"), what));
+            return Err(self.error_at(&format!("{key}.stiffness"), what));
         }
         if motor.velocity.is_some() && motor.damping.is_none() {
             let what = "a velocity needs a damping with which it is held";
-            return Err(self.wrong(&format!("{key}.damping"), what));
+            return Err(self.error_at(&format!("{key}.damping"), what));
         }
-        self.positive(&format!("{key}.strongest"), motor.strongest)?;
-        motor.laws().try_for_each(|(word, value)| self.value(&format!("{key}.{word}"), value))?;
+        self.require_positive(&format!("{key}.strongest"), motor.strongest)?;
+        motor.time_values().try_for_each(|(word, value)| self.verify_time_value(&format!("{key}.{word}"), value))?;
         for (word, value) in [("stiffness", &motor.stiffness), ("damping", &motor.damping)] {
-            if let Some(x) = value.as_ref().and_then(ValueWords::number).filter(|x| *x < 0.0) {
+            if let Some(x) = value.as_ref().and_then(TimeValueConfig::number).filter(|x| *x < 0.0) {
                 let what = format!("{word} is {x}: below 0 it would drive what it should hold");
-                return Err(self.wrong(&format!("{key}.{word}"), what));
+                return Err(self.error_at(&format!("{key}.{word}"), what));
             }
         }
         Ok(())
     }
 
-    fn verify_spring(&self, key: &str, spring: &SpringWords) -> Result<()> {
-        self.ends(key, &spring.between)?;
-        self.vector(&format!("{key}.from"), &spring.from)?;
-        self.vector(&format!("{key}.to"), &spring.to)?;
-        self.positive(&format!("{key}.stiffness"), Some(spring.stiffness))?;
+    fn verify_spring(&self, key: &str, spring: &SpringConfig) -> Result<()> {
+        self.verify_ends(key, &spring.between)?;
+        self.require_dimension(&format!("{key}.from"), &spring.from)?;
+        self.require_dimension(&format!("{key}.to"), &spring.to)?;
+        self.require_positive(&format!("{key}.stiffness"), Some(spring.stiffness))?;
         for (word, x) in [("damping", spring.damping), ("length", spring.length)] {
             if let Some(x) = x.filter(|x| *x < 0.0) {
-                return Err(self.wrong(&format!("{key}.{word}"), format!("{word} is 0 or more, not {x}")));
+                return Err(self.error_at(&format!("{key}.{word}"), format!("{word} is 0 or more, not {x}")));
             }
         }
         Ok(())
     }
 
-    fn verify_force(&self, key: &str, force: &ForceWords) -> Result<()> {
-        self.known_solid(&format!("{key}.on"), &force.on)?;
+    fn verify_force(&self, key: &str, force: &ForceConfig) -> Result<()> {
+        self.require_solid(&format!("{key}.on"), &force.on)?;
         if !self.solid.iter().any(|solid| solid.name == force.on && solid.free.is_some()) {
             let what = format!("\"{}\" is not free: a force does not move it", force.on);
-            return Err(self.wrong_with(&format!("{key}.on"), what, "a force acts on a free solid"));
+            return Err(self.error_with_help(&format!("{key}.on"), what, "a force acts on a free solid"));
         }
         if let Some(at) = &force.at {
-            self.vector(&format!("{key}.at"), at)?;
+            self.require_dimension(&format!("{key}.at"), at)?;
         }
         if force.force.is_none() && force.torque.is_none() {
-            return Err(self.wrong(key, "neither a force nor a torque is given"));
+            return Err(self.error_at(key, "neither a force nor a torque is given"));
         }
         let turns = if self.dimension == 3 { 3 } else { 1 };
         for (word, values, count) in [("force", &force.force, self.dimension), ("torque", &force.torque, turns)] {
@@ -310,39 +310,39 @@ impl Scene {
             let values = values.components();
             if values.len() != count {
                 let what = format!("{word} has {} components, and a {}-D scene {count}", values.len(), self.dimension);
-                return Err(self.wrong(&key, what));
+                return Err(self.error_at(&key, what));
             }
-            values.iter().try_for_each(|value| self.value(&key, value))?;
+            values.iter().try_for_each(|value| self.verify_time_value(&key, value))?;
         }
         Ok(())
     }
 
-    fn value(&self, key: &str, value: &ValueWords) -> Result<()> {
-        self.one_law(key, &value.0)?;
+    fn verify_time_value(&self, key: &str, value: &TimeValueConfig) -> Result<()> {
+        self.verify_time_function(key, &value.0)?;
         match &value.0.formula {
-            Some(text) => Formula::parse(text).map(|_| ()).map_err(|e| self.origin.place(e, key)),
+            Some(text) => Formula::parse(text).map(|_| ()).map_err(|e| self.origin.with_location(e, key)),
             None => Ok(()),
         }
     }
 
     /// Refuses a law that is not either a formula or a column of a file.
-    pub(super) fn one_law(&self, key: &str, law: &LawWords) -> Result<()> {
+    pub(super) fn verify_time_function(&self, key: &str, law: &TimeFunctionConfig) -> Result<()> {
         match (&law.formula, &law.file) {
             (Some(_), None) if law.column.is_none() && law.scale.is_none() && law.time.is_none() => Ok(()),
-            (Some(_), None) => Err(self.wrong(key, "column, time and scale belong to a file, not to a formula")),
+            (Some(_), None) => Err(self.error_at(key, "column, time and scale belong to a file, not to a formula")),
             (None, Some(_)) if law.column.is_some() => Ok(()),
-            (None, Some(_)) => Err(self.wrong(key, "which column of the file?")),
-            _ => Err(self.wrong(key, "a law is either a formula or a file with a column")),
+            (None, Some(_)) => Err(self.error_at(key, "which column of the file?")),
+            _ => Err(self.error_at(key, "a law is either a formula or a file with a column")),
         }
     }
 
     /// Refuses a number that is given and not from 0 to `most`.
-    pub(super) fn within(&self, key: &str, x: Option<f64>, most: f64) -> Result<()> {
+    pub(super) fn require_range(&self, key: &str, x: Option<f64>, most: f64) -> Result<()> {
         match x.filter(|x| !(0.0..=most).contains(x)) {
             Some(x) => {
-                let word = last(key);
+                let word = last_part(key);
                 let help = format!("{word} is a number from 0 to {most}");
-                Err(self.wrong_with(key, format!("{word} cannot be {x}"), help))
+                Err(self.error_with_help(key, format!("{word} cannot be {x}"), help))
             }
             None => Ok(()),
         }

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::{
-    ContactWords, GaugeWords, JointWords, PatchWords, PointWords, ProbeEntry, RowWords, Scene, SectionWords,
-    verify::said,
+    ContactConfig, GaugeConfig, JointConfig, PatchConfig, PointsConfig, ProbeConfig, PointRowConfig, Scene, SectionConfig,
+    verify::quoted_list,
 };
 use crate::error::{Error, Result};
 
@@ -18,15 +18,15 @@ impl Scene {
     pub(super) fn verify_probes(&self) -> Result<()> {
         for (i, probe) in self.probe.iter().enumerate() {
             let key = format!("probe.{i}");
-            self.positive(&format!("{key}.every"), probe.every)?;
-            if probe.kinds().len() != 1 {
-                let what = format!("a probe looks at one thing; this one at {}", said(&probe.kinds()));
+            self.require_positive(&format!("{key}.every"), probe.every)?;
+            if probe.named_kinds().len() != 1 {
+                let what = format!("a probe looks at one thing; this one at {}", quoted_list(&probe.named_kinds()));
                 let help = "one of motion, force, balance, contact, contacts, joint, spring, rope, elevation, velocity, pressure, \
                      flow, runup, patch, front, energy, budget; a [[probe]] section for each";
-                return Err(self.wrong_with(&key, what, help));
+                return Err(self.error_with_help(&key, what, help));
             }
-            self.known_solids(&key, probe)?;
-            self.known_ties(&key, probe)?;
+            self.require_probe_solids(&key, probe)?;
+            self.require_constraint(&key, probe)?;
             if let Some(between) = &probe.contact {
                 self.may_touch(&format!("{key}.contact"), between)?;
             }
@@ -40,21 +40,21 @@ impl Scene {
             for (word, given) in whole {
                 if given == Some(false) {
                     let what = format!("{word} = false watches nothing");
-                    return Err(self.wrong_with(&format!("{key}.{word}"), what, "remove it"));
+                    return Err(self.error_with_help(&format!("{key}.{word}"), what, "remove it"));
                 }
             }
             if probe.contacts.is_some() && probe.average.is_some() {
                 let help = "remove it; the mean of one pair is that of  contact = [\"crate\", \"raft\"]";
-                return Err(self.wrong_with(&format!("{key}.average"), "a list of contacts takes no means", help));
+                return Err(self.error_with_help(&format!("{key}.average"), "a list of contacts takes no means", help));
             }
             if let Some(name) = &probe.name {
-                self.good_name(&format!("{key}.name"), name)?;
+                self.require_file_name(&format!("{key}.name"), name)?;
             }
         }
         let names: Vec<String> = self.probe_names();
         let mut seen = HashSet::new();
         match names.iter().position(|name| !seen.insert(name)) {
-            Some(i) => Err(self.wrong_with(
+            Some(i) => Err(self.error_with_help(
                 &format!("probe.{i}"),
                 format!("two probes are called \"{}\"", names[i]),
                 "give each its own:  name = \"...\"",
@@ -64,13 +64,13 @@ impl Scene {
     }
 
     /// That the probe `name`, of which a series is asked, is a list of contacts.
-    pub(super) fn no_series(&self, key: &str, name: &str) -> Error {
+    pub(super) fn list_has_no_series(&self, key: &str, name: &str) -> Error {
         let what = format!("\"{name}\" lists all contacts, many at one time, and has no series");
         let help = "of two solids there is one in a [[probe]] of their own:  contact = [\"crate\", \"raft\"]";
-        self.wrong_with(key, what, help)
+        self.error_with_help(key, what, help)
     }
 
-    fn known_solids(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+    fn require_probe_solids(&self, key: &str, probe: &ProbeConfig) -> Result<()> {
         let patched = probe.patch.as_ref().map(|patch| &patch.solid);
         let named = [
             ("motion", probe.motion.as_ref()),
@@ -82,7 +82,7 @@ impl Scene {
         let touching = probe.contact.iter().flatten().map(|name| ("contact", Some(name)));
         for (word, name) in named.into_iter().chain(touching) {
             if let Some(name) = name {
-                self.known_solid(&format!("{key}.{word}"), name)?;
+                self.require_solid(&format!("{key}.{word}"), name)?;
             }
         }
         let free = |name: &String| self.solid.iter().any(|solid| solid.name == *name && solid.free.is_some());
@@ -90,7 +90,7 @@ impl Scene {
             Some(name) => {
                 let what = format!("\"{name}\" is not free: what it weighs and carries is not known");
                 let help = format!("the water's load on any solid is  force = \"{name}\"");
-                Err(self.wrong_with(&format!("{key}.balance"), what, help))
+                Err(self.error_with_help(&format!("{key}.balance"), what, help))
             }
             None => Ok(()),
         }
@@ -99,13 +99,13 @@ impl Scene {
     /// Refuses two solids that never touch.
     fn may_touch(&self, key: &str, [a, b]: &[String; 2]) -> Result<()> {
         let refuse = |why: String, help: &str| {
-            Err(self.wrong_with(key, format!("\"{a}\" and \"{b}\" never touch: {why}"), help))
+            Err(self.error_with_help(key, format!("\"{a}\" and \"{b}\" never touch: {why}"), help))
         };
         if a == b {
             return refuse("they are one solid".into(), "name two");
         }
         let both = |named: &[String]| named.contains(a) && named.contains(b);
-        let jointed = |joint: &&JointWords| both(&joint.between) && joint.contacts != Some(true);
+        let jointed = |joint: &&JointConfig| both(&joint.between) && joint.contacts != Some(true);
         if let Some(joint) = self.joint.iter().find(jointed) {
             return refuse(format!("joint \"{}\" holds them", joint.name), "write  contacts = true  in that joint");
         }
@@ -114,7 +114,7 @@ impl Scene {
         if self.solid[i].free.is_none() && self.solid[j].free.is_none() {
             return refuse("neither is free".into(), "one of them at least must be  free = { density = 500.0 }");
         }
-        let own = |(_, contact): &(usize, &ContactWords)| self.pairs(contact).contains(&[i.min(j), i.max(j)]);
+        let own = |(_, contact): &(usize, &ContactConfig)| self.contact_pairs(contact).contains(&[i.min(j), i.max(j)]);
         match self.contact.iter().enumerate().rfind(own).filter(|(_, contact)| contact.touch == Some(false)) {
             Some((k, _)) => {
                 let help = "remove it, or say otherwise of these two in a [[contact]] after it";
@@ -124,11 +124,11 @@ impl Scene {
         }
     }
 
-    fn verify_places(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+    fn verify_places(&self, key: &str, probe: &ProbeConfig) -> Result<()> {
         for (word, at) in [("velocity", &probe.velocity), ("pressure", &probe.pressure)] {
             match at {
-                Some(PointWords::At(at)) => self.vector(&format!("{key}.{word}"), at)?,
-                Some(PointWords::Row(row)) => self.verify_row(&format!("{key}.{word}"), row, self.dimension)?,
+                Some(PointsConfig::At(at)) => self.require_dimension(&format!("{key}.{word}"), at)?,
+                Some(PointsConfig::Row(row)) => self.verify_row(&format!("{key}.{word}"), row, self.dimension)?,
                 None => {}
             }
         }
@@ -139,62 +139,62 @@ impl Scene {
             self.verify_section(&format!("{key}.flow"), section)?;
         }
         match &probe.patch {
-            Some(PatchWords { corners, .. }) => self.corners(&format!("{key}.patch.box"), corners),
+            Some(PatchConfig { corners, .. }) => self.verify_box(&format!("{key}.patch.box"), corners),
             None => Ok(()),
         }
     }
 
-    fn verify_gauge(&self, key: &str, gauge: &GaugeWords) -> Result<()> {
+    fn verify_gauge(&self, key: &str, gauge: &GaugeConfig) -> Result<()> {
         let single = gauge.x.is_some() || gauge.y.is_some();
         match gauge.row() {
             Some(_) if single => {
                 let help = "write  elevation = { x = 1.16 }  or  elevation = { from = 1.0, to = 3.0, count = 5 }";
-                Err(self.wrong_with(key, "a gauge stands at one place or is a row of them, not both", help))
+                Err(self.error_with_help(key, "a gauge stands at one place or is a row of them, not both", help))
             }
             Some(row) => self.verify_row(key, &row, self.dimension - 1),
             None if gauge.x.is_none() || gauge.y.is_some() != (self.dimension == 3) => {
                 let help = "write  elevation = { x = 1.16 } in 2-D, elevation = { x = 1.16, y = 0.3 } in 3-D";
-                Err(self.wrong_with(key, "a gauge stands at x in 2-D, at x and y in 3-D", help))
+                Err(self.error_with_help(key, "a gauge stands at x in 2-D, at x and y in 3-D", help))
             }
             None => Ok(()),
         }
     }
 
     /// A row of places that have so many coordinates.
-    fn verify_row(&self, key: &str, row: &RowWords, coordinates: usize) -> Result<()> {
+    fn verify_row(&self, key: &str, row: &PointRowConfig, coordinates: usize) -> Result<()> {
         for (word, at) in [("from", &row.from), ("to", &row.to)] {
             if at.len() != coordinates || at.iter().any(|x| !x.is_finite()) {
                 let what = format!("{word} has {} numbers: a place here has {coordinates}", at.len());
                 let example = vec!["0.0"; coordinates].join(", ");
-                return Err(self.wrong_with(&format!("{key}.{word}"), what, format!("write  {word} = [{example}]")));
+                return Err(self.error_with_help(&format!("{key}.{word}"), what, format!("write  {word} = [{example}]")));
             }
         }
         let help = "write  count = 5  or  spacing = 0.1";
         if row.count.is_some() == row.spacing.is_some() {
-            return Err(self.wrong_with(key, "a row has either a count or a spacing", help));
+            return Err(self.error_with_help(key, "a row has either a count or a spacing", help));
         }
-        self.positive(&format!("{key}.spacing"), row.spacing)?;
-        let (count, length) = (row.number(), row.length());
+        self.require_positive(&format!("{key}.spacing"), row.spacing)?;
+        let (count, length) = (row.point_count(), row.length());
         if !(2..=MOST_PLACES).contains(&count) {
             let what = format!("a row has 2 to {MOST_PLACES} places, this one has {count}");
-            return Err(self.wrong_with(key, what, help));
+            return Err(self.error_with_help(key, what, help));
         }
         if length < LEAST_SPACING * (count - 1) as f64 {
-            return Err(self.wrong_with(key, format!("{count} places do not fit on {length} m"), help));
+            return Err(self.error_with_help(key, format!("{count} places do not fit on {length} m"), help));
         }
         Ok(())
     }
 
-    fn verify_section(&self, key: &str, SectionWords { from, to }: &SectionWords) -> Result<()> {
-        self.vector(&format!("{key}.from"), from)?;
-        self.vector(&format!("{key}.to"), to)?;
+    fn verify_section(&self, key: &str, SectionConfig { from, to }: &SectionConfig) -> Result<()> {
+        self.require_dimension(&format!("{key}.from"), from)?;
+        self.require_dimension(&format!("{key}.to"), to)?;
         let flat = from.iter().zip(to).filter(|(a, b)| a == b).count();
         match self.dimension {
-            2 if flat == 2 => Err(self.wrong(key, "a section from a point to itself has no length")),
+            2 if flat == 2 => Err(self.error_at(key, "a section from a point to itself has no length")),
             3 if flat != 1 => {
                 let what = "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one";
                 let help = "write  flow = { from = [1.0, 0.0, 0.3], to = [1.0, 0.5, 0.6] }";
-                Err(self.wrong_with(key, what, help))
+                Err(self.error_with_help(key, what, help))
             }
             _ => Ok(()),
         }
@@ -207,7 +207,7 @@ impl Scene {
         // How many of each kind before have no name of their own.
         let mut nameless: HashMap<&str, usize> = HashMap::new();
         for probe in &self.probe {
-            let kind = probe.kinds().first().copied().unwrap_or("probe");
+            let kind = probe.named_kinds().first().copied().unwrap_or("probe");
             let before = nameless.entry(kind).or_default();
             let alike = *before;
             *before += usize::from(probe.name.is_none());

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Absorb, AbsorbWords, DrivenWords, Scene, resolve::Filler, verify::said};
+use super::{AbsorbChoice, AbsorptionConfig, DrivenConfig, Scene, resolve::Defaults, verify::quoted_list};
 use crate::{
     error::Result,
     wavemaker::{COMPONENTS, Theory},
@@ -12,31 +12,31 @@ use crate::{
 /// A wave by name: exactly one kind; none of a paddle that only absorbs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct WaveWords {
+pub struct WaveConfig {
     /// One height and one period.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub regular: Option<RegularWords>,
+    pub regular: Option<RegularWaveConfig>,
     /// A sea of JONSWAP's spectrum.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub jonswap: Option<SeaWords>,
+    pub jonswap: Option<IrregularWaveConfig>,
     /// A sea of Bretschneider's spectrum.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub bretschneider: Option<SeaWords>,
+    pub bretschneider: Option<IrregularWaveConfig>,
     /// A fully grown sea: its height says its period.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub pierson_moskowitz: Option<SeaWords>,
+    pub pierson_moskowitz: Option<IrregularWaveConfig>,
     /// A group with its crest at one place and time.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub focused: Option<FocusedWords>,
+    pub focused: Option<FocusedWaveConfig>,
     /// One crest.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub solitary: Option<SolitaryWords>,
+    pub solitary: Option<SolitaryWaveConfig>,
     /// A sum of components from a table.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub components: Option<ComponentsWords>,
+    pub components: Option<WaveComponentsConfig>,
     /// The surface that was measured somewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub elevation: Option<ElevationWords>,
+    pub elevation: Option<MeasuredElevationConfig>,
     /// How long the paddle takes to its full motion, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ramp: Option<f64>,
@@ -45,13 +45,13 @@ pub struct WaveWords {
     pub depth: Option<f64>,
     /// Whether the paddle takes the waves that come back to it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub absorb: Option<Absorb>,
+    pub absorb: Option<AbsorbChoice>,
 }
 
 /// A regular wave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RegularWords {
+pub struct RegularWaveConfig {
     /// From trough to crest, m.
     pub height: f64,
     /// s.
@@ -67,7 +67,7 @@ pub struct RegularWords {
 /// An irregular sea.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SeaWords {
+pub struct IrregularWaveConfig {
     /// Significant height, 4 √m₀, m.
     pub height: f64,
     /// Period at the spectrum's peak, s.
@@ -87,7 +87,7 @@ pub struct SeaWords {
 /// A focused group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct FocusedWords {
+pub struct FocusedWaveConfig {
     /// Height of its crest over the still level, m.
     pub crest: f64,
     /// Period at the spectrum's peak, s.
@@ -107,7 +107,7 @@ pub struct FocusedWords {
 /// A solitary wave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SolitaryWords {
+pub struct SolitaryWaveConfig {
     /// Of its crest over the still level, m.
     pub height: f64,
     /// Whose theory.
@@ -118,7 +118,7 @@ pub struct SolitaryWords {
 /// A table of components.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ComponentsWords {
+pub struct WaveComponentsConfig {
     /// The table, beside the scene: `amplitude_m`; `period_s` or `frequency_hz`; `phase_rad` or `phase_deg`.
     pub file: String,
 }
@@ -126,7 +126,7 @@ pub struct ComponentsWords {
 /// A measured elevation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ElevationWords {
+pub struct MeasuredElevationConfig {
     /// The table, beside the scene.
     pub file: String,
     /// Its column of elevations, m.
@@ -145,42 +145,42 @@ pub struct ElevationWords {
     pub delay: Option<f64>,
 }
 
-impl WaveWords {
+impl WaveConfig {
     /// A regular wave of `height` (m) and `period` (s).
     pub fn regular(height: f64, period: f64) -> Self {
-        Self { regular: Some(RegularWords { height, period, ..Default::default() }), ..Self::default() }
+        Self { regular: Some(RegularWaveConfig { height, period, ..Default::default() }), ..Self::default() }
     }
 
     /// The sea number `seed` of significant height `height` (m) and JONSWAP's spectrum.
     pub fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self {
-        let sea = SeaWords { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
+        let sea = IrregularWaveConfig { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
         Self { jonswap: Some(sea), ..Self::default() }
     }
 
     /// The group whose crest of `crest` (m) stands `distance` (m) from the paddle at `time` (s).
     pub fn focused(crest: f64, peak_period: f64, distance: f64, time: f64) -> Self {
-        let group = FocusedWords { crest, peak_period, distance, time, ..Default::default() };
+        let group = FocusedWaveConfig { crest, peak_period, distance, time, ..Default::default() };
         Self { focused: Some(group), ..Self::default() }
     }
 
     /// The solitary wave of `height` (m).
     pub fn solitary(height: f64) -> Self {
-        Self { solitary: Some(SolitaryWords { height, theory: None }), ..Self::default() }
+        Self { solitary: Some(SolitaryWaveConfig { height, theory: None }), ..Self::default() }
     }
 
     /// No wave: a paddle that takes those of `period` (s) that come to it.
     pub fn absorber(period: f64) -> Self {
-        let words = AbsorbWords { period: Some(period), ..AbsorbWords::default() };
-        Self { absorb: Some(Absorb::As(words)), ..Self::default() }
+        let words = AbsorptionConfig { period: Some(period), ..AbsorptionConfig::default() };
+        Self { absorb: Some(AbsorbChoice::Parameters(words)), ..Self::default() }
     }
 
     /// The same wave of a paddle that takes what comes back to it.
-    pub fn absorbing(self) -> Self {
-        Self { absorb: Some(Absorb::Plainly(true)), ..self }
+    pub fn with_absorption(self) -> Self {
+        Self { absorb: Some(AbsorbChoice::Switch(true)), ..self }
     }
 
     /// The kinds that it names.
-    fn kinds(&self) -> Vec<&'static str> {
+    fn named_kinds(&self) -> Vec<&'static str> {
         let all = [
             ("regular", self.regular.is_some()),
             ("jonswap", self.jonswap.is_some()),
@@ -195,7 +195,7 @@ impl WaveWords {
     }
 
     /// Fills in what a wave does not say.
-    pub(super) fn fill(&mut self, filler: &mut Filler, key: &str) {
+    pub(super) fn fill_defaults(&mut self, filler: &mut Defaults, key: &str) {
         let peaked = "JONSWAP's mean";
         let many = "the spectrum's form, and a sea that does not repeat";
         if let Some(words) = &mut self.regular {
@@ -203,7 +203,7 @@ impl WaveWords {
             filler.fill(format!("{key}.regular.order"), &mut words.order, 2, why);
             filler.fill(format!("{key}.regular.phase_deg"), &mut words.phase_deg, 0.0, "the paddle sets out forwards");
         }
-        for (word, sea) in self.seas() {
+        for (word, sea) in self.spectra_mut() {
             let Some(sea) = sea else { continue };
             if word == "jonswap" {
                 filler.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
@@ -228,7 +228,7 @@ impl WaveWords {
         }
     }
 
-    fn seas(&mut self) -> [(&'static str, &mut Option<SeaWords>); 3] {
+    fn spectra_mut(&mut self) -> [(&'static str, &mut Option<IrregularWaveConfig>); 3] {
         [
             ("jonswap", &mut self.jonswap),
             ("bretschneider", &mut self.bretschneider),
@@ -237,45 +237,45 @@ impl WaveWords {
     }
 }
 
-impl DrivenWords {
+impl DrivenConfig {
     /// A piston that makes `wave` in the direction `along`.
-    pub fn piston(along: impl Into<Vec<f64>>, wave: WaveWords) -> Self {
+    pub fn piston(along: impl Into<Vec<f64>>, wave: WaveConfig) -> Self {
         Self { along: Some(along.into()), wave: Some(wave), ..Self::default() }
     }
 
     /// A flap hinged at the world point `hinge` (m) that makes `wave`; 2-D, in 3-D it needs an `axis` too.
-    pub fn flap(hinge: impl Into<Vec<f64>>, wave: WaveWords) -> Self {
+    pub fn flap(hinge: impl Into<Vec<f64>>, wave: WaveConfig) -> Self {
         Self { hinge: Some(hinge.into()), wave: Some(wave), ..Self::default() }
     }
 }
 
 impl Scene {
-    pub(super) fn verify_wave(&self, key: &str, words: &WaveWords) -> Result<()> {
-        let kinds = words.kinds();
-        let absorb = words.absorb.and_then(Absorb::words);
+    pub(super) fn verify_wave(&self, key: &str, words: &WaveConfig) -> Result<()> {
+        let kinds = words.named_kinds();
+        let absorb = words.absorb.and_then(AbsorbChoice::parameters);
         if let Some(words) = &absorb {
             self.verify_absorb(&format!("{key}.absorb"), words, !kinds.is_empty())?;
         }
         if kinds.len() > 1 || (kinds.is_empty() && absorb.is_none()) {
             let what = match kinds.len() {
                 0 => "which wave?".to_string(),
-                _ => format!("a paddle makes one kind of wave; this one {}", said(&kinds)),
+                _ => format!("a paddle makes one kind of wave; this one {}", quoted_list(&kinds)),
             };
-            return Err(self.wrong(key, what));
+            return Err(self.error_at(key, what));
         }
         let gravity = self.gravity.as_ref().is_none_or(|g| {
             let (up, rest) = g.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
             up < 0.0 && rest.iter().all(|x| *x == 0.0)
         });
         if !gravity {
-            return Err(self.wrong_with(
+            return Err(self.error_with_help(
                 "gravity",
                 "waves need gravity straight down",
                 "write  gravity = [0.0, -9.81]",
             ));
         }
-        self.positive(&format!("{key}.ramp"), words.ramp)?;
-        self.positive(&format!("{key}.depth"), words.depth)?;
+        self.require_positive(&format!("{key}.ramp"), words.ramp)?;
+        self.require_positive(&format!("{key}.depth"), words.depth)?;
         let Some(kind) = kinds.first() else { return Ok(()) };
         let key = &format!("{key}.{kind}");
         let mut numbers = Vec::new();
@@ -283,7 +283,7 @@ impl Scene {
             numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
             if let Some(order) = words.order.filter(|order| !(1..=2).contains(order)) {
                 let help = "order = 1, or  order = 2  without free waves of twice the frequency";
-                return Err(self.wrong_with(&format!("{key}.order"), format!("order is 1 or 2, not {order}"), help));
+                return Err(self.error_with_help(&format!("{key}.order"), format!("order is 1 or 2, not {order}"), help));
             }
         }
         for sea in [&words.jonswap, &words.bretschneider, &words.pierson_moskowitz].into_iter().flatten() {
@@ -295,23 +295,23 @@ impl Scene {
             numbers.extend([("distance", Some(words.distance)), ("time", Some(words.time)), ("gamma", words.gamma)]);
         }
         numbers.extend(words.solitary.iter().map(|words| ("height", Some(words.height))));
-        numbers.into_iter().try_for_each(|(word, x)| self.positive(&format!("{key}.{word}"), x))
+        numbers.into_iter().try_for_each(|(word, x)| self.require_positive(&format!("{key}.{word}"), x))
     }
 
     /// What belongs to which spectrum.
-    fn verify_sea(&self, key: &str, sea: &SeaWords) -> Result<()> {
+    fn verify_sea(&self, key: &str, sea: &IrregularWaveConfig) -> Result<()> {
         let grown = key.ends_with("pierson_moskowitz");
         let place = |word: &str| format!("{key}.{word}");
         if grown && sea.peak_period.is_some() {
             let what = "the height of a fully grown sea says its period: 5 s √(height in m)";
             let help = "leave it out, or write  bretschneider = { height = 0.1, peak_period = 1.4 }";
-            return Err(self.wrong_with(&place("peak_period"), what, help));
+            return Err(self.error_with_help(&place("peak_period"), what, help));
         }
         if !grown && sea.peak_period.is_none() {
-            return Err(self.wrong(&place("peak_period"), "peak_period is missing"));
+            return Err(self.error_at(&place("peak_period"), "peak_period is missing"));
         }
         if sea.gamma.is_some() && !key.ends_with("jonswap") {
-            return Err(self.wrong_with(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
+            return Err(self.error_with_help(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
         }
         Ok(())
     }

@@ -16,7 +16,7 @@ const TEXT: &str = include_str!("../../scenes/validation.toml");
 /// A scene with some keys changed, run coarse or fine, and what its checks are expected to say.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Case {
+pub struct ValidationCase {
     /// Its name.
     pub name: String,
     /// The entry of `[base]` that it starts from.
@@ -31,15 +31,15 @@ pub struct Case {
     paper: BTreeMap<String, Score>,
     bound: BTreeMap<String, Score>,
     /// How it is run in minutes.
-    pub quick: Extent,
+    pub quick: CaseResolution,
     /// How it is run to be compared with the paper.
-    pub full: Extent,
+    pub full: CaseResolution,
 }
 
 /// How fine and how long a case is run.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Extent {
+pub struct CaseResolution {
     /// Particle spacing, m; the scene's if none.
     pub dp: Option<f64>,
     /// Simulated time at the end, s; the scene's if none.
@@ -52,23 +52,23 @@ pub struct Extent {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
-    base: BTreeMap<String, Case>,
-    case: Vec<Case>,
+struct CasesFile {
+    base: BTreeMap<String, ValidationCase>,
+    case: Vec<ValidationCase>,
 }
 
 /// All cases.
 ///
 /// # Errors
 /// `Scene` if the list that was compiled in is wrong, which its test rules out.
-pub fn cases() -> Result<Vec<Case>> {
-    let File { base, case } =
+pub fn validation_cases() -> Result<Vec<ValidationCase>> {
+    let CasesFile { base, case } =
         toml::from_str(TEXT).map_err(|e| Error::scene(e.message().to_string()).at("validation.toml", None, ""))?;
     case.into_iter()
         .map(|case| match &case.base {
             None => Ok(case),
             Some(name) => match base.get(name) {
-                Some(base) => Ok(case.over(base)),
+                Some(base) => Ok(case.with_defaults(base)),
                 None => {
                     Err(Error::scene(format!("no base is called \"{name}\"")).at("validation.toml", None, case.name))
                 }
@@ -81,8 +81,8 @@ pub fn cases() -> Result<Vec<Case>> {
 ///
 /// # Errors
 /// `Usage` if there is no such case: names the nearest.
-pub fn find(names: &[String], full: bool) -> Result<Vec<Case>> {
-    let all = cases()?;
+pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>> {
+    let all = validation_cases()?;
     if names.is_empty() {
         return Ok(all.into_iter().filter(|case| full || case.quick.usual).collect());
     }
@@ -98,9 +98,9 @@ pub fn find(names: &[String], full: bool) -> Result<Vec<Case>> {
     names.iter().map(case).collect()
 }
 
-impl Case {
+impl ValidationCase {
     /// This case with what it does not say itself from `base`.
-    fn over(self, base: &Self) -> Self {
+    fn with_defaults(self, base: &Self) -> Self {
         let text = |own: String, other: &String| if own.is_empty() { other.clone() } else { own };
         Self {
             scene: text(self.scene, &base.scene),
@@ -109,8 +109,8 @@ impl Case {
             set: over(self.set, &base.set),
             paper: over(self.paper, &base.paper),
             bound: over(self.bound, &base.bound),
-            quick: self.quick.over(&base.quick),
-            full: self.full.over(&base.full),
+            quick: self.quick.with_defaults(&base.quick),
+            full: self.full.with_defaults(&base.full),
             ..self
         }
     }
@@ -144,7 +144,7 @@ impl Case {
             name: self.name.clone(),
             repeat: 1,
             scene: scene.to_owned(),
-            sets,
+            overrides: sets,
             group: self.scene.clone(),
             dp,
             varied: vec![],
@@ -152,8 +152,8 @@ impl Case {
     }
 }
 
-impl Extent {
-    fn over(self, base: &Self) -> Self {
+impl CaseResolution {
+    fn with_defaults(self, base: &Self) -> Self {
         Self {
             dp: self.dp.or(base.dp),
             until: self.until.or(base.until),
@@ -179,13 +179,13 @@ mod tests {
 
     #[test]
     fn every_case_is_a_scene_that_can_be_run_both_ways() -> Result<()> {
-        let all = cases()?;
+        let all = validation_cases()?;
         assert!(all.len() >= 26, "{}", all.len());
         for case in &all {
             assert!(case.about.ends_with('.'), "{}: {:?}", case.name, case.about);
             for full in [false, true] {
                 let job = case.job(full, &scene(&case.scene), Path::new("out"))?;
-                job.size().map_err(|e| e.at(case.name.clone(), None, ""))?;
+                job.estimated_size().map_err(|e| e.at(case.name.clone(), None, ""))?;
                 assert!(!job.checks()?.is_empty(), "{} has checks", case.name);
             }
         }
@@ -198,9 +198,9 @@ mod tests {
 
     #[test]
     fn a_case_of_the_paper_has_its_laws_and_figures() -> Result<()> {
-        let case = find(&["column-17".to_string()], true)?.remove(0);
+        let case = select_cases(&["column-17".to_string()], true)?.remove(0);
         let job = case.job(true, &scene("column"), Path::new("out"))?;
-        let lines: Vec<String> = job.read()?.resolve()?.iter().map(|v| format!("{} = {}", v.key, v.value)).collect();
+        let lines: Vec<String> = job.read_scene()?.resolve()?.iter().map(|v| format!("{} = {}", v.key, v.value)).collect();
         for line in [
             "dp = 0.0085",
             "model.kernel.cubic.tensile = true",
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn a_case_that_is_not_there_names_the_nearest() {
-        let error = find(&["colum-3".to_string()], false).err();
+        let error = select_cases(&["colum-3".to_string()], false).err();
         assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"column-3\"?")));
     }
 }

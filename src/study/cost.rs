@@ -1,10 +1,10 @@
 //! What the cases of one scene cost, beside what they are worth: error over processor time.
 
 use super::{
-    Job, Line, Row, Style, log_log,
+    Job, PlotLine, ResultRow, LineStyle, log_log_plot,
     page::{self, escape},
-    rows::RELATIVE,
-    spread::{self, Point, together},
+    rows::RELATIVE_METRICS,
+    spread::{self, CostPoint, group_repeats},
 };
 use crate::error::Result;
 
@@ -16,25 +16,25 @@ const LAW: &str = "model.viscosity";
 ///
 /// # Errors
 /// `File` if a drawing fails.
-pub fn figures(jobs: &[Job], rows: &[Row]) -> Result<String> {
+pub fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> Result<String> {
     let mut text = String::new();
     for scene in unique(jobs.iter().map(|job| job.group.as_str())) {
         let own: Vec<&Job> = jobs.iter().filter(|job| job.group == scene).collect();
-        let known: Vec<(&Job, Vec<&Row>)> = together(rows)
+        let known: Vec<(&Job, Vec<&ResultRow>)> = group_repeats(rows)
             .into_iter()
             .filter_map(|of| Some((*own.iter().find(|job| job.name == of[0].run)?, of)))
             .collect();
         let mut drawn = Vec::new();
         for check in unique(known.iter().map(|(_, of)| of[0].check.as_str())) {
-            for (error, figure) in RELATIVE {
-                let points: Vec<(&Job, Point)> = known
+            for (error, figure) in RELATIVE_METRICS {
+                let points: Vec<(&Job, CostPoint)> = known
                     .iter()
                     .filter(|(_, of)| of[0].check == check)
-                    .filter_map(|(job, of)| Some((*job, Point::new(of, figure)?)))
+                    .filter_map(|(job, of)| Some((*job, CostPoint::new(of, figure)?)))
                     .collect();
                 // Two checks of one series differ in their means alone.
                 if points.len() > 1 && !drawn.contains(&points) {
-                    text += &plot(scene, check, error, &points, spread::bars(rows))?;
+                    text += &plot(scene, check, error, &points, spread::error_bar_note(rows))?;
                     drawn.push(points);
                 }
             }
@@ -47,29 +47,29 @@ pub fn figures(jobs: &[Job], rows: &[Row]) -> Result<String> {
 }
 
 /// One point for each case, in the colour of its viscosity; `bars` says what its bar is.
-fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, Point)], bars: &str) -> Result<String> {
-    let laws = unique(points.iter().map(|(job, _)| law(job)));
+fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bars: &str) -> Result<String> {
+    let laws = unique(points.iter().map(|(job, _)| viscosity(job)));
     let line = |(i, law_of_line): (usize, &&str)| {
-        let own: Vec<_> = points.iter().filter(|(job, _)| law(job) == *law_of_line).collect();
-        let labels = own.iter().map(|(job, _)| short(&job.name, scene).to_string()).collect();
+        let own: Vec<_> = points.iter().filter(|(job, _)| viscosity(job) == *law_of_line).collect();
+        let labels = own.iter().map(|(job, _)| short_name(&job.name, scene).to_string()).collect();
         let spans = own.iter().map(|(_, point)| point.span).collect();
-        Line { labels, spans, ..Line::new(i, Style::Dots, own.iter().map(|(_, point)| point.place).collect()) }
+        PlotLine { labels, spans, ..PlotLine::new(i, LineStyle::Dots, own.iter().map(|(_, point)| point.place).collect()) }
     };
-    let lines: Vec<Line> = laws.iter().enumerate().map(line).collect();
-    let svg = log_log(["processor time, s", &format!("{error} of {check}, –")], &lines)?;
+    let lines: Vec<PlotLine> = laws.iter().enumerate().map(line).collect();
+    let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, –")], &lines)?;
     let keys: Vec<(usize, String)> = laws.iter().enumerate().map(|(i, law)| (i, format!("{LAW} = {law}"))).collect();
     let title = format!("<h3>{}: {error} of {}</h3>\n", escape(scene), escape(check));
     let caption = format!("A point for each case, with its name. Left and low is good.{bars}");
-    Ok(title + &page::figure(&svg, &keys, &caption))
+    Ok(title + &page::plot_figure(&svg, &keys, &caption))
 }
 
 /// The viscosity of a case.
-fn law(job: &Job) -> &str {
-    job.sets.iter().rev().find(|(key, _)| key == LAW).map_or("that of the scene", |(_, value)| value)
+fn viscosity(job: &Job) -> &str {
+    job.overrides.iter().rev().find(|(key, _)| key == LAW).map_or("that of the scene", |(_, value)| value)
 }
 
 /// The name of a case without that of its scene, where it starts with it.
-fn short<'a>(name: &'a str, scene: &str) -> &'a str {
+fn short_name<'a>(name: &'a str, scene: &str) -> &'a str {
     name.strip_prefix(scene).and_then(|rest| rest.strip_prefix('-')).unwrap_or(name)
 }
 
@@ -94,7 +94,7 @@ mod tests {
             name: name.into(),
             repeat: 1,
             scene: scene.into(),
-            sets: vec![(LAW.into(), law.into())],
+            overrides: vec![(LAW.into(), law.into())],
             folder: name.into(),
             group: scene.into(),
             dp: 0.01,
@@ -117,7 +117,7 @@ mod tests {
             Row { check: "force.fx_N (2)".into(), ..row("column-3", 0.4, 150.0, "finished") },
             row("tank", 0.1, 2.0, "finished"),
         ];
-        let text = figures(&jobs, &rows)?;
+        let text = metrics(&jobs, &rows)?;
         for word in ["column: N of force.fx_N", ">\n1\n<", ">\n3\n<", "model.viscosity = none", "model.viscosity = sps"]
         {
             assert!(text.contains(word), "\"{word}\" is not in\n{text}");
@@ -132,7 +132,7 @@ mod tests {
     fn what_has_not_finished_is_not_drawn() -> Result<()> {
         let jobs = [job("column-1", "column", "none"), job("column-3", "column", "sps")];
         let rows = [row("column-1", 0.5, 100.0, "finished"), row("column-3", 0.4, 150.0, "failed")];
-        assert!(figures(&jobs, &rows)?.is_empty());
+        assert!(metrics(&jobs, &rows)?.is_empty());
         Ok(())
     }
 }

@@ -1,21 +1,21 @@
 //! How long a list of runs will take: from the runs that have finished, else from a usual speed.
 
-use super::{Job, Ran, State};
-use crate::{error::Result, scene::Size};
+use super::{Job, JobResult, JobState};
+use crate::{error::Result, scene::SizeEstimate};
 
 /// Water particles × force passes a second of one thread, in 2-D and 3-D, where no run has told yet: half of what
 /// `pontoon bench` gives on a slow machine with the default laws.
-pub const USUAL: [f64; 2] = [4e6, 1.2e6];
+pub const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6];
 
 /// A job before it is run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Planned {
+pub struct TimeEstimate {
     /// About how large it is.
-    pub size: Size,
+    pub size: SizeEstimate,
     /// About how long it will take, s; 0 if it has been run.
     pub seconds: f64,
     /// Whether the speed is that of a run that has finished, not the usual one.
-    pub told: bool,
+    pub measured: bool,
 }
 
 /// The sizes and times of `jobs`, of which `ran` is known, on `threads` threads.
@@ -25,11 +25,11 @@ pub struct Planned {
 ///
 /// # Errors
 /// Those of a scene's words: nothing should be run then.
-pub fn plan(jobs: &[Job], ran: &[Ran], threads: usize) -> Result<Vec<Planned>> {
-    let sizes = jobs.iter().map(Job::size).collect::<Result<Vec<Size>>>()?;
+pub fn estimate_times(jobs: &[Job], ran: &[JobResult], threads: usize) -> Result<Vec<TimeEstimate>> {
+    let sizes = jobs.iter().map(Job::estimated_size).collect::<Result<Vec<SizeEstimate>>>()?;
     let speed = |same: &dyn Fn(usize) -> bool| {
-        let finished = (0..jobs.len()).filter(|&i| ran.get(i).is_some_and(|r| r.state == State::Finished) && same(i));
-        let known = finished.filter_map(|i| Some((sizes[i].work(), ran[i].manifest.as_ref()?.wall_s)));
+        let finished = (0..jobs.len()).filter(|&i| ran.get(i).is_some_and(|r| r.state == JobState::Finished) && same(i));
+        let known = finished.filter_map(|i| Some((sizes[i].particle_passes(), ran[i].manifest.as_ref()?.wall_s)));
         let (work, wall) = known.fold((0.0, 0.0), |sum, x| (sum.0 + x.0, sum.1 + x.1));
         (wall > 0.0).then(|| work / wall)
     };
@@ -37,13 +37,13 @@ pub fn plan(jobs: &[Job], ran: &[Ran], threads: usize) -> Result<Vec<Planned>> {
         let size = sizes[i];
         let alike = speed(&|j| jobs[j].group == jobs[i].group && sizes[j].dimension == size.dimension);
         let told = alike.or_else(|| speed(&|j| sizes[j].dimension == size.dimension));
-        let rate = told.unwrap_or(USUAL[size.dimension - 2] * threads as f64);
+        let rate = told.unwrap_or(DEFAULT_SPEED[size.dimension - 2] * threads as f64);
         let left = match ran.get(i).map(|r| (&r.state, &r.manifest)) {
-            Some((State::Finished | State::Failed(_), Some(_))) => 0.0,
-            Some((State::Interrupted, Some(m))) => 1.0 - m.simulated_s / m.until_s,
+            Some((JobState::Finished | JobState::Failed(_), Some(_))) => 0.0,
+            Some((JobState::Interrupted, Some(m))) => 1.0 - m.simulated_s / m.until_s,
             _ => 1.0,
         };
-        Planned { size, seconds: left * size.work() / rate, told: told.is_some() }
+        TimeEstimate { size, seconds: left * size.particle_passes() / rate, measured: told.is_some() }
     };
     Ok((0..jobs.len()).map(planned).collect())
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Job;
 use crate::{
     error::{Error, Kind, Result},
-    output::checkpoint::hash,
+    output::checkpoint::fnv1a,
 };
 
 /// Longest name of a folder that is made of the values themselves.
@@ -16,7 +16,7 @@ const MOST_FRAMES: f64 = 200.0;
 
 /// A key of the scene and the values that it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Vary {
+pub struct VariedKey {
     /// The key.
     pub key: String,
     /// Its values, as TOML.
@@ -25,7 +25,7 @@ pub struct Vary {
 
 /// A grid of runs of one scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct ParameterGrid {
     /// The scene's name.
     pub name: String,
     /// The scene, a folder or a file.
@@ -33,16 +33,16 @@ pub struct Grid {
     /// Spacings, m, the coarsest first.
     pub dp: Vec<f64>,
     /// What else is varied.
-    pub vary: Vec<Vary>,
+    pub vary: Vec<VariedKey>,
     /// Keys that are changed in all runs.
-    pub sets: Vec<(String, String)>,
+    pub overrides: Vec<(String, String)>,
     /// Simulated time between the frames that each run keeps for a picture, s; without it none are kept.
     pub frames: Option<f64>,
     /// How often each run is made, each time from a start that is a hair's breadth another ([`Job::repeated`]).
     pub repeat: usize,
 }
 
-impl Grid {
+impl ParameterGrid {
     /// The jobs, in folders of `out`, with the values of each: cheap ones first, so that a mistake shows
     /// early.
     ///
@@ -67,12 +67,12 @@ impl Grid {
         for &dp in &dp {
             for varied in self.combinations() {
                 let mut sets = vec![("frames".to_string(), frames.clone())];
-                sets.extend(self.sets.iter().chain(&varied).cloned());
+                sets.extend(self.overrides.iter().chain(&varied).cloned());
                 sets.push(("dp".into(), format!("{dp:?}")));
-                let name = slug(dp, &varied);
-                let group = label(&varied);
+                let name = folder_name(dp, &varied);
+                let group = combination_label(&varied);
                 let (folder, scene) = (out.join("runs").join(&name), self.scene.clone());
-                jobs.push(Job { folder, name, repeat: 1, scene, sets, group, dp, varied });
+                jobs.push(Job { folder, name, repeat: 1, scene, overrides: sets, group, dp, varied });
             }
         }
         match (0..jobs.len()).find(|&i| jobs[..i].iter().any(|job| job.name == jobs[i].name)) {
@@ -101,7 +101,7 @@ impl Grid {
 /// assert_eq!(interval(&[0.3, 0.5], 1.5), 0.1);
 /// assert_eq!(interval(&[], 1.5), 1.5);
 /// ```
-pub fn interval(times: &[f64], until: f64) -> f64 {
+pub fn frame_interval(times: &[f64], until: f64) -> f64 {
     let common = |mut a: u64, mut b: u64| {
         while b > 0 {
             (a, b) = (b, a % b);
@@ -115,7 +115,7 @@ pub fn interval(times: &[f64], until: f64) -> f64 {
 }
 
 /// What makes each of `jobs` another than the rest, briefly.
-pub fn heads(jobs: &[Job]) -> Vec<String> {
+pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> {
     let spacings = jobs.windows(2).any(|pair| pair[0].dp != pair[1].dp);
     let head = |job: &Job| {
         let spacing = spacings.then(|| format!("dp = {} m", job.dp));
@@ -128,7 +128,7 @@ pub fn heads(jobs: &[Job]) -> Vec<String> {
 }
 
 /// A combination in words.
-pub fn label(varied: &[(String, String)]) -> String {
+pub fn combination_label(varied: &[(String, String)]) -> String {
     varied.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
@@ -139,7 +139,7 @@ pub fn label(varied: &[(String, String)]) -> String {
 /// assert_eq!(split("none,{ artificial = { alpha = 0.02, x = [1,2] } }, \"a,b\""),
 ///     ["none", "{ artificial = { alpha = 0.02, x = [1,2] } }", "\"a,b\""]);
 /// ```
-pub fn split(text: &str) -> Vec<String> {
+pub fn split_values(text: &str) -> Vec<String> {
     let (mut parts, mut part, mut depth, mut quote) = (Vec::new(), String::new(), 0, None);
     for c in text.chars() {
         match (quote, c) {
@@ -160,7 +160,7 @@ pub fn split(text: &str) -> Vec<String> {
 }
 
 /// The name of a run's folder: its spacing and its values, as far as a file can be called so.
-fn slug(dp: f64, varied: &[(String, String)]) -> String {
+fn folder_name(dp: f64, varied: &[(String, String)]) -> String {
     let mut name = format!("dp-{dp}");
     for (key, value) in varied {
         let key = key.rsplit('.').next().unwrap_or(key);
@@ -175,23 +175,23 @@ fn slug(dp: f64, varied: &[(String, String)]) -> String {
         return name;
     }
     let short: String = name.chars().take(LONGEST - 9).collect();
-    format!("{short}-{:08x}", hash(name.as_bytes()) as u32)
+    format!("{short}-{:08x}", fnv1a(name.as_bytes()) as u32)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn grid(dp: &[f64], vary: &[(&str, &[&str])]) -> Grid {
+    fn grid(dp: &[f64], vary: &[(&str, &[&str])]) -> ParameterGrid {
         let vary = vary
             .iter()
-            .map(|(key, values)| Vary { key: key.to_string(), values: values.iter().map(|v| v.to_string()).collect() });
-        Grid {
+            .map(|(key, values)| VariedKey { key: key.to_string(), values: values.iter().map(|v| v.to_string()).collect() });
+        ParameterGrid {
             name: "x".into(),
             scene: "x".into(),
             dp: dp.into(),
             vary: vary.collect(),
-            sets: vec![],
+            overrides: vec![],
             frames: None,
             repeat: 1,
         }
@@ -205,7 +205,7 @@ mod tests {
         assert_eq!(jobs[0].folder, Path::new("out/runs/dp-0.02_kernel-cubic_cfl-0.1"));
         assert_eq!(jobs[11].name, "dp-0.005_kernel-wendland_cfl-0.2");
         assert_eq!(jobs[11].group, "model.kernel = wendland, time.cfl = 0.2");
-        assert_eq!(jobs[11].sets.last(), Some(&("dp".to_string(), "0.005".to_string())));
+        assert_eq!(jobs[11].overrides.last(), Some(&("dp".to_string(), "0.005".to_string())));
         assert_eq!(grid(&[0.01], &[]).jobs(Path::new("out"))?[0].name, "dp-0.01");
         Ok(())
     }
@@ -213,15 +213,15 @@ mod tests {
     #[test]
     fn columns_are_headed_by_what_differs_and_frames_are_kept_at_their_times() -> Result<()> {
         let laws: [(&str, &[&str]); 1] = [("model.diffusion", &["none", "fourtakas"])];
-        let named = |grid: Grid| grid.jobs(Path::new("out")).map(|jobs| heads(&jobs));
+        let named = |grid: ParameterGrid| grid.jobs(Path::new("out")).map(|jobs| distinguishing_labels(&jobs));
         assert_eq!(named(grid(&[0.01], &laws))?, ["diffusion = none", "diffusion = fourtakas"]);
         assert_eq!(named(grid(&[0.01, 0.02], &[]))?, ["dp = 0.02 m", "dp = 0.01 m"]);
         assert_eq!(named(grid(&[0.01], &[]))?, ["dp-0.01"]);
-        let kept = Grid { frames: Some(0.1), ..grid(&[0.01], &[]) }.jobs(Path::new("out"))?[0].sets[0].clone();
+        let kept = ParameterGrid { frames: Some(0.1), ..grid(&[0.01], &[]) }.jobs(Path::new("out"))?[0].overrides[0].clone();
         assert_eq!((kept.0.as_str(), kept.1.starts_with("{ every = 0.1,")), ("frames", true));
         // Times that have no long interval in common: 200 frames, the nearest of which is taken.
         assert_eq!(
-            [interval(&[0.0], 2.0), interval(&[0.5, 1.25], 2.0), interval(&[0.333, 1.0], 2.0)],
+            [frame_interval(&[0.0], 2.0), frame_interval(&[0.5, 1.25], 2.0), frame_interval(&[0.333, 1.0], 2.0)],
             [2.0, 0.25, 0.01]
         );
         Ok(())
@@ -232,27 +232,27 @@ mod tests {
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/still-tank");
         let thrice = |sets: &[(&str, &str)]| {
             let sets = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-            Grid { scene: scene.clone(), sets, repeat: 3, ..grid(&[0.05], &[]) }.jobs(Path::new("out"))
+            ParameterGrid { scene: scene.clone(), overrides: sets, repeat: 3, ..grid(&[0.05], &[]) }.jobs(Path::new("out"))
         };
         let jobs = thrice(&[])?;
         assert!(jobs.iter().all(|job| job.name == "dp-0.05" && job.group.is_empty()));
         let folders = ["out/runs/dp-0.05", "out/runs/dp-0.05_repeat-2", "out/runs/dp-0.05_repeat-3"];
         assert_eq!(jobs.iter().map(|job| job.folder.as_path()).collect::<Vec<_>>(), folders.map(Path::new));
-        assert_eq!(heads(&jobs), ["repeat 1", "repeat 2", "repeat 3"]);
-        let starts = |jobs: &[Job]| jobs.iter().map(|job| Ok(job.read()?.scatter)).collect::<Result<Vec<_>>>();
+        assert_eq!(distinguishing_labels(&jobs), ["repeat 1", "repeat 2", "repeat 3"]);
+        let starts = |jobs: &[Job]| jobs.iter().map(|job| Ok(job.read_scene()?.scatter)).collect::<Result<Vec<_>>>();
         // The first is what it would be without repeats, so that a study that has been run can be repeated.
         assert_eq!(starts(&jobs)?, [None, Some(1e-6), Some(2e-6)]);
         assert_eq!(starts(&thrice(&[("scatter", "1e-3")])?)?, [1e-3, 1e-3 + 1e-6, 1e-3 + 2e-6].map(Some));
-        let refused = |grid: Grid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
-        assert_eq!(refused(Grid { repeat: 0, ..grid(&[0.05], &[]) }), Some(Kind::Usage));
+        let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
+        assert_eq!(refused(ParameterGrid { repeat: 0, ..grid(&[0.05], &[]) }), Some(Kind::Usage));
         let varied = grid(&[0.05], &[("scatter", &["1e-7", "1e-6"])]);
-        assert_eq!(refused(Grid { repeat: 2, ..varied }), Some(Kind::Usage));
+        assert_eq!(refused(ParameterGrid { repeat: 2, ..varied }), Some(Kind::Usage));
         Ok(())
     }
 
     #[test]
     fn what_is_given_twice_or_not_at_all_is_refused() {
-        let refused = |grid: Grid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
+        let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
         assert_eq!(refused(grid(&[0.01, 0.01], &[])), Some(Kind::Usage));
         assert_eq!(refused(grid(&[], &[])), Some(Kind::Usage));
         assert_eq!(refused(grid(&[0.01], &[("dp", &["0.01", "0.02"])])), Some(Kind::Usage));

@@ -2,7 +2,7 @@
 
 use std::time::SystemTime;
 
-use super::{CHANCE, Row, plot, spreads};
+use super::{REPEATS_NOTE, ResultRow, plot, spread_table};
 use crate::output::manifest::Machine;
 pub use crate::report::format::{escape, table, unit};
 
@@ -15,7 +15,7 @@ code{font-size:.92em}.key{display:inline-block;width:1.6em;height:.5em;margin-ri
 .missed{color:#b00020;font-weight:bold}figure{margin:.5em 0}figcaption{font-size:.9em;color:#444}";
 
 /// The page called `title` with what `body` says.
-pub fn page(title: &str, body: &str) -> Vec<u8> {
+pub fn html_page(title: &str, body: &str) -> Vec<u8> {
     let title = escape(title);
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\
@@ -25,7 +25,7 @@ pub fn page(title: &str, body: &str) -> Vec<u8> {
 }
 
 /// A plot with its caption; `keys` name its colours.
-pub fn figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
+pub fn plot_figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
     let key = |(i, text): &(usize, String)| {
         format!("<span class=\"key\" style=\"background:{}\"></span>{}<br>\n", plot::colour(*i), escape(text))
     };
@@ -34,22 +34,22 @@ pub fn figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
 }
 
 /// How far repeats lie apart, as a part of a page; nothing if no run is repeated.
-pub fn repeats(rows: &[Row]) -> String {
-    let told = spreads(rows);
+pub fn repeats_section(rows: &[ResultRow]) -> String {
+    let told = spread_table(rows);
     match told.is_empty() {
         true => String::new(),
-        false => format!("<h2>Repeats</h2>\n<p>{}</p>\n{}", CHANCE, table(&told)),
+        false => format!("<h2>Repeats</h2>\n<p>{}</p>\n{}", REPEATS_NOTE, table(&told)),
     }
 }
 
 /// What ran when and where, as a table.
-pub fn origin(command: &str, machine: &Machine, threads: Option<usize>) -> String {
+pub fn provenance_table(command: &str, machine: &Machine, threads: Option<usize>) -> String {
     let Machine { processor, cpus, instructions, os, .. } = machine;
     let instructions = instructions.as_deref().unwrap_or("no lanes");
     let threads = threads.map_or("–".into(), |n| n.to_string());
     let rows = [
         ("command", command.to_string()),
-        ("date", now()),
+        ("date", timestamp()),
         ("version", format!("pontoon {}", env!("CARGO_PKG_VERSION"))),
         ("machine", format!("{processor}, {cpus} processors, {instructions}, {os}")),
         ("threads", threads),
@@ -60,7 +60,7 @@ pub fn origin(command: &str, machine: &Machine, threads: Option<usize>) -> Strin
 }
 
 /// Date and time, UTC.
-pub fn now() -> String {
+pub fn timestamp() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
 }
 
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn what_a_user_writes_cannot_break_the_page() {
-        let text = String::from_utf8_lossy(&page("<script>", &table(&[vec!["a&b".into()]]))).into_owned();
+        let text = String::from_utf8_lossy(&screen_text("<script>", &table(&[vec!["a&b".into()]]))).into_owned();
         assert!(text.contains("&lt;script&gt;") && text.contains("a&amp;b") && !text.contains("<script>"));
     }
 }

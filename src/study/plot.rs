@@ -26,7 +26,7 @@ const INK: RGBColor = RGBColor(60, 60, 60);
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
+pub enum LineStyle {
     /// A line with a dot at each point.
     Dotted,
     /// Dots alone, as of a measurement.
@@ -37,11 +37,11 @@ pub enum Style {
 
 /// A line of a plot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct PlotLine {
     /// Which colour: lines of one number share it.
     pub colour: usize,
     /// How it is drawn.
-    pub style: Style,
+    pub style: LineStyle,
     /// Its points.
     pub points: Vec<(f64, f64)>,
     /// What stands beside each point; may be empty.
@@ -50,9 +50,9 @@ pub struct Line {
     pub spans: Vec<(f64, f64)>,
 }
 
-impl Line {
+impl PlotLine {
     /// A line without labels and spans.
-    pub fn new(colour: usize, style: Style, points: Vec<(f64, f64)>) -> Self {
+    pub fn new(colour: usize, style: LineStyle, points: Vec<(f64, f64)>) -> Self {
         Self { colour, style, points, labels: vec![], spans: vec![] }
     }
 }
@@ -67,38 +67,38 @@ pub fn colour(i: usize) -> String {
 ///
 /// # Errors
 /// `File` if the drawing fails.
-pub fn curves(titles: [&str; 2], lines: &[Line]) -> Result<String> {
-    let (x, y) = (across(lines), upright(lines));
+pub fn line_plot(titles: [&str; 2], lines: &[PlotLine]) -> Result<String> {
+    let (x, y) = (x_range(lines), y_range(lines));
     let room = 0.05 * (y.end - y.start);
-    draw(titles, lines, Axis::Linear(x), Axis::Linear(y.start - room..y.end + room))
+    draw(titles, lines, PlotAxis::Linear(x), PlotAxis::Linear(y.start - room..y.end + room))
 }
 
 /// `lines` over logarithmic axes, as SVG; points that are not above 0 are left out.
 ///
 /// # Errors
 /// `File` if the drawing fails.
-pub fn log_log(titles: [&str; 2], lines: &[Line]) -> Result<String> {
-    let positive = |line: &Line| {
+pub fn log_log_plot(titles: [&str; 2], lines: &[PlotLine]) -> Result<String> {
+    let positive = |line: &PlotLine| {
         let keep: Vec<usize> =
             (0..line.points.len()).filter(|&i| line.points[i].0 > 0.0 && line.points[i].1 > 0.0).collect();
         let labels = keep.iter().filter_map(|&i| line.labels.get(i).cloned()).collect();
         let above = |(i, &(low, high)): (usize, &(f64, f64))| (if low > 0.0 { low } else { line.points[i].1 }, high);
         let all: Vec<(f64, f64)> = line.spans.iter().enumerate().map(above).collect();
         let spans = keep.iter().filter_map(|&i| all.get(i).copied()).collect();
-        Line { points: keep.iter().map(|&i| line.points[i]).collect(), labels, spans, ..line.clone() }
+        PlotLine { points: keep.iter().map(|&i| line.points[i]).collect(), labels, spans, ..line.clone() }
     };
-    let lines: Vec<Line> = lines.iter().map(positive).collect();
-    let (x, y) = (across(&lines), upright(&lines));
-    draw(titles, &lines, Axis::Log(x.start / 1.5..x.end * 2.0), Axis::Log(y.start / 1.3..y.end * 1.3))
+    let lines: Vec<PlotLine> = lines.iter().map(positive).collect();
+    let (x, y) = (x_range(&lines), y_range(&lines));
+    draw(titles, &lines, PlotAxis::Log(x.start / 1.5..x.end * 2.0), PlotAxis::Log(y.start / 1.3..y.end * 1.3))
 }
 
 /// The range of all points along the first axis.
-fn across(lines: &[Line]) -> Range<f64> {
+fn x_range(lines: &[PlotLine]) -> Range<f64> {
     range(lines.iter().flat_map(|line| &line.points).map(|p| p.0))
 }
 
 /// The range of all points and spans along the second axis.
-fn upright(lines: &[Line]) -> Range<f64> {
+fn y_range(lines: &[PlotLine]) -> Range<f64> {
     let points = lines.iter().flat_map(|line| &line.points).map(|p| p.1);
     range(points.chain(lines.iter().flat_map(|line| &line.spans).flat_map(|&(low, high)| [low, high])))
 }
@@ -113,7 +113,7 @@ fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
     }
 }
 
-fn draw(titles: [&str; 2], lines: &[Line], x: Axis, y: Axis) -> Result<String> {
+fn draw(titles: [&str; 2], lines: &[PlotLine], x: PlotAxis, y: PlotAxis) -> Result<String> {
     let mut text = String::new();
     let failed = |why: String| Error::new(Kind::File, format!("a plot cannot be drawn: {why}"));
     {
@@ -139,14 +139,14 @@ fn draw(titles: [&str; 2], lines: &[Line], x: Axis, y: Axis) -> Result<String> {
             .map_err(|e| failed(e.to_string()))?;
         for line in lines {
             let colour = COLOURS[line.colour % COLOURS.len()];
-            if line.style != Style::Dots {
+            if line.style != LineStyle::Dots {
                 let path = LineSeries::new(line.points.iter().copied(), colour.stroke_width(3));
                 chart.draw_series(path).map_err(|e| failed(e.to_string()))?;
             }
             let bars = line.points.iter().zip(&line.spans).filter(|(_, (low, high))| low < high);
             let bars = bars.map(|(p, s)| PathElement::new(vec![(p.0, s.0), (p.0, s.1)], colour.stroke_width(3)));
             chart.draw_series(bars).map_err(|e| failed(e.to_string()))?;
-            if line.style != Style::Plain {
+            if line.style != LineStyle::Plain {
                 let dots = line.points.iter().map(|&p| Circle::new(p, 8, colour.filled()));
                 chart.draw_series(dots).map_err(|e| failed(e.to_string()))?;
             }
@@ -164,12 +164,12 @@ fn draw(titles: [&str; 2], lines: &[Line], x: Axis, y: Axis) -> Result<String> {
 
 /// An axis with round numbers at its marks: 1, 2, 5 and their tens.
 #[derive(Clone)]
-enum Axis {
+enum PlotAxis {
     Linear(Range<f64>),
     Log(Range<f64>),
 }
 
-impl Ranged for Axis {
+impl Ranged for PlotAxis {
     type ValueType = f64;
     type FormatOption = NoDefaultFormatting;
 
@@ -210,7 +210,7 @@ impl Ranged for Axis {
     }
 }
 
-impl ValueFormatter<f64> for Axis {
+impl ValueFormatter<f64> for PlotAxis {
     fn format_ext(&self, value: &f64) -> String {
         match value.abs() {
             x if x != 0.0 && !(1e-4..1e6).contains(&x) => format!("{value:.0e}"),
@@ -234,8 +234,8 @@ mod tests {
     fn a_plot_has_its_titles_labels_and_round_marks() -> Result<()> {
         let points = vec![(2.0, 0.4), (30.0, 0.2), (500.0, 0.11)];
         let labels = ["20 mm", "10 mm", "5 mm"].map(String::from).to_vec();
-        let line = Line { labels, ..Line::new(0, Style::Dotted, points) };
-        let svg = log_log(["processor time, s", "N, –"], &[line])?;
+        let line = Line { labels, ..Line::new(0, LineStyle::Dotted, points) };
+        let svg = log_log_plot(["processor time, s", "N, –"], &[line])?;
         for word in ["<svg", "processor time, s", "N, –", "20 mm", "0.2", "100"] {
             assert!(svg.contains(word), "\"{word}\" is not there");
         }
@@ -244,9 +244,9 @@ mod tests {
 
     #[test]
     fn a_span_is_drawn_upright_and_the_axis_reaches_it() -> Result<()> {
-        let bare = Line::new(0, Style::Dots, vec![(2.0, 0.4), (30.0, 0.2)]);
+        let bare = Line::new(0, LineStyle::Dots, vec![(2.0, 0.4), (30.0, 0.2)]);
         let spanned = Line { spans: vec![(0.05, 0.9), (0.2, 0.2)], ..bare.clone() };
-        let drawn = |line: Line| log_log(["x", "y"], &[line]);
+        let drawn = |line: Line| log_log_plot(["x", "y"], &[line]);
         let (bare, spanned) = (drawn(bare)?, drawn(spanned)?);
         // One bar: the second point is known exactly.
         let bars = |svg: &str| svg.matches("stroke=\"#0072B2\" stroke-width=\"3\"").count();
@@ -257,9 +257,9 @@ mod tests {
 
     #[test]
     fn nothing_and_zeros_can_be_drawn() -> Result<()> {
-        log_log(["x", "y"], &[])?;
-        curves(["x", "y"], &[Line::new(0, Style::Plain, vec![(0.0, 0.0), (1.0, 0.0)])])?;
-        log_log(["x", "y"], &[Line::new(0, Style::Dots, vec![(0.0, 0.0)])]).map(|_| ())
+        log_log_plot(["x", "y"], &[])?;
+        line_plot(["x", "y"], &[Line::new(0, LineStyle::Plain, vec![(0.0, 0.0), (1.0, 0.0)])])?;
+        log_log_plot(["x", "y"], &[Line::new(0, LineStyle::Dots, vec![(0.0, 0.0)])]).map(|_| ())
     }
 
     #[test]

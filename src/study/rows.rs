@@ -2,15 +2,15 @@
 
 use serde::Serialize;
 
-use super::{Job, Ran, State};
+use super::{Job, JobResult, JobState};
 use crate::{
-    analysis::{Figures, Verdict},
+    analysis::{ErrorMetrics, Verdict},
     error::{Error, Kind, Result},
 };
 
 /// A run under one of its checks; a figure is none where it is not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Row {
+pub struct ResultRow {
     /// Name of the run; repeats share it.
     pub run: String,
     /// Which repeat of it, from 1.
@@ -23,13 +23,13 @@ pub struct Row {
     pub check: String,
     /// What came out.
     #[serde(flatten)]
-    pub figures: Figures,
+    pub metrics: ErrorMetrics,
     /// N of the running mean, –.
     #[serde(rename = "mean_N")]
-    pub mean_n: Option<f64>,
+    pub mean_relative_l2: Option<f64>,
     /// N with the delay taken out, –.
     #[serde(rename = "aligned_N")]
-    pub aligned_n: Option<f64>,
+    pub aligned_relative_l2: Option<f64>,
     /// That delay, s.
     pub delay_s: Option<f64>,
     /// Whether the bound is kept, where there is one.
@@ -49,43 +49,43 @@ pub struct Row {
 }
 
 /// An error that is plotted: its name, and how a row tells it.
-pub type Metric = (&'static str, fn(&Row) -> Option<f64>);
+pub type Metric = (&'static str, fn(&ResultRow) -> Option<f64>);
 
 /// The errors relative to the reference: N, and N with the delay taken out.
-pub const RELATIVE: [Metric; 2] = [("N", |r| r.figures.n), ("aligned N", |r| r.aligned_n)];
+pub const RELATIVE_METRICS: [Metric; 2] = [("N", |r| r.metrics.relative_l2), ("aligned N", |r| r.aligned_relative_l2)];
 
 /// The largest distance from the reference, in the unit of its series.
-pub const DISTANCE: Metric = ("largest distance", |r| r.figures.off);
+pub const MAX_ABS_METRIC: Metric = ("largest distance", |r| r.metrics.off);
 
-impl Row {
+impl ResultRow {
     /// The error that is plotted: N, or else the largest distance.
-    pub fn error(&self) -> Option<f64> {
-        self.figures.n.or(self.figures.off)
+    pub fn plotted_error(&self) -> Option<f64> {
+        self.metrics.relative_l2.or(self.metrics.off)
     }
 }
 
 /// The rows of `jobs`, of which the first have `ran`. A run that has not finished has a row for each of
 /// `checks` too.
-pub fn rows(jobs: &[Job], ran: &[Ran], checks: &[String]) -> Vec<Row> {
+pub fn result_rows(jobs: &[Job], ran: &[JobResult], checks: &[String]) -> Vec<ResultRow> {
     let of = |(i, job): (usize, &Job)| {
-        let first = Row {
+        let first = ResultRow {
             run: job.name.clone(),
             repeat: job.repeat,
             dp: job.dp,
             varied: job.varied.clone(),
             status: "planned",
-            ..Row::default()
+            ..ResultRow::default()
         };
         let ran = ran.get(i);
-        let first = ran.map_or(first.clone(), |ran| costs(first, ran));
+        let first = ran.map_or(first.clone(), |ran| with_costs(first, ran));
         let verdicts = ran.map_or(&[][..], |ran| &ran.verdicts[..]);
         match (verdicts, checks) {
             ([], []) => vec![first],
-            ([], checks) => checks.iter().map(|check| Row { check: check.clone(), ..first.clone() }).collect(),
-            (verdicts, _) => labels(verdicts.iter().map(|v| v.series.as_str()))
+            ([], checks) => checks.iter().map(|check| ResultRow { check: check.clone(), ..first.clone() }).collect(),
+            (verdicts, _) => check_labels(verdicts.iter().map(|v| v.series.as_str()))
                 .into_iter()
                 .zip(verdicts)
-                .map(|(check, verdict)| judged(Row { check, ..first.clone() }, verdict))
+                .map(|(check, verdict)| with_verdict(ResultRow { check, ..first.clone() }, verdict))
                 .collect(),
         }
     };
@@ -93,7 +93,7 @@ pub fn rows(jobs: &[Job], ran: &[Ran], checks: &[String]) -> Vec<Row> {
 }
 
 /// Names of checks: their series, with a number from the second of a series on.
-pub fn labels(series: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
+pub fn check_labels(series: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
     let all: Vec<String> = series.into_iter().map(Into::into).collect();
     let label = |i: usize| match all[..i].iter().filter(|other| **other == all[i]).count() {
         0 => all[i].clone(),
@@ -102,15 +102,15 @@ pub fn labels(series: impl IntoIterator<Item = impl Into<String>>) -> Vec<String
     (0..all.len()).map(label).collect()
 }
 
-fn costs(row: Row, ran: &Ran) -> Row {
+fn with_costs(row: ResultRow, ran: &JobResult) -> ResultRow {
     let (status, reason) = match &ran.state {
-        State::Planned => ("planned", None),
-        State::Interrupted => ("interrupted", None),
-        State::Finished => ("finished", None),
-        State::Failed(why) => ("failed", Some(why.clone())),
+        JobState::Planned => ("planned", None),
+        JobState::Interrupted => ("interrupted", None),
+        JobState::Finished => ("finished", None),
+        JobState::Failed(why) => ("failed", Some(why.clone())),
     };
-    let Some(manifest) = &ran.manifest else { return Row { status, reason, ..row } };
-    Row {
+    let Some(manifest) = &ran.manifest else { return ResultRow { status, reason, ..row } };
+    ResultRow {
         water: Some(manifest.particles.fluid),
         wall_s: Some(manifest.wall_s),
         cpu_s: Some(manifest.cpu_s),
@@ -121,11 +121,11 @@ fn costs(row: Row, ran: &Ran) -> Row {
     }
 }
 
-fn judged(row: Row, verdict: &Verdict) -> Row {
-    Row {
-        figures: verdict.figures,
-        mean_n: verdict.meaned.and_then(|m| m.figures.n),
-        aligned_n: verdict.aligned.map(|a| a.n),
+fn with_verdict(row: ResultRow, verdict: &Verdict) -> ResultRow {
+    ResultRow {
+        metrics: verdict.metrics,
+        mean_relative_l2: verdict.meaned.and_then(|m| m.metrics.relative_l2),
+        aligned_relative_l2: verdict.aligned.map(|a| a.relative_l2),
         delay_s: verdict.aligned.map(|a| a.delay),
         passed: verdict.passed,
         ..row
@@ -136,7 +136,7 @@ fn judged(row: Row, verdict: &Verdict) -> Row {
 ///
 /// # Errors
 /// `File` if the text cannot be made.
-pub fn csv(rows: &[Row], keys: &[String]) -> Result<Vec<u8>> {
+pub fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
     let broken = |why: csv::Error| Error::new(Kind::File, format!("the table cannot be made: {why}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head = ["run", "repeat", "dp_m"].map(String::from).to_vec();
@@ -166,8 +166,8 @@ pub fn csv(rows: &[Row], keys: &[String]) -> Result<Vec<u8>> {
         let value = |key: &String| row.varied.iter().find(|(k, _)| k == key).map_or(String::new(), |(_, v)| v.clone());
         cells.extend(keys.iter().map(value));
         cells.push(row.check.clone());
-        let Figures { n, m, peak, off } = row.figures;
-        cells.extend([n, m, peak, off, row.mean_n, row.aligned_n, row.delay_s].map(number));
+        let ErrorMetrics { relative_l2, amplitude_ratio, peak, off } = row.metrics;
+        cells.extend([relative_l2, amplitude_ratio, peak, off, row.mean_relative_l2, row.aligned_relative_l2, row.delay_s].map(number));
         cells.push(row.passed.map_or(String::new(), |kept| kept.to_string()));
         cells.push(row.water.map_or(String::new(), |n| n.to_string()));
         cells.extend([row.wall_s, row.cpu_s].map(number));
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn checks_of_one_series_are_told_apart() {
-        assert_eq!(labels(["a.x_m", "b.y_m", "a.x_m"]), ["a.x_m", "b.y_m", "a.x_m (2)"]);
+        assert_eq!(check_labels(["a.x_m", "b.y_m", "a.x_m"]), ["a.x_m", "b.y_m", "a.x_m (2)"]);
     }
 
     #[test]
@@ -198,7 +198,7 @@ mod tests {
             reason: Some("too fast\n  usual cause".into()),
             ..Row::default()
         };
-        let text = csv(&[row], &["gravity".into()])?;
+        let text = rows_to_csv(&[row], &["gravity".into()])?;
         let mut reader = csv::Reader::from_reader(text.as_slice());
         let record = reader.records().next().and_then(|r| r.ok()).unwrap_or_default();
         assert_eq!((&record[3], &record[5], record.len()), ("[0.0, -9.81]", "0.25", 19));

@@ -5,19 +5,19 @@ use std::{fs, path::PathBuf};
 use serde::Serialize;
 
 use super::{
-    Grid, Job, Line, Ran, Row, Style, convergence, csv, least_squares, log_log,
+    ParameterGrid, Job, PlotLine, JobResult, ResultRow, LineStyle, convergence, rows_to_csv, least_squares, log_log_plot,
     page::{self, unit},
-    rows::{DISTANCE, Metric, RELATIVE, labels, rows},
-    spread::{self, Apart, Point, across, together},
+    rows::{MAX_ABS_METRIC, Metric, RELATIVE_METRICS, check_labels, result_rows},
+    spread::{self, RepeatSpread, CostPoint, spread_of, group_repeats},
 };
 use crate::{
     analysis::format_verdicts,
     error::{Error, Result},
-    output::{manifest::Machine, write_whole},
+    output::{manifest::Machine, write_atomically},
 };
 
 /// The table and the page of a study.
-pub struct Sheet {
+pub struct StudyResults {
     title: String,
     command: String,
     keys: Vec<String>,
@@ -29,7 +29,7 @@ pub struct Sheet {
 
 /// How an error falls with the spacing under one combination.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-struct Order {
+struct OrderRow {
     check: String,
     /// Which error.
     error: String,
@@ -44,37 +44,37 @@ struct Order {
 }
 
 #[derive(Serialize)]
-struct Whole<'a> {
+struct StudyJson<'a> {
     title: &'a str,
     command: &'a str,
     date: String,
     version: &'static str,
     machine: Machine,
     threads: Option<usize>,
-    rows: &'a [Row],
-    orders: &'a [Order],
+    rows: &'a [ResultRow],
+    orders: &'a [OrderRow],
     /// How far repeats lie apart; empty if nothing is repeated.
-    spreads: Vec<Apart>,
+    spreads: Vec<RepeatSpread>,
 }
 
-impl Sheet {
+impl StudyResults {
     /// The sheet of `grid` in the folder `out`, asked for by `command`.
     ///
     /// # Errors
     /// `Usage` for a grid that is none; those of the scene's words; `File` if the folder cannot be made.
-    pub fn new(grid: &Grid, out: PathBuf, command: String) -> Result<Self> {
+    pub fn new(grid: &ParameterGrid, out: PathBuf, command: String) -> Result<Self> {
         let jobs = grid.jobs(&out)?;
         let mut checks = Vec::new();
         if let Some(job) = jobs.first() {
-            checks = labels(job.checks()?.iter().map(|c| c.words().label()));
+            checks = check_labels(job.checks()?.iter().map(|c| c.plan().label()));
         }
         let keys = grid.vary.iter().map(|vary| vary.key.clone()).collect();
         Ok(Self { title: format!("Study of {}", grid.name), command, keys, checks, out, jobs })
     }
 
     /// A row for each run and check, those to come too.
-    pub fn rows(&self, ran: &[Ran]) -> Vec<Row> {
-        rows(&self.jobs, ran, &self.checks)
+    pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> {
+        result_rows(&self.jobs, ran, &self.checks)
     }
 
     /// Files that [`Sheet::write`] writes.
@@ -86,37 +86,37 @@ impl Sheet {
     ///
     /// # Errors
     /// `File` if one cannot be written; each is replaced as a whole.
-    pub fn write(&self, ran: &[Ran]) -> Result<()> {
+    pub fn write(&self, ran: &[JobResult]) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         let rows = self.rows(ran);
         let orders = self.orders(&rows);
         let first = ran.iter().find_map(|r| r.manifest.as_ref());
-        let (machine, threads) = (first.map_or_else(Machine::this, |m| m.machine.clone()), first.map(|m| m.threads));
-        let whole = Whole {
+        let (machine, threads) = (first.map_or_else(Machine::current, |m| m.machine.clone()), first.map(|m| m.threads));
+        let whole = StudyJson {
             title: &self.title,
             command: &self.command,
-            date: page::now(),
+            date: page::timestamp(),
             version: env!("CARGO_PKG_VERSION"),
             machine: machine.clone(),
             threads,
             rows: &rows,
             orders: &orders,
-            spreads: spread::apart(&rows),
+            spreads: spread::repeat_spreads(&rows),
         };
         let [table, json, html] = self.files();
-        write_whole(&table, &csv(&rows, &self.keys)?)?;
+        write_atomically(&table, &rows_to_csv(&rows, &self.keys)?)?;
         let text = serde_json::to_string_pretty(&whole).map_err(|e| Error::file(&json, e))?;
-        write_whole(&json, (text + "\n").as_bytes())?;
-        write_whole(&html, &page::page(&self.title, &self.body(&rows, &orders, &machine, threads)?))
+        write_atomically(&json, (text + "\n").as_bytes())?;
+        write_atomically(&html, &page::html_page(&self.title, &self.body(&rows, &orders, &machine, threads)?))
     }
 
     /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
     /// where there is no N.
-    fn metrics(rows: &[Row], check: &str) -> Vec<Metric> {
+    fn metrics(rows: &[ResultRow], check: &str) -> Vec<Metric> {
         let has = |metric: &Metric| rows.iter().any(|r| r.check == check && metric.1(r).is_some());
-        let found: Vec<Metric> = RELATIVE.into_iter().filter(has).collect();
+        let found: Vec<Metric> = RELATIVE_METRICS.into_iter().filter(has).collect();
         match found.is_empty() {
-            true => std::iter::once(DISTANCE).filter(has).collect(),
+            true => std::iter::once(MAX_ABS_METRIC).filter(has).collect(),
             false => found,
         }
     }
@@ -133,21 +133,21 @@ impl Sheet {
     }
 
     /// The finished rows of a check and combination, one list for each spacing: its repeats.
-    fn of<'a>(&self, rows: &'a [Row], check: &str, group: &str) -> Vec<Vec<&'a Row>> {
-        let own = |r: &Row| self.jobs.iter().any(|job| job.name == r.run && job.group == group);
-        together(rows).into_iter().filter(|of| of[0].check == check && own(of[0])).collect()
+    fn finished_rows<'a>(&self, rows: &'a [ResultRow], check: &str, group: &str) -> Vec<Vec<&'a ResultRow>> {
+        let own = |r: &ResultRow| self.jobs.iter().any(|job| job.name == r.run && job.group == group);
+        group_repeats(rows).into_iter().filter(|of| of[0].check == check && own(of[0])).collect()
     }
 
-    fn orders(&self, rows: &[Row]) -> Vec<Order> {
+    fn orders(&self, rows: &[ResultRow]) -> Vec<OrderRow> {
         let mut orders = Vec::new();
         for check in &self.checks {
             for (error, figure) in Self::metrics(rows, check) {
                 for group in self.groups() {
-                    let of = self.of(rows, check, &group);
+                    let of = self.finished_rows(rows, check, &group);
                     let points: Vec<(f64, f64)> =
-                        of.iter().filter_map(|of| Some((of[0].dp, across(of, figure)?.mean))).collect();
+                        of.iter().filter_map(|of| Some((of[0].dp, spread_of(of, figure)?.mean))).collect();
                     let fine = convergence(&points);
-                    orders.push(Order {
+                    orders.push(OrderRow {
                         check: check.clone(),
                         error: error.into(),
                         varied: group,
@@ -161,50 +161,50 @@ impl Sheet {
         orders
     }
 
-    fn body(&self, rows: &[Row], orders: &[Order], machine: &Machine, threads: Option<usize>) -> Result<String> {
-        let mut body = page::origin(&self.command, machine, threads);
+    fn body(&self, rows: &[ResultRow], orders: &[OrderRow], machine: &Machine, threads: Option<usize>) -> Result<String> {
+        let mut body = page::provenance_table(&self.command, machine, threads);
         for check in &self.checks {
             body += &format!("<h2>{}</h2>\n", page::escape(check));
             for (error, figure) in Self::metrics(rows, check) {
                 body += &self.plot(rows, check, error, figure)?;
             }
-            let own: Vec<&Order> = orders.iter().filter(|o| o.check == *check).collect();
+            let own: Vec<&OrderRow> = orders.iter().filter(|o| o.check == *check).collect();
             body += &page::table(&self.order_rows(&own));
         }
         body += "<p>Order: q of error ∝ dp^q. By least squares over all spacings it is of the error itself; from the three finest, of \
                  the differences between them, and the index (Roache 1994, factor 1.25) is what the finest may still change \
                  by, relative to itself. Neither can be said (–) with fewer spacings or where the figure does not converge \
                  monotonically. Of repeats it is the mean.</p>\n";
-        body += &page::repeats(rows);
+        body += &page::repeats_section(rows);
         body += "<h2>Runs</h2>\n";
         body += &page::table(&self.run_rows(rows));
         Ok(body)
     }
 
     /// Error over processor time.
-    fn plot(&self, rows: &[Row], check: &str, error: &str, figure: fn(&Row) -> Option<f64>) -> Result<String> {
+    fn plot(&self, rows: &[ResultRow], check: &str, error: &str, figure: fn(&ResultRow) -> Option<f64>) -> Result<String> {
         let groups = self.groups();
         let line = |(i, group): (usize, &String)| {
-            let mut points: Vec<Point> =
-                self.of(rows, check, group).iter().filter_map(|of| Point::new(of, figure)).collect();
+            let mut points: Vec<CostPoint> =
+                self.finished_rows(rows, check, group).iter().filter_map(|of| CostPoint::new(of, figure)).collect();
             points.retain(|p| p.place.0 > 0.0 && p.place.1 > 0.0);
             let labels = points.iter().map(|p| format!("{} mm", millimetres(p.dp))).collect();
             let spans = points.iter().map(|p| p.span).collect();
-            Line { labels, spans, ..Line::new(i, Style::Dotted, points.iter().map(|p| p.place).collect()) }
+            PlotLine { labels, spans, ..PlotLine::new(i, LineStyle::Dotted, points.iter().map(|p| p.place).collect()) }
         };
-        let lines: Vec<Line> = groups.iter().enumerate().map(line).collect();
-        let unit = if error == DISTANCE.0 { unit(check) } else { "–" };
-        let svg = log_log(["processor time, s", &format!("{error} of {check}, {unit}")], &lines)?;
+        let lines: Vec<PlotLine> = groups.iter().enumerate().map(line).collect();
+        let unit = if error == MAX_ABS_METRIC.0 { unit(check) } else { "–" };
+        let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, {unit}")], &lines)?;
         let keys: Vec<(usize, String)> =
             groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()).collect();
-        Ok(page::figure(
+        Ok(page::plot_figure(
             &svg,
             &keys,
-            &format!("{error} over processor time; at each point its dp. Left and low is good.{}", spread::bars(rows)),
+            &format!("{error} over processor time; at each point its dp. Left and low is good.{}", spread::error_bar_note(rows)),
         ))
     }
 
-    fn order_rows(&self, orders: &[&Order]) -> Vec<Vec<String>> {
+    fn order_rows(&self, orders: &[&OrderRow]) -> Vec<Vec<String>> {
         let head = ["error", "varied", "order, least squares", "order, three finest", "index of the finest, %"];
         let mut rows = vec![head.map(String::from).to_vec()];
         rows.extend(orders.iter().map(|o| {
@@ -216,8 +216,8 @@ impl Sheet {
     }
 
     /// The rows as a table in words, for a page or a terminal.
-    pub fn run_rows(&self, rows: &[Row]) -> Vec<Vec<String>> {
-        let repeated = spread::repeated(rows);
+    pub fn run_rows(&self, rows: &[ResultRow]) -> Vec<Vec<String>> {
+        let repeated = spread::has_repeats(rows);
         let mut head = vec!["dp, mm".to_string()];
         head.extend(self.keys.iter().cloned());
         head.extend(repeated.then(|| "repeat".to_string()));
@@ -235,15 +235,15 @@ impl Sheet {
             "status",
         ];
         head.extend(rest.map(String::from));
-        let row = |r: &Row| {
+        let row = |r: &ResultRow| {
             let mut cells = vec![millimetres(r.dp)];
             cells.extend(r.varied.iter().map(|(_, value)| value.clone()));
             cells.extend(repeated.then(|| r.repeat.to_string()));
             cells.push(r.check.clone());
-            cells.extend([r.figures.n, r.figures.m, r.figures.peak].map(format_verdicts::figure));
-            cells.push(format_verdicts::digits(r.figures.off));
-            cells.push(format_verdicts::figure(r.aligned_n));
-            cells.push(r.delay_s.map_or("–".into(), format_verdicts::delay));
+            cells.extend([r.metrics.relative_l2, r.metrics.amplitude_ratio, r.metrics.peak].map(format_verdicts::format_metric));
+            cells.push(format_verdicts::format_value(r.metrics.off));
+            cells.push(format_verdicts::format_metric(r.aligned_relative_l2));
+            cells.push(r.delay_s.map_or("–".into(), format_verdicts::format_delay));
             cells.extend([r.wall_s, r.cpu_s].map(|s| s.map_or("–".into(), |s| format!("{s:.1}"))));
             cells.push(r.particle_steps.map_or("–".into(), |n| format!("{:.3e}", n as f64)));
             let why = r.reason.as_ref().and_then(|why| why.lines().next()).map(|why| format!(": {why}"));

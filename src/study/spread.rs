@@ -3,18 +3,18 @@
 use serde::Serialize;
 
 use super::{
-    Row,
-    rows::{DISTANCE, Metric},
+    ResultRow,
+    rows::{MAX_ABS_METRIC, Metric},
 };
 use crate::analysis::format_verdicts;
 
 /// The figures of which a spread is told.
-const FIGURES: [Metric; 5] = [
-    ("N", |r| r.figures.n),
-    ("M", |r| r.figures.m),
-    ("peak", |r| r.figures.peak),
-    ("aligned N", |r| r.aligned_n),
-    DISTANCE,
+const SPREAD_METRICS: [Metric; 5] = [
+    ("N", |r| r.metrics.relative_l2),
+    ("M", |r| r.metrics.amplitude_ratio),
+    ("peak", |r| r.metrics.peak),
+    ("aligned N", |r| r.aligned_relative_l2),
+    MAX_ABS_METRIC,
 ];
 
 /// A figure over all repeats of a run that have finished.
@@ -34,7 +34,7 @@ pub struct Spread {
 
 /// A run, a check and a figure, and how far the repeats lie apart in it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Apart {
+pub struct RepeatSpread {
     /// Name of the run.
     pub run: String,
     /// What was compared, as `probe.column`.
@@ -70,7 +70,7 @@ impl Spread {
     }
 
     /// In words: mean ± deviation (least to greatest), with numbers as `number` writes them.
-    pub fn said(&self, number: fn(Option<f64>) -> String) -> String {
+    pub fn format(&self, number: fn(Option<f64>) -> String) -> String {
         let [mean, least, greatest] = [self.mean, self.least, self.greatest].map(|x| number(Some(x)));
         let deviation = match self.deviation {
             None => return mean,
@@ -84,8 +84,8 @@ impl Spread {
 }
 
 /// The finished rows of each run and check, its repeats together, in the order of `rows`.
-pub fn together(rows: &[Row]) -> Vec<Vec<&Row>> {
-    let mut all: Vec<Vec<&Row>> = Vec::new();
+pub fn group_repeats(rows: &[ResultRow]) -> Vec<Vec<&ResultRow>> {
+    let mut all: Vec<Vec<&ResultRow>> = Vec::new();
     for row in rows.iter().filter(|row| row.status == "finished") {
         match all.iter_mut().find(|of| of[0].run == row.run && of[0].check == row.check) {
             Some(of) => of.push(row),
@@ -96,27 +96,27 @@ pub fn together(rows: &[Row]) -> Vec<Vec<&Row>> {
 }
 
 /// How far the rows `of` one run and check lie apart in a figure; none where no row knows it.
-pub fn across(of: &[&Row], figure: fn(&Row) -> Option<f64>) -> Option<Spread> {
+pub fn spread_of(of: &[&ResultRow], figure: fn(&ResultRow) -> Option<f64>) -> Option<Spread> {
     Spread::of(of.iter().filter_map(|row| figure(row)))
 }
 
 /// How far the repeats of each run lie apart in each figure; nothing if no run is repeated.
-pub fn apart(rows: &[Row]) -> Vec<Apart> {
-    let figure = |of: &[&Row], (figure, value): Metric| {
-        Some(Apart { run: of[0].run.clone(), check: of[0].check.clone(), figure, spread: across(of, value)? })
+pub fn repeat_spreads(rows: &[ResultRow]) -> Vec<RepeatSpread> {
+    let figure = |of: &[&ResultRow], (figure, value): Metric| {
+        Some(RepeatSpread { run: of[0].run.clone(), check: of[0].check.clone(), figure, spread: spread_of(of, value)? })
     };
-    let repeated = together(rows).into_iter().filter(|of| of.len() > 1);
-    repeated.flat_map(|of| FIGURES.into_iter().filter_map(move |metric| figure(&of, metric))).collect()
+    let repeated = group_repeats(rows).into_iter().filter(|of| of.len() > 1);
+    repeated.flat_map(|of| SPREAD_METRICS.into_iter().filter_map(move |metric| figure(&of, metric))).collect()
 }
 
 /// Whether any run is repeated.
-pub fn repeated(rows: &[Row]) -> bool {
+pub fn has_repeats(rows: &[ResultRow]) -> bool {
     rows.iter().any(|row| row.repeat > 1)
 }
 
 /// Runs that share a name as one point of a plot of error over processor time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct CostPoint {
     /// Mean processor time, s, and mean error.
     pub place: (f64, f64),
     /// The least and the greatest error.
@@ -125,35 +125,35 @@ pub struct Point {
     pub dp: f64,
 }
 
-impl Point {
+impl CostPoint {
     /// Of the rows `of` one run and check; none where no error is known, or no processor time.
-    pub fn new(of: &[&Row], error: fn(&Row) -> Option<f64>) -> Option<Self> {
-        let (cost, error) = (across(of, |row| row.cpu_s)?.mean, across(of, error)?);
+    pub fn new(of: &[&ResultRow], error: fn(&ResultRow) -> Option<f64>) -> Option<Self> {
+        let (cost, error) = (spread_of(of, |row| row.cpu_s)?.mean, spread_of(of, error)?);
         Some(Self { place: (cost, error.mean), span: (error.least, error.greatest), dp: of[0].dp })
     }
 }
 
 /// What must be said of the bars of a plot; nothing if no run is repeated.
-pub fn bars(rows: &[Row]) -> &'static str {
-    match repeated(rows) {
+pub fn error_bar_note(rows: &[ResultRow]) -> &'static str {
+    match has_repeats(rows) {
         true => " A point is the mean of its repeats, its bar goes from the least to the greatest.",
         false => "",
     }
 }
 
 /// The spreads as a table in words, a row for each run and check, the first row its head; empty if no run is repeated.
-pub fn spreads(rows: &[Row]) -> Vec<Vec<String>> {
-    let all: Vec<Vec<&Row>> = together(rows).into_iter().filter(|of| of.len() > 1).collect();
-    let known = |(_, figure): &Metric| all.iter().any(|of| across(of, *figure).is_some());
-    let used: Vec<Metric> = FIGURES.into_iter().filter(known).collect();
-    let row = |of: &Vec<&Row>| {
+pub fn spread_table(rows: &[ResultRow]) -> Vec<Vec<String>> {
+    let all: Vec<Vec<&ResultRow>> = group_repeats(rows).into_iter().filter(|of| of.len() > 1).collect();
+    let known = |(_, figure): &Metric| all.iter().any(|of| spread_of(of, *figure).is_some());
+    let used: Vec<Metric> = SPREAD_METRICS.into_iter().filter(known).collect();
+    let row = |of: &Vec<&ResultRow>| {
         let told = |(name, figure): &Metric| {
-            let number = if *name == DISTANCE.0 { format_verdicts::digits } else { format_verdicts::figure };
-            across(of, *figure).map_or("–".into(), |spread| spread.said(number))
+            let number = if *name == MAX_ABS_METRIC.0 { format_verdicts::format_value } else { format_verdicts::format_metric };
+            spread_of(of, *figure).map_or("–".into(), |spread| spread.format(number))
         };
         let mut cells = vec![of[0].run.clone(), of[0].check.clone(), of.len().to_string()];
         cells.extend(used.iter().map(told));
-        cells.push(across(of, |row| row.cpu_s).map_or("–".into(), |spread| format!("{:.1}", spread.mean)));
+        cells.push(spread_of(of, |row| row.cpu_s).map_or("–".into(), |spread| format!("{:.1}", spread.mean)));
         cells
     };
     let head = ["run", "check", "runs"].into_iter().chain(used.iter().map(|(name, _)| *name)).chain(["processors, s"]);
@@ -162,7 +162,7 @@ pub fn spreads(rows: &[Row]) -> Vec<Vec<String>> {
 }
 
 /// What their table says.
-pub const CHANCE: &str = "Repeats start with their water moved by a millionth of dp more each time: what differs between them is chance. \
+pub const REPEATS_NOTE: &str = "Repeats start with their water moved by a millionth of dp more each time: what differs between them is chance. \
     Mean ± standard deviation of one run (least to greatest). Two laws whose means are nearer than that are not told apart by one run of each.";
 
 #[cfg(test)]
@@ -193,9 +193,9 @@ mod tests {
             row("b", 1, Some(0.2)),
             row("b", 2, Some(0.2)),
         ];
-        let all = apart(&rows);
+        let all = separate_waves(&rows);
         assert_eq!(all.iter().map(|a| (a.run.as_str(), a.spread.runs)).collect::<Vec<_>>(), [("a", 2), ("b", 2)]);
-        let told = spreads(&rows);
+        let told = spread_table(&rows);
         assert_eq!(told[0], ["run", "check", "runs", "N", "processors, s"]);
         assert_eq!(told[1], ["a", "box.surge_m", "2", "0.120 ± 0.028 (0.100 to 0.140)", "2.0"]);
         assert_eq!(told[2][3], "0.200 ± 0.000");
@@ -203,10 +203,10 @@ mod tests {
 
     #[test]
     fn nothing_is_told_of_runs_that_were_made_once() {
-        assert!(apart(&[row("a", 1, Some(0.1)), row("b", 1, Some(0.2))]).is_empty());
-        assert!(spreads(&[row("a", 1, Some(0.1))]).is_empty());
+        assert!(separate_waves(&[row("a", 1, Some(0.1)), row("b", 1, Some(0.2))]).is_empty());
+        assert!(spread_table(&[row("a", 1, Some(0.1))]).is_empty());
         assert_eq!(Spread::of([]), None);
-        let said = |values: &[f64]| Spread::of(values.iter().copied()).map(|s| s.said(format_verdicts::digits));
+        let said = |values: &[f64]| Spread::of(values.iter().copied()).map(|s| s.format(format_verdicts::digits));
         assert_eq!(said(&[0.25]), Some("0.250".into()));
         assert_eq!(said(&[0.25, 0.25 + 1e-7]), Some("0.250 ± 7e-8".into()), "no row of noughts");
     }

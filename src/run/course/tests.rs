@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use super::*;
-use crate::{math::Vector, output::Readings, run::resume, simulation::Rollback};
+use crate::{math::Vector, output::SeriesTable, run::resume, simulation::Rollback};
 
 /// Water that falls over, with a table of every kind: by step, of means, of many rows at one time.
 const SCENE: &str = r#"
@@ -51,9 +51,9 @@ struct Stop {
     rescued: bool,
 }
 
-impl Watch for Stop {
-    fn rescued(&mut self, _: &Rollback) {
-        self.rescued = true;
+impl RunObserver for Stop {
+    fn rolled_back(&mut self, _: &Rollback) {
+        self.rolled_back = true;
     }
 
     fn step(&mut self, now: &Progress) -> bool {
@@ -95,7 +95,7 @@ fn what_was_written_of_a_course_that_ended_in_an_alarm_is_taken_back() -> Result
     );
 
     // Nothing later is left, in tables, frames or either checkpoint.
-    let last = |name: &str| Ok::<_, Error>(Readings::read(&out.join(name))?.t.last().copied().unwrap_or(0.0));
+    let last = |name: &str| Ok::<_, Error>(SeriesTable::read(&out.join(name))?.times.last().copied().unwrap_or(0.0));
     for name in ["series/every_step.csv", "series/means.csv", "lists/touch.csv"] {
         let last = last(name)?;
         assert!(last <= back_to, "{name} reaches {last} s, the run {back_to} s after an alarm at {alarm} s");
@@ -118,7 +118,7 @@ fn what_was_written_of_a_course_that_ended_in_an_alarm_is_taken_back() -> Result
     }
     let resumed = resume(&copy, &[], Some(1), &mut |_: &Progress| true)?;
     let status = course.advance(&mut Stop { steps: u64::MAX, rescued: false })?;
-    assert_eq!([status, resumed.manifest.status], [Status::Finished; 2]);
+    assert_eq!([status, resumed.manifest.status], [RunStatus::Finished; 2]);
     let (through, again) = (written(&out)?, written(&copy)?);
     assert!(through.keys().eq(again.keys()), "{:?}\n{:?}", through.keys(), again.keys());
     for (name, bytes) in &through {
@@ -126,7 +126,7 @@ fn what_was_written_of_a_course_that_ended_in_an_alarm_is_taken_back() -> Result
     }
 
     // A row for the start and for each step of the course that led to the end, those of half a step as well.
-    let rows = Readings::read(&out.join("series/every_step.csv"))?.t;
+    let rows = SeriesTable::read(&out.join("series/every_step.csv"))?.times;
     assert_eq!(rows.len() as u64, 1 + course.sim.steps());
     assert!(rows.is_sorted_by(|a, b| a < b), "no time twice");
     fs::remove_dir_all(&home).map_err(|e| Error::file(&home, e))

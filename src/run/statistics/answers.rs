@@ -4,14 +4,14 @@ use std::{f64::consts::PI, path::Path};
 
 use serde::{Serialize, Serializer};
 
-use crate::{analysis::Band, error::Result, output::write_whole};
+use crate::{analysis::RaoPoint, error::Result, output::write_atomically};
 
 /// The file, in the run's folder.
-pub const RAO: &str = "rao.csv";
+pub const RAO_FILE: &str = "rao.csv";
 
 /// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO`] for keys.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct RaoResult {
     /// Name of the `[[statistic]]`.
     pub name: String,
     /// The motion, as `probe.column`.
@@ -19,31 +19,31 @@ pub struct Answer {
     /// Unit of the ratio, as `m/m`.
     pub unit: String,
     /// The answer.
-    pub band: Band,
+    pub point: RaoPoint,
 }
 
-impl Answer {
+impl RaoResult {
     /// Phase of the motion less that of the wave, degrees.
-    pub fn degrees(&self) -> f64 {
-        self.band.phase * 180.0 / PI
+    pub fn phase_degrees(&self) -> f64 {
+        self.point.phase * 180.0 / PI
     }
 
-    fn row(&self) -> Row<'_> {
-        let Band { frequency, ratio, coherence, .. } = self.band;
-        Row {
+    fn row(&self) -> RaoRow<'_> {
+        let RaoPoint { frequency, ratio, coherence, .. } = self.point;
+        RaoRow {
             name: &self.name,
             series: &self.series,
             frequency_hz: frequency,
             period_s: 1.0 / frequency,
             rao: ratio,
             unit: &self.unit,
-            phase_deg: self.degrees(),
+            phase_deg: self.phase_degrees(),
             coherence,
         }
     }
 }
 
-impl Serialize for Answer {
+impl Serialize for RaoResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         self.row().serialize(serializer)
     }
@@ -51,7 +51,7 @@ impl Serialize for Answer {
 
 /// An answer by the columns of the file.
 #[derive(Serialize)]
-struct Row<'a> {
+struct RaoRow<'a> {
     name: &'a str,
     series: &'a str,
     frequency_hz: f64,
@@ -66,16 +66,16 @@ struct Row<'a> {
 ///
 /// # Errors
 /// `File` if it cannot be written.
-pub fn write(folder: &Path, answers: &[Answer]) -> Result<()> {
+pub fn write(folder: &Path, answers: &[RaoResult]) -> Result<()> {
     if answers.is_empty() {
         return Ok(());
     }
     let mut text = String::from("name,series,frequency_hz,period_s,rao,unit,phase_deg,coherence\n");
     for answer in answers {
-        let Row { name, series, frequency_hz, period_s, rao, unit, phase_deg, coherence } = answer.row();
+        let RaoRow { name, series, frequency_hz, period_s, rao, unit, phase_deg, coherence } = answer.row();
         text += &format!("{name},{series},{frequency_hz:?},{period_s:?},{rao:?},{unit},{phase_deg:?},{coherence:?}\n");
     }
-    write_whole(&folder.join(RAO), text.as_bytes())
+    write_atomically(&folder.join(RAO_FILE), text.as_bytes())
 }
 
 #[cfg(test)]
@@ -89,15 +89,15 @@ mod tests {
         let failed = |why| Error::file(&folder, why);
         std::fs::create_dir_all(&folder).map_err(failed)?;
         write(&folder, &[])?;
-        assert!(!folder.join(RAO).exists());
-        let answer = |frequency, phase| Answer {
+        assert!(!folder.join(RAO_FILE).exists());
+        let answer = |frequency, phase| RaoResult {
             name: "rao".into(),
             series: "buoy.pitch_deg".into(),
             unit: "°/m".into(),
-            band: Band { frequency, ratio: 1.5, phase, coherence: 0.75 },
+            point: RaoPoint { frequency, ratio: 1.5, phase, coherence: 0.75 },
         };
         write(&folder, &[answer(0.5, 0.0), answer(0.625, -0.5 * PI)])?;
-        let text = std::fs::read_to_string(folder.join(RAO)).map_err(failed)?;
+        let text = std::fs::read_to_string(folder.join(RAO_FILE)).map_err(failed)?;
         let rows = [
             "name,series,frequency_hz,period_s,rao,unit,phase_deg,coherence",
             "rao,buoy.pitch_deg,0.5,2.0,1.5,°/m,0.0,0.75",

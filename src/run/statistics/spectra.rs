@@ -2,24 +2,24 @@
 
 use std::path::Path;
 
-use super::{Tables, find};
-use crate::{analysis::swing, error::Result, math::format::unit, output::write_whole};
+use super::{ProbeTables, series_in_window};
+use crate::{analysis::displayed_spectrum, error::Result, math::format::unit, output::write_atomically};
 
 /// The file, in the run's folder.
-pub const SPECTRA: &str = "spectra.csv";
+pub const SPECTRA_FILE: &str = "spectra.csv";
 
 /// Writes the spectra of all series of `tables` that swing into the run's `folder`; no file if none does.
 ///
 /// # Errors
 /// `File` if it cannot be written.
-pub fn write(folder: &Path, tables: &Tables) -> Result<()> {
+pub fn write(folder: &Path, tables: &ProbeTables) -> Result<()> {
     let mut text = String::new();
     for (probe, table) in tables {
         for column in &table.columns {
             let name = format!("{probe}.{column}");
-            let all = find(tables, &name, (f64::NEG_INFINITY, f64::INFINITY));
-            let Some(spectrum) = all.and_then(|series| swing(&series)) else { continue };
-            let of = density(unit(&name));
+            let all = series_in_window(tables, &name, (f64::NEG_INFINITY, f64::INFINITY));
+            let Some(spectrum) = all.and_then(|series| displayed_spectrum(&series)) else { continue };
+            let of = density_unit(unit(&name));
             for (f, s) in spectrum.frequencies().zip(&spectrum.density) {
                 text += &format!("{name},{f:?},{s:?},{of}\n");
             }
@@ -28,11 +28,11 @@ pub fn write(folder: &Path, tables: &Tables) -> Result<()> {
     if text.is_empty() {
         return Ok(());
     }
-    write_whole(&folder.join(SPECTRA), format!("series,f_Hz,S,unit\n{text}").as_bytes())
+    write_atomically(&folder.join(SPECTRA_FILE), format!("series,f_Hz,S,unit\n{text}").as_bytes())
 }
 
 /// The unit of the spectral density of what is measured in `unit`.
-fn density(unit: &str) -> String {
+fn density_unit(unit: &str) -> String {
     match unit {
         "–" => "1/Hz".into(),
         unit if unit.contains(['/', ' ']) => format!("({unit})²/Hz"),
@@ -43,7 +43,7 @@ fn density(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{error::Error, output::Readings};
+    use crate::{error::Error, output::SeriesTable};
 
     #[test]
     fn what_swings_has_its_spectrum_in_rows_and_what_does_not_has_no_file() -> Result<()> {
@@ -52,13 +52,13 @@ mod tests {
         std::fs::create_dir_all(&folder).map_err(failed)?;
         let t: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.01).collect();
         let wave: Vec<f64> = t.iter().map(|t| 0.05 * (std::f64::consts::TAU * 1.25 * t).sin()).collect();
-        let mut table = Readings { columns: vec!["front_m".into()], t: t.clone(), x: vec![t] };
+        let mut table = SeriesTable { columns: vec!["front_m".into()], times: t.clone(), values: vec![t] };
         write(&folder, &Tables::from([("gauge".into(), table.clone())]))?;
-        assert!(!folder.join(SPECTRA).exists(), "what only rises has none");
+        assert!(!folder.join(SPECTRA_FILE).exists(), "what only rises has none");
         table.columns.push("eta_m".into());
-        table.x.push(wave);
+        table.values.push(wave);
         write(&folder, &Tables::from([("gauge".into(), table)]))?;
-        let text = std::fs::read_to_string(folder.join(SPECTRA)).map_err(failed)?;
+        let text = std::fs::read_to_string(folder.join(SPECTRA_FILE)).map_err(failed)?;
         assert!(text.starts_with("series,f_Hz,S,unit\ngauge.eta_m,0.0,"), "{text}");
         let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
         assert!(rows.iter().all(|row| row.len() == 4 && row[3] == "m²/Hz"), "{text}");
@@ -72,6 +72,6 @@ mod tests {
 
     #[test]
     fn densities_have_the_square_of_the_unit_a_hertz() {
-        assert_eq!(["m", "N/m", "–"].map(density), ["m²/Hz", "(N/m)²/Hz", "1/Hz"]);
+        assert_eq!(["m", "N/m", "–"].map(density_unit), ["m²/Hz", "(N/m)²/Hz", "1/Hz"]);
     }
 }

@@ -28,7 +28,7 @@ pub struct Bound {
 /// A bound on something of a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Of {
+pub struct SolidBound {
     /// The solid's name.
     pub solid: String,
     /// The largest figure that passes.
@@ -40,7 +40,7 @@ pub struct Of {
 /// A motion that is known exactly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Course {
+pub struct MotionBound {
     /// The solid's name.
     pub solid: String,
     /// A column of its motion, as in `heave_m`.
@@ -56,7 +56,7 @@ pub struct Course {
 /// What a case is judged by.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Judge {
+pub struct Criteria {
     /// Energy made of nothing, as a share of the case's energy scale.
     pub energy: Option<Bound>,
     /// Depth of water or a body inside a solid, dp; no water may be beside or below a tank.
@@ -66,18 +66,18 @@ pub struct Judge {
     /// Momentum made of nothing, as a share of what moves.
     pub momentum: Option<Bound>,
     /// Bodies that should float at Archimedes' draft, dp.
-    pub draft: Vec<Of>,
+    pub draft: Vec<SolidBound>,
     /// Motions that are known.
-    pub motion: Vec<Course>,
+    pub motion: Vec<MotionBound>,
 }
 
 /// What was measured of a run, by name.
-pub type Figures = BTreeMap<String, f64>;
+pub type MeasuredFigures = BTreeMap<String, f64>;
 
 /// How a case came out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum CaseOutcome {
     /// All figures are within their bounds.
     Right,
     /// The program stopped or refused, and said why.
@@ -88,7 +88,7 @@ pub enum Outcome {
     Wrong,
 }
 
-impl Judge {
+impl Criteria {
     /// Names and bounds of all that is asked.
     pub fn bounds(&self) -> Vec<(String, f64)> {
         let plain =
@@ -96,23 +96,23 @@ impl Judge {
         let mut all: Vec<(String, f64)> =
             plain.iter().filter_map(|(name, bound)| Some((name.to_string(), bound.as_ref()?.within))).collect();
         all.extend(self.walls.iter().flat_map(|bound| [("bodies".into(), bound.within), ("outside".into(), 0.0)]));
-        all.extend(self.draft.iter().map(|of| (draft(&of.solid), of.within)));
-        all.extend(self.motion.iter().map(|course| (motion(course), course.within)));
+        all.extend(self.draft.iter().map(|of| (draft_figure(&of.solid), of.within)));
+        all.extend(self.motion.iter().map(|course| (motion_figure(course), course.within)));
         all
     }
 
     /// What must be measured, whatever the bounds are: a run need not be made again for another bound.
-    pub fn asks(&self) -> String {
+    pub fn required_figures(&self) -> String {
         let names: Vec<String> = self.bounds().into_iter().map(|(name, _)| name).collect();
         let formulae: Vec<&str> = self.motion.iter().map(|course| course.formula.as_str()).collect();
         format!("{}; {}", names.join(", "), formulae.join(", "))
     }
 
     /// What of `figures` misses its bound, in words; a figure that is not there misses it.
-    pub fn missed(&self, figures: &Figures) -> Vec<String> {
+    pub fn missed_bounds(&self, figures: &MeasuredFigures) -> Vec<String> {
         let said = |(name, within): (String, f64)| match figures.get(&name) {
             Some(figure) if *figure <= within => None,
-            Some(figure) => Some(format!("{name} {} > {within}", short(*figure))),
+            Some(figure) => Some(format!("{name} {} > {within}", format_figure(*figure))),
             None => Some(format!("{name} not measured")),
         };
         self.bounds().into_iter().filter_map(said).collect()
@@ -120,22 +120,22 @@ impl Judge {
 }
 
 /// A figure as it is read.
-fn short(x: f64) -> String {
+fn format_figure(x: f64) -> String {
     if (0.01..1e4).contains(&x.abs()) { format!("{x:.3}") } else { format!("{x:.2e}") }
 }
 
 /// The name of the figure of a draft.
-pub fn draft(solid: &str) -> String {
+pub fn draft_figure(solid: &str) -> String {
     format!("draft of {solid}")
 }
 
 /// The name of the figure of a motion.
-pub fn motion(course: &Course) -> String {
+pub fn motion_figure(course: &MotionBound) -> String {
     format!("{} of {}", course.column, course.solid)
 }
 
 /// The larger of two figures; one that is not a number is larger than any, and still can be written down.
-pub fn worse(a: f64, b: f64) -> f64 {
+pub fn max_or_invalid(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::MAX } else { a.max(b.min(f64::MAX)) }
 }
 
@@ -152,42 +152,42 @@ pub struct Energies {
 
 /// The books of a run's energy.
 #[derive(Clone, Copy, Debug)]
-pub struct Books {
+pub struct EnergyBalance {
     start: f64,
-    floor: f64,
-    fallen: f64,
+    scale_floor: f64,
+    potential_drop: f64,
     work: f64,
-    worked: f64,
+    largest_work: f64,
     excess: f64,
 }
 
-impl Books {
+impl EnergyBalance {
     /// Opens them at the start with `first`. `lift` is M g dp: what lifts everything by one particle.
     ///
     /// The scale is the largest of the motion and compression at the start, the fall of the potential, the work done, and a
     /// tenth of `lift`: bodies and levels are not known better than to a tenth of dp, so less energy than that means nothing.
-    pub fn open(first: Energies, lift: f64) -> Self {
+    pub fn new(first: Energies, lift: f64) -> Self {
         let start = first.kinetic + first.potential + first.compression;
         let floor = (0.1 * lift).max(first.kinetic + first.compression);
-        Self { start, floor, fallen: 0.0, work: 0.0, worked: 0.0, excess: 0.0 }
+        Self { start, scale_floor: floor, potential_drop: 0.0, work: 0.0, largest_work: 0.0, excess: 0.0 }
     }
 
     /// Enters the work (J) of driven solids, springs, motors and forces over a step.
-    pub fn work(&mut self, joules: f64) {
+    pub fn add_work(&mut self, joules: f64) {
         self.work += joules;
-        self.worked = self.worked.max(self.work.abs());
+        self.largest_work = self.largest_work.max(self.work.abs());
     }
 
     /// Enters the energies now.
-    pub fn enter(&mut self, now: Energies) {
-        self.fallen = self.fallen.max(-now.potential);
-        self.excess = worse(self.excess, now.kinetic + now.potential + now.compression - self.start - self.work);
+    pub fn update(&mut self, now: Energies) {
+        self.potential_drop = self.potential_drop.max(-now.potential);
+        self.excess = max_or_invalid(self.excess, now.kinetic + now.potential + now.compression - self.start - self.work);
     }
 
     /// The largest excess over the scale (–).
-    pub fn share(&self) -> f64 {
-        let scale = self.floor.max(self.fallen).max(self.worked);
-        if self.excess <= 0.0 { 0.0 } else { worse(0.0, self.excess / scale) }
+    pub fn relative_excess(&self) -> f64 {
+        let scale = self.scale_floor.max(self.potential_drop).max(self.largest_work);
+        if self.excess <= 0.0 { 0.0 } else { max_or_invalid(0.0, self.excess / scale) }
     }
 }
 
@@ -201,68 +201,68 @@ mod tests {
 
     #[test]
     fn energy_that_only_falls_or_turns_is_none_made() {
-        let mut books = Books::open(at(2.0, 0.0), 1.0);
-        [at(1.0, 1.0), at(1.5, 0.2), at(0.0, 0.1)].into_iter().for_each(|now| books.enter(now));
-        assert_eq!(books.share(), 0.0);
+        let mut books = EnergyBalance::new(at(2.0, 0.0), 1.0);
+        [at(1.0, 1.0), at(1.5, 0.2), at(0.0, 0.1)].into_iter().for_each(|now| books.update(now));
+        assert_eq!(books.relative_excess(), 0.0);
     }
 
     #[test]
     fn energy_made_is_told_as_a_share_of_what_there_was() {
-        let mut books = Books::open(at(2.0, 0.0), 1.0);
-        books.enter(at(2.5, 0.0));
-        books.enter(at(1.0, 0.0));
-        assert_eq!(books.share(), 0.25, "the most, not the last");
+        let mut books = EnergyBalance::new(at(2.0, 0.0), 1.0);
+        books.update(at(2.5, 0.0));
+        books.update(at(1.0, 0.0));
+        assert_eq!(books.relative_excess(), 0.25, "the most, not the last");
         // Eight more from a fall of ten: the scale is the fall.
-        books.enter(at(18.0, -10.0));
-        assert_eq!(books.share(), 0.6);
+        books.update(at(18.0, -10.0));
+        assert_eq!(books.relative_excess(), 0.6);
     }
 
     #[test]
     fn work_of_driven_solids_is_no_energy_made() {
-        let mut books = Books::open(at(0.0, 0.0), 1.0);
-        books.work(4.0);
-        books.enter(at(3.0, 1.0));
-        assert_eq!(books.share(), 0.0);
-        books.work(-2.0);
-        books.enter(at(3.0, 1.0));
-        assert_eq!(books.share(), 0.5, "what was given back is no longer there: 2 of 4");
+        let mut books = EnergyBalance::new(at(0.0, 0.0), 1.0);
+        books.add_work(4.0);
+        books.update(at(3.0, 1.0));
+        assert_eq!(books.relative_excess(), 0.0);
+        books.add_work(-2.0);
+        books.update(at(3.0, 1.0));
+        assert_eq!(books.relative_excess(), 0.5, "what was given back is no longer there: 2 of 4");
     }
 
     #[test]
     fn what_lifts_a_tenth_of_a_particle_is_the_least_scale() {
-        let mut books = Books::open(at(0.0, 0.0), 100.0);
-        books.enter(at(0.1, 0.0));
-        assert!((books.share() - 0.01).abs() < 1e-15);
-        books.enter(at(f64::NAN, 0.0));
-        assert!(books.share() > 1e300, "what is no number is the worst");
-        let mut weightless = Books::open(at(0.0, 0.0), 0.0);
-        weightless.enter(at(1e-9, 0.0));
-        assert!(weightless.share() > 1e300, "where there was nothing, anything is too much");
+        let mut books = EnergyBalance::new(at(0.0, 0.0), 100.0);
+        books.update(at(0.1, 0.0));
+        assert!((books.relative_excess() - 0.01).abs() < 1e-15);
+        books.update(at(f64::NAN, 0.0));
+        assert!(books.relative_excess() > 1e300, "what is no number is the worst");
+        let mut weightless = EnergyBalance::new(at(0.0, 0.0), 0.0);
+        weightless.update(at(1e-9, 0.0));
+        assert!(weightless.relative_excess() > 1e300, "where there was nothing, anything is too much");
     }
 
     #[test]
     fn a_figure_misses_its_bound_above_it_and_where_it_is_not() {
         let bound = |within| Some(Bound { within, why: String::new() });
-        let of = Of { solid: "box".into(), within: 0.5, why: String::new() };
-        let judge = Judge { energy: bound(0.1), walls: bound(0.5), draft: vec![of], ..Judge::default() };
+        let of = SolidBound { solid: "box".into(), within: 0.5, why: String::new() };
+        let judge = Criteria { energy: bound(0.1), walls: bound(0.5), draft: vec![of], ..Criteria::default() };
         let figures = |energy: f64, outside: f64| {
             let all =
                 [("energy", energy), ("walls", 0.5), ("bodies", 0.0), ("outside", outside), ("draft of box", 0.4)];
-            Figures::from(all.map(|(name, x)| (name.to_string(), x)))
+            MeasuredFigures::from(all.map(|(name, x)| (name.to_string(), x)))
         };
-        assert!(judge.missed(&figures(0.1, 0.0)).is_empty());
-        assert_eq!(judge.missed(&figures(0.2, 0.0)), ["energy 0.200 > 0.1"]);
-        assert_eq!(judge.missed(&figures(0.0, 1.0)), ["outside 1.000 > 0"]);
-        assert_eq!(judge.missed(&figures(f64::NAN, 0.0)).len(), 1, "what is no number misses any bound");
+        assert!(judge.missed_bounds(&figures(0.1, 0.0)).is_empty());
+        assert_eq!(judge.missed_bounds(&figures(0.2, 0.0)), ["energy 0.200 > 0.1"]);
+        assert_eq!(judge.missed_bounds(&figures(0.0, 1.0)), ["outside 1.000 > 0"]);
+        assert_eq!(judge.missed_bounds(&figures(f64::NAN, 0.0)).len(), 1, "what is no number misses any bound");
         let mut without = figures(0.0, 0.0);
         without.remove("draft of box");
-        assert_eq!(judge.missed(&without), ["draft of box not measured"]);
+        assert_eq!(judge.missed_bounds(&without), ["draft of box not measured"]);
     }
 
     #[test]
     fn another_bound_asks_for_no_other_run() {
-        let judge = |within| Judge { energy: Some(Bound { within, why: String::new() }), ..Judge::default() };
-        assert_eq!(judge(0.1).asks(), judge(0.2).asks());
-        assert_ne!(judge(0.1).asks(), Judge::default().asks());
+        let judge = |within| Criteria { energy: Some(Bound { within, why: String::new() }), ..Criteria::default() };
+        assert_eq!(judge(0.1).required_figures(), judge(0.2).required_figures());
+        assert_ne!(judge(0.1).required_figures(), Criteria::default().required_figures());
     }
 }

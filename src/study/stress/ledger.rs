@@ -12,73 +12,73 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{Case, Map, Trial, chart, judge::Outcome};
+use super::{StressCase, StressMap, CaseRun, chart, judge::CaseOutcome};
 use crate::{
     error::{Error, Result},
-    output::write_whole,
+    output::write_atomically,
 };
 
 /// A case, what came out of it if it has been run, and what that is worth.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct CaseResult {
     /// The case.
-    pub case: Case,
+    pub case: StressCase,
     /// Its run.
-    pub trial: Option<Trial>,
+    pub run: Option<CaseRun>,
 }
 
 /// Many maps, and where their results go.
-pub struct EnergyBudget {
+pub struct StressResults {
     out: PathBuf,
-    maps: Vec<Map>,
+    maps: Vec<StressMap>,
     /// All cases, map by map.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<CaseResult>,
     /// Runs of cases that are not in the list now: kept in the file.
-    others: Vec<Trial>,
+    unlisted: Vec<CaseRun>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct File {
+struct StoredResults {
     version: String,
     counts: BTreeMap<String, usize>,
-    trials: Vec<Row>,
+    trials: Vec<StoredRow>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Row {
-    outcome: Outcome,
+struct StoredRow {
+    outcome: CaseOutcome,
     missed: Vec<String>,
     #[serde(flatten)]
-    trial: Trial,
+    trial: CaseRun,
 }
 
-impl Entry {
+impl CaseResult {
     /// What the run is worth, and which bounds it misses; none if it has not been run.
-    pub fn verdict(&self) -> Option<(Outcome, Vec<String>)> {
-        let trial = self.trial.as_ref()?;
-        let missed = self.case.judge.missed(&trial.figures);
+    pub fn verdict(&self) -> Option<(CaseOutcome, Vec<String>)> {
+        let trial = self.run.as_ref()?;
+        let missed = self.case.criteria.missed_bounds(&trial.figures);
         Some((trial.outcome(&missed), missed))
     }
 }
 
-impl EnergyBudget {
+impl StressResults {
     /// The cases of `maps`, with the runs that the folder `out` holds already.
     ///
     /// # Errors
     /// Those of the maps; `File` if the results there cannot be read.
-    pub fn open(maps: Vec<Map>, quick: bool, out: PathBuf) -> Result<Self> {
+    pub fn open(maps: Vec<StressMap>, quick: bool, out: PathBuf) -> Result<Self> {
         let cases = maps.iter().map(|map| map.cases(quick)).collect::<Result<Vec<_>>>()?.concat();
-        let entries = cases.into_iter().map(|case| Entry { case, trial: None }).collect();
-        let mut ledger = Self { out, maps, entries, others: Vec::new() };
+        let entries = cases.into_iter().map(|case| CaseResult { case, run: None }).collect();
+        let mut ledger = Self { out, maps, entries, unlisted: Vec::new() };
         let file = ledger.file();
         let Ok(text) = fs::read_to_string(&file) else { return Ok(ledger) };
-        let File { trials, .. } = serde_json::from_str(&text).map_err(|why| {
+        let StoredResults { trials, .. } = serde_json::from_str(&text).map_err(|why| {
             Error::file(&file, format!("is no list of results: {why}")).help("remove it, or choose another --out")
         })?;
-        for Row { trial, .. } in trials {
+        for StoredRow { trial, .. } in trials {
             match ledger.entries.iter_mut().find(|entry| entry.case.key == trial.key) {
-                Some(entry) => entry.trial = Some(trial),
-                None => ledger.others.push(trial),
+                Some(entry) => entry.run = Some(trial),
+                None => ledger.unlisted.push(trial),
             }
         }
         Ok(ledger)
@@ -94,23 +94,23 @@ impl EnergyBudget {
     ///
     /// # Errors
     /// `File` if the results cannot be written; `Usage` if threads cannot be started.
-    pub fn work(&mut self, workers: usize, stop: &AtomicBool, told: impl FnMut(&Entry) + Send) -> Result<()> {
+    pub fn run_missing(&mut self, workers: usize, stop: &AtomicBool, told: impl FnMut(&CaseResult) + Send) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
-        let due: Vec<usize> = (0..self.entries.len()).filter(|&i| self.entries[i].trial.is_none()).collect();
-        let cases: Vec<Case> = due.iter().map(|&i| self.entries[i].case.clone()).collect();
+        let due: Vec<usize> = (0..self.entries.len()).filter(|&i| self.entries[i].run.is_none()).collect();
+        let cases: Vec<StressCase> = due.iter().map(|&i| self.entries[i].case.clone()).collect();
         let next = AtomicUsize::new(0);
         let shared = Mutex::new((self, told, Ok(())));
         let work = || {
             while !stop.load(Ordering::Relaxed) {
                 let k = next.fetch_add(1, Ordering::Relaxed);
                 let Some(case) = cases.get(k) else { return };
-                let outcome = Trial::of(case);
+                let outcome = CaseRun::execute(case);
                 let mut held = shared.lock().unwrap_or_else(PoisonError::into_inner);
                 let (ledger, told, failed) = &mut *held;
                 let kept = outcome.and_then(|trial| {
-                    ledger.entries[due[k]].trial = Some(trial);
+                    ledger.entries[due[k]].run = Some(trial);
                     told(&ledger.entries[due[k]]);
-                    ledger.keep()
+                    ledger.write_results()
                 });
                 if let Err(error) = kept {
                     *failed = Err(error);
@@ -123,7 +123,7 @@ impl EnergyBudget {
     }
 
     /// How many cases came out how; those that have not been run are not counted.
-    pub fn counts(&self, map: Option<&str>) -> BTreeMap<Outcome, usize> {
+    pub fn counts(&self, map: Option<&str>) -> BTreeMap<CaseOutcome, usize> {
         let mut counts = BTreeMap::new();
         for entry in self.entries.iter().filter(|entry| map.is_none_or(|map| entry.case.map == map)) {
             if let Some((outcome, _)) = entry.verdict() {
@@ -134,24 +134,24 @@ impl EnergyBudget {
     }
 
     /// Processor time of all cases, s.
-    pub fn seconds(&self) -> f64 {
-        self.entries.iter().filter_map(|entry| Some(entry.trial.as_ref()?.cpu_s)).sum()
+    pub fn cpu_seconds(&self) -> f64 {
+        self.entries.iter().filter_map(|entry| Some(entry.run.as_ref()?.cpu_s)).sum()
     }
 
     /// Writes the results.
-    fn keep(&self) -> Result<()> {
-        let row = |entry: &Entry| {
+    fn write_results(&self) -> Result<()> {
+        let row = |entry: &CaseResult| {
             let (outcome, missed) = entry.verdict()?;
-            Some(Row { outcome, missed, trial: entry.trial.clone()? })
+            Some(StoredRow { outcome, missed, trial: entry.run.clone()? })
         };
         // Of a case that is not in the list now the bounds are not known: its verdict is made anew when it is.
-        let other = |trial: &Trial| Row { outcome: trial.outcome(&[]), missed: vec![], trial: trial.clone() };
-        let trials = self.entries.iter().filter_map(row).chain(self.others.iter().map(other)).collect();
-        let name = |outcome: Outcome| chart::name(outcome).to_string();
+        let other = |trial: &CaseRun| StoredRow { outcome: trial.outcome(&[]), missed: vec![], trial: trial.clone() };
+        let trials = self.entries.iter().filter_map(row).chain(self.unlisted.iter().map(other)).collect();
+        let name = |outcome: CaseOutcome| chart::outcome_name(outcome).to_string();
         let counts = self.counts(None).into_iter().map(|(outcome, n)| (name(outcome), n)).collect();
-        let whole = File { version: env!("CARGO_PKG_VERSION").into(), counts, trials };
+        let whole = StoredResults { version: env!("CARGO_PKG_VERSION").into(), counts, trials };
         let text = serde_json::to_string_pretty(&whole).map_err(|why| Error::file(&self.file(), why))?;
-        write_whole(&self.file(), (text + "\n").as_bytes())
+        write_atomically(&self.file(), (text + "\n").as_bytes())
     }
 
     /// Writes the results and a picture of each map; returns the pictures' names.
@@ -160,12 +160,12 @@ impl EnergyBudget {
     /// `File` if one cannot be written.
     pub fn write(&self) -> Result<Vec<PathBuf>> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
-        self.keep()?;
+        self.write_results()?;
         let mut files = Vec::new();
         for map in &self.maps {
-            let own: Vec<&Entry> = self.entries.iter().filter(|entry| entry.case.map == map.name).collect();
+            let own: Vec<&CaseResult> = self.entries.iter().filter(|entry| entry.case.map == map.name).collect();
             let file = self.out.join(format!("{}.svg", map.name));
-            write_whole(&file, chart::picture(map, &own).as_bytes())?;
+            write_atomically(&file, chart::map_svg(map, &own).as_bytes())?;
             files.push(file);
         }
         Ok(files)
@@ -173,11 +173,11 @@ impl EnergyBudget {
 
     /// A row for each map: how many came out how. The first row is its head, the last the sum.
     pub fn table(&self) -> Vec<Vec<String>> {
-        let all = [Outcome::Right, Outcome::Stopped, Outcome::Wrong, Outcome::Unfinished];
+        let all = [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished];
         let row = |name: &str, map: Option<&str>| {
             let counts = self.counts(map);
             let mut cells = vec![name.to_string()];
-            let number = |outcome: &Outcome| counts.get(outcome).map_or("–".into(), |n| n.to_string());
+            let number = |outcome: &CaseOutcome| counts.get(outcome).map_or("–".into(), |n| n.to_string());
             cells.extend(all.iter().map(number));
             cells
         };

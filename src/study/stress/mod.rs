@@ -11,21 +11,21 @@ mod maps;
 mod measure;
 mod trial;
 
-pub use judge::{Bound, Course, Figures, Judge, Of, Outcome};
-pub use ledger::{EnergyBudget, Entry};
-pub use maps::{Axis, Case, Map, choose, maps};
-pub use trial::{BUDGET, End, Trial};
+pub use judge::{Bound, MotionBound, MeasuredFigures, Criteria, SolidBound, CaseOutcome};
+pub use ledger::{StressResults, CaseResult};
+pub use maps::{MapAxis, StressCase, StressMap, select_maps, maps};
+pub use trial::{BUDGET, CaseEnd, CaseRun};
 
 /// What came out of a case, in a line.
-pub fn said(entry: &Entry) -> String {
+pub fn summary_line(entry: &CaseResult) -> String {
     let values = entry.case.values.join(", ");
     let Some((outcome, missed)) = entry.verdict() else { return format!("{values}: not run") };
-    let why = match entry.trial.as_ref().map(|trial| &trial.end) {
-        Some(End::Stopped(why)) => format!(": {why}"),
-        Some(End::Refused(why)) => format!(": refused: {why}"),
-        Some(End::Panicked(why)) => format!(": panicked: {why}"),
+    let why = match entry.run.as_ref().map(|trial| &trial.end) {
+        Some(CaseEnd::Stopped(why)) => format!(": {why}"),
+        Some(CaseEnd::Refused(why)) => format!(": refused: {why}"),
+        Some(CaseEnd::Panicked(why)) => format!(": panicked: {why}"),
         _ if missed.is_empty() => String::new(),
         _ => format!(": {}", missed.join("; ")),
     };
-    format!("{values}: {}{why}", chart::name(outcome))
+    format!("{values}: {}{why}", chart::outcome_name(outcome))
 }

@@ -6,14 +6,14 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Case,
-    judge::{Figures, Outcome},
-    measure::Measure,
+    StressCase,
+    judge::{MeasuredFigures, CaseOutcome},
+    measure::Measurements,
 };
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    run::{not_built, pool},
+    run::{missing_dimension, thread_pool},
     simulation::Simulation,
     solid::Dim,
 };
@@ -24,7 +24,7 @@ pub const BUDGET: f64 = 1.5e8;
 
 /// What came out of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
+pub struct CaseRun {
     /// The map.
     pub map: String,
     /// The values along its axes.
@@ -32,9 +32,9 @@ pub struct Trial {
     /// What makes it another than any other.
     pub key: String,
     /// How it ended.
-    pub end: End,
+    pub end: CaseEnd,
     /// What was measured.
-    pub figures: Figures,
+    pub figures: MeasuredFigures,
     /// Simulated time reached, s.
     pub time_s: f64,
     /// Steps.
@@ -48,7 +48,7 @@ pub struct Trial {
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum End {
+pub enum CaseEnd {
     /// At its end.
     Reached,
     /// The budget was used up.
@@ -61,39 +61,39 @@ pub enum End {
     Panicked(String),
 }
 
-impl Trial {
+impl CaseRun {
     /// Runs `case`.
     ///
     /// # Errors
     /// `Usage` if its thread cannot be started. That the run fails is no error: the trial says so.
-    pub fn of(case: &Case) -> Result<Self> {
+    pub fn execute(case: &StressCase) -> Result<Self> {
         let mut trial = Self {
             map: case.map.clone(),
             values: case.values.clone(),
             key: case.key.clone(),
-            end: End::Reached,
-            figures: Figures::new(),
+            end: CaseEnd::Reached,
+            figures: MeasuredFigures::new(),
             time_s: 0.0,
             steps: 0,
             water: 0,
             cpu_s: 0.0,
         };
-        let pool = pool(Some(1))?;
+        let pool = thread_pool(Some(1))?;
         let attempt = || {
             let begun = ThreadTime::now();
             // What is left of a run that panicked is thrown away whole; only numbers already written are kept.
             let end = catch_unwind(AssertUnwindSafe(|| match case.scene.dimension {
                 #[cfg(feature = "dim2")]
-                2 => trial.attempt::<2>(case),
+                2 => trial.step_through::<2>(case),
                 #[cfg(feature = "dim3")]
-                3 => trial.attempt::<3>(case),
-                other => Err(not_built(other)),
+                3 => trial.step_through::<3>(case),
+                other => Err(missing_dimension(other)),
             }));
             trial.end = match end {
                 Ok(Ok(end)) => end,
-                Ok(Err(error)) if error.kind == Kind::Fault => End::Stopped(said(&error)),
-                Ok(Err(error)) => End::Refused(said(&error)),
-                Err(panic) => End::Panicked(words(panic.as_ref())),
+                Ok(Err(error)) if error.kind == Kind::Fault => CaseEnd::Stopped(one_line(&error)),
+                Ok(Err(error)) => CaseEnd::Refused(one_line(&error)),
+                Err(panic) => CaseEnd::Panicked(panic_message(panic.as_ref())),
             };
             trial.cpu_s = begun.elapsed().as_secs_f64();
         };
@@ -102,17 +102,17 @@ impl Trial {
     }
 
     /// How it is to be taken: `missed` is what of its figures misses a bound.
-    pub fn outcome(&self, missed: &[String]) -> Outcome {
+    pub fn outcome(&self, missed: &[String]) -> CaseOutcome {
         match &self.end {
-            End::Panicked(_) => Outcome::Wrong,
-            End::Stopped(_) | End::Refused(_) => Outcome::Stopped,
-            _ if !missed.is_empty() => Outcome::Wrong,
-            End::Cut => Outcome::Unfinished,
-            End::Reached => Outcome::Right,
+            CaseEnd::Panicked(_) => CaseOutcome::Wrong,
+            CaseEnd::Stopped(_) | CaseEnd::Refused(_) => CaseOutcome::Stopped,
+            _ if !missed.is_empty() => CaseOutcome::Wrong,
+            CaseEnd::Cut => CaseOutcome::Unfinished,
+            CaseEnd::Reached => CaseOutcome::Right,
         }
     }
 
-    fn attempt<const D: usize>(&mut self, case: &Case) -> Result<End>
+    fn step_through<const D: usize>(&mut self, case: &StressCase) -> Result<CaseEnd>
     where
         Dim<D>: Dimension<D>,
     {
@@ -126,14 +126,14 @@ impl Trial {
             sim.enable_load_breakdown();
         }
         self.water = sim.system().fluid().len();
-        let mut measure = Measure::new(case, &sim, level)?;
+        let mut measure = Measurements::new(case, &sim, level)?;
         let (mut spent, mut passes) = (0.0, sim.passes());
         let end = loop {
             if sim.time() >= case.scene.until {
-                break Ok(End::Reached);
+                break Ok(CaseEnd::Reached);
             }
             if spent > BUDGET {
-                break Ok(End::Cut);
+                break Ok(CaseEnd::Cut);
             }
             let before = sim.time();
             if let Err(error) = sim.step_to(case.scene.until) {
@@ -145,9 +145,9 @@ impl Trial {
         };
         (self.time_s, self.steps) = (sim.time(), sim.steps());
         self.figures = measure.figures();
-        if matches!(end, Ok(End::Cut)) {
+        if matches!(end, Ok(CaseEnd::Cut)) {
             // Of what belongs to the second half or the end nothing is known.
-            let asked = case.judge.bounds();
+            let asked = case.criteria.bounds();
             asked.into_iter().for_each(|(name, _)| _ = self.figures.entry(name).or_insert(0.0));
         }
         end
@@ -155,11 +155,11 @@ impl Trial {
 }
 
 /// An error in one line.
-fn said(error: &Error) -> String {
+fn one_line(error: &Error) -> String {
     error.what.lines().next().unwrap_or_default().into()
 }
 
-fn words(panic: &(dyn std::any::Any + Send)) -> String {
+fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|s| s.to_string()).or_else(|| panic.downcast_ref::<String>().cloned());
     text.unwrap_or_else(|| "panicked without words".into())
 }
