@@ -5,8 +5,8 @@
 
 use pontoon::{
     Result,
-    probe::{Energy, Probe},
-    scene::{AtWords, Scene, ShapeWords, SolidWords},
+    probe::{EnergyProbe, Probe},
+    scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
 
@@ -25,26 +25,26 @@ fn main() -> Result<()> {
     let mut scene = Scene::new(2, dp, 5.0)
         .title("Cubes in a dam break")
         .water_box([0.0, 0.0], COLUMN)
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([TANK, 0.8])));
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([TANK, 0.8])));
     for i in 0..CUBES {
         // Let fall from 20 mm, each a millimetre above the one below.
-        let at = AtWords { bottom: Some(0.02 + i as f64 * (EDGE + 0.001)), ..AtWords::point(&[1.0]) };
-        let mut cube = SolidWords::free(format!("cube-{i}"), ShapeWords::cuboid([EDGE; 2]), 500.0).at(at);
+        let at = PlacementConfig { bottom: Some(0.02 + i as f64 * (EDGE + 0.001)), ..PlacementConfig::point(&[1.0]) };
+        let mut cube = SolidConfig::free(format!("cube-{i}"), ShapeConfig::cuboid([EDGE; 2]), 500.0).at(at);
         cube.friction = Some(0.5);
         scene = scene.solid(cube);
     }
     let built = scene.build::<2>()?;
     let until = built.plan.until;
     let mut sim = Simulation::new(built.setup)?;
-    let energy = Energy::new(sim.system());
+    let energy = EnergyProbe::new(sim.system());
     let column = Probe::<2>::columns(&energy).iter().position(|name| name.starts_with("total")).unwrap_or_default();
 
-    let (start, mut least, mut made) = (energy.look(&sim)[column], f64::INFINITY, 0.0_f64);
+    let (start, mut least, mut made) = (energy.sample(&sim)[column], f64::INFINITY, 0.0_f64);
     let (mut fell, mut struck) = (None, 0.0_f64);
     let (mut height, mut weight) = (0.0, 0.0);
     while sim.time() < until {
         sim.step_to(until)?;
-        let now = energy.look(&sim)[column];
+        let now = energy.sample(&sim)[column];
         least = least.min(now);
         made = made.max(now - least);
         struck = sim.contacts().iter().map(|pair| pair.pressing).fold(struck, f64::max);

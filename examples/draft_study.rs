@@ -16,7 +16,7 @@ use pontoon::{
     geometry::{Region, Shape, fill},
     math::{Pose, Vector},
     model::{Dimension, Model, Walls},
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     simulation::{Setup, Simulation},
     solid::{Dim, FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
 };
@@ -113,7 +113,7 @@ where
     fn run(&self) -> Result<(f64, f64)> {
         let mut sim = self.simulation()?;
         let beside = 0.25 * (self.pool[0] - HEIGHT);
-        let gauge = Elevation::new(sim.system(), &[beside, 0.5 * self.pool[0]][..D - 1])?;
+        let gauge = ElevationProbe::new(sim.system(), &[beside, 0.5 * self.pool[0]][..D - 1])?;
         let period = TAU * (HEIGHT / G).sqrt();
         let mut mean = (0.0, 0.0);
         for i in 1..=READINGS {
@@ -127,7 +127,7 @@ where
                 Ok(equilibrium_height(&self.shape, &pose, self.body().mass, RHO0, level)? / self.dp())
             };
             mean.0 += too_deep(self.level(&sim))? / READINGS as f64;
-            mean.1 += too_deep(gauge.look(&sim)[0])? / READINGS as f64;
+            mean.1 += too_deep(gauge.sample(&sim)[0])? / READINGS as f64;
         }
         Ok(mean)
     }

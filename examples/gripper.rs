@@ -5,7 +5,9 @@
 
 use pontoon::{
     Result,
-    scene::{AtWords, JointKindWords, JointWords, MotorWords, Scene, ShapeWords, SolidWords, ValueWords},
+    scene::{
+        JointConfig, JointKindConfig, MotorConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig, TimeValueConfig,
+    },
     simulation::Simulation,
     solid::{Role, Solid},
 };
@@ -20,44 +22,44 @@ const DENSITY: f64 = 600.0;
 const LIFT: f64 = 0.2;
 const TIMES: [f64; 2] = [1.5, 3.0];
 
-fn slider(name: &str, between: &[&str], at: [f64; 2], along: [f64; 2], motor: MotorWords) -> JointWords {
+fn slider(name: &str, between: &[&str], at: [f64; 2], along: [f64; 2], motor: MotorConfig) -> JointConfig {
     let names = between.iter().map(|name| name.to_string()).collect();
-    let joint = JointWords::new::<0>(name, JointKindWords::Slider, [], at);
-    JointWords { between: names, along: Some(along.into()), motor: Some(motor), ..joint }
+    let joint = JointConfig::new::<0>(name, JointKindConfig::Slider, [], at);
+    JointConfig { between: names, along: Some(along.into()), motor: Some(motor), ..joint }
 }
 
 fn gripper() -> Scene {
     let rise = format!("{LIFT}*min(max((t-{})/{},0),1)", TIMES[0], TIMES[1] - TIMES[0]);
-    let servo = |law: String| MotorWords {
-        position: Some(ValueWords::formula(law)),
+    let servo = |law: String| MotorConfig {
+        position: Some(TimeValueConfig::formula(law)),
         stiffness: Some(2e5.into()),
         damping: Some(5e3.into()),
-        ..MotorWords::default()
+        ..MotorConfig::default()
     };
     // Jaws 2 cm from the float close at 0.5 s; 150 N press, of which friction makes 0.6 on each side.
     let close = "0.02*min(max((t-0.5)/0.3,0),1)".to_string();
-    let press = MotorWords {
-        force: Some(ValueWords::formula("-150*min(max((t-0.8)/0.2,0),1)")),
+    let press = MotorConfig {
+        force: Some(TimeValueConfig::formula("-150*min(max((t-0.8)/0.2,0),1)")),
         damping: Some(300.0.into()),
-        ..MotorWords::default()
+        ..MotorConfig::default()
     };
     let jaw = |name, x: f64| {
-        let mut jaw = SolidWords::free(name, ShapeWords::cuboid([0.04, 0.16]), 500.0);
+        let mut jaw = SolidConfig::free(name, ShapeConfig::cuboid([0.04, 0.16]), 500.0);
         jaw.friction = Some(0.6);
         // Its tip is a little above the water, beside the float's dry part.
-        jaw.at(AtWords { bottom: Some(DEPTH + 0.004), ..AtWords::point(&[x]) })
+        jaw.at(PlacementConfig { bottom: Some(DEPTH + 0.004), ..PlacementConfig::point(&[x]) })
     };
     let aside = 0.5 * FLOAT[0] + 0.04;
-    let mut float = SolidWords::free("float", ShapeWords::cuboid(FLOAT), DENSITY).at(AtWords::afloat(&[0.5]));
+    let mut float = SolidConfig::free("float", ShapeConfig::cuboid(FLOAT), DENSITY).at(PlacementConfig::afloat(&[0.5]));
     float.friction = Some(0.6);
     Scene::new(2, 0.02, 4.0)
         .title("A gripper and a float")
         .water_box([0.0, 0.0], [1.0, DEPTH])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 0.4])))
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([1.0, 0.4])))
         .solid(float)
         .solid(
-            SolidWords::free("carriage", ShapeWords::cuboid([0.4, 0.06]), 500.0)
-                .at(AtWords::point(&[0.5, DEPTH + 0.24])),
+            SolidConfig::free("carriage", ShapeConfig::cuboid([0.4, 0.06]), 500.0)
+                .at(PlacementConfig::point(&[0.5, DEPTH + 0.24])),
         )
         .solid(jaw("left", 0.5 - aside))
         .solid(jaw("right", 0.5 + aside))

@@ -5,7 +5,9 @@
 
 use pontoon::{
     Result,
-    scene::{AtWords, DrivenWords, JointKindWords, JointWords, Scene, ShapeWords, SolidWords, SpringWords},
+    scene::{
+        DrivenConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig, SpringConfig,
+    },
     simulation::Simulation,
 };
 
@@ -14,26 +16,27 @@ const PERIOD: f64 = 0.8;
 
 /// A raft with this brake in its hinge, N m s/rad per metre of width.
 fn raft(brake: f64) -> Scene {
-    let pontoon =
-        |name, x: f64| SolidWords::free(name, ShapeWords::cuboid([0.25, 0.075]), 500.0).at(AtWords::afloat(&[x]));
-    let mooring = SpringWords {
+    let pontoon = |name, x: f64| {
+        SolidConfig::free(name, ShapeConfig::cuboid([0.25, 0.075]), 500.0).at(PlacementConfig::afloat(&[x]))
+    };
+    let mooring = SpringConfig {
         length: Some(0.6),
         damping: Some(5.0),
-        ..SpringWords::mooring("mooring", "fore", [0.775, 0.25], [0.3, 0.0], 50.0)
+        ..SpringConfig::mooring("mooring", "fore", [0.775, 0.25], [0.3, 0.0], 50.0)
     };
-    let paddle = DrivenWords::slide([1.0, 0.0], format!("0.025*(1-cos(2*pi*t/{PERIOD}))"));
+    let paddle = DrivenConfig::slide([1.0, 0.0], format!("0.025*(1-cos(2*pi*t/{PERIOD}))"));
     Scene::new(2, 0.0125, 6.0 * PERIOD)
         .title("A hinged raft")
         .water_box([0.0, 0.0], [2.5, 0.25])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([2.6, 0.6])).at(AtWords::point(&[-0.1, 0.0])))
-        .solid(SolidWords::fixed("beach", ShapeWords::polygon([[1.9, 0.0], [2.5, 0.0], [2.5, 0.36]])))
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([2.6, 0.6])).at(PlacementConfig::point(&[-0.1, 0.0])))
+        .solid(SolidConfig::fixed("beach", ShapeConfig::polygon([[1.9, 0.0], [2.5, 0.0], [2.5, 0.36]])))
         .solid(
-            SolidWords::driven("paddle", ShapeWords::cuboid([0.05, 0.5]), paddle)
-                .at(AtWords { bottom: Some(0.0), ..AtWords::point(&[-0.025]) }),
+            SolidConfig::driven("paddle", ShapeConfig::cuboid([0.05, 0.5]), paddle)
+                .at(PlacementConfig { bottom: Some(0.0), ..PlacementConfig::point(&[-0.025]) }),
         )
         .solid(pontoon("fore", 0.9))
         .solid(pontoon("aft", 1.2))
-        .joint(JointWords::new("hinge", JointKindWords::Hinge, ["fore", "aft"], [1.05, 0.25]).damped(brake))
+        .joint(JointConfig::new("hinge", JointKindConfig::Hinge, ["fore", "aft"], [1.05, 0.25]).with_damping(brake))
         .spring(mooring)
 }
 

@@ -8,8 +8,8 @@
 use cpu_time::ProcessTime;
 use pontoon::{
     Result,
-    probe::{Energy, Probe},
-    scene::{AtWords, Scene, ShapeWords, SolidWords},
+    probe::{EnergyProbe, Probe},
+    scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
 
@@ -30,9 +30,9 @@ fn main() -> Result<()> {
     println!("|---|---|---|---|---|---|---|");
     for count in [1, 10, 100, 1000].into_iter().filter(|&count| count <= most) {
         let (mut free, mut fixed) = (tank(water, count, true)?, tank(water, count, false)?);
-        let energy = Energy::new(free.system());
+        let energy = EnergyProbe::new(free.system());
         let column = Probe::<2>::columns(&energy).iter().position(|name| name.starts_with("total")).unwrap_or_default();
-        let total = |sim: &Simulation<2>| energy.look(sim)[column];
+        let total = |sim: &Simulation<2>| energy.sample(sim)[column];
         let (start, mut least, mut made) = (total(&free), f64::INFINITY, 0.0_f64);
         let mut cost = [0.0; 2];
         let before = free.time_spent();
@@ -75,16 +75,19 @@ fn tank(water: usize, count: usize, free: bool) -> Result<Simulation<2>> {
     let mut scene = Scene::new(2, DP, 100.0)
         .title("Many bodies")
         .water_box([0.0, 0.0], [long * DP, deep * DP])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([long * DP, high * DP])));
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([long * DP, high * DP])));
     for i in 0..count {
         let (row, column) = ((i as f64 / across).floor(), i as f64 % across);
         let aside = if row % 2.0 == 0.0 { 0.0 } else { 1.5 };
         let x = 2.5 + 0.5 * SIZE[0] + column * (SIZE[0] + 1.9) + aside;
-        let at = AtWords { bottom: Some((deep + 0.5 + row * (SIZE[1] + 0.3)) * DP), ..AtWords::point(&[x * DP]) };
-        let (name, shape) = (format!("box-{i}"), ShapeWords::cuboid(SIZE.map(|size| size * DP)));
+        let at = PlacementConfig {
+            bottom: Some((deep + 0.5 + row * (SIZE[1] + 0.3)) * DP),
+            ..PlacementConfig::point(&[x * DP])
+        };
+        let (name, shape) = (format!("box-{i}"), ShapeConfig::cuboid(SIZE.map(|size| size * DP)));
         let mut solid = match free {
-            true => SolidWords::free(name, shape, DENSITIES[i % 4]),
-            false => SolidWords::fixed(name, shape),
+            true => SolidConfig::free(name, shape, DENSITIES[i % 4]),
+            false => SolidConfig::fixed(name, shape),
         };
         solid.friction = Some(0.4);
         scene = scene.solid(solid.at(at));

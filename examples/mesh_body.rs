@@ -9,7 +9,7 @@ use std::path::Path;
 use pontoon::{
     Result,
     geometry::Shape,
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     scene::Scene,
     simulation::Simulation,
 };
@@ -37,14 +37,14 @@ fn main() -> Result<()> {
         );
     }
     // Water beside the hull, halfway to the wall; means over the second half.
-    let gauge = Elevation::new(sim.system(), &[0.3, 0.1])?;
+    let gauge = ElevationProbe::new(sim.system(), &[0.3, 0.1])?;
     let (mut draft, mut weight) = (0.0, 0.0);
     let still = 0.42;
     while sim.time() < until {
         sim.step_to(until)?;
         if sim.time() > 0.5 * until {
             let height = sim.system().solids()[hull].kinematics.pose.position[2];
-            draft += (gauge.look(&sim)[0] - height - KEEL) * sim.dt();
+            draft += (gauge.sample(&sim)[0] - height - KEEL) * sim.dt();
             weight += sim.dt();
         }
     }

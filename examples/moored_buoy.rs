@@ -5,7 +5,7 @@
 
 use pontoon::{
     Result,
-    scene::{AtWords, Scene, ShapeWords, SolidWords, SpringWords},
+    scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig, SpringConfig},
     simulation::Simulation,
 };
 
@@ -16,12 +16,12 @@ const DENSITY: f64 = 500.0;
 fn main() -> Result<()> {
     // Afloat its bottom is 0.05 m under the surface.
     let line =
-        SpringWords { damping: Some(20.0), ..SpringWords::mooring("line", "buoy", [0.5, 0.35], [0.5, 0.0], 10000.0) };
+        SpringConfig { damping: Some(20.0), ..SpringConfig::mooring("line", "buoy", [0.5, 0.35], [0.5, 0.0], 10000.0) };
     let built = Scene::new(2, 0.02, 4.0)
         .title("A buoy on a winch")
         .water_box([0.0, 0.0], [1.0, 0.4])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 0.7])))
-        .solid(SolidWords::free("buoy", ShapeWords::cuboid(SIZE), DENSITY).at(AtWords::afloat(&[0.5])))
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([1.0, 0.7])))
+        .solid(SolidConfig::free("buoy", ShapeConfig::cuboid(SIZE), DENSITY).at(PlacementConfig::afloat(&[0.5])))
         .spring(line)
         .build::<2>()?;
     let mut sim = Simulation::new(built.setup)?;

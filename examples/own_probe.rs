@@ -29,7 +29,7 @@ impl<const D: usize> Probe<D> for Split {
         vec!["left_m2".into(), "right_m2".into()]
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let (water, mass) = (sim.system().fluid(), sim.system().particle_mass());
         let mut areas = [0.0; 2];
         for (r, rho) in water.r.iter().zip(water.rho) {
@@ -43,11 +43,11 @@ fn main() -> Result<()> {
     let scene = Scene::parse(SCENE, Path::new(""), &[])?;
     let mut sim = Simulation::new(scene.build::<2>()?.setup)?;
     let probe = Split { x: 0.5 };
-    let start = probe.look(&sim);
+    let start = probe.sample(&sim);
     while sim.time() < 0.5 {
         sim.step()?;
     }
-    let end = probe.look(&sim);
+    let end = probe.sample(&sim);
     for (name, (before, after)) in Probe::<2>::columns(&probe).iter().zip(start.iter().zip(&end)) {
         println!("{name:<10} {before:.4} -> {after:.4}");
     }

@@ -7,8 +7,8 @@
 use pontoon::{
     Result,
     math::Vector,
-    probe::{Elevation, Probe},
-    scene::{AtWords, Scene, ShapeWords, SolidWords},
+    probe::{ElevationProbe, Probe},
+    scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
 
@@ -22,16 +22,16 @@ fn main() -> Result<()> {
     let mut scene = Scene::new(2, 0.01, 2.5)
         .title("A raft under a hand")
         .water_box([0.0, 0.0], [1.0, 0.2])
-        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 0.4])))
-        .solid(SolidWords::free("raft", ShapeWords::cuboid(SIZE), 500.0).at(AtWords::afloat(&[0.5])));
+        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([1.0, 0.4])))
+        .solid(SolidConfig::free("raft", ShapeConfig::cuboid(SIZE), 500.0).at(PlacementConfig::afloat(&[0.5])));
     scene.model.c0_factor = Some(12.0);
     let built = scene.build::<2>()?;
     let until = built.plan.until;
     let mut sim = Simulation::new(built.setup)?;
-    let gauge = Elevation::new(sim.system(), &[0.15])?;
+    let gauge = ElevationProbe::new(sim.system(), &[0.15])?;
     let raft = pontoon::probe::find_solid(sim.system(), "raft")?;
     let draft =
-        |sim: &Simulation<2>| gauge.look(sim)[0] - (sim.system().solids()[raft].kinematics.centre[1] - 0.5 * SIZE[1]);
+        |sim: &Simulation<2>| gauge.sample(sim)[0] - (sim.system().solids()[raft].kinematics.centre[1] - 0.5 * SIZE[1]);
     // First it finds its own draft.
     while sim.time() < 0.5 {
         sim.step_to(0.5)?;

@@ -5,7 +5,7 @@
 
 use pontoon::{
     Result,
-    scene::{AtWords, JointKindWords, JointWords, PartWords, Scene, ShapeWords, SolidWords},
+    scene::{CompoundPartConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
     solid::{Law, Motor},
 };
@@ -25,13 +25,13 @@ const TURNING: f64 = 5.0;
 /// How long, s.
 const UNTIL: f64 = 3.0;
 
-fn part(size: [f64; 2], at: [f64; 2]) -> PartWords {
-    PartWords { shape: ShapeWords::cuboid(size), at: Some(AtWords::point(&at)) }
+fn part(size: [f64; 2], at: [f64; 2]) -> CompoundPartConfig {
+    CompoundPartConfig { shape: ShapeConfig::cuboid(size), at: Some(PlacementConfig::point(&at)) }
 }
 
 /// The boat afloat in the middle of the pool; its frame is at the water's surface.
 fn boat() -> Result<Simulation<2>> {
-    let hull = ShapeWords::Compound(vec![
+    let hull = ShapeConfig::Compound(vec![
         part([0.3, 0.12], [-0.42, 0.0]),
         part([0.3, 0.12], [0.42, 0.0]),
         part([0.06, 0.28], [-0.42, 0.2]),
@@ -39,7 +39,7 @@ fn boat() -> Result<Simulation<2>> {
         part([0.9, 0.04], [0.0, 0.36]),
     ]);
     let arm = RADIUS - 0.02;
-    let wheel = ShapeWords::Compound(vec![
+    let wheel = ShapeConfig::Compound(vec![
         part([2.0 * RADIUS, 0.04], [0.0, 0.0]),
         part([0.04, arm], [0.0, 0.02 + 0.5 * arm]),
         part([0.04, arm], [0.0, -0.02 - 0.5 * arm]),
@@ -47,8 +47,8 @@ fn boat() -> Result<Simulation<2>> {
     let middle = 0.5 * POOL;
     // Hulls of 0.6 m together carry boat and wheel with half their height under water.
     let mass = 1000.0 * 0.6 * 0.06;
-    let wheel = SolidWords::free("wheel", wheel, 200.0).at(AtWords::point(&[middle, DEPTH + HUB]));
-    let mut hull = SolidWords::free("boat", hull, 1.0).at(AtWords::point(&[middle, DEPTH]));
+    let wheel = SolidConfig::free("wheel", wheel, 200.0).at(PlacementConfig::point(&[middle, DEPTH + HUB]));
+    let mut hull = SolidConfig::free("boat", hull, 1.0).at(PlacementConfig::point(&[middle, DEPTH]));
     if let Some(free) = &mut hull.free {
         // The wheel displaces some water itself, so that the boat starts a little high.
         (free.density, free.mass) = (None, Some(mass - 200.0 * 0.04 * (2.0 * RADIUS + 2.0 * arm)));
@@ -56,10 +56,10 @@ fn boat() -> Result<Simulation<2>> {
     let built = Scene::new(2, DP, UNTIL)
         .title("A boat with a wheel")
         .water_box([0.0, 0.0], [POOL, DEPTH])
-        .solid(SolidWords::fixed("pool", ShapeWords::tank([POOL, 0.6])))
+        .solid(SolidConfig::fixed("pool", ShapeConfig::tank([POOL, 0.6])))
         .solid(hull)
         .solid(wheel)
-        .joint(JointWords::new("axle", JointKindWords::Hinge, ["boat", "wheel"], [middle, DEPTH + HUB]))
+        .joint(JointConfig::new("axle", JointKindConfig::Hinge, ["boat", "wheel"], [middle, DEPTH + HUB]))
         .build::<2>()?;
     Simulation::new(built.setup)
 }

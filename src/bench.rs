@@ -91,7 +91,16 @@ impl BenchCase {
     /// The standard work with the standard model.
     pub fn standard(dimension: usize, water: usize) -> Self {
         let (sets, watched) = (Vec::new(), String::new());
-        Self { name: "wendland".into(), dimension, water, overrides: sets, with_body: false, probes_toml: watched, dry: 1.0, spin_up: 0.0 }
+        Self {
+            name: "wendland".into(),
+            dimension,
+            water,
+            overrides: sets,
+            with_body: false,
+            probes_toml: watched,
+            dry: 1.0,
+            spin_up: 0.0,
+        }
     }
 
     /// The same under another name with other keys of the scene.

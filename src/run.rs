@@ -21,14 +21,14 @@ pub(crate) mod outputs;
 pub(crate) mod statistics;
 
 pub use drift::EnergyDrift;
-pub(crate) use folder::{tables_unchanged, scene_file};
-pub use inspect::{InspectOptions, MeshSummary, InspectReport, SeriesColumns, SolidSummary, StepTiming, inspect};
-pub(crate) use kept::has_checkpoint as has_checkpoint;
+pub(crate) use folder::{scene_file, tables_unchanged};
+pub use inspect::{InspectOptions, InspectReport, MeshSummary, SeriesColumns, SolidSummary, StepTiming, inspect};
+pub(crate) use kept::has_checkpoint;
 pub(crate) use lock::Lock;
 pub use lock::lock_owner;
 pub(crate) use outputs::series_folder;
 pub(crate) use statistics::run_statistics;
-pub use statistics::{RaoResult, StatisticsFilter, RAO_FILE, SPECTRA_FILE, Statistic, RunStatistics, statistics};
+pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
 use std::path::{Path, PathBuf};
 
@@ -169,7 +169,8 @@ pub fn resume(
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
     }
-    let ResumePoint { checkpoint, scene, warning } = kept::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
+    let ResumePoint { checkpoint, scene, warning } =
+        kept::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
     let origin = RunOrigin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
     with_threads(threads, || by_dimension(&scene, origin, watch))
 }

@@ -39,7 +39,12 @@ pub struct ArrivalTimes {
 
 /// The two once the delay is taken out that `align` means, and when they arrive if it says so; `sim` may
 /// reach further than `window`, in which arrivals count.
-pub fn align(sim: &Series, reference: &Series, align: Align, window: (f64, f64)) -> (Option<AlignedMetrics>, Option<ArrivalTimes>) {
+pub fn align(
+    sim: &Series,
+    reference: &Series,
+    align: Align,
+    window: (f64, f64),
+) -> (Option<AlignedMetrics>, Option<ArrivalTimes>) {
     let (delay, arrival) = match align {
         Align::Crossing(threshold) => {
             let run = sim.within(window.0, window.1).ok().and_then(|sim| sim.crossing(threshold));
@@ -51,7 +56,11 @@ pub fn align(sim: &Series, reference: &Series, align: Align, window: (f64, f64))
     };
     let aligned = delay.and_then(|delay| {
         let moved = shifted_reference(sim, reference, delay)?;
-        Some(AlignedMetrics { delay, relative_l2: relative_l2(sim, &moved).ok()?, amplitude_ratio: amplitude_ratio(sim, &moved).ok()? })
+        Some(AlignedMetrics {
+            delay,
+            relative_l2: relative_l2(sim, &moved).ok()?,
+            amplitude_ratio: amplitude_ratio(sim, &moved).ok()?,
+        })
     });
     (aligned, arrival)
 }

@@ -28,7 +28,13 @@ pub fn format_delay(seconds: f64) -> String {
 /// The bound in words.
 pub fn format_bound(bound: Option<Score>) -> String {
     let Some(b) = bound else { return String::new() };
-    let said = [("N", b.relative_l2), ("|M − 1|", b.amplitude_ratio), ("peak", b.peak), ("off", b.off), ("aligned N", b.aligned_relative_l2)];
+    let said = [
+        ("N", b.relative_l2),
+        ("|M − 1|", b.amplitude_ratio),
+        ("peak", b.peak),
+        ("off", b.off),
+        ("aligned N", b.aligned_relative_l2),
+    ];
     let mut words: Vec<String> = said.iter().filter_map(|(word, x)| x.map(|x| format!("{word} ≤ {x}"))).collect();
     words.extend(b.delay.map(|x| format!("|delay| ≤ {x} s")));
     words.join(", ")
@@ -58,10 +64,17 @@ const COLUMNS: [VerdictColumn; 13] = [
     ("aligned N", |v| v.aligned.map_or(String::new(), |a| format_metric(Some(a.relative_l2)))),
     ("aligned M", |v| v.aligned.map_or(String::new(), |a| format_metric(Some(a.amplitude_ratio)))),
     ("delay", |v| v.aligned.map_or(String::new(), |a| format_delay(a.delay))),
-    ("peak", |v| if is_impact_load(v) || has_limit(v, |s| s.peak) { format_metric(v.metrics.peak) } else { String::new() }),
+    (
+        "peak",
+        |v| if is_impact_load(v) || has_limit(v, |s| s.peak) { format_metric(v.metrics.peak) } else { String::new() },
+    ),
     ("mean peak", |v| v.meaned.filter(|_| is_impact_load(v)).map_or(String::new(), |m| format_metric(m.metrics.peak))),
     ("off", |v| if has_limit(v, |s| s.off) { format_value(v.metrics.off) } else { String::new() }),
-    ("paper N, M", |v| v.paper.map_or(String::new(), |p| format!("{}, {}", format_metric(p.relative_l2), format_metric(p.amplitude_ratio)))),
+    ("paper N, M", |v| {
+        v.paper.map_or(String::new(), |p| {
+            format!("{}, {}", format_metric(p.relative_l2), format_metric(p.amplitude_ratio))
+        })
+    }),
 ];
 
 /// Whether the series is a load as an instrument takes it: its first peak is the first impact.

@@ -15,11 +15,11 @@ mod zero_crossings;
 
 pub use crate::plan::{Align, CheckPlan, Reference, Score};
 pub use alignment::{AlignedMetrics, ArrivalTimes, best_delay};
-pub use error_metrics::{amplitude_ratio, relative_l2, max_abs, first_peak_error};
+pub use error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2};
 pub use harmonic::{Harmonic, harmonic};
 pub use moments::{Moments, moments};
-pub use rao::{RaoPoint, MIN_WAVES_FOR_RAO, Rao, rao, rao_over_frequency};
+pub use rao::{MIN_WAVES_FOR_RAO, Rao, RaoPoint, rao, rao_over_frequency};
 pub use reflection::{Reflection, reflection};
-pub use spectrum::{WelchSpectrum, complex_amplitudes, spectrum, displayed_spectrum};
-pub use verdict::{ReferenceCheck, CheckCurves, ErrorMetrics, RunningMeanMetrics, Verdict};
+pub use spectrum::{WelchSpectrum, complex_amplitudes, displayed_spectrum, spectrum};
+pub use verdict::{CheckCurves, ErrorMetrics, ReferenceCheck, RunningMeanMetrics, Verdict};
 pub use zero_crossings::{ZeroCrossingWaves, zero_crossing_waves};

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use realfft::num_complex::Complex;
 
 use super::{
-    harmonic, complex_amplitudes, spectrum,
+    complex_amplitudes, harmonic, spectrum,
     spectrum::{SEGMENTS, segment_transforms},
     zero_crossing_waves,
 };
@@ -73,7 +73,8 @@ pub struct RaoPoint {
 /// by means over seven parts, quarters of the record and those that lie half over two ([@bendat2010], [@welch1967]). Only where
 /// the waves have a fiftieth of the density at their peak or more. None of fewer than 32 waves, or where nothing moves.
 pub fn rao_over_frequency(motion: &Series, wave: &Series) -> Vec<RaoPoint> {
-    let swings = zero_crossing_waves(motion).is_some() && zero_crossing_waves(wave).is_some_and(|waves| waves.count >= MIN_WAVES_FOR_RAO);
+    let swings = zero_crossing_waves(motion).is_some()
+        && zero_crossing_waves(wave).is_some_and(|waves| waves.count >= MIN_WAVES_FOR_RAO);
     let Some((step, parts)) = swings.then(|| segment_transforms(&[motion, wave], SEGMENTS)).flatten() else {
         return Vec::new();
     };
@@ -171,7 +172,10 @@ mod tests {
         let t: Vec<f64> = (0..1000).map(|i| 0.05 * f64::from(i)).collect();
         let swings = |f: f64| Series::new(t.clone(), t.iter().map(|t| (TAU * f * t).sin()).collect::<Vec<_>>());
         assert!(rao_over_frequency(&swings(0.5)?, &swings(0.5)?).is_empty(), "25 waves");
-        assert!(rao_over_frequency(&Series::new(t.clone(), vec![0.2; 1000])?, &swings(1.0)?).is_empty(), "it does not move");
+        assert!(
+            rao_over_frequency(&Series::new(t.clone(), vec![0.2; 1000])?, &swings(1.0)?).is_empty(),
+            "it does not move"
+        );
         assert!(!rao_over_frequency(&swings(1.0)?, &swings(1.0)?).is_empty(), "50 waves");
         Ok(())
     }

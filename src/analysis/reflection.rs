@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use realfft::num_complex::Complex;
 
-use super::{harmonic, complex_amplitudes, spectrum};
+use super::{complex_amplitudes, harmonic, spectrum};
 use crate::{math::time_series::Series, wavemaker::wave_number};
 
 /// Least determinant of the least squares over the square of the number of gauges, –: below, the gauges stand so that

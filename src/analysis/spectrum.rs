@@ -177,7 +177,11 @@ mod tests {
         let x: Vec<f64> = t.iter().map(|t| 0.3 + 0.1 * (TAU * t / 1.37).sin()).collect();
         let Some(found) = spectrum(&Series::new(t, x)?) else { panic!("it has a spectrum") };
         // 14.6 periods, not a whole number: the variance of what is over is within 2 %, half of that of the root.
-        assert!((found.significant_height() / (0.4 / 2.0_f64.sqrt()) - 1.0).abs() < 0.02, "{}", found.significant_height());
+        assert!(
+            (found.significant_height() / (0.4 / 2.0_f64.sqrt()) - 1.0).abs() < 0.02,
+            "{}",
+            found.significant_height()
+        );
         // Lines are 1/20 Hz apart; the centroid of a Hann window's is its middle, but for what other lines have of it.
         assert!((found.peak_period() / 1.37 - 1.0).abs() < 0.01, "{}", found.peak_period());
         Ok(())
@@ -192,7 +196,11 @@ mod tests {
         // 400 s, the time after which a sum of such components repeats itself: all its variance, 200 peak periods.
         let series = sea(|f| scale * jonswap(f, peak), step, count, 400.0)?;
         let Some(found) = spectrum(&series) else { panic!("it has a spectrum") };
-        assert!((found.significant_height() / height - 1.0).abs() < 0.02, "H_m0 within 2 %: {}", found.significant_height());
+        assert!(
+            (found.significant_height() / height - 1.0).abs() < 0.02,
+            "H_m0 within 2 %: {}",
+            found.significant_height()
+        );
         // Lines of a quarter of the record are 1/100 Hz apart, and the peak of one sea of 200 waves wanders by as much.
         assert!((found.peak_period() * peak - 1.0).abs() < 0.05, "T_p within 5 %: {}", found.peak_period());
         Ok(())

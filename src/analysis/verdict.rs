@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     alignment::{AlignedMetrics, ArrivalTimes, align},
-    error_metrics::{amplitude_ratio, relative_l2, max_abs, first_peak_error},
+    error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2},
     reference_table,
 };
 use crate::{
@@ -153,7 +153,8 @@ impl ReferenceCheck {
                 // A run that ends before its reference begins, or before it is set to zero, is too short, no failure.
                 let (from, until) = window(&self.plan, 0.0);
                 let set = self.plan.zero.is_none_or(|at| at <= sim.span().1);
-                let reaches = set && matches!(self.reference, KnownReference::Formula(_)) && sim.within(from, until).is_ok();
+                let reaches =
+                    set && matches!(self.reference, KnownReference::Formula(_)) && sim.within(from, until).is_ok();
                 verdict.passed = self.plan.bound.filter(|_| reaches).map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }

@@ -3,16 +3,16 @@
 use clap::Args;
 use pontoon::{
     Result,
-    bench::{self, BenchTiming, BenchCase},
+    bench::{self, BenchCase, BenchTiming},
     error::{Error, Kind},
     output::manifest::Machine,
 };
 use serde::Serialize;
 
-use super::report::{short, table};
+use super::report::{short_number, table};
 
 /// Water particles up to which the oracle is timed beside the fast sweep.
-const LARGEST_FOR_ORACLE: usize = 200_000;
+const MAX_REFERENCE_PARTICLES: usize = 200_000;
 
 /// What is timed.
 #[derive(Args)]
@@ -45,7 +45,7 @@ pub struct BenchArgs {
 
 /// All that was measured.
 #[derive(Serialize)]
-struct Tables {
+struct BenchReport {
     version: &'static str,
     machine: Machine,
     standard: Vec<BenchTiming>,
@@ -66,7 +66,7 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
     }
     let machine = Machine::current();
     let threads = args.threads.unwrap_or(machine.cpus);
-    let mut tables = Tables {
+    let mut tables = BenchReport {
         version: env!("CARGO_PKG_VERSION"),
         machine,
         standard: Vec::new(),
@@ -88,14 +88,17 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
                 work = BenchCase { name: "wendland, developed".into(), spin_up: 4.0, ..work };
             }
             let cubic = [("model.kernel", "cubic")];
-            let works =
-                if args.developed { vec![work] } else { vec![work.clone(), work.with_overrides("cubic, tensile", &cubic)] };
+            let works = if args.developed {
+                vec![work]
+            } else {
+                vec![work.clone(), work.with_overrides("cubic, tensile", &cubic)]
+            };
             let counts = if threads > 1 { vec![1, threads] } else { vec![1] };
             for work in works {
                 // One after the other, so that the peak of memory is that of one.
                 tables.standard.extend(bench::time(std::slice::from_ref(&work), &counts, 3)?);
                 // The oracle takes a minute and more for a larger one, and tells nothing new.
-                if !args.developed && water <= LARGEST_FOR_ORACLE {
+                if !args.developed && water <= MAX_REFERENCE_PARTICLES {
                     let sets = [&work.overrides[..], &[("model.sweep", "reference")]].concat();
                     tables.oracle.extend(bench::time(&[work.with_overrides(&work.name, &sets)], &[1], 2)?);
                 }
@@ -119,7 +122,7 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
     Ok(text(&tables))
 }
 
-fn text(tables: &Tables) -> String {
+fn text(tables: &BenchReport) -> String {
     let Machine { processor, cpus, instructions, .. } = &tables.machine;
     let instructions = instructions.as_deref().unwrap_or("no lanes: the oracle throughout");
     let mut text = format!("pontoon {}, {processor}, {cpus} processors, {instructions}\n", tables.version);
@@ -167,8 +170,8 @@ fn rows(timings: &[BenchTiming]) -> Vec<Vec<String>> {
             t.work.clone(),
             format!("{}-D", t.dimension),
             t.threads.to_string(),
-            short(t.water as f64),
-            short(t.wet as f64),
+            short_number(t.water as f64),
+            short_number(t.wet as f64),
             format!("{:.2}", t.particle_steps_per_s * 1e-6),
             format!("{:.2}", t.step_s * 1e3),
             format!("{:.0}", t.cpu_ns),

@@ -5,13 +5,13 @@ use std::fmt::Write;
 use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
-    preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, Severity, GeneratedWave, three_digits},
+    preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, GeneratedWave, Severity, three_digits},
     run::{self, InspectOptions, InspectReport},
 };
 
 use super::{
     SceneArgs,
-    report::{bytes, duration, short, table, threads},
+    report::{bytes, duration, short_number, table, threads},
     shelf,
 };
 
@@ -33,18 +33,18 @@ pub struct InspectArgs {
 
 /// The page, or the JSON.
 pub fn inspect(args: &InspectArgs) -> Result<String> {
-    let found = shelf::find(&args.scene.scene)?;
-    let asked = InspectOptions { overrides: args.scene.sets(), threads: args.threads, timing: !args.no_timing };
-    let report = found.named(run::inspect(found.path(), &asked))?;
+    let found = shelf::find_scene(&args.scene.scene)?;
+    let asked = InspectOptions { overrides: args.scene.overrides(), threads: args.threads, timing: !args.no_timing };
+    let report = found.with_scene_name(run::inspect(found.path(), &asked))?;
     if args.json {
         let text = serde_json::to_string_pretty(&report).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
         return Ok(text + "\n");
     }
-    Ok(page(&report))
+    Ok(report_text(&report))
 }
 
 /// What `inspect` prints.
-fn page(report: &InspectReport) -> String {
+fn report_text(report: &InspectReport) -> String {
     let mut text = format!("{}\n", report.title);
     text += &findings(&report.preflight.brief());
     text += &table(&facts(report));
@@ -105,22 +105,29 @@ fn facts(report: &InspectReport) -> Vec<Vec<String>> {
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut row = |name: &str, text: String| rows.push(vec![name.into(), text]);
     row("dimension", format!("{}-D", size.dimension));
-    row("water", format!("{} particles, {} m deep, {} dp", size.fluid, three_digits(size.depth_m), three_digits(size.depth_dp)));
+    row(
+        "water",
+        format!("{} particles, {} m deep, {} dp", size.fluid, three_digits(size.depth_m), three_digits(size.depth_dp)),
+    );
     row(
         "boundary",
         format!("{} particles in {} layers, {} of them beside water", size.boundary, size.layers, size.wet),
     );
     row("memory", format!("about {}", bytes(size.memory_bytes)));
     let over = sound.over_depth.map_or(String::new(), |x| format!(" = {} √(g·depth)", three_digits(x)));
-    let from = report.sound_from.as_ref().map_or(String::new(), |v| format!(" ({}, {})", v.key, origin(&v.source)));
+    let from =
+        report.sound_from.as_ref().map_or(String::new(), |v| format!(" ({}, {})", v.key, short_source(&v.source)));
     row("sound", format!("{} m/s{over}{from}", three_digits(sound.c0_mps)));
     if let Some(first) = sound.expected.first() {
         let times = three_digits(sound.c0_mps / first.speed_mps);
-        row("fastest", format!("{} m/s, {}: sound is {times} times as fast", three_digits(first.speed_mps), first.what));
+        row(
+            "fastest",
+            format!("{} m/s, {}: sound is {times} times as fast", three_digits(first.speed_mps), first.what),
+        );
     }
     row("time step", format!("at most {:.3e} s, by {}", step.dt_s, step.bound_by));
     let passes = if step.passes == 1 { "one force pass" } else { "two force passes" };
-    row("steps", format!("{} or more to {} s, {passes} each", short(step.steps), report.until_s));
+    row("steps", format!("{} or more to {} s, {passes} each", short_number(step.steps), report.until_s));
     if let Some(timing) = &report.timing {
         row(
             "run time",
@@ -135,23 +142,24 @@ fn facts(report: &InspectReport) -> Vec<Vec<String>> {
     }
     row("disk", disk(&size.disk));
     for wave in &report.preflight.waves {
-        waves(wave).into_iter().for_each(|(name, text)| row(name, text));
+        wave_facts(wave).into_iter().for_each(|(name, text)| row(name, text));
     }
     for absorber in &report.preflight.absorbers {
-        absorbs(absorber).into_iter().for_each(|(name, text)| row(name, text));
+        absorber_facts(absorber).into_iter().for_each(|(name, text)| row(name, text));
     }
     rows
 }
 
 /// A wave and the paddle that makes it.
-fn waves(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
+fn wave_facts(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
     let about = if wave.kind.is_some() { "" } else { "about " };
     let kind = wave.kind.map_or("by the motion".into(), |kind| format!("{kind}, order {}", wave.order));
     let period = wave.period_s.map_or(String::new(), |t| format!(", period {} s", three_digits(t)));
     let kd = wave.kd.map_or(String::new(), |kd| format!(", kd {}", three_digits(kd)));
     let high = format!("{about}{} m high, {} dp{period}", three_digits(wave.height_m), three_digits(wave.height_dp));
     let long = format!("{} m long, {} dp", three_digits(wave.length_m), three_digits(wave.length_dp));
-    let water = format!("{} water{kd}, {} m deep; {}", wave.regime.word(), three_digits(wave.depth_m), wave.region.word());
+    let water =
+        format!("{} water{kd}, {} m deep; {}", wave.regime.word(), three_digits(wave.depth_m), wave.region.word());
     let speeds = format!("crests {} m/s, energy {} m/s", three_digits(wave.celerity_mps), three_digits(wave.group_mps));
     let (stroke, speed) = (three_digits(wave.stroke_m), three_digits(wave.paddle_mps));
     let ramp = if wave.ramp_s > 0.0 { format!(", ramp {} s", three_digits(wave.ramp_s)) } else { String::new() };
@@ -164,8 +172,9 @@ fn waves(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
 }
 
 /// A paddle that absorbs.
-fn absorbs(own: &AbsorberSummary) -> [(&'static str, String); 2] {
-    let [(shorter, less), (longer, more)] = own.sends_back.map(|(period, share)| (three_digits(period), three_digits(100.0 * share)));
+fn absorber_facts(own: &AbsorberSummary) -> [(&'static str, String); 2] {
+    let [(shorter, less), (longer, more)] =
+        own.sends_back.map(|(period, share)| (three_digits(period), three_digits(100.0 * share)));
     let (period, gauge) = (three_digits(own.period_s), three_digits(own.gauge_m));
     let (stroke, speed) = (three_digits(own.stroke_m), three_digits(own.speed_mps));
     [
@@ -195,7 +204,7 @@ fn meshes(report: &InspectReport) -> String {
 }
 
 /// Who said a value, without the reason of a default.
-fn origin(source: &str) -> &str {
+fn short_source(source: &str) -> &str {
     source.split(':').next().unwrap_or(source)
 }
 
@@ -214,12 +223,18 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
     let mut rows = vec![heads.map(String::from).to_vec()];
     let mut grain = vec![["body", "thinnest (dp)", "least ratio"].map(String::from).to_vec()];
     for body in bodies {
-        let mut row = vec![body.name.clone(), three_digits(body.mass_kg), three_digits(body.displaced_kg), three_digits(body.density_ratio)];
+        let mut row = vec![
+            body.name.clone(),
+            three_digits(body.mass_kg),
+            three_digits(body.displaced_kg),
+            three_digits(body.density_ratio),
+        ];
         row.push(three_digits(body.draft_m));
         match &body.afloat {
             Some(afloat) => {
                 let gm: Vec<String> = afloat.tilts.iter().map(|t| three_digits(t.gm_m)).collect();
-                let roll: Vec<String> = afloat.tilts.iter().map(|t| t.period_s.map_or("–".into(), three_digits)).collect();
+                let roll: Vec<String> =
+                    afloat.tilts.iter().map(|t| t.period_s.map_or("–".into(), three_digits)).collect();
                 row.extend([
                     three_digits(afloat.draft_m),
                     gm.join(" "),

@@ -12,12 +12,12 @@ use std::{
 use pontoon::{
     error::Error,
     output::manifest::RunStatus,
-    run::{EnergyDrift, RunOutcome, Progress, RunStart, RunObserver},
+    run::{EnergyDrift, Progress, RunObserver, RunOutcome, RunStart},
     simulation::Rollback,
 };
 use serde_json::{Value, json};
 
-use super::{complain, progress::Follower};
+use super::{print_error, progress::CliObserver};
 
 /// From one line of progress to the next.
 const PAUSE: Duration = Duration::from_secs(1);
@@ -26,7 +26,7 @@ const PAUSE: Duration = Duration::from_secs(1);
 pub const STOPPING: &str = "{\"event\":\"stopping\"}\n";
 
 /// Writes what happens to a run.
-pub struct Journal {
+pub struct JsonLog {
     quiet: bool,
     stop: Arc<AtomicBool>,
     folder: Option<PathBuf>,
@@ -36,20 +36,20 @@ pub struct Journal {
     warnings: usize,
 }
 
-impl Journal {
+impl JsonLog {
     /// Writes nothing if `quiet`; asks the run to stop once `stop` is raised.
     pub fn new(quiet: bool, stop: Arc<AtomicBool>) -> Self {
         Self { quiet, stop, folder: None, begun: None, next: None, warnings: 0 }
     }
 }
 
-impl Follower for Journal {
+impl CliObserver for JsonLog {
     fn close(&mut self) -> Option<PathBuf> {
         self.folder.take()
     }
 }
 
-impl RunObserver for Journal {
+impl RunObserver for JsonLog {
     fn start(&mut self, start: &RunStart) {
         let manifest = start.manifest;
         self.folder = Some(start.folder.to_owned());
@@ -57,7 +57,7 @@ impl RunObserver for Journal {
         if self.quiet {
             return;
         }
-        tell(&json!({
+        write_event(&json!({
             "event": "start", "folder": start.folder, "title": manifest.title, "water": manifest.particles.fluid,
             "boundary": manifest.particles.boundary, "threads": manifest.threads, "until_s": manifest.until_s,
         }));
@@ -89,7 +89,7 @@ impl RunObserver for Journal {
                 }
                 None => {}
             }
-            tell(&event);
+            write_event(&event);
         }
         !self.stop.load(Ordering::Relaxed)
     }
@@ -97,7 +97,7 @@ impl RunObserver for Journal {
 
 /// A warning.
 pub fn warn(text: &str) {
-    tell(&json!({ "event": "warning", "text": text }));
+    write_event(&json!({ "event": "warning", "text": text }));
 }
 
 /// How a run ended.
@@ -108,7 +108,7 @@ pub fn ended(outcome: &RunOutcome) {
         RunStatus::Interrupted => "interrupted",
         RunStatus::Running | RunStatus::Failed => "failed",
     };
-    tell(&json!({
+    write_event(&json!({
         "event": "end", "status": status, "folder": outcome.folder, "t_s": manifest.simulated_s, "steps": manifest.steps,
         "wall_s": manifest.wall_s, "missed_checks": outcome.has_failed_checks(),
         "frames": manifest.frames.count, "frames_bytes": manifest.frames.bytes,
@@ -117,9 +117,9 @@ pub fn ended(outcome: &RunOutcome) {
 
 /// Why there is no end.
 pub fn failed(error: &Error) {
-    tell(&json!({ "event": "error", "text": error.to_string() }));
+    write_event(&json!({ "event": "error", "text": error.to_string() }));
 }
 
-fn tell(event: &Value) {
-    complain(&format!("{event}\n"));
+fn write_event(event: &Value) {
+    print_error(&format!("{event}\n"));
 }

@@ -9,9 +9,8 @@ use pontoon::{
 };
 
 use super::{
-    complain,
+    print_error, print_output,
     report::{bytes, duration},
-    say,
 };
 
 /// A page of one run.
@@ -44,20 +43,20 @@ struct PictureArgs {
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "frame.png")]
     png: Option<PathBuf>,
     #[command(flatten)]
-    look: LookArgs,
+    look: PictureStyleArgs,
 }
 
 /// What a picture shows.
 #[derive(Args)]
-pub struct LookArgs {
+pub struct PictureStyleArgs {
     /// Times of the pictures, s, separated by commas; of each the nearest frame [default: the last]
     #[arg(long, value_name = "SECONDS,..", value_delimiter = ',', requires = "png")]
     time: Vec<f64>,
     /// What colours the particles
     #[arg(long, value_name = "FIELD", default_value = "pressure", requires = "png")]
-    by: By,
+    by: ColourBy,
     /// Values of the two ends of the colours [default: the usual range of all that is shown]
-    #[arg(long, value_name = "LOW,HIGH", value_parser = ends, allow_hyphen_values = true, requires = "png")]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = number_pair, allow_hyphen_values = true, requires = "png")]
     range: Option<[f64; 2]>,
     /// Width of the picture, pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 1600, requires = "png")]
@@ -66,7 +65,7 @@ pub struct LookArgs {
 
 /// What colours the particles.
 #[derive(Clone, Copy, ValueEnum)]
-enum By {
+enum ColourBy {
     /// The pressure
     Pressure,
     /// The pressure beyond that of still water at the place
@@ -76,7 +75,7 @@ enum By {
 }
 
 /// Two numbers that rise, separated by a comma.
-fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
+fn number_pair(text: &str) -> std::result::Result<[f64; 2], String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[low, high]) if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),
@@ -90,8 +89,8 @@ fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
 /// As [`report::write`].
 pub fn report(args: &ReportArgs) -> Result<u8> {
     match &args.picture.png {
-        Some(png) => draw(std::slice::from_ref(&args.folder), &args.picture.look.shot()?, png)?,
-        None => told(&report::write(&args.folder)?),
+        Some(png) => draw_picture(std::slice::from_ref(&args.folder), &args.picture.look.picture_options()?, png)?,
+        None => print_page(&report::write(&args.folder)?),
     }
     Ok(0)
 }
@@ -102,28 +101,34 @@ pub fn report(args: &ReportArgs) -> Result<u8> {
 /// As [`report::compare`].
 pub fn compare(args: &CompareArgs) -> Result<u8> {
     match &args.picture.png {
-        Some(png) => draw(&args.folders, &args.picture.look.shot()?, png)?,
-        None => told(&report::compare(&args.folders, &args.out)?),
+        Some(png) => draw_picture(&args.folders, &args.picture.look.picture_options()?, png)?,
+        None => print_page(&report::compare(&args.folders, &args.out)?),
     }
     Ok(0)
 }
 
-impl LookArgs {
+impl PictureStyleArgs {
     /// The picture that is asked for, with the runs' names over its columns.
     ///
     /// # Errors
     /// `Usage` if a time is none.
-    pub fn shot(&self) -> Result<PictureOptions> {
+    pub fn picture_options(&self) -> Result<PictureOptions> {
         if let Some(t) = self.time.iter().find(|t| !t.is_finite()) {
             let help = "give seconds, as in --time 0.5,1";
             return Err(Error::new(Kind::Usage, format!("--time {t} is no time")).help(help));
         }
         let field = match self.by {
-            By::Pressure => ColourField::Pressure,
-            By::Excess => ColourField::ExcessPressure,
-            By::Speed => ColourField::Speed,
+            ColourBy::Pressure => ColourField::Pressure,
+            ColourBy::Excess => ColourField::ExcessPressure,
+            ColourBy::Speed => ColourField::Speed,
         };
-        Ok(PictureOptions { times: self.time.clone(), field, range: self.range, width: self.width, column_titles: vec![] })
+        Ok(PictureOptions {
+            times: self.time.clone(),
+            field,
+            range: self.range,
+            width: self.width,
+            column_titles: vec![],
+        })
     }
 }
 
@@ -131,42 +136,42 @@ impl LookArgs {
 ///
 /// # Errors
 /// As [`report::picture`].
-pub fn draw(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<()> {
+pub fn draw_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<()> {
     let (width, height) = report::write_picture(folders, shot, out)?;
-    say(&format!("{}: {width} × {height} pixels\n", out.display()));
+    print_output(&format!("{}: {width} × {height} pixels\n", out.display()));
     Ok(())
 }
 
 /// Says where a page is and what is not on it.
-fn told(page: &Page) {
+fn print_page(page: &Page) {
     for remark in &page.remarks {
-        complain(&format!("warning: {remark}\n"));
+        print_error(&format!("warning: {remark}\n"));
     }
-    say(&line(page));
+    print_output(&page_line(page));
 }
 
-fn line(page: &Page) -> String {
+fn page_line(page: &Page) -> String {
     let size = bytes(page.bytes as f64);
     format!("page: {} ({size}, written in {})\n", page.path.display(), duration(page.seconds))
 }
 
 /// Writes the page of the run in `folder` at its end. The run is what it is, with a page or without: what hinders the
 /// page is `told`.
-pub fn at_end(folder: &Path, quiet: bool, told: impl Fn(&Error)) {
+pub fn write_after_run(folder: &Path, quiet: bool, told: impl Fn(&Error)) {
     match report::write(folder) {
         Ok(_) if quiet => {}
-        Ok(page) => say(&line(&page)),
+        Ok(page) => print_output(&page_line(&page)),
         Err(why) => told(&why),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::ends;
+    use super::number_pair;
 
     #[test]
     fn the_ends_of_a_range_rise() {
-        assert_eq!(ends("-5, 1e3"), Ok([-5.0, 1000.0]));
-        assert!(["5,1", "1", "1,2,3", "a,b", "0,inf"].iter().all(|text| ends(text).is_err()));
+        assert_eq!(number_pair("-5, 1e3"), Ok([-5.0, 1000.0]));
+        assert!(["5,1", "1", "1,2,3", "a,b", "0,inf"].iter().all(|text| number_pair(text).is_err()));
     }
 }

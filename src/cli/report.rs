@@ -10,7 +10,7 @@ use pontoon::{
 
 pub use pontoon::math::format::{bytes, duration};
 
-use super::shelf::Listed;
+use super::shelf::BundledSceneInfo;
 
 /// A table with its columns aligned, two spaces in; the first row is its header.
 pub fn table(rows: &[Vec<String>]) -> String {
@@ -28,7 +28,7 @@ pub fn table(rows: &[Vec<String>]) -> String {
 }
 
 /// `n` with a metric prefix: 1.23 M.
-pub fn short(n: f64) -> String {
+pub fn short_number(n: f64) -> String {
     match n {
         n if n >= 1e9 => format!("{:.2} G", n / 1e9),
         n if n >= 1e6 => format!("{:.2} M", n / 1e6),
@@ -53,7 +53,7 @@ pub fn warnings(count: usize) -> Option<String> {
 }
 
 /// Said when a run begins.
-pub fn started(start: &RunStart) -> String {
+pub fn start_text(start: &RunStart) -> String {
     let (manifest, count) = (start.manifest, start.manifest.particles);
     let mut text = format!("{}\n", manifest.title);
     for warning in &manifest.warnings {
@@ -71,7 +71,7 @@ pub fn started(start: &RunStart) -> String {
 }
 
 /// Said when a run ends.
-pub fn ended(outcome: &RunOutcome) -> String {
+pub fn end_text(outcome: &RunOutcome) -> String {
     let manifest = &outcome.manifest;
     let how = match manifest.status {
         RunStatus::Finished => "finished",
@@ -93,7 +93,7 @@ pub fn ended(outcome: &RunOutcome) -> String {
                 duration(manifest.cpu_s)
             ),
         ],
-        vec!["speed".into(), format!("{} particle-steps/s", short(manifest.particle_steps_per_second))],
+        vec!["speed".into(), format!("{} particle-steps/s", short_number(manifest.particle_steps_per_second))],
     ]);
     if manifest.removed > 0 {
         let what = if manifest.removed == 1 { "particle" } else { "particles" };
@@ -112,7 +112,9 @@ pub fn ended(outcome: &RunOutcome) -> String {
     match manifest.frames {
         FrameTotals { count: 0, .. } => {}
         FrameTotals { count: 1, bytes: size } => text += &format!("  1 frame, {}, in frames/\n", bytes(size as f64)),
-        FrameTotals { count, bytes: size } => text += &format!("  {count} frames, {}, in frames/\n", bytes(size as f64)),
+        FrameTotals { count, bytes: size } => {
+            text += &format!("  {count} frames, {}, in frames/\n", bytes(size as f64))
+        }
     }
     if manifest.status == RunStatus::Interrupted {
         let _ = writeln!(text, "\ngo on with: pontoon resume {}", outcome.folder.display());
@@ -142,7 +144,7 @@ fn checks(checks: &[Verdict]) -> String {
 }
 
 /// What `scenes` prints.
-pub fn shelf(scenes: &[Listed]) -> String {
+pub fn scene_list(scenes: &[BundledSceneInfo]) -> String {
     let mut text = String::new();
     for scene in scenes {
         let place = scene.folder.as_ref().map_or("built in".into(), |folder| folder.display().to_string());
@@ -160,7 +162,7 @@ mod tests {
 
     #[test]
     fn numbers_are_said_briefly() {
-        assert_eq!([short(1.234e6), short(5.0), short(123.4)], ["1.23 M", "5.00", "123"]);
+        assert_eq!([short_number(1.234e6), short_number(5.0), short_number(123.4)], ["1.23 M", "5.00", "123"]);
     }
 
     #[test]

@@ -11,19 +11,19 @@ use pontoon::{
 };
 
 /// A scene that was found; one that is built in lies in a temporary folder for as long as this lives.
-pub struct Found {
+pub struct FoundScene {
     path: PathBuf,
     temporary: Option<PathBuf>,
 }
 
-impl Found {
+impl FoundScene {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// What came of the scene; an error calls one that is built in by its name, not by where it lies for the moment.
-    pub fn named<T>(&self, outcome: Result<T>) -> Result<T> {
+    pub fn with_scene_name<T>(&self, outcome: Result<T>) -> Result<T> {
         let Some(folder) = &self.temporary else { return outcome };
         let without = |text: &mut String| *text = text.replace(&format!("{}{MAIN_SEPARATOR}", folder.display()), "");
         outcome.map_err(|mut error| {
@@ -35,7 +35,7 @@ impl Found {
     }
 }
 
-impl Drop for Found {
+impl Drop for FoundScene {
     fn drop(&mut self) {
         if let Some(folder) = &self.temporary {
             // Left over, it does no harm.
@@ -45,7 +45,7 @@ impl Drop for Found {
 }
 
 /// A scene that comes with the program.
-pub struct Listed {
+pub struct BundledSceneInfo {
     /// Its name.
     pub name: String,
     /// Its caption.
@@ -60,11 +60,11 @@ pub struct Listed {
 ///
 /// # Errors
 /// `Usage` if there is none: names the nearest.
-pub fn find(word: &Path) -> Result<Found> {
+pub fn find_scene(word: &Path) -> Result<FoundScene> {
     let beside = Path::new("scenes").join(word);
     for path in [word, &beside] {
         if path.is_file() || path.join("scene.toml").is_file() {
-            return Ok(Found { path: path.to_owned(), temporary: None });
+            return Ok(FoundScene { path: path.to_owned(), temporary: None });
         }
     }
     let shelf = bundled_scenes();
@@ -80,9 +80,9 @@ pub fn find(word: &Path) -> Result<Found> {
 }
 
 /// Lays a built-in scene out in a temporary folder.
-fn unpack((name, text, files): &BundledScene) -> Result<Found> {
+fn unpack((name, text, files): &BundledScene) -> Result<FoundScene> {
     let temporary = std::env::temp_dir().join(format!("pontoon-{}", std::process::id()));
-    let found = Found { path: temporary.join(name), temporary: Some(temporary) };
+    let found = FoundScene { path: temporary.join(name), temporary: Some(temporary) };
     let refused = |why| Error::file(&found.path, format!("cannot be written: {why}"));
     fs::create_dir_all(&found.path).map_err(refused)?;
     for (file, text) in files.iter().chain([&("scene.toml", *text)]) {
@@ -93,12 +93,12 @@ fn unpack((name, text, files): &BundledScene) -> Result<Found> {
 }
 
 /// All scenes that come with the program.
-pub fn all() -> Vec<Listed> {
+pub fn scene_infos() -> Vec<BundledSceneInfo> {
     let listed = |(name, text, files): &BundledScene| {
         let words = text.parse::<toml::Table>().ok();
         let readme = files.iter().find(|(file, _)| *file == "README.md").map_or("", |(_, readme)| readme);
         let folder = Path::new("scenes").join(name);
-        Listed {
+        BundledSceneInfo {
             name: name.to_string(),
             title: words.and_then(|w| Some(w.get("title")?.as_str()?.to_owned())).unwrap_or_default(),
             about: first_sentence(readme),
@@ -111,12 +111,12 @@ pub fn all() -> Vec<Listed> {
 /// The first sentence of `readme` that is no heading, of a line however long.
 fn first_sentence(readme: &str) -> String {
     let paragraph = readme.split("\n\n").map(str::trim).find(|text| !text.is_empty() && !text.starts_with('#'));
-    let text = unlinked(&paragraph.unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" "));
+    let text = without_links(&paragraph.unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" "));
     text.split_once(". ").map_or(text.clone(), |(first, _)| format!("{first}."))
 }
 
 /// `text` with the words of its links alone, and names in no back-quotes.
-fn unlinked(text: &str) -> String {
+fn without_links(text: &str) -> String {
     let (mut said, mut rest) = (String::new(), text);
     while let Some((before, after)) = rest.split_once("](") {
         let (Some(begins), Some((_, behind))) = (before.rfind('['), after.split_once(')')) else { break };
@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(first_sentence("# Only a heading\n"), "");
         let linked = "# A raft\n\nThe [raft](../raft/README.md) of `raft`, in [1, 2] (twice). More.\n";
         assert_eq!(first_sentence(linked), "The raft of raft, in [1, 2] (twice).");
-        for scene in all() {
+        for scene in scene_infos() {
             assert!(scene.about.ends_with('.') && !scene.title.is_empty(), "{}: {:?}", scene.name, scene.about);
             assert!(!scene.about.contains("]("), "{}: {:?}", scene.name, scene.about);
         }

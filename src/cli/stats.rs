@@ -6,11 +6,11 @@ use clap::Args;
 use pontoon::{
     error::{Error, Kind, Result},
     preflight::three_digits,
-    run::{RaoResult, StatisticsFilter, Statistic, RunStatistics, statistics},
+    run::{RaoResult, RunStatistics, Statistic, StatisticsFilter, statistics},
 };
 use serde::Serialize;
 
-use super::{complain, report::table};
+use super::{print_error, report::table};
 
 /// Which run, and which part of it.
 #[derive(Args)]
@@ -43,20 +43,20 @@ const FIGURES: [&str; 12] =
 pub fn stats(args: &StatsArgs) -> Result<String> {
     let asked = StatisticsFilter { series: args.series.clone(), from: args.from, until: args.until };
     let told = statistics(&args.folder, &asked)?;
-    told.remarks.iter().for_each(|remark| complain(&format!("warning: {remark}\n")));
+    told.remarks.iter().for_each(|remark| print_error(&format!("warning: {remark}\n")));
     if args.rao && told.raos.is_empty() {
-        return Err(no_answer(args));
+        return Err(no_rao(args));
     }
     match (args.rao, args.json) {
         (true, true) => json(&told.raos),
-        (true, false) => Ok(table(&answered(&told.raos))),
+        (true, false) => Ok(table(&rao_rows(&told.raos))),
         (false, true) => json(&told.rows),
         (false, false) => Ok(tables(&told)),
     }
 }
 
 /// That no motion answers irregular waves in what is asked for.
-fn no_answer(args: &StatsArgs) -> Error {
+fn no_rao(args: &StatsArgs) -> Error {
     let of = args.series.as_ref().map_or(String::new(), |series| format!(" of {series:?}"));
     let what = format!("there is no answer{of} to irregular waves over frequency in {}", args.folder.display());
     Error::new(Kind::Usage, what).help(
@@ -73,23 +73,24 @@ fn json<T: Serialize>(rows: &[T]) -> Result<String> {
 /// All tables that have rows.
 fn tables(told: &RunStatistics) -> String {
     let (plain, declared): (Vec<_>, Vec<_>) = told.rows.iter().partition(|row| row.name.is_empty());
-    let mut text = table(&every(&plain));
+    let mut text = table(&series_rows(&plain));
     if !declared.is_empty() {
-        text += &format!("\n{}", table(&named(&declared)));
+        text += &format!("\n{}", table(&declared_rows(&declared)));
     }
     if !told.raos.is_empty() {
-        text += &format!("\n{}", table(&answered(&told.raos)));
+        text += &format!("\n{}", table(&rao_rows(&told.raos)));
     }
     text
 }
 
 /// A row for each series; what none of them has is left out.
-fn every(rows: &[&Statistic]) -> Vec<Vec<String>> {
+fn series_rows(rows: &[&Statistic]) -> Vec<Vec<String>> {
     let figures: Vec<&str> = FIGURES.into_iter().filter(|f| rows.iter().any(|row| row.quantity == *f)).collect();
     let head = ["series", "unit"].into_iter().chain(figures.iter().copied());
     let mut lines = vec![head.map(String::from).collect::<Vec<_>>()];
     for of in rows.chunk_by(|a, b| a.series == b.series) {
-        let value = |f: &&str| of.iter().find(|row| row.quantity == *f).map_or(String::new(), |row| three_digits(row.value));
+        let value =
+            |f: &&str| of.iter().find(|row| row.quantity == *f).map_or(String::new(), |row| three_digits(row.value));
         let mut line = vec![of[0].series.clone(), of[0].unit.clone()];
         line.extend(figures.iter().map(value));
         lines.push(line);
@@ -98,19 +99,27 @@ fn every(rows: &[&Statistic]) -> Vec<Vec<String>> {
 }
 
 /// A row for each figure that the scene asks for.
-fn named(rows: &[&Statistic]) -> Vec<Vec<String>> {
+fn declared_rows(rows: &[&Statistic]) -> Vec<Vec<String>> {
     let mut lines =
         vec![["statistic", "series", "figure", "value", "unit", "from (s)", "until (s)"].map(String::from).to_vec()];
     lines.extend(rows.iter().map(|row| {
         let span = [row.from_s, row.until_s].map(|t| format!("{t:.3}"));
         let [from, until] = span;
-        vec![row.name.clone(), row.series.clone(), row.quantity.into(), three_digits(row.value), row.unit.clone(), from, until]
+        vec![
+            row.name.clone(),
+            row.series.clone(),
+            row.quantity.into(),
+            three_digits(row.value),
+            row.unit.clone(),
+            from,
+            until,
+        ]
     }));
     lines
 }
 
 /// A row for each frequency of each motion that answers irregular waves.
-fn answered(answers: &[RaoResult]) -> Vec<Vec<String>> {
+fn rao_rows(answers: &[RaoResult]) -> Vec<Vec<String>> {
     let head = ["statistic", "series", "frequency (Hz)", "period (s)", "rao", "unit", "phase (°)", "coherence"];
     let row = |answer: &RaoResult| {
         let RaoResult { name, series, unit, point } = answer;

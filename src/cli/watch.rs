@@ -23,8 +23,8 @@ use pontoon::{
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
 use super::{
+    print_output,
     report::{duration, table, warnings},
-    say,
 };
 
 /// Which run, and which of its series.
@@ -45,7 +45,7 @@ pub struct WatchArgs {
 }
 
 /// Columns that are plotted where nobody says which, the most telling first.
-const TELLING: [&str; 8] = ["heave_m", "eta", "fx_N", "p_", "front_m", "total_J", "angle_deg", "tension_N"];
+const PREFERRED_COLUMNS: [&str; 8] = ["heave_m", "eta", "fx_N", "p_", "front_m", "total_J", "angle_deg", "tension_N"];
 
 /// Lines that a plot, or the table, has at least.
 const LEAST_LINES: usize = 6;
@@ -55,37 +55,37 @@ pub fn watch(args: &WatchArgs) -> Result<u8> {
     if !(args.every > 0.0 && args.every.is_finite()) {
         return Err(Error::new(Kind::Usage, format!("--every {} is no time", args.every)).help("give seconds"));
     }
-    let seen = Seen::read(&args.folder)?;
+    let seen = RunSnapshot::read(&args.folder)?;
     seen.check(&args.series)?;
     if args.once || !stdout().is_terminal() {
-        say(&seen.page(&args.series, (80, 24)));
+        print_output(&seen.screen_text(&args.series, (80, 24)));
         return Ok(0);
     }
-    let screen = Screen::open()?;
-    let left = follow(args);
+    let screen = AlternateScreen::open()?;
+    let left = watch_live(args);
     drop(screen);
     left?;
     // What was seen last stays to be read.
-    say(&Seen::read(&args.folder)?.page(&args.series, size().unwrap_or((80, 24))));
+    print_output(&RunSnapshot::read(&args.folder)?.screen_text(&args.series, size().unwrap_or((80, 24))));
     Ok(0)
 }
 
-fn follow(args: &WatchArgs) -> Result<()> {
+fn watch_live(args: &WatchArgs) -> Result<()> {
     loop {
-        let seen = Seen::read(&args.folder)?;
-        let text = seen.page(&args.series, size().unwrap_or((80, 24))) + "q leaves\n";
+        let seen = RunSnapshot::read(&args.folder)?;
+        let text = seen.screen_text(&args.series, size().unwrap_or((80, 24))) + "q leaves\n";
         let _ = execute!(stdout(), MoveTo(0, 0), Clear(ClearType::All));
         // A raw terminal does not go back to the first column by itself.
         let _ = stdout().write_all(text.replace('\n', "\r\n").as_bytes());
         let _ = stdout().flush();
-        if seen.manifest.status != RunStatus::Running || left(Duration::from_secs_f64(args.every)) {
+        if seen.manifest.status != RunStatus::Running || quit_requested(Duration::from_secs_f64(args.every)) {
             return Ok(());
         }
     }
 }
 
 /// Waits so long; whether somebody leaves meanwhile.
-fn left(wait: Duration) -> bool {
+fn quit_requested(wait: Duration) -> bool {
     if !poll(wait).unwrap_or(true) {
         return false;
     }
@@ -98,16 +98,16 @@ fn left(wait: Duration) -> bool {
 }
 
 /// The process that the lock in `folder` names, and whether it lives, where the system keeps /proc.
-fn process(folder: &Path) -> Option<(u32, Option<bool>)> {
+fn lock_process(folder: &Path) -> Option<(u32, Option<bool>)> {
     let id = run::lock_owner(folder)?;
     let all = Path::new("/proc");
     Some((id, all.join("self").exists().then(|| all.join(id.to_string()).exists())))
 }
 
 /// The terminal in its other screen; as it was when this is dropped.
-struct Screen;
+struct AlternateScreen;
 
-impl Screen {
+impl AlternateScreen {
     fn open() -> Result<Self> {
         enable_raw_mode().map_err(|why| Error::new(Kind::Usage, format!("the terminal cannot be watched: {why}")))?;
         let _ = execute!(stdout(), EnterAlternateScreen, Hide);
@@ -115,7 +115,7 @@ impl Screen {
     }
 }
 
-impl Drop for Screen {
+impl Drop for AlternateScreen {
     fn drop(&mut self) {
         let _ = execute!(stdout(), Show, LeaveAlternateScreen);
         let _ = disable_raw_mode();
@@ -123,14 +123,14 @@ impl Drop for Screen {
 }
 
 /// A run as it stands.
-struct Seen {
+struct RunSnapshot {
     manifest: Manifest,
     /// The process that writes here, if one is named, and whether it lives, if the system tells.
     process: Option<(u32, Option<bool>)>,
     tables: Vec<(String, SeriesTable)>,
 }
 
-impl Seen {
+impl RunSnapshot {
     fn read(folder: &Path) -> Result<Self> {
         let manifest = Manifest::read(folder)?;
         let files = manifest.files.iter().filter_map(|file| file.strip_prefix("series/")?.strip_suffix(".csv"));
@@ -138,7 +138,7 @@ impl Seen {
             let path = folder.join("series").join(format!("{name}.csv"));
             Some((name.to_string(), SeriesTable::read(&path).ok()?))
         };
-        Ok(Self { tables: files.filter_map(read).collect(), process: process(folder), manifest })
+        Ok(Self { tables: files.filter_map(read).collect(), process: lock_process(folder), manifest })
     }
 
     /// All series.
@@ -169,9 +169,9 @@ impl Seen {
     }
 
     /// What a terminal of so many columns and lines shows.
-    fn page(&self, series: &[String], (wide, high): (u16, u16)) -> String {
+    fn screen_text(&self, series: &[String], (wide, high): (u16, u16)) -> String {
         let mut text = format!("{}\n{}\n", self.manifest.title, self.status());
-        let telling = TELLING.iter().filter_map(|word| self.names().find(|name| name.contains(word)));
+        let telling = PREFERRED_COLUMNS.iter().filter_map(|word| self.names().find(|name| name.contains(word)));
         let mut plots: Vec<String> = match series.is_empty() {
             true => telling.chain(self.names().next()).take(2).collect(),
             false => series.to_vec(),
@@ -180,7 +180,7 @@ impl Seen {
         let room = usize::from(high.max(24)) - 5;
         let lines = (room / 2).checked_div(plots.len()).unwrap_or(0).max(LEAST_LINES);
         let rows = room.saturating_sub(plots.len() * lines).max(LEAST_LINES);
-        text += &self.latest(rows);
+        text += &self.latest_readings(rows);
         for name in &plots {
             text += &self.plot(name, wide, lines);
         }
@@ -198,7 +198,7 @@ impl Seen {
             (RunStatus::Failed, _) => "failed".into(),
         };
         let t = self.tables.iter().filter_map(|(_, of)| of.times.last()).copied().fold(m.simulated_s, f64::max);
-        let words = self.drift().map(|drift| drift.to_string()).into_iter().chain(warnings(m.warnings.len()));
+        let words = self.energy_drift().map(|drift| drift.to_string()).into_iter().chain(warnings(m.warnings.len()));
         let more: String = words.map(|word| format!(", {word}")).collect();
         let text = format!(
             "{how}: t = {t:.3} of {} s, {} of wall time at the last frame{more}",
@@ -217,9 +217,10 @@ impl Seen {
     }
 
     /// What became of the energy, if a table tells it.
-    fn drift(&self) -> Option<EnergyDrift> {
+    fn energy_drift(&self) -> Option<EnergyDrift> {
         let table = |first: &str| self.tables.iter().find(|(_, of)| of.columns.iter().any(|c| c.starts_with(first)));
-        let row = |of: &SeriesTable, i: usize| of.values.iter().map(|x| x.get(i).copied()).collect::<Option<Vec<f64>>>();
+        let row =
+            |of: &SeriesTable, i: usize| of.values.iter().map(|x| x.get(i).copied()).collect::<Option<Vec<f64>>>();
         if let Some((_, of)) = table("residual_J") {
             return EnergyDrift::from_budget(&row(of, of.times.len().checked_sub(1)?)?);
         }
@@ -229,7 +230,7 @@ impl Seen {
     }
 
     /// The last reading of each series, its least and its largest.
-    fn latest(&self, most: usize) -> String {
+    fn latest_readings(&self, most: usize) -> String {
         let mut rows = vec![["series", "t (s)", "now", "least", "largest"].map(String::from).to_vec()];
         for name in self.names() {
             let Some((t, x)) = self.curve(&name) else { continue };

@@ -14,7 +14,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{IntervalMean, cannot_write, partial_path, commit_partial, sync_folder, write_partial};
+use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folder, write_partial};
 use crate::error::{Error, Kind, Result};
 
 /// The last checkpoint, in the run's folder.

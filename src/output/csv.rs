@@ -229,7 +229,11 @@ mod tests {
         again.append_row(0.2, &[0.0, 0.0])?;
         again.truncate(whole.len() as u64)?;
         assert_eq!(again.last_row(), Some((0.1, &[-1e-9, 2.0][..])), "the row that is the last again");
-        assert!(again.first_row().is_some_and(|row| row[0] == 1.0 / 3.0), "the first row stays: {:?}", again.first_row());
+        assert!(
+            again.first_row().is_some_and(|row| row[0] == 1.0 / 3.0),
+            "the first row stays: {:?}",
+            again.first_row()
+        );
         assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
         assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
         assert!(CsvTable::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");

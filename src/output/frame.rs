@@ -212,7 +212,10 @@ fn to_3d<const D: usize>(vectors: &[Vector<D>]) -> Vec<f32> {
 }
 
 /// The text of a .vtu file with a vertex at each point.
-fn points_vtu<const D: usize>(points: &[Vector<D>], fields: Vec<Attribute>) -> std::result::Result<Vec<u8>, vtkio::Error> {
+fn points_vtu<const D: usize>(
+    points: &[Vector<D>],
+    fields: Vec<Attribute>,
+) -> std::result::Result<Vec<u8>, vtkio::Error> {
     let count = points.len() as u64;
     let cells = Cells {
         cell_verts: VertexNumbers::XML { connectivity: (0..count).collect(), offsets: (1..=count).collect() },

@@ -112,7 +112,8 @@ fn parse_points(text: &[u8]) -> std::result::Result<FramePoints, vtkio::Error> {
         }
     }
     let whole = |count: usize| count == 0 || count == cloud.position.len();
-    let fields = [cloud.density.len(), cloud.pressure.len(), cloud.solid_index.len(), cloud.id.len(), cloud.velocity.len()];
+    let fields =
+        [cloud.density.len(), cloud.pressure.len(), cloud.solid_index.len(), cloud.id.len(), cloud.velocity.len()];
     if fields.into_iter().all(whole) { Ok(cloud) } else { Err(lacking()) }
 }
 

@@ -12,7 +12,7 @@ pub mod removed;
 pub mod surface;
 
 pub use checkpoint::{Checkpoint, OutputPositions};
-pub use csv::{SeriesTable, CsvTable};
+pub use csv::{CsvTable, SeriesTable};
 pub use frame::FrameWriter;
 pub use frame_sequence::{FramePoints, FrameSequence};
 pub use manifest::Manifest;

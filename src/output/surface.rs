@@ -8,7 +8,7 @@ use vtkio::model::{CellType, Cells, ElementType, VertexNumbers};
 
 use super::{
     cannot_write,
-    frame::{data_array, pvd_index, mesh_vtu},
+    frame::{data_array, mesh_vtu, pvd_index},
     frame_sequence::{FramePoints, FrameSequence},
     write_atomically,
 };

@@ -54,7 +54,8 @@ impl<const D: usize> PreflightContext<'_, D> {
                     three_digits(long[axis]),
                     three_digits(there[axis])
                 );
-                let mend = format!("make it smaller, or the tank longer by {} m", two_digits_up(long[axis] - there[axis]));
+                let mend =
+                    format!("make it smaller, or the tank longer by {} m", two_digits_up(long[axis] - there[axis]));
                 return Some(Finding::warning("larger_than_water", what, mend));
             }
         }
@@ -80,7 +81,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         (matches!(solid.spec.role, Role::Free(_)) && off > size).then(|| {
             let body = &solid.spec.name;
             let what = format!("{kind} \"{name}\" is made fast to \"{body}\" {} m off it", three_digits(off));
-            let mend = format!("\"{body}\" is {} m large: is the place meant, a point of the world?", three_digits(size));
+            let mend =
+                format!("\"{body}\" is {} m large: is the place meant, a point of the world?", three_digits(size));
             Finding::note("far_tie", what, mend)
         })
     }

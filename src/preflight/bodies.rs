@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::{
     Finding, PreflightContext,
     faces::SurfaceSample,
-    format::{two_digits_down, three_digits, two_digits_up},
+    format::{three_digits, two_digits_down, two_digits_up},
     thickness::thinnest_part,
 };
 use crate::{
@@ -123,7 +123,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         let (model, shape, pose) = (self.system.model(), &solid.spec.shape, &solid.kinematics.pose);
         let volume = shape.volume().volume;
         let rest = self.equilibrium_pose(solid, body);
-        let wet = |face: &&SurfaceSample<D>| rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
+        let wet =
+            |face: &&SurfaceSample<D>| rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
         let share = faces.iter().filter(wet).count() as f64 / faces.len().max(1) as f64;
         let least = 0.5 * model.cfl * model.rho0 * model.h * share * shape.surface();
         let thinnest_m = thinnest_part(shape, faces, model.dp).unwrap_or(model.dp);
@@ -150,7 +151,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         let mut pose = solid.kinematics.pose;
         let rho0 = self.system.model().rho0;
-        pose.position[D - 1] += equilibrium_height(&solid.spec.shape, &pose, body.mass, rho0, self.still_water.level).ok()?;
+        pose.position[D - 1] +=
+            equilibrium_height(&solid.spec.shape, &pose, body.mass, rho0, self.still_water.level).ok()?;
         Some(pose)
     }
 
@@ -197,7 +199,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         let rho0 = self.system.model().rho0;
         let size = solid.spec.shape.bounds().size().max();
         let gm = |axis: &[f64]| {
-            let gm = metacentric_height(&solid.spec.shape, pose, body, rho0, self.still_water.level, axis).unwrap_or(0.0);
+            let gm =
+                metacentric_height(&solid.spec.shape, pose, body, rho0, self.still_water.level, axis).unwrap_or(0.0);
             // Round-off and facets: a ball has none.
             if gm.abs() < 1e-4 * size { 0.0 } else { gm }
         };
@@ -231,8 +234,10 @@ impl<const D: usize> PreflightContext<'_, D> {
         let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
         if least < 0.0 {
             let what = format!("\"{name}\" will turn over: its metacentric height is {} m", three_digits(least));
-            let mend =
-                format!("lower its centre of mass by {} m or more (centre_offset), or lock its turn", two_digits_up(-least));
+            let mend = format!(
+                "lower its centre of mass by {} m or more (centre_offset), or lock its turn",
+                two_digits_up(-least)
+            );
             findings.push(Finding::warning("capsizes", what, mend));
         } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
             let heel = afloat.heel_deg.unwrap_or_default();
@@ -269,7 +274,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 three_digits(body.thinnest_dp),
                 three_digits(self.support_radius_dp())
             );
-            let mend = format!("make it {} m thick, or dp = {}", two_digits_up(reach), two_digits_down(body.thinnest_m / self.support_radius_dp()));
+            let mend = format!(
+                "make it {} m thick, or dp = {}",
+                two_digits_up(reach),
+                two_digits_down(body.thinnest_m / self.support_radius_dp())
+            );
             findings.push(Finding::warning("thin_body", what, mend));
         }
         if body.over_limit < 1.0 {

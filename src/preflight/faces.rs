@@ -25,7 +25,8 @@ pub fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<SurfaceSample<
 
 /// The faces of `shape`, dp (m) apart, but for those at which the parts of a compound join.
 pub fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
-    let free = |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
+    let free =
+        |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
     shape.skin(dp, 1).into_iter().flat_map(|point| nearest_samples(shape, &point.r, dp)).filter(free).collect()
 }
 

@@ -3,7 +3,7 @@
 use super::{
     Finding, PreflightContext,
     faces::SurfaceSample,
-    format::{two_digits_down, place, three_digits},
+    format::{place, three_digits, two_digits_down},
 };
 use crate::{math::Vector, scene::world_bounds, solid::Role};
 
@@ -95,11 +95,15 @@ impl<const D: usize> PreflightContext<'_, D> {
         );
         let apart = |more: &str| {
             let further = three_digits(reach - gap.width);
-            format!("{more} move them {further} m further apart, or dp = {}", two_digits_down(gap.width / self.support_radius_dp()))
+            format!(
+                "{more} move them {further} m further apart, or dp = {}",
+                two_digits_down(gap.width / self.support_radius_dp())
+            )
         };
         if self.is_wet(&gap.middle) {
             let what = what + ": the water between them is not resolved";
-            let touch = if self.skin_distance(a, b) > 0.0 { "let them touch without a skin," } else { "let them touch," };
+            let touch =
+                if self.skin_distance(a, b) > 0.0 { "let them touch without a skin," } else { "let them touch," };
             Finding::warning("narrow_gap", what, apart(touch))
         } else {
             Finding::note("narrow_gap", what + "; it is dry at the start", apart("if it floods,"))

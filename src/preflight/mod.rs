@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 pub use absorb::AbsorberSummary;
-pub use bodies::{Equilibrium, BodySummary, Tilt};
+pub use bodies::{BodySummary, Equilibrium, Tilt};
 pub use format::three_digits;
 pub use size::{DiskUse, RunSize};
 pub use sound::{ExpectedSpeed, SoundSpeed, StepSizeLimits};

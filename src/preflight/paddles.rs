@@ -1,8 +1,8 @@
 //! Paddles that make waves by name: what their waves may not become, and where a paddle is no paddle of theory.
 
 use super::{
-    Finding, PreflightContext, GeneratedWave,
-    format::{two_digits_down, three_digits, two_digits_up},
+    Finding, GeneratedWave, PreflightContext,
+    format::{three_digits, two_digits_down, two_digits_up},
     stands::WavemakerSite,
     swings::wave_direction,
     thickness::has_full_layers,
@@ -110,7 +110,13 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// A group whose crest is to stand where it cannot.
-    pub(super) fn check_focus(&self, wave: &GeneratedWave, stand: &WavemakerSite<D>, law: &wavemaker::Wave, findings: &mut Vec<Finding>) {
+    pub(super) fn check_focus(
+        &self,
+        wave: &GeneratedWave,
+        stand: &WavemakerSite<D>,
+        law: &wavemaker::Wave,
+        findings: &mut Vec<Finding>,
+    ) {
         let Some((distance, time)) = law.facts().focus else { return };
         let (name, end) = (&wave.solid, self.water_end(stand));
         let least = distance / wave.group_mps + wave.ramp_s;
@@ -154,13 +160,22 @@ impl<const D: usize> PreflightContext<'_, D> {
         let lower = train.highest_of_stokes();
         let shorter = train.longest_of_stokes(height).filter(|_| lower < LEAST * self.dp());
         let shorter = shorter.map(|period| {
-            format!("the period is long for waves of that height in this depth: period = {}, or ", two_digits_down(period))
+            format!(
+                "the period is long for waves of that height in this depth: period = {}, or ",
+                two_digits_down(period)
+            )
         });
         format!("{}height = {}", shorter.unwrap_or_default(), two_digits_down(lower))
     }
 
     /// What a wave that was asked for may not become.
-    pub(super) fn check_wave(&self, wave: &GeneratedWave, solid: &Solid<D>, law: &wavemaker::Wave, findings: &mut Vec<Finding>) {
+    pub(super) fn check_wave(
+        &self,
+        wave: &GeneratedWave,
+        solid: &Solid<D>,
+        law: &wavemaker::Wave,
+        findings: &mut Vec<Finding>,
+    ) {
         let (name, facts) = (&wave.solid, law.facts());
         let sea = !matches!(facts.kind, "regular" | "solitary");
         if let Some(train) = facts.train.filter(|_| sea) {

@@ -83,7 +83,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 "probe \"{name}\" at {at} m is {} m above the still level: no water comes there",
                 three_digits(x[D - 1] - self.still_water.level)
             );
-            Finding::warning("probe_above", what, format!("{}; water may come to {} m", self.nearest_water(&x), three_digits(highest)))
+            Finding::warning(
+                "probe_above",
+                what,
+                format!("{}; water may come to {} m", self.nearest_water(&x), three_digits(highest)),
+            )
         })
     }
 

@@ -57,7 +57,13 @@ pub struct DiskUse {
 
 impl<const D: usize> PreflightContext<'_, D> {
     /// How large the run is; `columns`: how many each probe writes beside the time.
-    pub(super) fn size(&self, step: &StepSizeLimits, columns: &[usize], removed: usize, findings: &mut Vec<Finding>) -> RunSize {
+    pub(super) fn size(
+        &self,
+        step: &StepSizeLimits,
+        columns: &[usize],
+        removed: usize,
+        findings: &mut Vec<Finding>,
+    ) -> RunSize {
         let (system, model) = (self.system, self.system.model());
         let (fluid, boundary) = (system.fluid().len(), system.boundary().len());
         let disk = self.disk(step, columns);
@@ -74,7 +80,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         if disk.frames_bytes > BUDGET {
             let what = format!("{} frames will take {}", disk.frames, bytes(disk.frames_bytes));
             let every = self.plan.frames.as_ref().map_or(0.0, |f| f.every).max(step.dt_s);
-            let mend = format!("frames.every = {} keeps them to 10 GB", two_digits_up(every * disk.frames_bytes / BUDGET));
+            let mend =
+                format!("frames.every = {} keeps them to 10 GB", two_digits_up(every * disk.frames_bytes / BUDGET));
             findings.push(Finding::warning("large_frames", what, mend));
         }
         RunSize {

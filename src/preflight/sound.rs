@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext, faces,
-    format::{two_digits_down, three_digits, two_digits_up},
+    format::{three_digits, two_digits_down, two_digits_up},
 };
 use crate::{
     model::Scheme,
@@ -152,8 +152,10 @@ impl<const D: usize> PreflightContext<'_, D> {
             all.into_iter().fold((String::new(), f64::INFINITY), |least, x| if x.1 < least.1 { x } else { least });
         let slower = sound_s / dt_s;
         if bound_by == "springs" && slower > 2.0 {
-            let what =
-                format!("springs or motors are so stiff that the run takes {} times as many steps", three_digits(slower));
+            let what = format!(
+                "springs or motors are so stiff that the run takes {} times as many steps",
+                three_digits(slower)
+            );
             // What swings so fast in the water is beyond the sound that particles carry: docs/stability.md.
             let damped =
                 "in water a spring whose body swings as fast has a hundredth of the critical damping, 2 √(k m)";

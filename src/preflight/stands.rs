@@ -1,7 +1,7 @@
 //! Where a paddle stands: what lies in the way of its waves, and which zones take them.
 
 use super::{
-    Finding, PreflightContext, GeneratedWave,
+    Finding, GeneratedWave, PreflightContext,
     format::{place, three_digits, two_digits_up},
     thickness::has_full_layers,
 };
@@ -136,7 +136,8 @@ impl<const D: usize> PreflightContext<'_, D> {
             findings.push(Finding::warning("short_damping", what, mend));
         }
         for zone in zones.iter().filter(|zone| zone.rate(&stand.face) >= zone.strength * (1.0 - 1e-9)) {
-            let what = format!("{} is at its full strength at \"{}\", which makes waves", zone_extent(zone), wave.solid);
+            let what =
+                format!("{} is at its full strength at \"{}\", which makes waves", zone_extent(zone), wave.solid);
             let mend =
                 format!("`from` is where waves come from: from = {}, to = {}", place(&zone.to), place(&zone.from));
             findings.push(Finding::warning("reversed_damping", what, mend));

@@ -25,7 +25,12 @@ pub(super) struct DrivenStroke<const D: usize> {
 
 impl<const D: usize> PreflightContext<'_, D> {
     /// How the material point in the still level goes sideways.
-    pub(super) fn driven_stroke(&self, solid: &Solid<D>, motion: &Motion<D>, bounds: &Bounds<D>) -> Option<DrivenStroke<D>> {
+    pub(super) fn driven_stroke(
+        &self,
+        solid: &Solid<D>,
+        motion: &Motion<D>,
+        bounds: &Bounds<D>,
+    ) -> Option<DrivenStroke<D>> {
         let mut mark = 0.5 * (bounds.min + bounds.max);
         mark[D - 1] = self.still_water.level;
         if let Some(law) = motion.wave() {
@@ -103,9 +108,9 @@ mod tests {
     fn the_largest_swing_is_found_under_a_ramp_and_past_noise() {
         let way = |t: f64| 0.1 * (t / 4.0).min(1.0) * (TAU * t).sin() + 1e-3 * (57.0 * t).sin();
         let samples: Vec<f64> = (0..=1000).map(|i| way(0.01 * i as f64)).collect();
-        let (stroke, steps) = driven_stroke(&samples).unwrap_or((0.0, 0));
+        let (stroke, steps) = largest_stroke(&samples).unwrap_or((0.0, 0));
         // Noise moves the turns by a few samples and the stroke by its own 2 per cent.
         assert!((stroke - 0.2).abs() < 0.005 && (45..=55).contains(&steps), "{stroke} {steps}");
-        assert_eq!(driven_stroke(&[0.0, 0.1, 0.3, 0.4]), None, "it never turns");
+        assert_eq!(largest_stroke(&[0.0, 0.1, 0.3, 0.4]), None, "it never turns");
     }
 }

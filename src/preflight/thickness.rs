@@ -3,7 +3,7 @@
 use super::{
     Finding, PreflightContext,
     faces::{self, SurfaceSample},
-    format::{two_digits_down, place, three_digits, two_digits_up},
+    format::{place, three_digits, two_digits_down, two_digits_up},
 };
 use crate::{
     geometry::Shape,
@@ -37,7 +37,8 @@ fn chord<const D: usize>(face: &SurfaceSample<D>, dp: f64, most: f64, distance: 
 pub fn thinnest_part<const D: usize>(shape: &Shape<D>, faces: &[SurfaceSample<D>], dp: f64) -> Option<f64> {
     let most = shape.bounds().size().norm();
     let distance = |x: &Vector<D>| shape.signed_distance(x);
-    shortest_chord(faces::thinned(faces, PLACES_SEEN).map(|face| (chord(face, dp, most, distance), face.x)).collect()).map(|x| x.0)
+    shortest_chord(faces::thinned(faces, PLACES_SEEN).map(|face| (chord(face, dp, most, distance), face.x)).collect())
+        .map(|x| x.0)
 }
 
 /// The least of these ways, but for the shortest tenth, with its place.
@@ -73,7 +74,9 @@ impl<const D: usize> PreflightContext<'_, D> {
                 let way = if fixed { chord(&face, dp, reach, together) } else { chord(&face, dp, reach, alone) };
                 (way, face.x)
             };
-            let Some((thick, at)) = shortest_chord(faces::thinned(faces, PLACES_SEEN).map(way).collect()) else { continue };
+            let Some((thick, at)) = shortest_chord(faces::thinned(faces, PLACES_SEEN).map(way).collect()) else {
+                continue;
+            };
             if thick < reach * (1.0 - 1e-6) {
                 let what = format!(
                     "\"{}\" is {} m thick at {}, {} dp, and the kernel reaches {} dp: water sees through it, or too \
@@ -84,7 +87,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                     three_digits(thick / dp),
                     three_digits(self.support_radius_dp()),
                 );
-                let mend = format!("make it {} m thick, or dp = {}", two_digits_up(reach), two_digits_down(thick / self.support_radius_dp()));
+                let mend = format!(
+                    "make it {} m thick, or dp = {}",
+                    two_digits_up(reach),
+                    two_digits_down(thick / self.support_radius_dp())
+                );
                 findings.push(Finding::warning("thin_wall", what, mend));
             }
         }

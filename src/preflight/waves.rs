@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext,
-    format::{two_digits_down, three_digits},
+    format::{three_digits, two_digits_down},
     stands::WavemakerSite,
     thickness::has_full_layers,
 };
@@ -112,7 +112,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 three_digits(wave.height_m),
                 three_digits(wave.height_dp)
             );
-            findings.push(Finding::warning("low_waves", what, format!("dp = {}", two_digits_down(wave.height_m / LEAST))));
+            findings.push(Finding::warning(
+                "low_waves",
+                what,
+                format!("dp = {}", two_digits_down(wave.height_m / LEAST)),
+            ));
         }
         if wave.length_dp < SHORTEST {
             let what = format!(
@@ -120,7 +124,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 three_digits(wave.length_m),
                 three_digits(wave.length_dp)
             );
-            findings.push(Finding::warning("short_waves", what, format!("dp = {}", two_digits_down(wave.length_m / SHORTEST))));
+            findings.push(Finding::warning(
+                "short_waves",
+                what,
+                format!("dp = {}", two_digits_down(wave.length_m / SHORTEST)),
+            ));
         }
     }
 
@@ -128,7 +136,11 @@ impl<const D: usize> PreflightContext<'_, D> {
         let level = self.still_water.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
         // A tank that is shaken holds the water rather than pushing it.
-        if has_full_layers(&solid.spec.shape) || self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
+        if has_full_layers(&solid.spec.shape)
+            || self.g == 0.0
+            || bounds.min[D - 1] >= level
+            || bounds.max[D - 1] <= level
+        {
             return None;
         }
         let swing = self.driven_stroke(solid, motion, &bounds)?;
@@ -157,7 +169,8 @@ impl<const D: usize> PreflightContext<'_, D> {
                     Some(train) => train,
                     None => Train::of(std::f64::consts::PI / swing.half_period?, depth, self.g),
                 };
-                let height = facts.map_or_else(|| swing.stroke * self.equivalent_paddle(motion).transfer(&train), |f| f.height);
+                let height =
+                    facts.map_or_else(|| swing.stroke * self.equivalent_paddle(motion).transfer(&train), |f| f.height);
                 GeneratedWave {
                     period_s: Some(train.period()),
                     height_m: height,

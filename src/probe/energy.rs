@@ -27,7 +27,10 @@ impl EnergyProbe {
         let (mass, fluid) = (system.particle_mass(), system.fluid());
         let compressed = mass * fluid.rho.iter().map(|&rho| system.compression_energy(rho)).sum::<f64>();
         let moving = system.solids().iter().map(Solid::kinetic_energy).sum::<f64>();
-        let (water, bodies) = (water_potential(system) - self.initial_water_potential, bodies_potential(system) - self.initial_bodies_potential);
+        let (water, bodies) = (
+            water_potential(system) - self.initial_water_potential,
+            bodies_potential(system) - self.initial_bodies_potential,
+        );
         [system.kinetic_energy(), water, compressed, moving, bodies]
     }
 

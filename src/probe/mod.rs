@@ -31,7 +31,7 @@ pub use joint::JointProbe;
 pub use line::LineProbe;
 pub use motion::MotionProbe;
 pub use patch::PatchProbe;
-pub use press::{ContactList, ContactForceProbe};
+pub use press::{ContactForceProbe, ContactList};
 pub use pressure::PressureProbe;
 pub use row::{ProbeRow, column_at_place};
 pub use runup::RunupProbe;

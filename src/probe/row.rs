@@ -42,7 +42,11 @@ mod tests {
 
     #[test]
     fn a_place_is_written_without_the_noise_of_round_off() {
-        let columns = [column_at_place("eta_m", &[0.1 + 0.2]), column_at_place("vx_mps", &[-0.5, 2.0]), column_at_place("p_Pa", &[-1e-9, 0.0])];
+        let columns = [
+            column_at_place("eta_m", &[0.1 + 0.2]),
+            column_at_place("vx_mps", &[-0.5, 2.0]),
+            column_at_place("p_Pa", &[-1e-9, 0.0]),
+        ];
         assert_eq!(columns, ["eta_at_0.3_m", "vx_at_-0.5_2_mps", "p_at_0_0_Pa"]);
     }
 }

@@ -6,7 +6,7 @@ use super::{
     blob::BinaryData,
     figures::column_series,
     format::{name_without_unit, unit},
-    kept::{RunData, ProbeTable},
+    kept::{ProbeTable, RunData},
 };
 use crate::{analysis, analysis::Verdict, math::time_series::Series, run::RaoResult};
 
@@ -319,11 +319,11 @@ pub fn encode_checks(run: &RunData, caption: impl Fn(&Verdict) -> String, blob: 
 mod tests {
     use super::*;
 
-    fn table(rows: usize) -> Table {
+    fn table(rows: usize) -> ProbeTable {
         let t: Vec<f64> = (0..rows).map(|i| i as f64).collect();
         let mut x = vec![0.0; rows];
         x[rows / 2 + 1] = 5.0;
-        Table { name: "p".into(), what: "pressure", columns: vec!["p_Pa".into()], t, x: vec![x] }
+        ProbeTable { name: "p".into(), what: "pressure", columns: vec!["p_Pa".into()], times: t, values: vec![x] }
     }
 
     #[test]
@@ -341,7 +341,8 @@ mod tests {
         let wave = t.iter().map(|t| 0.05 * (std::f64::consts::TAU * 1.25 * t).sin()).collect();
         let (rising, name) = (t.clone(), |name: &str| name.to_string());
         let columns = vec![name("eta_m"), name("front_m")];
-        let table = Table { name: "gauge".into(), what: "elevation", columns, t, x: vec![wave, rising] };
+        let table =
+            ProbeTable { name: "gauge".into(), what: "elevation", columns, times: t, values: vec![wave, rising] };
         let mut blob = BinaryData::default();
         let found = encode_table(&table, &mut blob).spectra;
         assert_eq!((found.len(), found[0].column), (1, 0), "what only rises has none");
@@ -368,7 +369,7 @@ mod tests {
         // Nothing is viscous, weight acts downwards alone.
         let x = [1.0, 2.0, 0.0, 0.0, 0.0, -2.0, 1e-9, 1e-9].map(|x| vec![0.0, x]).to_vec();
         let t = vec![0.0, 1.0];
-        let table = Table { name: "box_balance".into(), what: "loads by kind", columns, t, x };
+        let table = ProbeTable { name: "box_balance".into(), what: "loads by kind", columns, times: t, values: x };
         let (charts, idle) = breakdown_charts(&table);
         let said: Vec<_> = charts.iter().map(|c| (c.title.as_deref(), &c.columns[..], c.folded)).collect();
         let expected: [(_, &[usize], _); 4] = [

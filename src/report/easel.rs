@@ -100,7 +100,14 @@ impl PanelView {
         for x in tick_values(self.low[0], self.high[0], 6.0) {
             let (px, _) = self.to_pixel(&[x, self.low[1]]);
             self.draw_tick(on, (px, bottom), (px, bottom + 0.3 * em));
-            ink.write(on, &format::with_minus_sign(&tick_label(x)), (px, bottom + 1.2 * em), small, Anchor::Middle, QUIET);
+            ink.write(
+                on,
+                &format::with_minus_sign(&tick_label(x)),
+                (px, bottom + 1.2 * em),
+                small,
+                Anchor::Middle,
+                QUIET,
+            );
         }
         let count = (6.0 * self.size.1 / self.size.0).max(2.0);
         for y in tick_values(self.low[1], self.high[1], f64::from(count)) {
@@ -150,7 +157,14 @@ fn draw_particle(on: &mut Pixmap, (x, y): (f32, f32), radius: f32, colour: [u8; 
 }
 
 /// The colours from one end of the range to the other, with marks.
-pub fn draw_colour_bar(on: &mut Pixmap, ink: &TextRenderer, bar: (f32, f32, f32, f32), em: f32, field: ColourField, range: [f64; 2]) {
+pub fn draw_colour_bar(
+    on: &mut Pixmap,
+    ink: &TextRenderer,
+    bar: (f32, f32, f32, f32),
+    em: f32,
+    field: ColourField,
+    range: [f64; 2],
+) {
     let wide = bar.2.min(40.0 * em).floor();
     for i in 0..wide as u32 {
         let colour = colour::colour_at(field.colour_map(), f64::from(i) / f64::from(wide));
@@ -160,7 +174,14 @@ pub fn draw_colour_bar(on: &mut Pixmap, ink: &TextRenderer, bar: (f32, f32, f32,
     }
     for x in tick_values(range[0], range[1], 6.0) {
         let at = bar.0 + wide * ((x - range[0]) / (range[1] - range[0])) as f32;
-        ink.write(on, &format::with_minus_sign(&tick_label(x)), (at, bar.1 + bar.3 + 1.2 * em), 0.8 * em, Anchor::Middle, TITLE_COLOUR);
+        ink.write(
+            on,
+            &format::with_minus_sign(&tick_label(x)),
+            (at, bar.1 + bar.3 + 1.2 * em),
+            0.8 * em,
+            Anchor::Middle,
+            TITLE_COLOUR,
+        );
     }
     ink.write(on, field.title(), (bar.0, bar.1 + bar.3 + 2.7 * em), em, Anchor::Start, TITLE_COLOUR);
 }
@@ -185,8 +206,8 @@ mod tests {
 
     #[test]
     fn marks_are_round_and_within() {
-        assert_eq!(rollback_positions(-0.1, 1.05, 6.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
-        assert_eq!(tick_label(rollback_positions(0.0, 1.0, 6.0)[3]), "0.6");
-        assert_eq!(rollback_positions(0.0, 3000.0, 6.0).last(), Some(&3000.0));
+        assert_eq!(tick_values(-0.1, 1.05, 6.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        assert_eq!(tick_label(tick_values(0.0, 1.0, 6.0)[3]), "0.6");
+        assert_eq!(tick_values(0.0, 3000.0, 6.0).last(), Some(&3000.0));
     }
 }

@@ -34,7 +34,15 @@ pub fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
             row.extend([digits(f.mean), digits(f.standard_deviation), digits(f.last)]);
             row.extend(zero_crossing_waves(&series).map_or_else(
                 || vec![String::new(); 5],
-                |w| vec![w.count.to_string(), digits(w.mean_period), digits(w.mean_height), digits(w.significant_height), digits(w.max_height)],
+                |w| {
+                    vec![
+                        w.count.to_string(),
+                        digits(w.mean_period),
+                        digits(w.mean_height),
+                        digits(w.significant_height),
+                        digits(w.max_height),
+                    ]
+                },
             ));
             rows.push(row);
         }
@@ -61,8 +69,9 @@ pub fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> 
     }
     let total = &table.values[find("total")?];
     let change = total.last()? - total.first()?;
-    let moving =
-        find("water kinetic").and_then(|i| column_series(&table.times, &table.values[i])).map_or(0.0, |s| moments(&s).max.0);
+    let moving = find("water kinetic")
+        .and_then(|i| column_series(&table.times, &table.values[i]))
+        .map_or(0.0, |s| moments(&s).max.0);
     let mut said =
         format!("The total {} by {} {unit}", if change < 0.0 { "falls" } else { "rises" }, digits(change.abs()));
     if moving > 0.0 {
@@ -84,7 +93,11 @@ pub fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> 
     let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
     let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
     let row = |(name, energy): (&String, &f64)| {
-        vec![format::name_without_unit(name), format::four_digits(*energy), format::with_minus_sign(&format!("{:.2}", share(*energy)))]
+        vec![
+            format::name_without_unit(name),
+            format::four_digits(*energy),
+            format::with_minus_sign(&format!("{:.2}", share(*energy))),
+        ]
     };
     let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
     let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();

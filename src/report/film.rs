@@ -88,7 +88,12 @@ struct FrameSamples {
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
-pub fn encode_animation(run: &RunData, film: &FrameSequence, samples: usize, blob: &mut BinaryData) -> Result<Animation> {
+pub fn encode_animation(
+    run: &RunData,
+    film: &FrameSequence,
+    samples: usize,
+    blob: &mut BinaryData,
+) -> Result<Animation> {
     let set = run.geometry.as_ref();
     let dimension = run.manifest.numeric_value("dimension").map_or(3, |x| x as usize).clamp(2, 3);
     let dp = run.manifest.numeric_value("dp").unwrap_or(0.0) as f32;
@@ -105,7 +110,8 @@ pub fn encode_animation(run: &RunData, film: &FrameSequence, samples: usize, blo
     let distance = (apart > 1).then_some((apart as f32, dp));
     // Into a cropped film come particles that were not there at first.
     let cropped = set.is_some_and(|set| set.plan.frames.as_ref().is_some_and(|frames| frames.crop.is_some()));
-    let chosen: HashSet<u32> = subsample(&first, distance).into_iter().filter_map(|i| first.id.get(i).copied()).collect();
+    let chosen: HashSet<u32> =
+        subsample(&first, distance).into_iter().filter_map(|i| first.id.get(i).copied()).collect();
     let mut shown = Vec::new();
     for &number in &kept {
         let cloud = film.water(number)?;
@@ -218,7 +224,11 @@ fn quantise(channel: &QuantisedChannel, x: &[f32]) -> Vec<u16> {
 
 /// The usual range of each field: of the pressure and the speed from 0, of what the pressure is more than that of
 /// still water to both sides.
-fn field_ranges(shown: &[FrameSamples], channels: &[QuantisedChannel], set: Option<&SceneGeometry>) -> Vec<(&'static str, [f64; 2])> {
+fn field_ranges(
+    shown: &[FrameSamples],
+    channels: &[QuantisedChannel],
+    set: Option<&SceneGeometry>,
+) -> Vec<(&'static str, [f64; 2])> {
     let find = |name: &str| channels.iter().position(|channel| channel.name == name);
     let gather = |c: usize| shown.iter().flat_map(|frame| frame.x[c].iter().copied()).collect::<Vec<f32>>();
     let mut ranges = Vec::new();
@@ -255,7 +265,14 @@ fn rounded_range(low: f64, high: f64) -> [f64; 2] {
 }
 
 /// Boundary particles in the frames of their solids, and the poses of these in the `kept` frames.
-fn encode_boundaries(film: &FrameSequence, kept: &[usize], set: Option<&SceneGeometry>, dimension: usize, dp: f32, blob: &mut BinaryData) -> Result<BoundaryAnimation> {
+fn encode_boundaries(
+    film: &FrameSequence,
+    kept: &[usize],
+    set: Option<&SceneGeometry>,
+    dimension: usize,
+    dp: f32,
+    blob: &mut BinaryData,
+) -> Result<BoundaryAnimation> {
     let Some(set) = set else { return Ok(BoundaryAnimation::default()) };
     let first = film.solids(0)?;
     let members: Vec<Vec<usize>> = (0..set.solids.len()).map(|i| points_of_solid(&first, i)).collect();
@@ -281,7 +298,12 @@ fn encode_boundaries(film: &FrameSequence, kept: &[usize], set: Option<&SceneGeo
             poses.extend(pose.at.iter().chain(pose.turn.iter().flatten()).map(|x| *x as f32));
         }
     }
-    Ok(BoundaryAnimation { channels, offsets, counts: members.iter().map(Vec::len).collect(), poses: blob.push_floats(poses) })
+    Ok(BoundaryAnimation {
+        channels,
+        offsets,
+        counts: members.iter().map(Vec::len).collect(),
+        poses: blob.push_floats(poses),
+    })
 }
 
 /// The boundary particles of solid `number` among those of all.
@@ -290,7 +312,13 @@ pub fn points_of_solid(all: &FramePoints, number: usize) -> Vec<usize> {
 }
 
 /// Where a solid with the boundary particles `own` is `now`.
-pub fn solid_placement(fixed: bool, start: &Placement, own: &[usize], first: &FramePoints, now: &FramePoints) -> Placement {
+pub fn solid_placement(
+    fixed: bool,
+    start: &Placement,
+    own: &[usize],
+    first: &FramePoints,
+    now: &FramePoints,
+) -> Placement {
     if fixed || own.is_empty() || now.position.len() != first.position.len() {
         return *start;
     }

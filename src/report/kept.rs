@@ -12,11 +12,11 @@ use super::{
     rim::ContactSkinOutline,
 };
 use crate::{
-    analysis::{ReferenceCheck, CheckCurves},
+    analysis::{CheckCurves, ReferenceCheck},
     error::{Error, Result},
     output::{FrameSequence, Manifest, SeriesTable},
     plan::{Plan, ProbeKind},
-    run::{self, StatisticsFilter, RunStatistics},
+    run::{self, RunStatistics, StatisticsFilter},
     scene::{Scene, SceneLayout},
     solid::Role,
 };
@@ -127,7 +127,9 @@ impl RunData {
             }
         }
         let checks = checks.into_iter().map(|(curves, check)| (check, curves)).collect();
-        let told = plan.map_or_else(RunStatistics::default, |plan| run::run_statistics(folder, plan, &StatisticsFilter::default()));
+        let told = plan.map_or_else(RunStatistics::default, |plan| {
+            run::run_statistics(folder, plan, &StatisticsFilter::default())
+        });
         Ok(Self {
             name: folder
                 .canonicalize()

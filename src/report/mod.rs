@@ -83,7 +83,8 @@ fn write_page(folders: &[PathBuf], out: &Path) -> Result<Page> {
     let runs = RunData::read_all(folders)?;
     let text = page::page_html(&runs)?;
     write_atomically(out, text.as_bytes())?;
-    let apart = sections::no_common_series(&runs).then(|| "the runs have no series in common: each is drawn by itself".into());
+    let apart =
+        sections::no_common_series(&runs).then(|| "the runs have no series in common: each is drawn by itself".into());
     let remarks = runs.into_iter().flat_map(|run| run.remarks).chain(apart).collect();
     Ok(Page { path: out.to_owned(), bytes: text.len(), seconds: begun.elapsed().as_secs_f64(), remarks })
 }

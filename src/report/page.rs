@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{
     MAX_PAGE_BYTES,
     blob::BinaryData,
-    charts::{self, RaoPlot, CheckPlot, TablePlots},
+    charts::{self, CheckPlot, RaoPlot, TablePlots},
     colour::{FIELD_COLOUR_MAPS, FieldColourMaps},
     figures,
     film::{Animation, encode_animation},
@@ -80,8 +80,11 @@ struct PageGauge<'a> {
 
 impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
     fn from(set: &'a SceneGeometry) -> Self {
-        let solids =
-            set.solids.iter().map(|s| PageSolid { name: &s.name, role: s.role, lines: &s.lines, rim: &s.contact_skin }).collect();
+        let solids = set
+            .solids
+            .iter()
+            .map(|s| PageSolid { name: &s.name, role: s.role, lines: &s.lines, rim: &s.contact_skin })
+            .collect();
         let gauges = set.gauges().map(|(name, what, at)| PageGauge { name, what, at }).collect();
         Self { dimension: set.dimension, dp: set.dp, level: set.level, rho0: set.rho0, g: set.g, solids, gauges }
     }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use tiny_skia::{Color, Pixmap};
 
 use super::{
-    colour::{FIELD_COLOUR_MAPS, ColourMap},
-    easel::{TITLE_COLOUR, PanelView, draw_colour_bar},
+    colour::{ColourMap, FIELD_COLOUR_MAPS},
+    easel::{PanelView, TITLE_COLOUR, draw_colour_bar},
     film::{points_of_solid, solid_placement},
     ink::{Anchor, TextRenderer},
-    kept::{RunData, SceneGeometry, DrawnSolid},
+    kept::{DrawnSolid, RunData, SceneGeometry},
     outline::Outline,
 };
 use crate::{
@@ -164,12 +164,19 @@ fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
 fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Result<Vec<DepthPoint>> {
     let cloud = film.solids(number)?;
     let moves = |k: usize| set.solids.get(cloud.solid_index[k] as usize).is_some_and(|solid| solid.role != "fixed");
-    let own = (0..cloud.solid_index.len()).filter(|&k| moves(k)).map(|k| project(&cloud.position[k].map(f64::from), false));
+    let own =
+        (0..cloud.solid_index.len()).filter(|&k| moves(k)).map(|k| project(&cloud.position[k].map(f64::from), false));
     Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
 /// The lines of all solids in frame `number`, of each `which` ones.
-fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: bool, which: fn(&DrawnSolid) -> &[Outline]) -> Result<Vec<DrawnLine>> {
+fn solid_lines(
+    film: &FrameSequence,
+    number: usize,
+    set: &SceneGeometry,
+    flat: bool,
+    which: fn(&DrawnSolid) -> &[Outline],
+) -> Result<Vec<DrawnLine>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let mut lines = Vec::new();
     for (i, solid) in set.solids.iter().enumerate() {

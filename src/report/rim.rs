@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-use super::outline::{Outline, outlines, transformed, to_3d};
+use super::outline::{Outline, outlines, to_3d, transformed};
 use crate::{geometry::Shape, math::Vector, preflight::faces};
 
 /// Largest turn from one point of a round corner to the next, rad.
@@ -54,7 +54,8 @@ impl ContactSkinOutline {
 /// within the solid or in a corner between two parts, as lines of a compound's parts may, is left out.
 fn skin_lines_3d<const D: usize>(shape: &Shape<D>, skin: f64, step: f64) -> Vec<Outline> {
     let moved = |line: Outline| {
-        let found: Vec<Option<[f64; 3]>> = refined(&line, step).iter().map(|x| skin_point(shape, x, skin, step)).collect();
+        let found: Vec<Option<[f64; 3]>> =
+            refined(&line, step).iter().map(|x| skin_point(shape, x, skin, step)).collect();
         let closed = line.closed && found.iter().all(Option::is_some);
         let runs = found.split(Option::is_none).filter(|run| run.len() > 1);
         runs.map(|run| Outline { closed, points: run.iter().flatten().copied().collect() }).collect::<Vec<_>>()
@@ -105,7 +106,9 @@ fn skin_lines_2d<const D: usize>(shape: &Shape<D>, skin: f64) -> Vec<Outline> {
             let mut others = parts.iter().enumerate().filter(|(j, _)| *j != i);
             others.all(|(_, (there, other))| other.signed_distance(&there.local(&x)) > OUTSIDE * skin)
         };
-        found.extend(transformed(pose, skin_lines_2d(part, skin)).into_iter().flat_map(|line| clipped(line, skin, outside)));
+        found.extend(
+            transformed(pose, skin_lines_2d(part, skin)).into_iter().flat_map(|line| clipped(line, skin, outside)),
+        );
     }
     found
 }
@@ -211,7 +214,10 @@ mod tests {
             // Dots and lines are rounded to a thousandth of dp.
             assert!(off.len() > 50 && off.iter().all(|x| x.abs() < 1e-4), "{shape:?}: {off:?}");
         }
-        assert_eq!(ContactSkinOutline::of_shape(&Shape::<2>::Ball { radius: 0.1 }, 0.0, 0.05), ContactSkinOutline::default());
+        assert_eq!(
+            ContactSkinOutline::of_shape(&Shape::<2>::Ball { radius: 0.1 }, 0.0, 0.05),
+            ContactSkinOutline::default()
+        );
     }
 
     #[test]

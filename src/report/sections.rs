@@ -5,8 +5,8 @@ use std::{fs, time::SystemTime};
 use super::{
     figures,
     film::Animation,
-    format::{self, bytes, four_digits, duration, escape, table, thousands},
-    kept::{RunData, ProbeTable},
+    format::{self, bytes, duration, escape, four_digits, table, thousands},
+    kept::{ProbeTable, RunData},
 };
 use crate::{
     analysis::{Verdict, format_verdicts},
@@ -168,8 +168,11 @@ pub fn statistics(run: &RunData) -> String {
 
 /// Energies and where they went; empty without a table of them.
 pub fn energy(run: &RunData) -> String {
-    let budgets = run.tables.iter().filter_map(|table| figures::energy_summary(table).or_else(|| figures::budget_summary(table)));
-    budgets.map(|(verdict_rows, one_line)| format!("{}<p>{}</p>\n", scrolling_table(&verdict_rows), escape(&one_line))).collect()
+    let budgets =
+        run.tables.iter().filter_map(|table| figures::energy_summary(table).or_else(|| figures::budget_summary(table)));
+    budgets
+        .map(|(verdict_rows, one_line)| format!("{}<p>{}</p>\n", scrolling_table(&verdict_rows), escape(&one_line)))
+        .collect()
 }
 
 /// What was run: the scene's words, every value in force, the machine.
@@ -275,13 +278,16 @@ pub fn differences(runs: &[RunData]) -> String {
 
 /// The names of the runs that have the table called `table` and, if one is named, a column of it.
 fn runs_with_series<'a>(runs: &'a [RunData], table: &str, column: Option<&str>) -> Vec<&'a str> {
-    let holds = |t: &ProbeTable| t.name == table && column.is_none_or(|column| t.columns.iter().any(|own| own == column));
+    let holds =
+        |t: &ProbeTable| t.name == table && column.is_none_or(|column| t.columns.iter().any(|own| own == column));
     runs.iter().filter(|run| run.tables.iter().any(holds)).map(|run| run.name.as_str()).collect()
 }
 
 /// Whether several runs have no series in common.
 pub fn no_common_series(runs: &[RunData]) -> bool {
-    let common = |t: &ProbeTable| t.columns.iter().any(|column| runs_with_series(runs, &t.name, Some(column)).len() == runs.len());
+    let common = |t: &ProbeTable| {
+        t.columns.iter().any(|column| runs_with_series(runs, &t.name, Some(column)).len() == runs.len())
+    };
     runs.len() > 1 && !runs[0].tables.iter().any(common)
 }
 
@@ -290,7 +296,8 @@ pub fn missing_series(runs: &[RunData]) -> String {
     let mut groups: Vec<(Vec<&str>, Vec<String>)> = Vec::new();
     for table in runs.iter().flat_map(|run| &run.tables) {
         let whole = (table.name.clone(), runs_with_series(runs, &table.name, None));
-        let column = |name: &String| (format!("{}.{name}", table.name), runs_with_series(runs, &table.name, Some(name)));
+        let column =
+            |name: &String| (format!("{}.{name}", table.name), runs_with_series(runs, &table.name, Some(name)));
         let all =
             if whole.1.len() < runs.len() { vec![whole] } else { table.columns.iter().map(column).collect::<Vec<_>>() };
         for (name, who) in all.into_iter().filter(|(_, who)| who.len() < runs.len()) {
@@ -314,7 +321,8 @@ pub fn facts_table(runs: &[RunData]) -> String {
     let all: Vec<Vec<(&str, String)>> = runs
         .iter()
         .map(|run| {
-            let mut facts = vec![("Title", run.manifest.title.clone()), ("State", status_badge(&run.manifest).0.to_string())];
+            let mut facts =
+                vec![("Title", run.manifest.title.clone()), ("State", status_badge(&run.manifest).0.to_string())];
             facts.extend(self::facts(run));
             facts.push(("Folder", run.folder.display().to_string()));
             facts

@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_block_is_drawn_by_its_twelve_edges() -> Result<()> {
-        let lines = skin_lines_3d(&block([0.4, 0.2, 0.1])?);
+        let lines = mesh_lines(&block([0.4, 0.2, 0.1])?);
         let length = |line: &Outline| (Vector::from(line.points[0]) - Vector::from(line.points[1])).norm();
         assert_eq!(lines.len(), 12, "no diagonals, no cuts");
         assert!((lines.iter().map(length).sum::<f64>() - 4.0 * 0.7).abs() < 1e-12);
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn a_ball_is_drawn_by_closed_cuts_that_lie_on_it() -> Result<()> {
         let mesh = ball(24)?;
-        let lines = skin_lines_3d(&mesh);
+        let lines = mesh_lines(&mesh);
         assert_eq!(lines.len(), CUTS.len() + 2);
         for line in &lines {
             assert!(line.closed);

@@ -5,7 +5,7 @@ use std::{path::PathBuf, time::Instant};
 use cpu_time::ProcessTime;
 
 use super::{
-    FinalBodyState, RunOrigin, RunOutcome, Progress, RunStart, RunObserver,
+    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart,
     drift::DriftMonitor,
     folder, kept,
     lock::Lock,
@@ -18,8 +18,8 @@ use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
     output::{
-        Checkpoint, OutputPositions, Manifest, checkpoint,
-        manifest::{ParticleCounts, ValueInForce, Machine, FrameTotals, RunStatus},
+        Checkpoint, Manifest, OutputPositions, checkpoint,
+        manifest::{FrameTotals, Machine, ParticleCounts, RunStatus, ValueInForce},
         removed, write_atomically,
     },
     preflight,
@@ -136,7 +136,12 @@ impl<const D: usize> Runner<D> {
                 }
                 self.update_manifest();
                 self.manifest.write(&self.folder)?;
-                Ok(RunOutcome { bodies: final_body_states(&self.sim), folder: self.folder, manifest: self.manifest, end_warnings: late })
+                Ok(RunOutcome {
+                    bodies: final_body_states(&self.sim),
+                    folder: self.folder,
+                    manifest: self.manifest,
+                    end_warnings: late,
+                })
             }
             Err(error) => Err(self.record_failure(error)),
         }

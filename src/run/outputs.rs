@@ -10,7 +10,7 @@ use std::{
 
 use crate::{
     error::{Error, Kind, Result},
-    output::{OutputPositions, FrameWriter, IntervalMean, CsvTable, manifest::FrameTotals},
+    output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
     probe::{self, Probe},
     scene::Plan,
     simulation::Simulation,
@@ -118,7 +118,12 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if a file cannot be written; `Restart` if what is there does not fit the checkpoint.
-    pub fn new(plan: &Plan, probes: Vec<Box<dyn Probe<D>>>, folder: &Path, from: Option<&OutputPositions>) -> Result<Self> {
+    pub fn new(
+        plan: &Plan,
+        probes: Vec<Box<dyn Probe<D>>>,
+        folder: &Path,
+        from: Option<&OutputPositions>,
+    ) -> Result<Self> {
         let lists = plan.contacts.len();
         let all = probes.len() + lists;
         if from.is_some_and(|c| c.table_bytes.len() != all || c.next_due.len() != all + 2) {
@@ -149,7 +154,10 @@ impl<const D: usize> Outputs<D> {
                 Some(extent) => CsvTable::resume(&path, &columns, extent.table_bytes[count + i])?,
                 None => CsvTable::create(&path, &columns)?,
             };
-            contacts.push(ContactListOutput { table, due: OutputSchedule { every: words.every, next: next(count + 2 + i, 0) } });
+            contacts.push(ContactListOutput {
+                table,
+                due: OutputSchedule { every: words.every, next: next(count + 2 + i, 0) },
+            });
         }
         let frames = match &plan.frames {
             Some(words) => {
@@ -221,7 +229,10 @@ impl<const D: usize> Outputs<D> {
 
     /// The frames so far.
     pub fn frame_totals(&self) -> FrameTotals {
-        let kept = |(frames, _): &(FrameWriter, OutputSchedule)| FrameTotals { count: frames.times().len(), bytes: frames.bytes() };
+        let kept = |(frames, _): &(FrameWriter, OutputSchedule)| FrameTotals {
+            count: frames.times().len(),
+            bytes: frames.bytes(),
+        };
         self.frames.as_ref().map_or_else(FrameTotals::default, kept)
     }
 
@@ -234,8 +245,9 @@ impl<const D: usize> Outputs<D> {
     pub fn table_paths(&self) -> impl Iterator<Item = String> + '_ {
         let series = self.probes.iter().map(|watched| ("series", &watched.table));
         let lists = self.contact_lists.iter().map(|list| (LISTS, &list.table));
-        let name =
-            |(folder, table): (&str, &CsvTable)| Some(format!("{folder}/{}", table.path().file_name()?.to_string_lossy()));
+        let name = |(folder, table): (&str, &CsvTable)| {
+            Some(format!("{folder}/{}", table.path().file_name()?.to_string_lossy()))
+        };
         series.chain(lists).filter_map(name)
     }
 

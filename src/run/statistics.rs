@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::{outputs::series_folder, scene_file};
 use crate::{
-    analysis::{self, RaoPoint, moments, reflection, rao, spectrum, rao_over_frequency},
+    analysis::{self, RaoPoint, moments, rao, rao_over_frequency, reflection, spectrum},
     error::{Error, Kind, Result},
     math::format::unit,
     math::time_series::Series,
@@ -18,7 +18,7 @@ use crate::{
     scene::Scene,
 };
 
-pub use answers::{RaoResult, RAO_FILE};
+pub use answers::{RAO_FILE, RaoResult};
 pub use spectra::SPECTRA_FILE;
 
 /// The file, in the run's folder.
@@ -155,7 +155,11 @@ fn from_tables(tables: &ProbeTables, plan: &Plan, asked: &StatisticsFilter) -> R
     for words in &plan.statistics {
         if words.what.series().into_iter().any(meant) {
             let window = (asked.from.or(words.from), asked.until.or(words.until));
-            told.push_declared(tables, words, (window.0.unwrap_or(f64::NEG_INFINITY), window.1.unwrap_or(f64::INFINITY)));
+            told.push_declared(
+                tables,
+                words,
+                (window.0.unwrap_or(f64::NEG_INFINITY), window.1.unwrap_or(f64::INFINITY)),
+            );
         }
     }
     told
@@ -200,7 +204,8 @@ impl RunStatistics {
         ];
         self.push(name, of, series.span(), &waves);
         if let Some(s) = spectrum(series) {
-            let spectral = [("H_m0", s.significant_height(), own), ("T_p", s.peak_period(), "s"), ("T_m02", s.mean_period(), "s")];
+            let spectral =
+                [("H_m0", s.significant_height(), own), ("T_p", s.peak_period(), "s"), ("T_m02", s.mean_period(), "s")];
             self.push(name, of, series.span(), &spectral);
         }
     }
@@ -213,7 +218,9 @@ impl RunStatistics {
 
     /// Says of waves too few for an answer over frequency how many are needed.
     fn remark_too_few_waves(&mut self, name: &str, wave: &Series) {
-        if let Some(waves) = analysis::zero_crossing_waves(wave).filter(|waves| waves.count < analysis::MIN_WAVES_FOR_RAO) {
+        if let Some(waves) =
+            analysis::zero_crossing_waves(wave).filter(|waves| waves.count < analysis::MIN_WAVES_FOR_RAO)
+        {
             self.remarks.push(format!(
                 "statistic {name}: nothing is told over frequency: its time has {} waves, and {} are needed; of regular waves \
                  name the `period`",

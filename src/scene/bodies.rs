@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    flexible::{DraftChoice, PolylineConfig, NumberOrArray, LengthUnit},
+    flexible::{DraftChoice, LengthUnit, NumberOrArray, PolylineConfig},
     waves::WaveConfig,
 };
 use crate::geometry::Touchable;

@@ -2,7 +2,7 @@
 //! the water.
 
 use super::{
-    FillConfig, FramesPlan, FramesChoice, Plan, Scene,
+    FillConfig, FramesChoice, FramesPlan, Plan, Scene,
     build_waves::StillWater,
     flow::InitialFlow,
     geometry::{pose, shape, vector, world_bounds},
@@ -158,7 +158,13 @@ impl Scene {
             limits,
             sponge_layers: damping,
         };
-        Ok(BuiltScene { setup, plan, removed_by_solids: filled.overlapped, removed_by_water: filled.doubled, still_water: still })
+        Ok(BuiltScene {
+            setup,
+            plan,
+            removed_by_solids: filled.overlapped,
+            removed_by_water: filled.doubled,
+            still_water: still,
+        })
     }
 
     /// The solids and the water at rest; makes no particles.
@@ -169,7 +175,11 @@ impl Scene {
         let (scene, _) = self.with_defaults()?;
         let water = scene.water_bodies::<D>()?;
         let still = StillWaterLevel::of(&water);
-        Ok(SceneLayout { solids: scene.solids::<D>(&StillWater::of(&water))?, model: scene.build_model(&water)?, still_water: still })
+        Ok(SceneLayout {
+            solids: scene.solids::<D>(&StillWater::of(&water))?,
+            model: scene.build_model(&water)?,
+            still_water: still,
+        })
     }
 
     /// What a run watches, keeps and judges; makes no particles.
@@ -215,7 +225,12 @@ impl Scene {
                 let what = format!("the level is not above {bottom} m, the bottom of this water");
                 return Err(self.error_at(&format!("{key}.level"), what));
             }
-            bodies.push(WaterBody { region: Region { shape, pose }, bottom, level, flow: self.initial_flow(&key, words)? });
+            bodies.push(WaterBody {
+                region: Region { shape, pose },
+                bottom,
+                level,
+                flow: self.initial_flow(&key, words)?,
+            });
         }
         Ok(bodies)
     }
@@ -254,7 +269,12 @@ impl Scene {
     }
 
     /// Refuses water and bodies outside the domain.
-    fn require_inside_domain<const D: usize>(&self, domain: &Bounds<D>, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+    fn require_inside_domain<const D: usize>(
+        &self,
+        domain: &Bounds<D>,
+        water: &[WaterBody<D>],
+        solids: &[SolidSpec<D>],
+    ) -> Result<()> {
         let out = |shape: &Shape<D>, pose: &Pose<D>| {
             let bounds = world_bounds(shape, pose);
             !(domain.contains(&bounds.min) && domain.contains(&bounds.max))
@@ -262,7 +282,11 @@ impl Scene {
         let help =
             "enlarge the domain: what leaves it stops the run. Leave [domain] out for one with room on all sides";
         if let Some(i) = water.iter().position(|body| out(&body.region.shape, &body.region.pose)) {
-            return Err(self.error_with_help(&format!("water.{i}"), "this water is not wholly inside the domain", help));
+            return Err(self.error_with_help(
+                &format!("water.{i}"),
+                "this water is not wholly inside the domain",
+                help,
+            ));
         }
         let still = |solid: &SolidSpec<D>| matches!(solid.role, Role::Fixed);
         match solids.iter().position(|solid| !still(solid) && out(&solid.shape, &solid.pose)) {
@@ -332,14 +356,22 @@ impl Scene {
     }
 
     /// About how many particles of water and of skins there will be.
-    pub(super) fn estimated_counts<const D: usize>(&self, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
+    pub(super) fn estimated_counts<const D: usize>(
+        &self,
+        water: &[WaterBody<D>],
+        solids: &[SolidSpec<D>],
+    ) -> (f64, f64) {
         let (volume, surface) = volume_and_surface(water, solids);
         let dimension = D as i32;
         (volume / self.dp.powi(dimension), surface * self.boundary_layers() as f64 / self.dp.powi(dimension - 1))
     }
 
     /// Refuses a scene that asks for more particles than a machine holds, before any is made.
-    pub(super) fn require_affordable<const D: usize>(&self, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+    pub(super) fn require_affordable<const D: usize>(
+        &self,
+        water: &[WaterBody<D>],
+        solids: &[SolidSpec<D>],
+    ) -> Result<()> {
         self.require_near_origin(water)?;
         let (fluid, boundary) = self.estimated_counts(water, solids);
         let all = fluid + boundary;

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::{
-    ContactConfig, ForceConfig, ForceFrame, JointKindConfig, JointConfig, LimitsConfig, MotionMode, MotorConfig, Scene, SolidConfig,
-    TimeValueConfig, build_solids::CoordinateUnit, geometry::vector,
+    ContactConfig, ForceConfig, ForceFrame, JointConfig, JointKindConfig, LimitsConfig, MotionMode, MotorConfig, Scene,
+    SolidConfig, TimeValueConfig, build_solids::CoordinateUnit, geometry::vector,
 };
 use crate::{
     error::{Error, Result},
@@ -65,7 +65,8 @@ impl Scene {
             let spec = |between| ContactSpec { between, touch, friction, restitution };
             links.contacts.extend(self.contact_pairs(words).into_iter().map(spec));
         }
-        let release = |(solid, words): (usize, &SolidConfig)| Some(Hold { solid, until: words.free.as_ref()?.release? });
+        let release =
+            |(solid, words): (usize, &SolidConfig)| Some(Hold { solid, until: words.free.as_ref()?.release? });
         links.holds = self.solid.iter().enumerate().filter_map(release).collect();
         Ok(links)
     }
@@ -142,7 +143,10 @@ impl Scene {
 
     fn force_spec<const D: usize>(&self, key: &str, words: &ForceConfig, solid: usize) -> Result<ForceSpec<D>> {
         let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<Law>> {
-            values.iter().map(|value| self.time_function(&format!("{key}.{word}"), &value.0, CoordinateUnit::Metres)).collect()
+            values
+                .iter()
+                .map(|value| self.time_function(&format!("{key}.{word}"), &value.0, CoordinateUnit::Metres))
+                .collect()
         };
         Ok(ForceSpec {
             name: words.name.clone(),

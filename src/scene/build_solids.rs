@@ -1,7 +1,7 @@
 //! From words to solids: shape, pose, role; floats are put at their draft.
 
 use super::{
-    DraftChoice, FreeBodyConfig, TimeFunctionConfig, NumberOrArray, Scene, SolidConfig,
+    DraftChoice, FreeBodyConfig, NumberOrArray, Scene, SolidConfig, TimeFunctionConfig,
     build_waves::StillWater,
     geometry::{pose, shape, vector},
     table,
@@ -132,7 +132,9 @@ impl Scene {
         if let Some(text) = &words.formula {
             let formula = Formula::parse(text).map_err(|e| place("formula", e))?;
             return Ok(Law::Formula(match unit {
-                CoordinateUnit::Degrees => Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?,
+                CoordinateUnit::Degrees => {
+                    Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?
+                }
                 CoordinateUnit::Metres | CoordinateUnit::Radians => formula,
             }));
         }

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::{
-    AbsorbChoice, WaveComponentsConfig, DrivenConfig, MeasuredElevationConfig, Scene, WaveConfig,
-    build::{WaterBody, StillWaterLevel},
+    AbsorbChoice, DrivenConfig, MeasuredElevationConfig, Scene, WaveComponentsConfig, WaveConfig,
+    build::{StillWaterLevel, WaterBody},
     geometry::{vector, world_bounds},
     table,
     waves::IrregularWaveConfig,
@@ -131,7 +131,11 @@ impl Scene {
         let axis: Vec<f64> = words.axis.as_ref().map_or_else(|| vec![1.0], unit);
         if axis.get(2).is_some_and(|x| x.abs() > 1e-6) {
             let help = "write  axis = [0.0, 1.0, 0.0]";
-            return Err(self.error_with_help(&format!("{key}.axis"), "the axis of a flap that makes waves is level", help));
+            return Err(self.error_with_help(
+                &format!("{key}.axis"),
+                "the axis of a flap that makes waves is level",
+                help,
+            ));
         }
         let mut up = Vector::zeros();
         up[D - 1] = 1.0;

@@ -22,7 +22,11 @@ impl Scene {
             let Some(i) = names.iter().position(|name| name == probe) else {
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();
                 let what = format!("no probe is called \"{probe}\"{}", suggestion(probe, &names));
-                return Err(self.error_with_help(&format!("{key}.series"), what, format!("known: {}", names.join(", "))));
+                return Err(self.error_with_help(
+                    &format!("{key}.series"),
+                    what,
+                    format!("known: {}", names.join(", ")),
+                ));
             };
             if self.probe[i].contacts.is_some() {
                 return Err(self.list_has_no_series(&format!("{key}.series"), probe));
@@ -65,17 +69,25 @@ impl Scene {
     fn verify_times(&self, key: &str, check: &CheckConfig) -> Result<()> {
         self.require_positive(&format!("{key}.mean"), check.mean)?;
         if let Some(zero) = check.zero.filter(|zero| !(*zero >= 0.0 && zero.is_finite())) {
-            return Err(self.error_at(&format!("{key}.zero"), format!("zero is a time of the run, and {zero} s is none")));
+            return Err(
+                self.error_at(&format!("{key}.zero"), format!("zero is a time of the run, and {zero} s is none"))
+            );
         }
         match check.align {
-            Some(Align::Crossing(threshold)) => self.require_positive(&format!("{key}.align.crossing"), Some(threshold))?,
+            Some(Align::Crossing(threshold)) => {
+                self.require_positive(&format!("{key}.align.crossing"), Some(threshold))?
+            }
             Some(Align::Start(threshold)) => self.require_positive(&format!("{key}.align.start"), Some(threshold))?,
             Some(Align::Best) | None => {}
         }
         match (check.from, check.until) {
             (Some(from), Some(until)) if from >= until => {
                 let what = format!("nothing lies between from = {from} and until = {until}");
-                Err(self.error_with_help(&format!("{key}.until"), what, "until is the later time, in the run's own time"))
+                Err(self.error_with_help(
+                    &format!("{key}.until"),
+                    what,
+                    "until is the later time, in the run's own time",
+                ))
             }
             _ => Ok(()),
         }

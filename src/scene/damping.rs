@@ -61,7 +61,11 @@ impl Scene {
             }
             if words.strength.is_none() && self.gravity.iter().flatten().all(|g| *g == 0.0) && self.gravity.is_some() {
                 let what = "without gravity nothing says how strong the zone is";
-                return Err(self.error_with_help(&format!("{key}.strength"), what, "write  strength = 5.0        # 1/s"));
+                return Err(self.error_with_help(
+                    &format!("{key}.strength"),
+                    what,
+                    "write  strength = 5.0        # 1/s",
+                ));
             }
         }
         Ok(())
@@ -95,8 +99,12 @@ impl Scene {
             return Ok(vec![]);
         }
         let zones: Vec<f64> = match self.dimension {
-            2 => self.sponge_layers(&StillWaterLevel::of(&self.water_bodies::<2>()?)).iter().map(strength::<2>).collect(),
-            _ => self.sponge_layers(&StillWaterLevel::of(&self.water_bodies::<3>()?)).iter().map(strength::<3>).collect(),
+            2 => {
+                self.sponge_layers(&StillWaterLevel::of(&self.water_bodies::<2>()?)).iter().map(strength::<2>).collect()
+            }
+            _ => {
+                self.sponge_layers(&StillWaterLevel::of(&self.water_bodies::<3>()?)).iter().map(strength::<3>).collect()
+            }
         };
         let unsaid = self.damping.iter().zip(zones).enumerate().filter(|(_, (words, _))| words.strength.is_none());
         Ok(unsaid.map(|(i, (_, strength))| (format!("damping.{i}."), strength)).collect())

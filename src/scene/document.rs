@@ -136,7 +136,8 @@ pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, Strin
     expand_bare_choices(root.get_mut());
     let mut marks = OverrideLocations { first: text.len() + 1, keys: Vec::new() };
     for (key, value) in sets {
-        let key = sets::apply_override(root.get_mut(), key, value, &mut marks).map_err(|e| e.at("--set", None, key.clone()))?;
+        let key = sets::apply_override(root.get_mut(), key, value, &mut marks)
+            .map_err(|e| e.at("--set", None, key.clone()))?;
         origin.overrides.push(key);
     }
     expand_bare_choices(root.get_mut());

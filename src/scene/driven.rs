@@ -1,7 +1,7 @@
 //! Prescribed motions: their words held against one another, filled in, and made.
 
 use super::{
-    DrivenConfig, TimeFunctionConfig, Scene,
+    DrivenConfig, Scene, TimeFunctionConfig,
     build_solids::CoordinateUnit,
     geometry::vector,
     resolve::{Defaults, fill_time_function},
@@ -114,7 +114,10 @@ impl Scene {
         }
         let unit = |x: &[f64]| vector::<D>(x).normalize();
         if let (Some(along), Some(distance)) = (&words.along, &words.distance) {
-            return Ok(Motion::slide(unit(along), self.time_function(&format!("{key}.distance"), distance, CoordinateUnit::Metres)?));
+            return Ok(Motion::slide(
+                unit(along),
+                self.time_function(&format!("{key}.distance"), distance, CoordinateUnit::Metres)?,
+            ));
         }
         let centre = vector(words.hinge.as_deref().unwrap_or(&[]));
         let axis = words.axis.as_ref().map_or_else(|| vec![1.0], |axis| unit(axis).iter().copied().collect());

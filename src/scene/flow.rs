@@ -55,7 +55,9 @@ impl Scene {
 
     /// How the water `water` at `key` moves at the start.
     pub(super) fn initial_flow<const D: usize>(&self, key: &str, water: &WaterConfig) -> Result<InitialFlow<D>> {
-        let field = |key: &str, words: &FieldFormulaConfig| Field::parse(&words.0).map_err(|e| self.origin.with_location(e, key));
+        let field = |key: &str, words: &FieldFormulaConfig| {
+            Field::parse(&words.0).map_err(|e| self.origin.with_location(e, key))
+        };
         let mut flow = InitialFlow { velocity: Vec::new(), pressure: None };
         if let Some(words) = &water.velocity {
             let key = format!("{key}.velocity");

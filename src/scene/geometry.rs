@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{PlacementConfig, AxisName, PolylineConfig, MeshConfig, Scene, ShapeConfig, drawing, mesh, table};
+use super::{AxisName, MeshConfig, PlacementConfig, PolylineConfig, Scene, ShapeConfig, drawing, mesh, table};
 
 use crate::{
     error::Result,
@@ -35,7 +35,9 @@ pub(super) fn shape<const D: usize>(scene: &Scene, words: &ShapeConfig) -> Resul
         ShapeConfig::Polyline(words) => {
             Shape::Polyline { points: points(scene, words)?, thickness: thickness(words.thickness) }
         }
-        ShapeConfig::Tank { size, thickness: given } => Shape::Tank { size: vector(size), thickness: thickness(*given) },
+        ShapeConfig::Tank { size, thickness: given } => {
+            Shape::Tank { size: vector(size), thickness: thickness(*given) }
+        }
         ShapeConfig::Mesh(words) => mesh_shape(scene, words)?,
         ShapeConfig::Compound(parts) => {
             let part = |part: &super::CompoundPartConfig| {

@@ -38,29 +38,42 @@ mod verify_probes;
 mod wording;
 
 pub use crate::plan::{
-    Align, CheckPlan, FramesPlan, Plan, ProbeKind, ProbePlan, Reference, Score, StatisticKind, StatisticPlan,
-    GaugeSurface,
+    Align, CheckPlan, FramesPlan, GaugeSurface, Plan, ProbeKind, ProbePlan, Reference, Score, StatisticKind,
+    StatisticPlan,
 };
 pub use absorb::{AbsorbChoice, AbsorptionConfig};
-pub use bodies::{PlacementConfig, AxisName, DrivenConfig, FreeBodyConfig, TimeFunctionConfig, MeshConfig, MotionMode, CompoundPartConfig, ShapeConfig, SolidConfig};
+pub use bodies::{
+    AxisName, CompoundPartConfig, DrivenConfig, FreeBodyConfig, MeshConfig, MotionMode, PlacementConfig, ShapeConfig,
+    SolidConfig, TimeFunctionConfig,
+};
 pub(crate) use build::SceneLayout;
 pub use build::{BuiltScene, StillWaterLevel};
 pub use damping::DampingConfig;
 pub use document::ValueSource;
-pub use flexible::{DraftChoice, FieldFormulaConfig, FramesChoice, FramesConfig, LimitsConfig, PolylineConfig, NumberOrArray, LengthUnit};
+pub use flexible::{
+    DraftChoice, FieldFormulaConfig, FramesChoice, FramesConfig, LengthUnit, LimitsConfig, NumberOrArray,
+    PolylineConfig,
+};
 pub use flow::PeriodicConfig;
-pub use format::{BoxConfig, CheckConfig, CheckpointConfig, FillConfig, ModelConfig, Scene, TimeSteppingConfig, WaterConfig};
+pub use format::{
+    BoxConfig, CheckConfig, CheckpointConfig, FillConfig, ModelConfig, Scene, TimeSteppingConfig, WaterConfig,
+};
 pub(crate) use geometry::world_bounds;
 pub use guard::GuardConfig;
-pub use links::{ContactConfig, ForceConfig, ForceFrame, JointKindConfig, JointConfig, MotorConfig, RopeConfig, SpringConfig};
-pub use probes::{GaugeConfig, PatchConfig, PointsConfig, ProbeConfig, PointRowConfig, SectionConfig};
+pub use links::{
+    ContactConfig, ForceConfig, ForceFrame, JointConfig, JointKindConfig, MotorConfig, RopeConfig, SpringConfig,
+};
+pub use probes::{GaugeConfig, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, SectionConfig};
 pub use resolve::ResolvedValue;
 pub use schema::schema;
 pub use shipped::{BundledScene, bundled_scenes};
 pub use size::SizeEstimate;
 pub use statistics::{RaoConfig, StatisticConfig};
 pub use values::{TimeValueConfig, TimeVectorConfig};
-pub use waves::{WaveComponentsConfig, MeasuredElevationConfig, FocusedWaveConfig, RegularWaveConfig, IrregularWaveConfig, SolitaryWaveConfig, WaveConfig};
+pub use waves::{
+    FocusedWaveConfig, IrregularWaveConfig, MeasuredElevationConfig, RegularWaveConfig, SolitaryWaveConfig,
+    WaveComponentsConfig, WaveConfig,
+};
 
 use std::{
     io::Read,

@@ -192,7 +192,12 @@ impl GaugeConfig {
             _ => Vec::new(),
         };
         let said = self.from.is_some() || self.to.is_some() || self.count.is_some() || self.spacing.is_some();
-        said.then(|| PointRowConfig { from: list(&self.from), to: list(&self.to), count: self.count, spacing: self.spacing })
+        said.then(|| PointRowConfig {
+            from: list(&self.from),
+            to: list(&self.to),
+            count: self.count,
+            spacing: self.spacing,
+        })
     }
 
     fn places(&self) -> Vec<Vec<f64>> {

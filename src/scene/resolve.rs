@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, fmt};
 
 use super::{
-    PlacementConfig, AxisName, ForceFrame, FramesChoice, FramesConfig, TimeFunctionConfig, PolylineConfig, Scene, ShapeConfig, LengthUnit, document::ValueSource,
-    verify::FIELDS,
+    AxisName, ForceFrame, FramesChoice, FramesConfig, LengthUnit, PlacementConfig, PolylineConfig, Scene, ShapeConfig,
+    TimeFunctionConfig, document::ValueSource, verify::FIELDS,
 };
 use crate::{
     error::Result,
@@ -145,8 +145,10 @@ impl Scene {
     }
 
     fn fill_solid_defaults(&mut self, filler: &mut Defaults) {
-        let sheet =
-            ShapeDefaults { thickness: self.boundary_layers() as f64 * self.dp, upright: [AxisName::Y, AxisName::Z][self.dimension - 2] };
+        let sheet = ShapeDefaults {
+            thickness: self.boundary_layers() as f64 * self.dp,
+            upright: [AxisName::Y, AxisName::Z][self.dimension - 2],
+        };
         for (i, water) in self.water.iter_mut().enumerate() {
             if let Some(shape) = &mut water.fill.shape {
                 sheet.fill(filler, &format!("water.{i}.fill.shape"), shape);
@@ -155,7 +157,12 @@ impl Scene {
         for (i, solid) in self.solid.iter_mut().enumerate() {
             let key = format!("solid.{i}");
             sheet.fill(filler, &format!("{key}.shape"), &mut solid.shape);
-            filler.fill(format!("{key}.at"), &mut solid.at, PlacementConfig::default(), "the shape's frame is the world's");
+            filler.fill(
+                format!("{key}.at"),
+                &mut solid.at,
+                PlacementConfig::default(),
+                "the shape's frame is the world's",
+            );
             filler.fill(format!("{key}.friction"), &mut solid.friction, 0.3, "wet wood or plastic");
             let why = "the water between bodies takes the bounce";
             filler.fill(format!("{key}.restitution"), &mut solid.restitution, 0.0, why);
@@ -369,7 +376,12 @@ impl ShapeDefaults {
             ShapeConfig::Mesh(words) => {
                 let key = format!("{key}.mesh");
                 filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the file's own size");
-                filler.fill(format!("{key}.unit"), &mut words.unit, LengthUnit::M, "neither STL nor OBJ tells its unit");
+                filler.fill(
+                    format!("{key}.unit"),
+                    &mut words.unit,
+                    LengthUnit::M,
+                    "neither STL nor OBJ tells its unit",
+                );
                 let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
                 filler.fill(format!("{key}.contact"), &mut words.contact, Touchable::Fitting, why);
             }

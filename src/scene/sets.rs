@@ -15,7 +15,12 @@ use crate::error::{Error, Result, nearest};
 ///
 /// # Errors
 /// `Scene` if `key` is no key, or names an entry of a list that is not there.
-pub(super) fn apply_override<'i>(root: &mut DeTable<'i>, key: &'i str, text: &'i str, marks: &mut OverrideLocations) -> Result<String> {
+pub(super) fn apply_override<'i>(
+    root: &mut DeTable<'i>,
+    key: &'i str,
+    text: &'i str,
+    marks: &mut OverrideLocations,
+) -> Result<String> {
     let parts: Vec<&str> = key.split('.').collect();
     if parts.iter().any(|part| part.is_empty()) {
         return Err(Error::scene(format!("\"{key}\" is not a key")).help("write  --set model.h_over_dp=1.5"));

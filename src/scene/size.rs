@@ -1,6 +1,9 @@
 //! What a run of a scene will take, told from its words: no particle is made.
 
-use super::{FramesChoice, FramesConfig, Scene, build::WaterBody, build_waves::StillWater, geometry::world_bounds, verify::FIELDS};
+use super::{
+    FramesChoice, FramesConfig, Scene, build::WaterBody, build_waves::StillWater, geometry::world_bounds,
+    verify::FIELDS,
+};
 use crate::{error::Result, math::format::bytes, model::Scheme, output::frame::particle_bytes};
 
 /// About how large a run is.

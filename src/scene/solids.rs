@@ -1,7 +1,7 @@
 //! Holds the words of solids against one another.
 
 use super::{
-    PlacementConfig, FreeBodyConfig, MotionMode, NumberOrArray, Scene, ShapeConfig, SolidConfig,
+    FreeBodyConfig, MotionMode, NumberOrArray, PlacementConfig, Scene, ShapeConfig, SolidConfig,
     flexible::PolylineConfig,
     verify::{last_part, quoted_list},
 };
@@ -59,7 +59,11 @@ impl Scene {
         }
         if solid.fixed == Some(false) {
             let help = "a solid that is not fixed is driven = { ... } or free = { ... }";
-            return Err(self.error_with_help(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
+            return Err(self.error_with_help(
+                &format!("{key}.fixed"),
+                "fixed = false does not say what moves it",
+                help,
+            ));
         }
         if let Some(words) = &solid.driven {
             self.verify_driven(&format!("{key}.driven"), words)?;
@@ -187,7 +191,9 @@ pub(super) fn verify_shape(scene: &Scene, key: &str, words: &ShapeConfig) -> Res
             only(2, "polyline", "in 3-D, walls are boxes or a tank")?;
             verify_polyline(scene, &format!("{key}.polyline"), words)?;
             match words.is_drawing() {
-                true => Err(scene.error_at(&format!("{key}.polyline.file"), "a drawing is a closed outline: a polygon")),
+                true => {
+                    Err(scene.error_at(&format!("{key}.polyline.file"), "a drawing is a closed outline: a polygon"))
+                }
                 false => verify_drawing(scene, &format!("{key}.polyline"), words),
             }
         }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     Scene,
     build::StillWaterLevel,
-    verify::{suggestion, quoted_list},
+    verify::{quoted_list, suggestion},
 };
 use crate::{
     error::Result,
@@ -185,9 +185,10 @@ impl Scene {
             ProbeKind::Elevation { places, .. } if places.len() == 1 => {
                 vec![(format!("{name}.eta_m"), Some(places[0].clone()))]
             }
-            ProbeKind::Elevation { places, .. } => {
-                places.iter().map(|at| (format!("{name}.{}", probe::column_at_place("eta_m", at)), Some(at.clone()))).collect()
-            }
+            ProbeKind::Elevation { places, .. } => places
+                .iter()
+                .map(|at| (format!("{name}.{}", probe::column_at_place("eta_m", at)), Some(at.clone())))
+                .collect(),
             ProbeKind::Motion { .. } => {
                 let columns: &[&str] = match self.dimension {
                     2 => &["surge_m", "heave_m", "pitch_deg"],

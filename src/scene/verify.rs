@@ -65,7 +65,9 @@ impl Scene {
             self.require_dimension("gravity", gravity)?;
         }
         if let Some(scatter) = self.scatter.filter(|s| !(0.0..=0.1).contains(s)) {
-            return Err(self.error_at("scatter", format!("particles start 0 to 0.1 dp off their places, not {scatter}")));
+            return Err(
+                self.error_at("scatter", format!("particles start 0 to 0.1 dp off their places, not {scatter}"))
+            );
         }
         if let Some(domain) = &self.domain {
             self.verify_box("domain", domain)?;

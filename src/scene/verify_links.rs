@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::{
-    ContactConfig, ForceConfig, JointKindConfig, JointConfig, TimeFunctionConfig, LimitsConfig, MotionMode, MotorConfig, ProbeConfig, Scene,
-    SolidConfig, SpringConfig, TimeValueConfig,
-    verify::{suggestion, last_part},
+    ContactConfig, ForceConfig, JointConfig, JointKindConfig, LimitsConfig, MotionMode, MotorConfig, ProbeConfig,
+    Scene, SolidConfig, SpringConfig, TimeFunctionConfig, TimeValueConfig,
+    verify::{last_part, suggestion},
 };
 use crate::{error::Result, math::expression::Formula};
 
@@ -45,7 +45,8 @@ impl Scene {
         }
         let pairs = self.contact_pairs(contact);
         // `touch = true` has a meaning after a rule for some of the same pairs.
-        let rules = |earlier: &ContactConfig| contact.touch.is_some() && !self.contact_pairs(earlier).is_disjoint(&pairs);
+        let rules =
+            |earlier: &ContactConfig| contact.touch.is_some() && !self.contact_pairs(earlier).is_disjoint(&pairs);
         if contact.touch != Some(false) && plain && !self.contact[..i].iter().any(rules) {
             return Err(self.error_at(key, "this contact is as any other"));
         }
@@ -107,9 +108,11 @@ impl Scene {
             let key = format!("{kind}.{i}.name");
             self.require_file_name(&key, name)?;
             match names[..i].contains(name) {
-                true => {
-                    Err(self.error_with_help(&key, format!("two {kind}s are called \"{name}\""), "give each its own name"))
-                }
+                true => Err(self.error_with_help(
+                    &key,
+                    format!("two {kind}s are called \"{name}\""),
+                    "give each its own name",
+                )),
                 false => Ok(()),
             }
         })
@@ -202,7 +205,11 @@ impl Scene {
                         let far = mode.index(self.dimension).is_some_and(|number| number < self.dimension);
                         if !free.contains(mode) || (word == "limits_deg" && far) || seen.contains(mode) {
                             let help = "each motion in  free  may have one pair, a turn's in rad or in degrees";
-                            return Err(self.error_with_help(&key, "limits of what is not free, or twice the same", help));
+                            return Err(self.error_with_help(
+                                &key,
+                                "limits of what is not free, or twice the same",
+                                help,
+                            ));
                         }
                         seen.push(*mode);
                         self.verify_stop(&key, pair)?;
@@ -236,7 +243,11 @@ impl Scene {
                     return Ok(());
                 }
                 let help = "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees";
-                Err(self.error_with_help(key, format!("from {min} to {max} degrees it would turn all the way round"), help))
+                Err(self.error_with_help(
+                    key,
+                    format!("from {min} to {max} degrees it would turn all the way round"),
+                    help,
+                ))
             }
             _ => {
                 let what = format!("{pair:?} does not reach from 0 or less to 0 or more; 0 is where it starts");
@@ -254,7 +265,9 @@ impl Scene {
         let position = motor.position.is_some() || motor.position_deg.is_some();
         let drives = [&motor.force, &motor.torque, &motor.stiffness, &motor.damping];
         if drives.iter().all(|law| law.is_none()) {
-            return Err(self.error_at(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
+            return Err(
+                self.error_at(key, "this motor has no force: give a force or torque, a stiffness, or a damping")
+            );
         }
         if motor.position.is_some() && motor.position_deg.is_some() {
             return Err(self.error_at(&format!("{key}.position_deg"), "position and position_deg say the same twice"));

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::{
-    ContactConfig, GaugeConfig, JointConfig, PatchConfig, PointsConfig, ProbeConfig, PointRowConfig, Scene, SectionConfig,
-    verify::quoted_list,
+    ContactConfig, GaugeConfig, JointConfig, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, Scene,
+    SectionConfig, verify::quoted_list,
 };
 use crate::error::{Error, Result};
 
@@ -166,7 +166,11 @@ impl Scene {
             if at.len() != coordinates || at.iter().any(|x| !x.is_finite()) {
                 let what = format!("{word} has {} numbers: a place here has {coordinates}", at.len());
                 let example = vec!["0.0"; coordinates].join(", ");
-                return Err(self.error_with_help(&format!("{key}.{word}"), what, format!("write  {word} = [{example}]")));
+                return Err(self.error_with_help(
+                    &format!("{key}.{word}"),
+                    what,
+                    format!("write  {word} = [{example}]"),
+                ));
             }
         }
         let help = "write  count = 5  or  spacing = 0.1";

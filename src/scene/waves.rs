@@ -153,7 +153,8 @@ impl WaveConfig {
 
     /// The sea number `seed` of significant height `height` (m) and JONSWAP's spectrum.
     pub fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self {
-        let sea = IrregularWaveConfig { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
+        let sea =
+            IrregularWaveConfig { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
         Self { jonswap: Some(sea), ..Self::default() }
     }
 
@@ -283,7 +284,11 @@ impl Scene {
             numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
             if let Some(order) = words.order.filter(|order| !(1..=2).contains(order)) {
                 let help = "order = 1, or  order = 2  without free waves of twice the frequency";
-                return Err(self.error_with_help(&format!("{key}.order"), format!("order is 1 or 2, not {order}"), help));
+                return Err(self.error_with_help(
+                    &format!("{key}.order"),
+                    format!("order is 1 or 2, not {order}"),
+                    help,
+                ));
             }
         }
         for sea in [&words.jonswap, &words.bretschneider, &words.pierson_moskowitz].into_iter().flatten() {

@@ -200,7 +200,8 @@ mod tests {
     fn a_case_of_the_paper_has_its_laws_and_figures() -> Result<()> {
         let case = select_cases(&["column-17".to_string()], true)?.remove(0);
         let job = case.job(true, &scene("column"), Path::new("out"))?;
-        let lines: Vec<String> = job.read_scene()?.resolve()?.iter().map(|v| format!("{} = {}", v.key, v.value)).collect();
+        let lines: Vec<String> =
+            job.read_scene()?.resolve()?.iter().map(|v| format!("{} = {}", v.key, v.value)).collect();
         for line in [
             "dp = 0.0085",
             "model.kernel.cubic.tensile = true",

@@ -1,7 +1,7 @@
 //! What the cases of one scene cost, beside what they are worth: error over processor time.
 
 use super::{
-    Job, PlotLine, ResultRow, LineStyle, log_log_plot,
+    Job, LineStyle, PlotLine, ResultRow, log_log_plot,
     page::{self, escape},
     rows::RELATIVE_METRICS,
     spread::{self, CostPoint, group_repeats},
@@ -53,7 +53,11 @@ fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bar
         let own: Vec<_> = points.iter().filter(|(job, _)| viscosity(job) == *law_of_line).collect();
         let labels = own.iter().map(|(job, _)| short_name(&job.name, scene).to_string()).collect();
         let spans = own.iter().map(|(_, point)| point.span).collect();
-        PlotLine { labels, spans, ..PlotLine::new(i, LineStyle::Dots, own.iter().map(|(_, point)| point.place).collect()) }
+        PlotLine {
+            labels,
+            spans,
+            ..PlotLine::new(i, LineStyle::Dots, own.iter().map(|(_, point)| point.place).collect())
+        }
     };
     let lines: Vec<PlotLine> = laws.iter().enumerate().map(line).collect();
     let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, –")], &lines)?;
@@ -87,7 +91,7 @@ fn unique<'a>(words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::Figures;
+    use crate::analysis::ErrorMetrics;
 
     fn job(name: &str, scene: &str, law: &str) -> Job {
         Job {
@@ -102,9 +106,16 @@ mod tests {
         }
     }
 
-    fn row(run: &str, n: f64, cpu_s: f64, status: &'static str) -> Row {
-        let figures = Figures { n: Some(n), ..Figures::default() };
-        Row { run: run.into(), check: "force.fx_N".into(), figures, cpu_s: Some(cpu_s), status, ..Row::default() }
+    fn row(run: &str, n: f64, cpu_s: f64, status: &'static str) -> ResultRow {
+        let figures = ErrorMetrics { relative_l2: Some(n), ..ErrorMetrics::default() };
+        ResultRow {
+            run: run.into(),
+            check: "force.fx_N".into(),
+            metrics: figures,
+            cpu_s: Some(cpu_s),
+            status,
+            ..ResultRow::default()
+        }
     }
 
     #[test]
@@ -113,11 +124,11 @@ mod tests {
         let rows = [
             row("column-1", 0.5, 100.0, "finished"),
             row("column-3", 0.4, 150.0, "finished"),
-            Row { check: "force.fx_N (2)".into(), ..row("column-1", 0.5, 100.0, "finished") },
-            Row { check: "force.fx_N (2)".into(), ..row("column-3", 0.4, 150.0, "finished") },
+            ResultRow { check: "force.fx_N (2)".into(), ..row("column-1", 0.5, 100.0, "finished") },
+            ResultRow { check: "force.fx_N (2)".into(), ..row("column-3", 0.4, 150.0, "finished") },
             row("tank", 0.1, 2.0, "finished"),
         ];
-        let text = metrics(&jobs, &rows)?;
+        let text = cost_figures(&jobs, &rows)?;
         for word in ["column: N of force.fx_N", ">\n1\n<", ">\n3\n<", "model.viscosity = none", "model.viscosity = sps"]
         {
             assert!(text.contains(word), "\"{word}\" is not in\n{text}");
@@ -132,7 +143,7 @@ mod tests {
     fn what_has_not_finished_is_not_drawn() -> Result<()> {
         let jobs = [job("column-1", "column", "none"), job("column-3", "column", "sps")];
         let rows = [row("column-1", 0.5, 100.0, "finished"), row("column-3", 0.4, 150.0, "failed")];
-        assert!(metrics(&jobs, &rows)?.is_empty());
+        assert!(cost_figures(&jobs, &rows)?.is_empty());
         Ok(())
     }
 }

@@ -28,7 +28,8 @@ pub struct TimeEstimate {
 pub fn estimate_times(jobs: &[Job], ran: &[JobResult], threads: usize) -> Result<Vec<TimeEstimate>> {
     let sizes = jobs.iter().map(Job::estimated_size).collect::<Result<Vec<SizeEstimate>>>()?;
     let speed = |same: &dyn Fn(usize) -> bool| {
-        let finished = (0..jobs.len()).filter(|&i| ran.get(i).is_some_and(|r| r.state == JobState::Finished) && same(i));
+        let finished =
+            (0..jobs.len()).filter(|&i| ran.get(i).is_some_and(|r| r.state == JobState::Finished) && same(i));
         let known = finished.filter_map(|i| Some((sizes[i].particle_passes(), ran[i].manifest.as_ref()?.wall_s)));
         let (work, wall) = known.fold((0.0, 0.0), |sum, x| (sum.0 + x.0, sum.1 + x.1));
         (wall > 0.0).then(|| work / wall)

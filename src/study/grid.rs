@@ -183,9 +183,10 @@ mod tests {
     use super::*;
 
     fn grid(dp: &[f64], vary: &[(&str, &[&str])]) -> ParameterGrid {
-        let vary = vary
-            .iter()
-            .map(|(key, values)| VariedKey { key: key.to_string(), values: values.iter().map(|v| v.to_string()).collect() });
+        let vary = vary.iter().map(|(key, values)| VariedKey {
+            key: key.to_string(),
+            values: values.iter().map(|v| v.to_string()).collect(),
+        });
         ParameterGrid {
             name: "x".into(),
             scene: "x".into(),
@@ -217,7 +218,8 @@ mod tests {
         assert_eq!(named(grid(&[0.01], &laws))?, ["diffusion = none", "diffusion = fourtakas"]);
         assert_eq!(named(grid(&[0.01, 0.02], &[]))?, ["dp = 0.02 m", "dp = 0.01 m"]);
         assert_eq!(named(grid(&[0.01], &[]))?, ["dp-0.01"]);
-        let kept = ParameterGrid { frames: Some(0.1), ..grid(&[0.01], &[]) }.jobs(Path::new("out"))?[0].overrides[0].clone();
+        let kept =
+            ParameterGrid { frames: Some(0.1), ..grid(&[0.01], &[]) }.jobs(Path::new("out"))?[0].overrides[0].clone();
         assert_eq!((kept.0.as_str(), kept.1.starts_with("{ every = 0.1,")), ("frames", true));
         // Times that have no long interval in common: 200 frames, the nearest of which is taken.
         assert_eq!(
@@ -232,7 +234,8 @@ mod tests {
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/still-tank");
         let thrice = |sets: &[(&str, &str)]| {
             let sets = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-            ParameterGrid { scene: scene.clone(), overrides: sets, repeat: 3, ..grid(&[0.05], &[]) }.jobs(Path::new("out"))
+            ParameterGrid { scene: scene.clone(), overrides: sets, repeat: 3, ..grid(&[0.05], &[]) }
+                .jobs(Path::new("out"))
         };
         let jobs = thrice(&[])?;
         assert!(jobs.iter().all(|job| job.name == "dp-0.05" && job.group.is_empty()));

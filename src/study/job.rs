@@ -6,10 +6,10 @@ use std::{
 };
 
 use crate::{
-    analysis::{ReferenceCheck, CheckCurves, Verdict},
+    analysis::{CheckCurves, ReferenceCheck, Verdict},
     error::{Error, Kind, Result},
     output::{Manifest, manifest::RunStatus},
-    run::{self, RunOptions, RunObserver},
+    run::{self, RunObserver, RunOptions},
     scene::{FramesChoice, FramesConfig, Scene, SizeEstimate},
 };
 
@@ -211,7 +211,8 @@ impl Job {
         };
         let series = run::series_folder(&self.folder);
         let judge = |check: ReferenceCheck| check.verdict(&series);
-        let verdicts = if state == JobState::Finished { self.checks()?.into_iter().map(judge).collect() } else { vec![] };
+        let verdicts =
+            if state == JobState::Finished { self.checks()?.into_iter().map(judge).collect() } else { vec![] };
         Ok(JobResult { state, manifest: Some(manifest), verdicts })
     }
 }

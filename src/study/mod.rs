@@ -18,13 +18,13 @@ mod spread;
 pub mod stress;
 mod validation;
 
-pub use cases::{ValidationCase, CaseResolution, validation_cases, select_cases};
-pub use estimate::{TimeEstimate, DEFAULT_SPEED, estimate_times};
+pub use cases::{CaseResolution, ValidationCase, select_cases, validation_cases};
+pub use estimate::{DEFAULT_SPEED, TimeEstimate, estimate_times};
 pub use grid::{ParameterGrid, VariedKey, distinguishing_labels, frame_interval, split_values};
 pub use job::{Job, JobResult, JobState};
 pub use order::{Convergence, convergence, least_squares};
-pub use plot::{PlotLine, LineStyle, line_plot, log_log_plot};
-pub use rows::{ResultRow, rows_to_csv, result_rows};
+pub use plot::{LineStyle, PlotLine, line_plot, log_log_plot};
+pub use rows::{ResultRow, result_rows, rows_to_csv};
 pub use sheet::StudyResults;
 pub use spread::{REPEATS_NOTE, Spread, spread_table};
 pub use validation::Validation;

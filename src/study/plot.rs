@@ -234,7 +234,7 @@ mod tests {
     fn a_plot_has_its_titles_labels_and_round_marks() -> Result<()> {
         let points = vec![(2.0, 0.4), (30.0, 0.2), (500.0, 0.11)];
         let labels = ["20 mm", "10 mm", "5 mm"].map(String::from).to_vec();
-        let line = Line { labels, ..Line::new(0, LineStyle::Dotted, points) };
+        let line = PlotLine { labels, ..PlotLine::new(0, LineStyle::Dotted, points) };
         let svg = log_log_plot(["processor time, s", "N, –"], &[line])?;
         for word in ["<svg", "processor time, s", "N, –", "20 mm", "0.2", "100"] {
             assert!(svg.contains(word), "\"{word}\" is not there");
@@ -244,9 +244,9 @@ mod tests {
 
     #[test]
     fn a_span_is_drawn_upright_and_the_axis_reaches_it() -> Result<()> {
-        let bare = Line::new(0, LineStyle::Dots, vec![(2.0, 0.4), (30.0, 0.2)]);
-        let spanned = Line { spans: vec![(0.05, 0.9), (0.2, 0.2)], ..bare.clone() };
-        let drawn = |line: Line| log_log_plot(["x", "y"], &[line]);
+        let bare = PlotLine::new(0, LineStyle::Dots, vec![(2.0, 0.4), (30.0, 0.2)]);
+        let spanned = PlotLine { spans: vec![(0.05, 0.9), (0.2, 0.2)], ..bare.clone() };
+        let drawn = |line: PlotLine| log_log_plot(["x", "y"], &[line]);
         let (bare, spanned) = (drawn(bare)?, drawn(spanned)?);
         // One bar: the second point is known exactly.
         let bars = |svg: &str| svg.matches("stroke=\"#0072B2\" stroke-width=\"3\"").count();
@@ -258,8 +258,8 @@ mod tests {
     #[test]
     fn nothing_and_zeros_can_be_drawn() -> Result<()> {
         log_log_plot(["x", "y"], &[])?;
-        line_plot(["x", "y"], &[Line::new(0, LineStyle::Plain, vec![(0.0, 0.0), (1.0, 0.0)])])?;
-        log_log_plot(["x", "y"], &[Line::new(0, LineStyle::Dots, vec![(0.0, 0.0)])]).map(|_| ())
+        line_plot(["x", "y"], &[PlotLine::new(0, LineStyle::Plain, vec![(0.0, 0.0), (1.0, 0.0)])])?;
+        log_log_plot(["x", "y"], &[PlotLine::new(0, LineStyle::Dots, vec![(0.0, 0.0)])]).map(|_| ())
     }
 
     #[test]

@@ -167,7 +167,10 @@ pub fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
         cells.extend(keys.iter().map(value));
         cells.push(row.check.clone());
         let ErrorMetrics { relative_l2, amplitude_ratio, peak, off } = row.metrics;
-        cells.extend([relative_l2, amplitude_ratio, peak, off, row.mean_relative_l2, row.aligned_relative_l2, row.delay_s].map(number));
+        cells.extend(
+            [relative_l2, amplitude_ratio, peak, off, row.mean_relative_l2, row.aligned_relative_l2, row.delay_s]
+                .map(number),
+        );
         cells.push(row.passed.map_or(String::new(), |kept| kept.to_string()));
         cells.push(row.water.map_or(String::new(), |n| n.to_string()));
         cells.extend([row.wall_s, row.cpu_s].map(number));
@@ -189,14 +192,14 @@ mod tests {
 
     #[test]
     fn a_value_with_commas_and_a_failure_of_several_lines_stay_in_their_cells() -> Result<()> {
-        let row = Row {
+        let row = ResultRow {
             run: "dp-0.01".into(),
             dp: 0.01,
             varied: vec![("gravity".into(), "[0.0, -9.81]".into())],
-            figures: Figures { n: Some(0.25), ..Figures::default() },
+            metrics: ErrorMetrics { relative_l2: Some(0.25), ..ErrorMetrics::default() },
             status: "failed",
             reason: Some("too fast\n  usual cause".into()),
-            ..Row::default()
+            ..ResultRow::default()
         };
         let text = rows_to_csv(&[row], &["gravity".into()])?;
         let mut reader = csv::Reader::from_reader(text.as_slice());

@@ -5,10 +5,11 @@ use std::{fs, path::PathBuf};
 use serde::Serialize;
 
 use super::{
-    ParameterGrid, Job, PlotLine, JobResult, ResultRow, LineStyle, convergence, rows_to_csv, least_squares, log_log_plot,
+    Job, JobResult, LineStyle, ParameterGrid, PlotLine, ResultRow, convergence, least_squares, log_log_plot,
     page::{self, unit},
     rows::{MAX_ABS_METRIC, Metric, RELATIVE_METRICS, check_labels, result_rows},
-    spread::{self, RepeatSpread, CostPoint, spread_of, group_repeats},
+    rows_to_csv,
+    spread::{self, CostPoint, RepeatSpread, group_repeats, spread_of},
 };
 use crate::{
     analysis::format_verdicts,
@@ -161,7 +162,13 @@ impl StudyResults {
         orders
     }
 
-    fn body(&self, rows: &[ResultRow], orders: &[OrderRow], machine: &Machine, threads: Option<usize>) -> Result<String> {
+    fn body(
+        &self,
+        rows: &[ResultRow],
+        orders: &[OrderRow],
+        machine: &Machine,
+        threads: Option<usize>,
+    ) -> Result<String> {
         let mut body = page::provenance_table(&self.command, machine, threads);
         for check in &self.checks {
             body += &format!("<h2>{}</h2>\n", page::escape(check));
@@ -182,7 +189,13 @@ impl StudyResults {
     }
 
     /// Error over processor time.
-    fn plot(&self, rows: &[ResultRow], check: &str, error: &str, figure: fn(&ResultRow) -> Option<f64>) -> Result<String> {
+    fn plot(
+        &self,
+        rows: &[ResultRow],
+        check: &str,
+        error: &str,
+        figure: fn(&ResultRow) -> Option<f64>,
+    ) -> Result<String> {
         let groups = self.groups();
         let line = |(i, group): (usize, &String)| {
             let mut points: Vec<CostPoint> =
@@ -200,7 +213,10 @@ impl StudyResults {
         Ok(page::plot_figure(
             &svg,
             &keys,
-            &format!("{error} over processor time; at each point its dp. Left and low is good.{}", spread::error_bar_note(rows)),
+            &format!(
+                "{error} over processor time; at each point its dp. Left and low is good.{}",
+                spread::error_bar_note(rows)
+            ),
         ))
     }
 
@@ -240,7 +256,9 @@ impl StudyResults {
             cells.extend(r.varied.iter().map(|(_, value)| value.clone()));
             cells.extend(repeated.then(|| r.repeat.to_string()));
             cells.push(r.check.clone());
-            cells.extend([r.metrics.relative_l2, r.metrics.amplitude_ratio, r.metrics.peak].map(format_verdicts::format_metric));
+            cells.extend(
+                [r.metrics.relative_l2, r.metrics.amplitude_ratio, r.metrics.peak].map(format_verdicts::format_metric),
+            );
             cells.push(format_verdicts::format_value(r.metrics.off));
             cells.push(format_verdicts::format_metric(r.aligned_relative_l2));
             cells.push(r.delay_s.map_or("–".into(), format_verdicts::format_delay));

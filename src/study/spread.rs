@@ -148,7 +148,8 @@ pub fn spread_table(rows: &[ResultRow]) -> Vec<Vec<String>> {
     let used: Vec<Metric> = SPREAD_METRICS.into_iter().filter(known).collect();
     let row = |of: &Vec<&ResultRow>| {
         let told = |(name, figure): &Metric| {
-            let number = if *name == MAX_ABS_METRIC.0 { format_verdicts::format_value } else { format_verdicts::format_metric };
+            let number =
+                if *name == MAX_ABS_METRIC.0 { format_verdicts::format_value } else { format_verdicts::format_metric };
             spread_of(of, *figure).map_or("–".into(), |spread| spread.format(number))
         };
         let mut cells = vec![of[0].run.clone(), of[0].check.clone(), of.len().to_string()];
@@ -168,19 +169,19 @@ pub const REPEATS_NOTE: &str = "Repeats start with their water moved by a millio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::Figures;
+    use crate::analysis::ErrorMetrics;
 
-    fn row(run: &str, repeat: usize, n: Option<f64>) -> Row {
-        let figures = Figures { n, ..Figures::default() };
+    fn row(run: &str, repeat: usize, n: Option<f64>) -> ResultRow {
+        let figures = ErrorMetrics { relative_l2: n, ..ErrorMetrics::default() };
         let status = if n.is_some() { "finished" } else { "failed" };
-        Row {
+        ResultRow {
             run: run.into(),
             repeat,
             check: "box.surge_m".into(),
-            figures,
+            metrics: figures,
             status,
             cpu_s: Some(2.0),
-            ..Row::default()
+            ..ResultRow::default()
         }
     }
 
@@ -193,7 +194,7 @@ mod tests {
             row("b", 1, Some(0.2)),
             row("b", 2, Some(0.2)),
         ];
-        let all = separate_waves(&rows);
+        let all = repeat_spreads(&rows);
         assert_eq!(all.iter().map(|a| (a.run.as_str(), a.spread.runs)).collect::<Vec<_>>(), [("a", 2), ("b", 2)]);
         let told = spread_table(&rows);
         assert_eq!(told[0], ["run", "check", "runs", "N", "processors, s"]);
@@ -203,10 +204,10 @@ mod tests {
 
     #[test]
     fn nothing_is_told_of_runs_that_were_made_once() {
-        assert!(separate_waves(&[row("a", 1, Some(0.1)), row("b", 1, Some(0.2))]).is_empty());
+        assert!(repeat_spreads(&[row("a", 1, Some(0.1)), row("b", 1, Some(0.2))]).is_empty());
         assert!(spread_table(&[row("a", 1, Some(0.1))]).is_empty());
         assert_eq!(Spread::of([]), None);
-        let said = |values: &[f64]| Spread::of(values.iter().copied()).map(|s| s.format(format_verdicts::digits));
+        let said = |values: &[f64]| Spread::of(values.iter().copied()).map(|s| s.format(format_verdicts::format_value));
         assert_eq!(said(&[0.25]), Some("0.250".into()));
         assert_eq!(said(&[0.25, 0.25 + 1e-7]), Some("0.250 ± 7e-8".into()), "no row of noughts");
     }

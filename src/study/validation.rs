@@ -6,9 +6,10 @@ use std::{
 };
 
 use super::{
-    ValidationCase, Job, PlotLine, JobResult, ResultRow, JobState, LineStyle, cost, rows_to_csv, line_plot,
+    Job, JobResult, JobState, LineStyle, PlotLine, ResultRow, ValidationCase, cost, line_plot,
     page::{self, unit},
     rows::{check_labels, result_rows},
+    rows_to_csv,
 };
 use crate::{
     analysis::{CheckCurves, Verdict, format_verdicts},
@@ -32,7 +33,13 @@ impl Validation {
     ///
     /// # Errors
     /// Those of the scenes' words and of [`Job::repeated`].
-    pub fn new(cases: Vec<(ValidationCase, &Path)>, full: bool, repeat: usize, out: PathBuf, command: String) -> Result<Self> {
+    pub fn new(
+        cases: Vec<(ValidationCase, &Path)>,
+        full: bool,
+        repeat: usize,
+        out: PathBuf,
+        command: String,
+    ) -> Result<Self> {
         let jobs = cases.iter().map(|(case, scene)| case.job(full, scene, &out)?.repeated(repeat));
         let jobs = jobs.collect::<Result<Vec<_>>>()?.concat();
         Ok(Self { command, out, cases: cases.into_iter().map(|(case, _)| case).collect(), repeat, jobs })

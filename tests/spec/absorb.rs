@@ -6,7 +6,7 @@ use pontoon::{
     Error,
     math::Vector,
     preflight,
-    scene::{Built, Scene},
+    scene::{BuiltScene, Scene},
     simulation::Simulation,
 };
 
@@ -40,7 +40,7 @@ const PERIOD: f64 = 1.175;
 
 const TAKER: &str = "driven = { along = [1.0, 0.0], wave = { absorb = { period = 1.175 } } }";
 
-fn built(end: &str) -> Result<Built<2>, Error> {
+fn built(end: &str) -> Result<BuiltScene<2>, Error> {
     Scene::parse(&BASIN.replace("END", end), Path::new(""), &[])?.build()
 }
 
@@ -141,8 +141,8 @@ fn words_of_absorption_that_cannot_be_meant_are_named_with_what_can() {
 #[test]
 fn what_a_paddle_absorbs_is_told_before_a_run() {
     let told = |end: &str| {
-        let Built { setup, plan, overlapped, still, .. } = built(end).unwrap();
-        preflight::look(&Simulation::new(setup).unwrap(), &plan, still, overlapped, &[]).absorbers
+        let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built(end).unwrap();
+        preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[]).absorbers
     };
     assert!(told("fixed = true").is_empty());
     let own = &told(TAKER)[0];

@@ -5,7 +5,7 @@ use pontoon::{
     geometry::Shape,
     math::{Bounds, Vector},
     model::Model,
-    run::{self, Inspection},
+    run::{self, InspectOptions},
     simulation::{Escape, Limits, Setup, Simulation},
     solid::Role,
 };
@@ -236,7 +236,7 @@ fn a_timing_stops_at_the_first_alarm_and_tells_it() {
         [[solid]]\nname = \"paddle\"\nshape = { box = { size = [0.1, 0.2] } }\nat = { x = 0.3, bottom = 0.0 }\n\
         driven = { along = [1.0, 0.0], distance = { formula = \"0.1*sin(300*t)\" } }\n";
     let home = Home::with("timing-alarm", scene);
-    let asked = Inspection { threads: Some(1), timing: true, ..Inspection::default() };
+    let asked = InspectOptions { threads: Some(1), timing: true, ..InspectOptions::default() };
     let report = run::inspect(&home.0.join("scene.toml"), &asked).unwrap();
     let told = report.preflight.findings.iter().find(|finding| finding.topic == "breaks_down").expect("it breaks down");
     let after = |word: &str| told.what.split(word).nth(1).and_then(|rest| rest.split([' ', ',']).next());

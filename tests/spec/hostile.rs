@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     Error,
-    scene::{Scene, shipped},
+    scene::{Scene, bundled_scenes},
 };
 use proptest::prelude::*;
 
@@ -87,7 +87,7 @@ const SMALL: f64 = 4000.0;
 fn try_out(text: &str, folder: &Path) -> Result<(), Error> {
     let scene = Scene::parse(text, folder, &[])?;
     scene.resolve()?;
-    let size = scene.size()?;
+    let size = scene.estimate_size()?;
     if size.fluid + size.boundary > SMALL {
         return Ok(());
     }
@@ -242,7 +242,7 @@ proptest! {
         which in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0usize..5, 0usize..PIECES.len()), 1..5)
     ) {
-        let all = shipped();
+        let all = bundled_scenes();
         let (name, text, _) = &all[which.index(all.len())];
         let mut text: Vec<char> = text.chars().collect();
         for (at, length, piece) in changes {
@@ -258,7 +258,7 @@ proptest! {
         let folder = desk("table");
         let path = folder.join("table.csv");
         std::fs::write(&path, format!("t_s,x_m\n{text}")).unwrap();
-        if let Ok(series) = pontoon::scene::table::series(&path, "t_s", "x_m") {
+        if let Ok(series) = pontoon::scene::table::read_series(&path, "t_s", "x_m") {
             prop_assert!(series.values().iter().all(|x| x.is_finite()));
         }
     }

@@ -6,8 +6,8 @@ use pontoon::{
     Error,
     math::Vector,
     model::{Dimension, Model, Scheme, Viscosity},
-    preflight::{self, Finding, Preflight, Wave},
-    scene::{Built, DampingWords, DrivenWords, ProbeEntry, Scene, ShapeWords, SolidWords, WaveWords},
+    preflight::{self, Finding, GeneratedWave, Preflight},
+    scene::{BuiltScene, DampingConfig, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, WaveConfig},
     simulation::{Setup, Simulation},
     solid::Dim,
     system::SpongeLayer,
@@ -46,23 +46,23 @@ fn with(driven: &str) -> String {
     FLUME.replacen(PISTON, driven, 1)
 }
 
-fn built(text: &str) -> Result<Built<2>, Error> {
+fn built(text: &str) -> Result<BuiltScene<2>, Error> {
     Scene::parse(text, Path::new(""), &[])?.build()
 }
 
-fn look<const D: usize>(built: Built<D>) -> Preflight
+fn look<const D: usize>(built: BuiltScene<D>) -> Preflight
 where
     Dim<D>: Dimension<D>,
 {
-    let Built { setup, plan, overlapped, still, .. } = built;
-    preflight::look(&Simulation::new(setup).unwrap(), &plan, still, overlapped, &[])
+    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built;
+    preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[])
 }
 
 fn told(driven: &str) -> Preflight {
     look(built(&with(driven)).unwrap())
 }
 
-fn wave(driven: &str) -> Wave {
+fn wave(driven: &str) -> GeneratedWave {
     told(driven).waves.remove(0)
 }
 
@@ -128,23 +128,24 @@ fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
 
 #[test]
 fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
-    let paddle = |motion: DrivenWords| {
-        let at = pontoon::scene::AtWords { x: Some(-0.05), bottom: Some(0.0), ..Default::default() };
-        let tank = SolidWords::fixed("tank", ShapeWords::tank([5.2, 0.6])).at(pontoon::scene::AtWords::point(&[-0.2]));
+    let paddle = |motion: DrivenConfig| {
+        let at = pontoon::scene::PlacementConfig { x: Some(-0.05), bottom: Some(0.0), ..Default::default() };
+        let tank = SolidConfig::fixed("tank", ShapeConfig::tank([5.2, 0.6]))
+            .at(pontoon::scene::PlacementConfig::point(&[-0.2]));
         Scene::new(2, 0.02, 6.0)
             .title("A flume")
             .water_box([0.0, 0.0], [5.0, 0.3])
             .solid(tank)
-            .solid(SolidWords::driven("paddle", ShapeWords::cuboid([0.1, 0.6]), motion).at(at))
+            .solid(SolidConfig::driven("paddle", ShapeConfig::cuboid([0.1, 0.6]), motion).at(at))
             .without_frames()
     };
-    let piston = paddle(DrivenWords::piston([1.0, 0.0], WaveWords::regular(0.1, 1.2)));
+    let piston = paddle(DrivenConfig::piston([1.0, 0.0], WaveConfig::regular(0.1, 1.2)));
     assert_eq!(piston, Scene::parse(FLUME, Path::new(""), &[]).unwrap());
     let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
     assert_eq!(piston, again);
-    let flap = paddle(DrivenWords::flap([0.0, -0.1], WaveWords::jonswap(0.06, 1.4, 7)))
-        .damped(DampingWords::between([4.0, 0.0], [5.0, 0.0]))
-        .probe(ProbeEntry::motion("paddle"));
+    let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
+        .with_damping(DampingConfig::between([4.0, 0.0], [5.0, 0.0]))
+        .probe(ProbeConfig::motion("paddle"));
     assert_eq!(look(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
 }
 
@@ -272,7 +273,7 @@ fn the_first_answer_is_that_of_what_stands_in_the_way() {
     let first = wall(0.4);
     assert!(first.answers.as_deref() == Some("wall") && (first.reach_m - 2.0).abs() < 1e-6, "{first:?}");
     assert!((first.back_s - 4.0 / first.group_mps).abs() < 1e-6 && first.damping_m == Some(1.5), "{first:?}");
-    let line = first.first_answer();
+    let line = first.first_reflection();
     assert!(line.contains("2 m to \"wall\"") && line.contains("a damping zone begins at 1.5 m"), "{line}");
     // Waves pass over it.
     let over = wall(0.1);

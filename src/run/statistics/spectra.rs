@@ -53,11 +53,11 @@ mod tests {
         let t: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.01).collect();
         let wave: Vec<f64> = t.iter().map(|t| 0.05 * (std::f64::consts::TAU * 1.25 * t).sin()).collect();
         let mut table = SeriesTable { columns: vec!["front_m".into()], times: t.clone(), values: vec![t] };
-        write(&folder, &Tables::from([("gauge".into(), table.clone())]))?;
+        write(&folder, &ProbeTables::from([("gauge".into(), table.clone())]))?;
         assert!(!folder.join(SPECTRA_FILE).exists(), "what only rises has none");
         table.columns.push("eta_m".into());
         table.values.push(wave);
-        write(&folder, &Tables::from([("gauge".into(), table)]))?;
+        write(&folder, &ProbeTables::from([("gauge".into(), table)]))?;
         let text = std::fs::read_to_string(folder.join(SPECTRA_FILE)).map_err(failed)?;
         assert!(text.starts_with("series,f_Hz,S,unit\ngauge.eta_m,0.0,"), "{text}");
         let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();

@@ -53,7 +53,8 @@ pub(super) fn map_svg(map: &StressMap, entries: &[&CaseResult]) -> String {
     if let Some(y) = &map.y {
         svg += &svg_text(LEFT, bottom + 58, "start", 13, &format!("↓ {}", label(&y.label, &y.unit)));
     }
-    for (k, outcome) in [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished].into_iter().enumerate()
+    for (k, outcome) in
+        [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished].into_iter().enumerate()
     {
         let (sign, colour) = cell_style(Some(outcome));
         let of = |entry: &&&CaseResult| entry.verdict().is_some_and(|(found, _)| found == outcome);

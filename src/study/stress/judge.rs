@@ -181,7 +181,8 @@ impl EnergyBalance {
     /// Enters the energies now.
     pub fn update(&mut self, now: Energies) {
         self.potential_drop = self.potential_drop.max(-now.potential);
-        self.excess = max_or_invalid(self.excess, now.kinetic + now.potential + now.compression - self.start - self.work);
+        self.excess =
+            max_or_invalid(self.excess, now.kinetic + now.potential + now.compression - self.start - self.work);
     }
 
     /// The largest excess over the scale (–).

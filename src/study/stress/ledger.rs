@@ -12,7 +12,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{StressCase, StressMap, CaseRun, chart, judge::CaseOutcome};
+use super::{CaseRun, StressCase, StressMap, chart, judge::CaseOutcome};
 use crate::{
     error::{Error, Result},
     output::write_atomically,
@@ -94,7 +94,12 @@ impl StressResults {
     ///
     /// # Errors
     /// `File` if the results cannot be written; `Usage` if threads cannot be started.
-    pub fn run_missing(&mut self, workers: usize, stop: &AtomicBool, told: impl FnMut(&CaseResult) + Send) -> Result<()> {
+    pub fn run_missing(
+        &mut self,
+        workers: usize,
+        stop: &AtomicBool,
+        told: impl FnMut(&CaseResult) + Send,
+    ) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         let due: Vec<usize> = (0..self.entries.len()).filter(|&i| self.entries[i].run.is_none()).collect();
         let cases: Vec<StressCase> = due.iter().map(|&i| self.entries[i].case.clone()).collect();

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use serde::Deserialize;
 
-use super::judge::{Bound, MotionBound, Criteria, SolidBound};
+use super::judge::{Bound, Criteria, MotionBound, SolidBound};
 use crate::{
     error::{Error, Kind, Result, nearest},
     math::expression::Field,
@@ -103,7 +103,8 @@ fn read(text: &str, name: &str) -> Result<Vec<StressMap>> {
         let line = e.span().map(|span| text[..span.start].matches('\n').count() + 1);
         Error::scene(e.message().to_string()).at(name, line.map(|line| (line, 1)), "")
     })?;
-    let whole = |map: StressMap| StressMap { parts: part.clone(), default_criteria: judge.clone(), file: name.into(), ..map };
+    let whole =
+        |map: StressMap| StressMap { parts: part.clone(), default_criteria: judge.clone(), file: name.into(), ..map };
     let all: Vec<StressMap> = map.into_iter().map(whole).collect();
     match (0..all.len()).find(|&i| all[..i].iter().any(|map| map.name == all[i].name)) {
         Some(i) => Err(Error::scene(format!("two maps are called {:?}", all[i].name)).at(name, None, "map.name")),

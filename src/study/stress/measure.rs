@@ -2,7 +2,7 @@
 
 use super::{
     StressCase,
-    judge::{EnergyBalance, Energies, MeasuredFigures, draft_figure, motion_figure, max_or_invalid},
+    judge::{Energies, EnergyBalance, MeasuredFigures, draft_figure, max_or_invalid, motion_figure},
 };
 use crate::{
     error::Result,
@@ -68,7 +68,8 @@ impl<'a, const D: usize> Measurements<'a, D> {
 
     /// Told after each step, of length `dt` (s).
     pub(super) fn step(&mut self, sim: &Simulation<D>, dt: f64) -> Result<()> {
-        let driven: f64 = self.before.iter().zip(sim.system().solids()).map(|(then, now)| driven_work(then, now, dt)).sum();
+        let driven: f64 =
+            self.before.iter().zip(sim.system().solids()).map(|(then, now)| driven_work(then, now, dt)).sum();
         self.energy_balance.add_work(driven + constraint_work(sim, &self.before, dt));
         self.store_kinematics(sim);
         let until = self.case.scene.until;

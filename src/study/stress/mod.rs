@@ -11,9 +11,9 @@ mod maps;
 mod measure;
 mod trial;
 
-pub use judge::{Bound, MotionBound, MeasuredFigures, Criteria, SolidBound, CaseOutcome};
-pub use ledger::{StressResults, CaseResult};
-pub use maps::{MapAxis, StressCase, StressMap, select_maps, maps};
+pub use judge::{Bound, CaseOutcome, Criteria, MeasuredFigures, MotionBound, SolidBound};
+pub use ledger::{CaseResult, StressResults};
+pub use maps::{MapAxis, StressCase, StressMap, maps, select_maps};
 pub use trial::{BUDGET, CaseEnd, CaseRun};
 
 /// What came out of a case, in a line.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     StressCase,
-    judge::{MeasuredFigures, CaseOutcome},
+    judge::{CaseOutcome, MeasuredFigures},
     measure::Measurements,
 };
 use crate::{
