@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::{
     error::{Error, Kind, Result},
     model::Dimension,
-    run::{looks, outputs, thread_pool},
+    run::{outputs, probe_factory, thread_pool},
     scene::{BuiltScene, Scene},
     simulation::{Simulation, TimeSpent},
     solid::Dim,
@@ -235,7 +235,10 @@ where
             let name = work.name.replace([' ', ','], "-");
             let name = format!("pontoon-bench-{}-{D}d-{name}", std::process::id());
             let folder = TemporaryFolder(std::env::temp_dir().join(name));
-            Some((outputs::Outputs::new(&plan, looks::probes_from_plan(&plan, &mut sim)?, &folder.0, None)?, folder))
+            Some((
+                outputs::Outputs::new(&plan, probe_factory::probes_from_plan(&plan, &mut sim)?, &folder.0, None)?,
+                folder,
+            ))
         };
         let system = sim.system();
         let mut pairs = 0usize;

@@ -6,13 +6,13 @@
 mod bench;
 mod export;
 mod inspect;
-mod journal;
-mod page;
+mod json_log;
+mod report_page;
 mod progress;
-mod report;
+mod console_text;
 mod run;
-mod shelf;
-mod stats;
+mod scene_lookup;
+mod statistics;
 mod stress;
 mod study;
 mod validate;
@@ -130,7 +130,7 @@ Examples:
   pontoon report runs/raft --png raft.png --time 1.2
   pontoon report runs/raft --png raft.png --time 0.5,1,1.5 --by speed --range 0,1.5
 `run` and `resume` write the page at their end. It needs no network and no server.")]
-    Report(page::ReportArgs),
+    Report(report_page::ReportArgs),
     /// Lay several runs over one another: a page with their players side by side, or a picture
     #[command(after_help = "\
 Examples:
@@ -138,7 +138,7 @@ Examples:
   pontoon compare runs/plain runs/delta runs/shifted --png fields.png --time 0.5,1.0
 Players go at equal times, with equal colours; pictures have a column for each run and a row for
 each time.")]
-    Compare(page::CompareArgs),
+    Compare(report_page::CompareArgs),
     /// Write the series of a run for other programs
     #[command(after_help = "\
 Examples:
@@ -181,7 +181,7 @@ Examples:
 A run writes them at its end, to statistics.csv; [[statistic]] in the scene asks for more. H_third
 is the mean of the highest third of the waves, H_m0 four standard deviations. How motions answer
 irregular waves over frequency, as in rao.csv, is the last table, or with --rao the only one.")]
-    Stats(stats::StatsArgs),
+    Stats(statistics::StatsArgs),
     /// List the scenes that come with the program
     Scenes,
     /// Time standard works on this machine: particle-steps per second, where a step goes, memory
@@ -260,8 +260,8 @@ fn dispatch(command: Command) -> Result<u8> {
             print_output(&bench::bench(&args)?);
             Ok(0)
         }
-        Command::Report(args) => page::report(&args),
-        Command::Compare(args) => page::compare(&args),
+        Command::Report(args) => report_page::report(&args),
+        Command::Compare(args) => report_page::compare(&args),
         Command::Export(args) => {
             print_output(&export::export(&args)?);
             Ok(0)
@@ -278,11 +278,11 @@ fn dispatch(command: Command) -> Result<u8> {
             Ok(0)
         }
         Command::Stats(args) => {
-            print_output(&stats::stats(&args)?);
+            print_output(&statistics::stats(&args)?);
             Ok(0)
         }
         Command::Scenes => {
-            print_output(&report::scene_list(&shelf::scene_infos()));
+            print_output(&console_text::scene_list(&scene_lookup::scene_infos()));
             Ok(0)
         }
     }

@@ -10,29 +10,29 @@
 //! # Ok::<(), pontoon::Error>(())
 //! ```
 
-mod course;
-mod drift;
-mod folder;
+mod runner;
+mod energy_drift;
+mod run_folder;
 mod inspect;
-mod kept;
+mod resume_point;
 mod lock;
-pub(crate) mod looks;
+pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 
-pub use drift::EnergyDrift;
-pub(crate) use folder::{scene_file, tables_unchanged};
+pub use energy_drift::EnergyDrift;
 pub use inspect::{InspectOptions, InspectReport, MeshSummary, SeriesColumns, SolidSummary, StepTiming, inspect};
-pub(crate) use kept::has_checkpoint;
 pub(crate) use lock::Lock;
 pub use lock::lock_owner;
 pub(crate) use outputs::series_folder;
+pub(crate) use resume_point::has_checkpoint;
+pub(crate) use run_folder::{scene_file, tables_unchanged};
 pub(crate) use statistics::run_statistics;
 pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
 use std::path::{Path, PathBuf};
 
-use kept::ResumePoint;
+use resume_point::ResumePoint;
 
 use crate::{
     error::{Error, Kind, Result},
@@ -143,7 +143,7 @@ impl RunOutcome {
 /// `Scene`, `Usage`, `File` before anything is written or when a file cannot be written; `Fault` when the
 /// computation cannot go on: then the run's folder holds everything up to then and `failure.json`.
 pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
-    let file = folder::scene_file(path);
+    let file = run_folder::scene_file(path);
     let scene = Scene::read(&file, &options.overrides)?;
     let origin = RunOrigin::Fresh { file: &file, out: options.out.as_deref(), overrides: &options.overrides };
     with_threads(options.threads, || by_dimension(&scene, origin, watch))
@@ -170,7 +170,7 @@ pub fn resume(
         return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
     }
     let ResumePoint { checkpoint, scene, warning } =
-        kept::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
+        resume_point::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
     let origin = RunOrigin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
     with_threads(threads, || by_dimension(&scene, origin, watch))
 }
@@ -198,7 +198,7 @@ fn run_in_dimension<const D: usize>(scene: &Scene, origin: RunOrigin, watch: &mu
 where
     Dim<D>: Dimension<D>,
 {
-    course::Runner::<D>::new(scene, origin)?.run(watch)
+    runner::Runner::<D>::new(scene, origin)?.run(watch)
 }
 
 /// The error of a scene in a dimension that this program was built without.

@@ -9,7 +9,7 @@ use pontoon::{
 };
 use serde::Serialize;
 
-use super::report::{short_number, table};
+use super::console_text::{short_number, table};
 
 /// Water particles up to which the oracle is timed beside the fast sweep.
 const MAX_REFERENCE_PARTICLES: usize = 200_000;

@@ -126,7 +126,7 @@ fn rao_arrays(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
 
 #[cfg(feature = "surface")]
 fn surface(folder: &Path) -> Result<String> {
-    use pontoon::output::{FrameSequence, surface};
+    use pontoon::output::{FrameSequence, free_surface_mesh};
 
     let (manifest, run) = (Manifest::read(folder)?, || folder.display());
     let Some((dimension, dp)) = manifest.numeric_value("dimension").zip(manifest.numeric_value("dp")) else {
@@ -140,6 +140,6 @@ fn surface(folder: &Path) -> Result<String> {
         let what = format!("the run in {} has no frames to make a surface of", run());
         return Err(Error::new(Kind::Usage, what).help("run it without `frames = \"off\"`"));
     };
-    let count = surface::write(folder, &film, dp)?;
+    let count = free_surface_mesh::write(folder, &film, dp)?;
     Ok(format!("{}: {count} meshes\n", folder.join("surface.pvd").display()))
 }

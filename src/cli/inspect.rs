@@ -11,8 +11,8 @@ use pontoon::{
 
 use super::{
     SceneArgs,
-    report::{bytes, duration, short_number, table, threads},
-    shelf,
+    console_text::{bytes, duration, short_number, table, threads},
+    scene_lookup,
 };
 
 /// What is inspected, and how it is said.
@@ -33,7 +33,7 @@ pub struct InspectArgs {
 
 /// The page, or the JSON.
 pub fn inspect(args: &InspectArgs) -> Result<String> {
-    let found = shelf::find_scene(&args.scene.scene)?;
+    let found = scene_lookup::find_scene(&args.scene.scene)?;
     let asked = InspectOptions { overrides: args.scene.overrides(), threads: args.threads, timing: !args.no_timing };
     let report = found.with_scene_name(run::inspect(found.path(), &asked))?;
     if args.json {

@@ -17,7 +17,7 @@ use pontoon::{
     simulation::Rollback,
 };
 
-use super::{print_error, report};
+use super::{console_text, print_error};
 
 /// Columns of a line where nobody tells how wide the terminal is.
 const WIDE: usize = 79;
@@ -73,16 +73,16 @@ impl ProgressDisplay {
         let (begun, first, steps) = self.begun.unwrap_or((Instant::now(), now.time, now.steps));
         let (wall, done) = (begun.elapsed().as_secs_f64(), now.time - first);
         let going = now.steps > steps && wall > 0.0;
-        let left = || format!("{} left", report::duration(wall * (now.until - now.time) / done));
-        let speed = || format!("{} steps/s", report::short_number((now.steps - steps) as f64 / wall));
+        let left = || format!("{} left", console_text::duration(wall * (now.until - now.time) / done));
+        let speed = || format!("{} steps/s", console_text::short_number((now.steps - steps) as f64 / wall));
         let words = [
             (done > 0.0).then(left),
             (now.dt > 0.0).then(|| format!("dt {} s", three_digits(now.dt))),
-            report::warnings(self.warnings),
+            console_text::warnings(self.warnings),
             now.energy.map(|drift| drift.to_string()),
             Some(format!("step {}", now.steps)),
             going.then(speed),
-            going.then(|| format!("{} particle-steps/s", report::short_number(now.rate))),
+            going.then(|| format!("{} particle-steps/s", console_text::short_number(now.rate))),
         ];
         fit_to_width(format!("t = {:.3} of {} s", now.time, now.until), words.into_iter().flatten(), room)
     }
@@ -118,7 +118,7 @@ impl RunObserver for ProgressDisplay {
         self.folder = Some(start.folder.to_owned());
         self.warnings = start.manifest.warnings.len();
         if !self.quiet {
-            print_error(&report::start_text(start));
+            print_error(&console_text::start_text(start));
         }
     }
 

@@ -10,11 +10,11 @@ use pontoon::{
 };
 
 use super::{
-    SceneArgs, exit_code, interrupt_flag, interrupt_flag_with_message,
-    journal::{self, JsonLog},
-    page, print_error, print_output,
+    SceneArgs, console_text, exit_code, interrupt_flag, interrupt_flag_with_message,
+    json_log::{self, JsonLog},
+    print_error, print_output,
     progress::{CliObserver, ProgressDisplay},
-    report, shelf,
+    report_page, scene_lookup,
 };
 
 /// Which scene is run, and how.
@@ -99,7 +99,7 @@ enum LogFormat {
 /// As [`run::run`].
 pub fn run(args: &RunArgs) -> Result<u8> {
     let started = |args: &RunArgs| {
-        let found = shelf::find_scene(&args.scene.scene)?;
+        let found = scene_lookup::find_scene(&args.scene.scene)?;
         let options = RunOptions { out: args.out.clone(), overrides: args.overrides(), threads: args.threads };
         let mut follow = make_observer(&args.log_args)?;
         let outcome = found.with_scene_name(run::run(found.path(), &options, &mut *follow));
@@ -122,7 +122,7 @@ pub fn resume(args: &ResumeArgs) -> Result<u8> {
 fn report_outcome(outcome: Result<u8>, said: &LogArgs) -> Result<u8> {
     match outcome {
         Err(error) if said.log == LogFormat::Json => {
-            journal::failed(&error);
+            json_log::failed(&error);
             Ok(exit_code(&error))
         }
         outcome => outcome,
@@ -133,7 +133,7 @@ fn report_outcome(outcome: Result<u8>, said: &LogArgs) -> Result<u8> {
 fn make_observer(said: &LogArgs) -> Result<Box<dyn CliObserver>> {
     Ok(match said.log {
         LogFormat::Text => Box::new(ProgressDisplay::new(said.quiet, interrupt_flag()?)),
-        LogFormat::Json => Box::new(JsonLog::new(said.quiet, interrupt_flag_with_message(journal::STOPPING)?)),
+        LogFormat::Json => Box::new(JsonLog::new(said.quiet, interrupt_flag_with_message(json_log::STOPPING)?)),
     })
 }
 
@@ -143,21 +143,21 @@ fn finish(outcome: Result<RunOutcome>, mut follow: Box<dyn CliObserver>, said: &
     match &outcome {
         _ if said.quiet => {}
         Ok(outcome) if json => {
-            outcome.end_warnings.iter().for_each(|text| journal::warn(text));
-            journal::ended(outcome);
+            outcome.end_warnings.iter().for_each(|text| json_log::warn(text));
+            json_log::ended(outcome);
         }
         Ok(outcome) => {
             outcome.end_warnings.iter().for_each(|text| print_error(&format!("warning: {text}\n")));
-            print_output(&report::end_text(outcome));
+            print_output(&console_text::end_text(outcome));
         }
         Err(_) => {}
     }
     if let Some(folder) = folder.filter(|_| !said.no_report) {
         let told = |why: &Error| {
             let text = format!("the page of the run was not written: {why}");
-            if json { journal::warn(&text) } else { print_error(&format!("warning: {text}\n")) }
+            if json { json_log::warn(&text) } else { print_error(&format!("warning: {text}\n")) }
         };
-        page::write_after_run(&folder, said.quiet || json, told);
+        report_page::write_after_run(&folder, said.quiet || json, told);
     }
     let outcome = outcome?;
     Ok(match outcome.manifest.status {

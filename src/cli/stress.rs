@@ -9,8 +9,8 @@ use pontoon::{
 };
 
 use super::{
+    console_text::{duration, table},
     interrupt_flag_with_message, print_error, print_output,
-    report::{duration, table},
 };
 
 /// Maps and how they are run.

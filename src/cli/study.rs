@@ -18,12 +18,11 @@ use pontoon::{
 };
 
 use super::{
-    interrupt_flag, key_value,
-    page::{PictureStyleArgs, draw_picture},
-    print_error, print_output,
+    console_text::{duration, short_number, table},
+    interrupt_flag, key_value, print_error, print_output,
     progress::{CliObserver, ProgressDisplay},
-    report::{duration, short_number, table},
-    shelf,
+    report_page::{PictureStyleArgs, draw_picture},
+    scene_lookup,
 };
 
 /// A grid of runs.
@@ -172,7 +171,7 @@ fn planned_table(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> S
 
 /// Runs the grid, or says what it would run.
 pub fn study(args: StudyArgs) -> Result<u8> {
-    let found = shelf::find_scene(&args.scene)?;
+    let found = scene_lookup::find_scene(&args.scene)?;
     let mut sets = args.set.clone();
     sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
     let scene = found.with_scene_name(Scene::read(found.path(), &sets))?;

@@ -9,9 +9,8 @@ use pontoon::{
 };
 
 use super::{
-    interrupt_flag, print_error, print_output,
-    report::table,
-    shelf,
+    console_text::table,
+    interrupt_flag, print_error, print_output, scene_lookup,
     study::{JobList, list_exit_code, repeats_text},
 };
 
@@ -57,8 +56,9 @@ pub fn validate(args: ValidateArgs) -> Result<u8> {
         return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
     }
     let cases = select_cases(&args.names, args.full)?;
-    let scenes = cases.iter().map(|case| shelf::find_scene(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
-    let placed = cases.into_iter().zip(scenes.iter().map(shelf::FoundScene::path)).collect();
+    let scenes =
+        cases.iter().map(|case| scene_lookup::find_scene(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
+    let placed = cases.into_iter().zip(scenes.iter().map(scene_lookup::FoundScene::path)).collect();
     let validation = Validation::new(placed, args.full, args.repeat, args.out.clone(), super::command_line())?;
     let list = JobList { jobs: &validation.jobs, threads: args.threads, quiet: args.quiet };
     list.announce(args.dry_run)?;

@@ -23,8 +23,8 @@ use pontoon::{
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
 use super::{
+    console_text::{duration, table, warnings},
     print_output,
-    report::{duration, table, warnings},
 };
 
 /// Which run, and which of its series.

@@ -5,18 +5,18 @@ pub mod csv;
 pub mod frame;
 pub mod frame_sequence;
 pub mod manifest;
-pub mod mean;
+pub mod interval_mean;
 pub mod npz;
-pub mod removed;
+pub mod removed_particles;
 #[cfg(feature = "surface")]
-pub mod surface;
+pub mod free_surface_mesh;
 
 pub use checkpoint::{Checkpoint, OutputPositions};
 pub use csv::{CsvTable, SeriesTable};
 pub use frame::FrameWriter;
 pub use frame_sequence::{FramePoints, FrameSequence};
+pub use interval_mean::IntervalMean;
 pub use manifest::Manifest;
-pub use mean::IntervalMean;
 
 use std::{
     fs::{self, File},

@@ -2,8 +2,8 @@
 
 use super::{
     Finding, PreflightContext,
-    faces::SurfaceSample,
-    format::{place, three_digits, two_digits_down},
+    rounding::{place, three_digits, two_digits_down},
+    surface_samples::SurfaceSample,
 };
 use crate::{math::Vector, scene::world_bounds, solid::Role};
 

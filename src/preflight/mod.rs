@@ -4,31 +4,31 @@
 //! Facts are numbers; a [`Finding`] is a sentence with the number that would mend it. What a run prints at its start
 //! are the findings that are warnings.
 
-mod absorb;
-mod astray;
-mod bodies;
-pub(crate) mod faces;
+mod absorption_limits;
+mod misplaced_bodies;
+mod floating_bodies;
+pub(crate) mod surface_samples;
 mod gaps;
-mod paddles;
-mod places;
-mod size;
-mod sound;
-mod stands;
-mod swings;
+mod wavemaker_checks;
+mod probe_positions;
+mod run_size;
+mod sound_speed;
+mod wavemaker_site;
+mod driven_motion;
 mod thickness;
-mod waves;
-mod format;
+mod generated_waves;
+mod rounding;
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-pub use absorb::AbsorberSummary;
-pub use bodies::{BodySummary, Equilibrium, Tilt};
-pub use format::three_digits;
-pub use size::{DiskUse, RunSize};
-pub use sound::{ExpectedSpeed, SoundSpeed, StepSizeLimits};
-pub use waves::GeneratedWave;
+pub use absorption_limits::AbsorberSummary;
+pub use floating_bodies::{BodySummary, Equilibrium, Tilt};
+pub use generated_waves::GeneratedWave;
+pub use rounding::three_digits;
+pub use run_size::{DiskUse, RunSize};
+pub use sound_speed::{ExpectedSpeed, SoundSpeed, StepSizeLimits};
 
 use crate::{
     error::Error,
@@ -38,7 +38,7 @@ use crate::{
     solid::{Role, Solid},
     system::System,
 };
-use faces::SurfaceSample;
+use surface_samples::SurfaceSample;
 
 /// So many findings of a kind are read one by one: a crowd of bodies has one for each.
 const MOST: usize = 3;
@@ -157,7 +157,7 @@ pub fn preflight<const D: usize>(
     let system = sim.system();
     let down = -system.gravity()[D - 1];
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
-    let faces = system.solids().iter().map(|s| faces::of_solid(s, system.model().dp)).collect();
+    let faces = system.solids().iter().map(|s| surface_samples::of_solid(s, system.model().dp)).collect();
     let look = PreflightContext { system, plan, still_water: still, g, surface_samples: faces };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);

@@ -2,8 +2,8 @@
 
 use super::{
     Finding, PreflightContext,
-    faces::{self, SurfaceSample},
-    format::{place, three_digits, two_digits_down, two_digits_up},
+    rounding::{place, three_digits, two_digits_down, two_digits_up},
+    surface_samples::{self, SurfaceSample},
 };
 use crate::{
     geometry::Shape,
@@ -37,8 +37,10 @@ fn chord<const D: usize>(face: &SurfaceSample<D>, dp: f64, most: f64, distance: 
 pub fn thinnest_part<const D: usize>(shape: &Shape<D>, faces: &[SurfaceSample<D>], dp: f64) -> Option<f64> {
     let most = shape.bounds().size().norm();
     let distance = |x: &Vector<D>| shape.signed_distance(x);
-    shortest_chord(faces::thinned(faces, PLACES_SEEN).map(|face| (chord(face, dp, most, distance), face.x)).collect())
-        .map(|x| x.0)
+    shortest_chord(
+        surface_samples::thinned(faces, PLACES_SEEN).map(|face| (chord(face, dp, most, distance), face.x)).collect(),
+    )
+    .map(|x| x.0)
 }
 
 /// The least of these ways, but for the shortest tenth, with its place.
@@ -74,7 +76,8 @@ impl<const D: usize> PreflightContext<'_, D> {
                 let way = if fixed { chord(&face, dp, reach, together) } else { chord(&face, dp, reach, alone) };
                 (way, face.x)
             };
-            let Some((thick, at)) = shortest_chord(faces::thinned(faces, PLACES_SEEN).map(way).collect()) else {
+            let Some((thick, at)) = shortest_chord(surface_samples::thinned(faces, PLACES_SEEN).map(way).collect())
+            else {
                 continue;
             };
             if thick < reach * (1.0 - 1e-6) {
@@ -110,7 +113,7 @@ mod tests {
     use super::*;
 
     fn thin<const D: usize>(shape: Shape<D>) -> f64 {
-        thinnest_part(&shape, &faces::of_shape(&shape, 0.01), 0.01).unwrap_or(f64::NAN)
+        thinnest_part(&shape, &surface_samples::of_shape(&shape, 0.01), 0.01).unwrap_or(f64::NAN)
     }
 
     #[test]

@@ -14,14 +14,15 @@ mod joint;
 mod line;
 mod motion;
 mod patch;
-mod press;
+mod contact_force;
 mod pressure;
-mod row;
+mod probe_row;
 mod runup;
 mod velocity;
 
 pub use balance::LoadBalanceProbe;
 pub use budget::{EnergyBudgetProbe, relative_residual};
+pub use contact_force::{ContactForceProbe, ContactList};
 pub use elevation::ElevationProbe;
 pub use energy::EnergyProbe;
 pub use flow::FlowProbe;
@@ -31,9 +32,8 @@ pub use joint::JointProbe;
 pub use line::LineProbe;
 pub use motion::MotionProbe;
 pub use patch::PatchProbe;
-pub use press::{ContactForceProbe, ContactList};
 pub use pressure::PressureProbe;
-pub use row::{ProbeRow, column_at_place};
+pub use probe_row::{ProbeRow, column_at_place};
 pub use runup::RunupProbe;
 pub use velocity::VelocityProbe;
 

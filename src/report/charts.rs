@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::{
-    blob::BinaryData,
-    figures::column_series,
-    format::{name_without_unit, unit},
-    kept::{ProbeTable, RunData},
+    encoding::BinaryData,
+    html::{name_without_unit, unit},
+    run_data::{ProbeTable, RunData},
+    summary_tables::column_series,
 };
 use crate::{analysis, analysis::Verdict, math::time_series::Series, run::RaoResult};
 

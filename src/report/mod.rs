@@ -7,22 +7,22 @@
 //! # Ok::<(), pontoon::Error>(())
 //! ```
 
-mod blob;
+mod encoding;
 mod charts;
 mod colour;
-mod easel;
-mod figures;
-mod film;
-mod ink;
-mod kept;
+mod canvas;
+mod summary_tables;
+mod animation;
+mod text;
+mod run_data;
 mod outline;
 mod page;
 mod picture;
-mod pose;
-mod rim;
+mod placement;
+mod contact_skin;
 mod sections;
-mod wire;
-pub(crate) mod format;
+mod mesh_edges;
+pub(crate) mod html;
 
 pub use picture::{ColourField, PictureOptions, write_picture};
 
@@ -36,7 +36,7 @@ use crate::{
     output::{require_parent_folder, write_atomically},
 };
 
-use kept::RunData;
+use run_data::RunData;
 
 /// Most bytes of a page.
 pub const MAX_PAGE_BYTES: usize = 15_000_000;

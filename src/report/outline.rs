@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
-use super::wire::mesh_lines;
+use super::mesh_edges::mesh_lines;
 use crate::{
     geometry::Shape,
     math::{Pose, Vector},

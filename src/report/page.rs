@@ -4,16 +4,15 @@ use serde::Serialize;
 
 use super::{
     MAX_PAGE_BYTES,
-    blob::BinaryData,
+    animation::{Animation, encode_animation},
     charts::{self, CheckPlot, RaoPlot, TablePlots},
     colour::{FIELD_COLOUR_MAPS, FieldColourMaps},
-    figures,
-    film::{Animation, encode_animation},
-    format::escape,
-    kept::{RunData, SceneGeometry},
+    contact_skin::ContactSkinOutline,
+    encoding::BinaryData,
+    html::escape,
     outline::Outline,
-    rim::ContactSkinOutline,
-    sections,
+    run_data::{RunData, SceneGeometry},
+    sections, summary_tables,
 };
 use crate::error::Result;
 
@@ -173,7 +172,7 @@ fn player_html(told: &[PageRun]) -> String {
 }
 
 fn single_run(run: &RunData, told: &PageRun) -> String {
-    let figures = figures::summary_rows(&run.tables);
+    let figures = summary_tables::summary_rows(&run.tables);
     let held = sections::verdicts(std::slice::from_ref(run));
     let charts = |id: &str, any: bool| if any { format!("<div id=\"{id}\"></div>\n") } else { String::new() };
     sections::page_head(run)

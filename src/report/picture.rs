@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use tiny_skia::{Color, Pixmap};
 
 use super::{
+    animation::{points_of_solid, solid_placement},
+    canvas::{PanelView, TITLE_COLOUR, draw_colour_bar},
     colour::{ColourMap, FIELD_COLOUR_MAPS},
-    easel::{PanelView, TITLE_COLOUR, draw_colour_bar},
-    film::{points_of_solid, solid_placement},
-    ink::{Anchor, TextRenderer},
-    kept::{DrawnSolid, RunData, SceneGeometry},
     outline::Outline,
+    run_data::{DrawnSolid, RunData, SceneGeometry},
+    text::{Anchor, TextRenderer},
 };
 use crate::{
     error::{Error, Kind, Result},

@@ -3,10 +3,10 @@
 use std::{fs, time::SystemTime};
 
 use super::{
-    figures,
-    film::Animation,
-    format::{self, bytes, duration, escape, four_digits, table, thousands},
-    kept::{ProbeTable, RunData},
+    animation::Animation,
+    html::{self, bytes, duration, escape, four_digits, table, thousands},
+    run_data::{ProbeTable, RunData},
+    summary_tables,
 };
 use crate::{
     analysis::{Verdict, format_verdicts},
@@ -124,7 +124,7 @@ pub fn caption(verdict: &Verdict) -> String {
     let rows = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
     let said: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect();
-    format::with_minus_sign(&said.join("; "))
+    html::with_minus_sign(&said.join("; "))
 }
 
 /// A table that scrolls where the page is narrow.
@@ -168,8 +168,10 @@ pub fn statistics(run: &RunData) -> String {
 
 /// Energies and where they went; empty without a table of them.
 pub fn energy(run: &RunData) -> String {
-    let budgets =
-        run.tables.iter().filter_map(|table| figures::energy_summary(table).or_else(|| figures::budget_summary(table)));
+    let budgets = run
+        .tables
+        .iter()
+        .filter_map(|table| summary_tables::energy_summary(table).or_else(|| summary_tables::budget_summary(table)));
     budgets
         .map(|(verdict_rows, one_line)| format!("{}<p>{}</p>\n", scrolling_table(&verdict_rows), escape(&one_line)))
         .collect()

@@ -4,7 +4,7 @@ use std::{path::Path, time::Instant};
 
 use serde::Serialize;
 
-use super::{folder, looks, missing_dimension, with_threads};
+use super::{missing_dimension, probe_factory, run_folder, with_threads};
 use crate::{
     error::Result,
     geometry::Shape,
@@ -120,7 +120,7 @@ pub struct StepTiming {
 /// # Errors
 /// Those that [`run`](super::run) would meet before its first step.
 pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> {
-    let scene = Scene::read(&folder::scene_file(path), &asked.overrides)?;
+    let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]
         2 => build_report::<2>(&scene, asked.timing),
@@ -138,8 +138,8 @@ where
     let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
     // The timing tells the first alarm, which a run would answer by going back.
     let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?.without_rollback();
-    let probes = looks::probes_from_plan(&plan, &mut sim)?;
-    looks::checks_from_plan(&plan, &probes)?;
+    let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
+    probe_factory::checks_from_plan(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
     let mut preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
     let solids = sim.system().solids().iter().map(|s| SolidSummary {

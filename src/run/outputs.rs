@@ -114,7 +114,7 @@ pub struct Outputs<const D: usize> {
 
 impl<const D: usize> Outputs<D> {
     /// The outputs that `plan` asks for, in the run's `folder`; `from` where they were at the checkpoint, if there is one.
-    /// `probes` are those of [`looks::probes`](super::looks::probes), in the plan's order.
+    /// `probes` are those of [`probe_factory::probes`](super::looks::probes), in the plan's order.
     ///
     /// # Errors
     /// `File` if a file cannot be written; `Restart` if what is there does not fit the checkpoint.

@@ -1,7 +1,7 @@
 //! What is said of a run's series at its end: `statistics.csv`, a row for each figure.
 
-mod answers;
-mod spectra;
+mod rao_table;
+mod spectra_table;
 
 use std::{collections::BTreeMap, f64::consts::PI, path::Path};
 
@@ -18,8 +18,8 @@ use crate::{
     scene::Scene,
 };
 
-pub use answers::{RAO_FILE, RaoResult};
-pub use spectra::SPECTRA_FILE;
+pub use rao_table::{RAO_FILE, RaoResult};
+pub use spectra_table::SPECTRA_FILE;
 
 /// The file, in the run's folder.
 pub const STATISTICS_FILE: &str = "statistics.csv";
@@ -116,8 +116,8 @@ pub(super) fn write(folder: &Path, plan: &Plan) -> Result<Vec<String>> {
         text += &format!("{name},{series},{quantity},{value:?},{unit},{from_s:?},{until_s:?}\n");
     }
     write_atomically(&folder.join(STATISTICS_FILE), text.as_bytes())?;
-    answers::write(folder, &raos)?;
-    spectra::write(folder, &tables)?;
+    rao_table::write(folder, &raos)?;
+    spectra_table::write(folder, &tables)?;
     Ok(remarks)
 }
 

@@ -6,9 +6,10 @@ use std::{
 };
 
 use super::{
-    Job, JobResult, JobState, LineStyle, PlotLine, ResultRow, ValidationCase, cost, line_plot,
-    page::{self, unit},
-    rows::{check_labels, result_rows},
+    Job, JobResult, JobState, LineStyle, PlotLine, ResultRow, ValidationCase, cost_plot,
+    html_page::{self, unit},
+    line_plot,
+    result_rows::{check_labels, result_rows},
     rows_to_csv,
 };
 use crate::{
@@ -81,16 +82,16 @@ impl Validation {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         let first = ran.iter().find_map(|r| r.manifest.as_ref());
         let (machine, threads) = (first.map_or_else(Machine::current, |m| m.machine.clone()), first.map(|m| m.threads));
-        let mut body = page::provenance_table(&self.command, &machine, threads);
-        body += &page::table(&self.table(ran));
+        let mut body = html_page::provenance_table(&self.command, &machine, threads);
+        body += &html_page::table(&self.table(ran));
         let rows = self.rows(ran);
-        body += &page::repeats_section(&rows);
-        body += &cost::cost_figures(&self.jobs, &rows)?;
+        body += &html_page::repeats_section(&rows);
+        body += &cost_plot::cost_figures(&self.jobs, &rows)?;
         for ((case, jobs), ran) in self.cases.iter().zip(self.jobs.chunks(self.repeat)).zip(ran.chunks(self.repeat)) {
             body += &section(case, jobs, ran)?;
         }
         let [html, table] = self.files();
-        write_atomically(&html, &page::html_page("Validation", &body))?;
+        write_atomically(&html, &html_page::html_page("Validation", &body))?;
         write_atomically(&table, &rows_to_csv(&rows, &[])?)
     }
 }
@@ -111,12 +112,12 @@ fn cost_cells(ran: &JobResult) -> [String; 3] {
 
 /// What a case is, and the curves of its checks, of all of its repeats that have been run.
 fn section(case: &ValidationCase, jobs: &[Job], ran: &[JobResult]) -> Result<String> {
-    let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", page::escape(&case.name), page::escape(&case.about));
+    let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", html_page::escape(&case.name), html_page::escape(&case.about));
     if !case.note.is_empty() {
-        text += &format!("<p>{}</p>\n", page::escape(&case.note));
+        text += &format!("<p>{}</p>\n", html_page::escape(&case.note));
     }
     let water = ran[0].manifest.as_ref().map_or(String::new(), |m| format!(", {} water particles", m.particles.fluid));
-    text += &format!("<p>Scene <code>{}</code>, dp = {} m{water}.</p>\n", page::escape(&case.scene), jobs[0].dp);
+    text += &format!("<p>Scene <code>{}</code>, dp = {} m{water}.</p>\n", html_page::escape(&case.scene), jobs[0].dp);
     let finished = || jobs.iter().zip(ran).filter(|(_, ran)| ran.state == JobState::Finished);
     let curves = finished().map(|(job, _)| job.curves()).collect::<Result<Vec<_>>>()?;
     let verdicts: Vec<Vec<Verdict>> = finished().map(|(_, ran)| labelled_verdicts(ran)).collect();
@@ -128,8 +129,8 @@ fn section(case: &ValidationCase, jobs: &[Job], ran: &[JobResult]) -> Result<Str
             true => {
                 format!(
                     "<p>{}: {}</p>\n",
-                    page::escape(&verdicts[0].series),
-                    page::escape(&format_verdicts::format_outcome(verdicts[0]))
+                    html_page::escape(&verdicts[0].series),
+                    html_page::escape(&format_verdicts::format_outcome(verdicts[0]))
                 )
             }
         };
@@ -159,7 +160,7 @@ fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> Result<String> {
     keys.push((1, "reference".to_string()));
     let svg = line_plot(["time, s", &format!("{}, {}", verdict.series, unit(&verdict.series))], &lines)?;
     let figures: Vec<String> = verdicts.iter().map(|verdict| metrics_line(verdict)).collect();
-    Ok(page::plot_figure(&svg, &keys, &figures.join(". ")))
+    Ok(html_page::plot_figure(&svg, &keys, &figures.join(". ")))
 }
 
 /// The figures of a check in a line.

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use serde::Deserialize;
 
-use super::judge::{Bound, Criteria, MotionBound, SolidBound};
+use super::criteria::{Bound, Criteria, MotionBound, SolidBound};
 use crate::{
     error::{Error, Kind, Result, nearest},
     math::expression::Field,

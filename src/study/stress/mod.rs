@@ -4,17 +4,17 @@
 //! figures against bounds; [`EnergyBudget`] works the list off and keeps what came out. A case is right, stopped with a
 //! reason, wrong, or cut by its budget: unfinished.
 
-mod chart;
-mod judge;
-mod ledger;
+mod map_chart;
+mod criteria;
+mod result_store;
 mod maps;
-mod measure;
-mod trial;
+mod measurements;
+mod case_run;
 
-pub use judge::{Bound, CaseOutcome, Criteria, MeasuredFigures, MotionBound, SolidBound};
-pub use ledger::{CaseResult, StressResults};
+pub use case_run::{BUDGET, CaseEnd, CaseRun};
+pub use criteria::{Bound, CaseOutcome, Criteria, MeasuredFigures, MotionBound, SolidBound};
 pub use maps::{MapAxis, StressCase, StressMap, maps, select_maps};
-pub use trial::{BUDGET, CaseEnd, CaseRun};
+pub use result_store::{CaseResult, StressResults};
 
 /// What came out of a case, in a line.
 pub fn summary_line(entry: &CaseResult) -> String {
@@ -27,5 +27,5 @@ pub fn summary_line(entry: &CaseResult) -> String {
         _ if missed.is_empty() => String::new(),
         _ => format!(": {}", missed.join("; ")),
     };
-    format!("{values}: {}{why}", chart::outcome_name(outcome))
+    format!("{values}: {}{why}", map_chart::outcome_name(outcome))
 }

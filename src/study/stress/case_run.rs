@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     StressCase,
-    judge::{CaseOutcome, MeasuredFigures},
-    measure::Measurements,
+    criteria::{CaseOutcome, MeasuredFigures},
+    measurements::Measurements,
 };
 use crate::{
     error::{Error, Kind, Result},

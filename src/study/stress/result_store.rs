@@ -12,7 +12,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{CaseRun, StressCase, StressMap, chart, judge::CaseOutcome};
+use super::{CaseRun, StressCase, StressMap, criteria::CaseOutcome, map_chart};
 use crate::{
     error::{Error, Result},
     output::write_atomically,
@@ -152,7 +152,7 @@ impl StressResults {
         // Of a case that is not in the list now the bounds are not known: its verdict is made anew when it is.
         let other = |trial: &CaseRun| StoredRow { outcome: trial.outcome(&[]), missed: vec![], trial: trial.clone() };
         let trials = self.entries.iter().filter_map(row).chain(self.unlisted.iter().map(other)).collect();
-        let name = |outcome: CaseOutcome| chart::outcome_name(outcome).to_string();
+        let name = |outcome: CaseOutcome| map_chart::outcome_name(outcome).to_string();
         let counts = self.counts(None).into_iter().map(|(outcome, n)| (name(outcome), n)).collect();
         let whole = StoredResults { version: env!("CARGO_PKG_VERSION").into(), counts, trials };
         let text = serde_json::to_string_pretty(&whole).map_err(|why| Error::file(&self.file(), why))?;
@@ -170,7 +170,7 @@ impl StressResults {
         for map in &self.maps {
             let own: Vec<&CaseResult> = self.entries.iter().filter(|entry| entry.case.map == map.name).collect();
             let file = self.out.join(format!("{}.svg", map.name));
-            write_atomically(&file, chart::map_svg(map, &own).as_bytes())?;
+            write_atomically(&file, map_chart::map_svg(map, &own).as_bytes())?;
             files.push(file);
         }
         Ok(files)

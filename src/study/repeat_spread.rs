@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{
     ResultRow,
-    rows::{MAX_ABS_METRIC, Metric},
+    result_rows::{MAX_ABS_METRIC, Metric},
 };
 use crate::analysis::format_verdicts;
 

@@ -10,7 +10,7 @@ use pontoon::{
 
 pub use pontoon::math::format::{bytes, duration};
 
-use super::shelf::BundledSceneInfo;
+use super::scene_lookup::BundledSceneInfo;
 
 /// A table with its columns aligned, two spaces in; the first row is its header.
 pub fn table(rows: &[Vec<String>]) -> String {

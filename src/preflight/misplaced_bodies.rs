@@ -3,7 +3,7 @@
 
 use super::{
     Finding, PreflightContext,
-    format::{three_digits, two_digits_up},
+    rounding::{three_digits, two_digits_up},
 };
 use crate::{
     math::{Bounds, Vector},

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::outline::{Outline, outlines, to_3d, transformed};
-use crate::{geometry::Shape, math::Vector, preflight::faces};
+use crate::{geometry::Shape, math::Vector, preflight::surface_samples};
 
 /// Largest turn from one point of a round corner to the next, rad.
 const STEP: f64 = TAU / 48.0;
@@ -41,7 +41,8 @@ impl ContactSkinOutline {
             return Self { lines: skin_lines_2d(shape, skin), dots: Vec::new() };
         }
         let outside = |x: &Vector<D>| shape.signed_distance(x) > OUTSIDE * skin;
-        let places = faces::of_shape(shape, dp).into_iter().map(|face| face.x + face.n * skin).filter(outside);
+        let places =
+            surface_samples::of_shape(shape, dp).into_iter().map(|face| face.x + face.n * skin).filter(outside);
         // Rounded to a thousandth of dp: many of them stand on a page.
         let round = |x: f64| (x / (1e-3 * dp)).round() * 1e-3 * dp;
         let mut lines = skin_lines_3d(shape, skin, dp);

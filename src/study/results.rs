@@ -5,11 +5,12 @@ use std::{fs, path::PathBuf};
 use serde::Serialize;
 
 use super::{
-    Job, JobResult, LineStyle, ParameterGrid, PlotLine, ResultRow, convergence, least_squares, log_log_plot,
-    page::{self, unit},
-    rows::{MAX_ABS_METRIC, Metric, RELATIVE_METRICS, check_labels, result_rows},
+    Job, JobResult, LineStyle, ParameterGrid, PlotLine, ResultRow, convergence,
+    html_page::{self, unit},
+    least_squares, log_log_plot,
+    repeat_spread::{self, CostPoint, RepeatSpread, group_repeats, spread_of},
+    result_rows::{MAX_ABS_METRIC, Metric, RELATIVE_METRICS, check_labels, result_rows},
     rows_to_csv,
-    spread::{self, CostPoint, RepeatSpread, group_repeats, spread_of},
 };
 use crate::{
     analysis::format_verdicts,
@@ -96,19 +97,19 @@ impl StudyResults {
         let whole = StudyJson {
             title: &self.title,
             command: &self.command,
-            date: page::timestamp(),
+            date: html_page::timestamp(),
             version: env!("CARGO_PKG_VERSION"),
             machine: machine.clone(),
             threads,
             rows: &rows,
             orders: &orders,
-            spreads: spread::repeat_spreads(&rows),
+            spreads: repeat_spread::repeat_spreads(&rows),
         };
         let [table, json, html] = self.files();
         write_atomically(&table, &rows_to_csv(&rows, &self.keys)?)?;
         let text = serde_json::to_string_pretty(&whole).map_err(|e| Error::file(&json, e))?;
         write_atomically(&json, (text + "\n").as_bytes())?;
-        write_atomically(&html, &page::html_page(&self.title, &self.body(&rows, &orders, &machine, threads)?))
+        write_atomically(&html, &html_page::html_page(&self.title, &self.body(&rows, &orders, &machine, threads)?))
     }
 
     /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
@@ -169,22 +170,22 @@ impl StudyResults {
         machine: &Machine,
         threads: Option<usize>,
     ) -> Result<String> {
-        let mut body = page::provenance_table(&self.command, machine, threads);
+        let mut body = html_page::provenance_table(&self.command, machine, threads);
         for check in &self.checks {
-            body += &format!("<h2>{}</h2>\n", page::escape(check));
+            body += &format!("<h2>{}</h2>\n", html_page::escape(check));
             for (error, figure) in Self::metrics(rows, check) {
                 body += &self.plot(rows, check, error, figure)?;
             }
             let own: Vec<&OrderRow> = orders.iter().filter(|o| o.check == *check).collect();
-            body += &page::table(&self.order_rows(&own));
+            body += &html_page::table(&self.order_rows(&own));
         }
         body += "<p>Order: q of error ∝ dp^q. By least squares over all spacings it is of the error itself; from the three finest, of \
                  the differences between them, and the index (Roache 1994, factor 1.25) is what the finest may still change \
                  by, relative to itself. Neither can be said (–) with fewer spacings or where the figure does not converge \
                  monotonically. Of repeats it is the mean.</p>\n";
-        body += &page::repeats_section(rows);
+        body += &html_page::repeats_section(rows);
         body += "<h2>Runs</h2>\n";
-        body += &page::table(&self.run_rows(rows));
+        body += &html_page::table(&self.run_rows(rows));
         Ok(body)
     }
 
@@ -210,12 +211,12 @@ impl StudyResults {
         let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, {unit}")], &lines)?;
         let keys: Vec<(usize, String)> =
             groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()).collect();
-        Ok(page::plot_figure(
+        Ok(html_page::plot_figure(
             &svg,
             &keys,
             &format!(
                 "{error} over processor time; at each point its dp. Left and low is good.{}",
-                spread::error_bar_note(rows)
+                repeat_spread::error_bar_note(rows)
             ),
         ))
     }
@@ -233,7 +234,7 @@ impl StudyResults {
 
     /// The rows as a table in words, for a page or a terminal.
     pub fn run_rows(&self, rows: &[ResultRow]) -> Vec<Vec<String>> {
-        let repeated = spread::has_repeats(rows);
+        let repeated = repeat_spread::has_repeats(rows);
         let mut head = vec!["dp, mm".to_string()];
         head.extend(self.keys.iter().cloned());
         head.extend(repeated.then(|| "repeat".to_string()));

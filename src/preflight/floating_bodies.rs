@@ -15,8 +15,8 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext,
-    faces::SurfaceSample,
-    format::{three_digits, two_digits_down, two_digits_up},
+    rounding::{three_digits, two_digits_down, two_digits_up},
+    surface_samples::SurfaceSample,
     thickness::thinnest_part,
 };
 use crate::{

@@ -7,9 +7,9 @@ use std::{
 };
 
 use super::{
+    contact_skin::ContactSkinOutline,
     outline::{Outline, outlines},
-    pose::Placement,
-    rim::ContactSkinOutline,
+    placement::Placement,
 };
 use crate::{
     analysis::{CheckCurves, ReferenceCheck},

@@ -9,8 +9,8 @@ use pontoon::{
 };
 
 use super::{
+    console_text::{bytes, duration},
     print_error, print_output,
-    report::{bytes, duration},
 };
 
 /// A page of one run.

@@ -1,7 +1,7 @@
 //! A map as a picture: a cell for each case, its sign and colour by how it came out.
 
-use super::{CaseResult, StressMap, judge::CaseOutcome};
-use crate::study::page::escape;
+use super::{CaseResult, StressMap, criteria::CaseOutcome};
+use crate::study::html_page::escape;
 
 /// Size of a cell and of the margins around all, pixels.
 const CELL: [usize; 2] = [74, 34];

@@ -6,9 +6,9 @@ use std::collections::HashSet;
 use serde::Serialize;
 
 use super::{
-    blob::{BinaryData, zigzag},
-    kept::{RunData, SceneGeometry},
-    pose::Placement,
+    encoding::{BinaryData, zigzag},
+    placement::Placement,
+    run_data::{RunData, SceneGeometry},
 };
 use crate::{
     error::Result,

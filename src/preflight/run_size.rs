@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext, StepSizeLimits,
-    format::{three_digits, two_digits_up},
+    rounding::{three_digits, two_digits_up},
 };
 use crate::{math::format::bytes, model::Gradient, output::frame::particle_bytes};
 

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::{
-    Finding, PreflightContext, faces,
-    format::{three_digits, two_digits_down, two_digits_up},
+    Finding, PreflightContext,
+    rounding::{three_digits, two_digits_down, two_digits_up},
+    surface_samples,
 };
 use crate::{
     model::Scheme,
@@ -115,7 +116,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let mut fastest: f64 = 0.0;
         for k in 0..=TIMES_SEEN {
             let now = motion.kinematics(&self.solids()[i].spec.pose, self.end_time() * k as f64 / TIMES_SEEN as f64);
-            for face in faces::thinned(&self.surface_samples[i], PLACES_SEEN) {
+            for face in surface_samples::thinned(&self.surface_samples[i], PLACES_SEEN) {
                 let x = now.pose.point(&face.x);
                 if x[D - 1] <= self.still_water.level {
                     let v = now.velocity + now.spin.velocity_at(&(x - now.centre));

@@ -4,9 +4,9 @@ use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash
 
 use super::{
     colour::{self, ColourMap},
-    format,
-    ink::{Anchor, TextRenderer, fill_path, solid_paint},
+    html,
     picture::{ColourField, Panel},
+    text::{Anchor, TextRenderer, fill_path, solid_paint},
 };
 
 /// Ink of titles.
@@ -102,7 +102,7 @@ impl PanelView {
             self.draw_tick(on, (px, bottom), (px, bottom + 0.3 * em));
             ink.write(
                 on,
-                &format::with_minus_sign(&tick_label(x)),
+                &html::with_minus_sign(&tick_label(x)),
                 (px, bottom + 1.2 * em),
                 small,
                 Anchor::Middle,
@@ -115,7 +115,7 @@ impl PanelView {
             self.draw_tick(on, (self.corner.0 - 0.3 * em, py), (self.corner.0, py));
             if first {
                 let at = (self.corner.0 - 0.5 * em, py + 0.3 * em);
-                ink.write(on, &format::with_minus_sign(&tick_label(y)), at, small, Anchor::End, QUIET);
+                ink.write(on, &html::with_minus_sign(&tick_label(y)), at, small, Anchor::End, QUIET);
             }
         }
         if first {
@@ -176,7 +176,7 @@ pub fn draw_colour_bar(
         let at = bar.0 + wide * ((x - range[0]) / (range[1] - range[0])) as f32;
         ink.write(
             on,
-            &format::with_minus_sign(&tick_label(x)),
+            &html::with_minus_sign(&tick_label(x)),
             (at, bar.1 + bar.3 + 1.2 * em),
             0.8 * em,
             Anchor::Middle,

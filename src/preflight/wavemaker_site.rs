@@ -2,7 +2,7 @@
 
 use super::{
     Finding, GeneratedWave, PreflightContext,
-    format::{place, three_digits, two_digits_up},
+    rounding::{place, three_digits, two_digits_up},
     thickness::has_full_layers,
 };
 use crate::{

@@ -2,7 +2,7 @@
 
 use super::{
     StressCase,
-    judge::{Energies, EnergyBalance, MeasuredFigures, draft_figure, max_or_invalid, motion_figure},
+    criteria::{Energies, EnergyBalance, MeasuredFigures, draft_figure, max_or_invalid, motion_figure},
 };
 use crate::{
     error::Result,

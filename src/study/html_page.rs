@@ -2,9 +2,9 @@
 
 use std::time::SystemTime;
 
-use super::{REPEATS_NOTE, ResultRow, plot, spread_table};
+use super::{REPEATS_NOTE, ResultRow, spread_table, svg_plot};
 use crate::output::manifest::Machine;
-pub use crate::report::format::{escape, table, unit};
+pub use crate::report::html::{escape, table, unit};
 
 const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\
@@ -27,7 +27,7 @@ pub fn html_page(title: &str, body: &str) -> Vec<u8> {
 /// A plot with its caption; `keys` name its colours.
 pub fn plot_figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
     let key = |(i, text): &(usize, String)| {
-        format!("<span class=\"key\" style=\"background:{}\"></span>{}<br>\n", plot::colour(*i), escape(text))
+        format!("<span class=\"key\" style=\"background:{}\"></span>{}<br>\n", svg_plot::colour(*i), escape(text))
     };
     let keys: String = keys.iter().map(key).collect();
     format!("<figure>{svg}\n<figcaption>{keys}{}</figcaption></figure>\n", escape(caption))

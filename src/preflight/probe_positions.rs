@@ -2,7 +2,7 @@
 
 use super::{
     Finding, PreflightContext, SoundSpeed,
-    format::{place, three_digits},
+    rounding::{place, three_digits},
 };
 use crate::{
     math::{Bounds, Vector},

@@ -1,10 +1,11 @@
 //! What the cases of one scene cost, beside what they are worth: error over processor time.
 
 use super::{
-    Job, LineStyle, PlotLine, ResultRow, log_log_plot,
-    page::{self, escape},
-    rows::RELATIVE_METRICS,
-    spread::{self, CostPoint, group_repeats},
+    Job, LineStyle, PlotLine, ResultRow,
+    html_page::{self, escape},
+    log_log_plot,
+    repeat_spread::{self, CostPoint, group_repeats},
+    result_rows::RELATIVE_METRICS,
 };
 use crate::error::Result;
 
@@ -34,7 +35,7 @@ pub fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> Result<String> {
                     .collect();
                 // Two checks of one series differ in their means alone.
                 if points.len() > 1 && !drawn.contains(&points) {
-                    text += &plot(scene, check, error, &points, spread::error_bar_note(rows))?;
+                    text += &plot(scene, check, error, &points, repeat_spread::error_bar_note(rows))?;
                     drawn.push(points);
                 }
             }
@@ -64,7 +65,7 @@ fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bar
     let keys: Vec<(usize, String)> = laws.iter().enumerate().map(|(i, law)| (i, format!("{LAW} = {law}"))).collect();
     let title = format!("<h3>{}: {error} of {}</h3>\n", escape(scene), escape(check));
     let caption = format!("A point for each case, with its name. Left and low is good.{bars}");
-    Ok(title + &page::plot_figure(&svg, &keys, &caption))
+    Ok(title + &html_page::plot_figure(&svg, &keys, &caption))
 }
 
 /// The viscosity of a case.

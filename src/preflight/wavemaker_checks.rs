@@ -2,11 +2,11 @@
 
 use super::{
     Finding, GeneratedWave, PreflightContext,
-    format::{three_digits, two_digits_down, two_digits_up},
-    stands::WavemakerSite,
-    swings::wave_direction,
+    driven_motion::wave_direction,
+    generated_waves::LEAST,
+    rounding::{three_digits, two_digits_down, two_digits_up},
     thickness::has_full_layers,
-    waves::LEAST,
+    wavemaker_site::WavemakerSite,
 };
 use crate::{
     plan::StatisticKind,

@@ -10,7 +10,7 @@ use pontoon::{
 };
 use serde::Serialize;
 
-use super::{print_error, report::table};
+use super::{console_text::table, print_error};
 
 /// Which run, and which part of it.
 #[derive(Args)]

@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext,
-    format::{three_digits, two_digits_down},
-    stands::WavemakerSite,
+    rounding::{three_digits, two_digits_down},
     thickness::has_full_layers,
+    wavemaker_site::WavemakerSite,
 };
 use crate::{
     scene::world_bounds,

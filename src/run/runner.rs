@@ -6,12 +6,10 @@ use cpu_time::ProcessTime;
 
 use super::{
     FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart,
-    drift::DriftMonitor,
-    folder, kept,
+    energy_drift::DriftMonitor,
     lock::Lock,
-    looks,
     outputs::{Outputs, series_folder},
-    statistics,
+    probe_factory, resume_point, run_folder, statistics,
 };
 use crate::{
     analysis::{ReferenceCheck, Verdict},
@@ -20,7 +18,7 @@ use crate::{
     output::{
         Checkpoint, Manifest, OutputPositions, checkpoint,
         manifest::{FrameTotals, Machine, ParticleCounts, RunStatus, ValueInForce},
-        removed, write_atomically,
+        removed_particles, write_atomically,
     },
     preflight,
     scene::{BuiltScene, Plan, ResolvedValue, Scene},
@@ -63,17 +61,17 @@ where
         let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
         let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
-        let probes = looks::probes_from_plan(&plan, &mut sim)?;
-        let checks = looks::checks_from_plan(&plan, &probes)?;
+        let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
+        let checks = probe_factory::checks_from_plan(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
         let mut warnings = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns).warnings();
         let text = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
         let (folder, mut checkpoint, resumed, warning, lock) = match origin {
             RunOrigin::Fresh { file, out, overrides } => {
-                let folder = folder::create_run_folder(file, out)?;
+                let folder = run_folder::create_run_folder(file, out)?;
                 let lock = Lock::acquire(&folder)?;
-                folder::copy_scene(file, &text, &folder)?;
+                run_folder::copy_scene(file, &text, &folder)?;
                 (folder, Checkpoint::initial(&text, overrides), false, None, lock)
             }
             RunOrigin::Resumed { folder, checkpoint, warning, lock } => {
@@ -86,11 +84,11 @@ where
         }
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
         if resumed {
-            folder::remove_failure_report(&folder)?;
+            run_folder::remove_failure_report(&folder)?;
         }
         let good = warning.is_none();
         // The list of a killed run may be ahead of its checkpoint.
-        let listed = if resumed && folder.join(removed::REMOVED).exists() { usize::MAX } else { 0 };
+        let listed = if resumed && folder.join(removed_particles::REMOVED).exists() { usize::MAX } else { 0 };
         warnings.extend(warning);
         warnings.extend(sim.rollbacks().iter().map(ToString::to_string));
         let (name, version) = Dim::<D>::VERSION;
@@ -218,7 +216,7 @@ impl<const D: usize> Runner<D> {
     fn write_removed(&mut self) -> Result<()> {
         let lost = self.sim.removed_particles();
         if lost.len() != self.removed_written {
-            removed::write(&self.folder, lost)?;
+            removed_particles::write(&self.folder, lost)?;
             self.removed_written = lost.len();
         }
         Ok(())
@@ -247,7 +245,7 @@ impl<const D: usize> Runner<D> {
             reports.push(self.outputs.write_last_frame(&self.sim));
             reports.push(self.write_removed());
             let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
-            reports.push(write_atomically(&self.folder.join(folder::FAILURE), &text));
+            reports.push(write_atomically(&self.folder.join(run_folder::FAILURE), &text));
         }
         self.update_manifest();
         self.manifest.record_failure(&error);
@@ -259,7 +257,7 @@ impl<const D: usize> Runner<D> {
         if self.folder.exists() {
             help += &format!("{kept} in {}", self.folder.display());
         }
-        if error.kind == Kind::File && kept::has_checkpoint(&self.folder) {
+        if error.kind == Kind::File && resume_point::has_checkpoint(&self.folder) {
             help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
         }
         error.help(help)
@@ -295,9 +293,9 @@ impl<const D: usize> Runner<D> {
             "frames.pvd",
             checkpoint::LAST,
             checkpoint::PREVIOUS,
-            removed::REMOVED,
-            folder::FAILURE,
-            folder::SCENE,
+            removed_particles::REMOVED,
+            run_folder::FAILURE,
+            run_folder::SCENE,
         ];
         let mut files: Vec<String> = self.outputs.table_paths().collect();
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));

@@ -4,8 +4,8 @@
 use std::{fs, path::Path};
 
 use super::{
-    folder,
     outputs::{contact_list_path, series_folder},
+    run_folder,
 };
 use crate::{
     error::{Error, Kind, Result},
@@ -41,7 +41,7 @@ impl ResumePoint {
         let known = &mut self.checkpoint;
         known.overrides.retain(|(key, _)| sets.iter().all(|(set, _)| set != key));
         known.overrides.extend_from_slice(sets);
-        self.scene = Scene::read(&folder.join(folder::SCENE), &known.overrides)?;
+        self.scene = Scene::read(&folder.join(run_folder::SCENE), &known.overrides)?;
         known.scene_hash = checkpoint::fnv1a(self.scene.to_toml()?.as_bytes());
         Ok(self)
     }
@@ -83,7 +83,7 @@ pub fn has_checkpoint(folder: &Path) -> bool {
 /// The checkpoint `name` in `folder`, if the scene and the tables there are those that it was made with.
 fn load_matching(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
     let checkpoint = Checkpoint::read(&folder.join(name))?;
-    let scene = Scene::read(&folder.join(folder::SCENE), &checkpoint.overrides)?;
+    let scene = Scene::read(&folder.join(run_folder::SCENE), &checkpoint.overrides)?;
     if checkpoint::fnv1a(scene.to_toml()?.as_bytes()) != checkpoint.scene_hash {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
         return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
