@@ -28,7 +28,7 @@ fn main() -> Result<()> {
     let hull = find(&sim).unwrap_or_default();
     let start = sim.system().solids()[hull].kinematics.pose.position[2];
     if let Shape::Mesh { mesh, .. } = &sim.system().solids()[hull].spec.shape {
-        let volume = mesh.volume();
+        let volume = mesh.volume_properties();
         println!(
             "{} facets, {:.6} m³, centroid {:.4} m above the waterline",
             mesh.facets().len(),

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    geometry::{Region, Shape, fill},
+    geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
     model::{Model, Viscosity},
     probe::{ElevationProbe, Probe},
@@ -71,7 +71,7 @@ fn setup() -> Result<Setup<2>> {
     };
     // The frame of a box is its middle.
     let size = Vector::from(SIZE);
-    let region = Region { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
+    let region = WaterRegion { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
     let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
     let levels = vec![SIZE[1]; water.len()];
     Ok(Setup::new(model, water, levels, vec![tank]))

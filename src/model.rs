@@ -16,18 +16,18 @@ use crate::{
         boundary::Repulsion,
         continuity::Continuity,
         density_diffusion::Fourtakas,
-        gradient_correction::{CorrectedGradient, RenormalizationMatrix},
+        gradient_correction::{CorrectedGradientTerm, RenormalizationTerm},
         kernel::{self, Kernel as _, SUPPORT_RATIO},
         particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
-        viscosity::{Artificial, WithTerms},
+        viscosity::{Artificial, TermConsumer},
     },
 };
 
 /// Which kernel weighs the neighbours. Scene word `model.kernel`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Kernel {
+pub enum KernelKind {
     /// Cubic spline (Monaghan & Lattanzio 1985), by default with Monaghan's (2000) tensile correction.
     Cubic {
         /// Whether the tensile correction is on.
@@ -45,7 +45,7 @@ fn yes() -> bool {
 /// Which slope the pressure has. Scene word `model.gradient`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Gradient {
+pub enum PressureGradient {
     /// By the kernel's gradient as it is.
     #[default]
     Plain,
@@ -114,7 +114,7 @@ pub enum Walls {
 /// Which scheme advances time. Scene word `time.scheme`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Scheme {
+pub enum TimeScheme {
     /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.
     Verlet {
         /// Steps from one Euler step to the next.
@@ -133,7 +133,7 @@ fn fifty() -> u32 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// Kernel.
-    pub kernel: Kernel,
+    pub kernel: KernelKind,
     /// Smoothing length h, m.
     pub h: f64,
     /// Particle spacing dp, m.
@@ -148,7 +148,7 @@ pub struct Model {
     pub gravity: Vec<f64>,
     /// The pressure's gradient.
     #[serde(default)]
-    pub gradient: Gradient,
+    pub gradient: PressureGradient,
     /// Viscosity.
     pub viscosity: Viscosity,
     /// Density diffusion.
@@ -163,7 +163,7 @@ pub struct Model {
     #[serde(default)]
     pub pair_loop: PairLoopKind,
     /// Time scheme.
-    pub scheme: Scheme,
+    pub scheme: TimeScheme,
     /// Courant number, –.
     pub cfl: f64,
     /// Longest time step allowed, s (infinite if none).
@@ -184,21 +184,21 @@ impl Model {
             *down = -G;
         }
         Self {
-            kernel: Kernel::Wendland,
+            kernel: KernelKind::Wendland,
             h: dp * if dimension == 3 { 1.5 } else { 1.7 },
             dp,
             rho0: 1000.0,
             c0: C0_FACTOR * (G * depth).sqrt(),
             gamma: 7.0,
             gravity,
-            gradient: Gradient::Plain,
+            gradient: PressureGradient::Plain,
             viscosity: Viscosity::Artificial(Artificial::default()),
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
             walls: Walls::RelaxedAdami,
             slip: Slip::Free,
             pair_loop: PairLoopKind::Fast,
-            scheme: Scheme::Symplectic,
+            scheme: TimeScheme::Symplectic,
             cfl: 0.4,
             dt_max: f64::INFINITY,
         }
@@ -230,18 +230,18 @@ impl Model {
     /// Kernel value W (1/mᴰ) at squared distance `r2` (m²) in `dimension` 2 or 3.
     pub fn kernel_value(&self, r2: f64, dimension: usize) -> f64 {
         match self.kernel {
-            Kernel::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
-            Kernel::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
+            KernelKind::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
+            KernelKind::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
         }
     }
 
     /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::stiffness`].
     pub fn lattice_stiffness<const D: usize>(&self) -> f64 {
         match self.kernel {
-            Kernel::Cubic { .. } => {
+            KernelKind::Cubic { .. } => {
                 kernel::lattice::lattice_stiffness(kernel::Cubic::new(self.h, D), &self.fluid_properties::<D>())
             }
-            Kernel::Wendland => {
+            KernelKind::Wendland => {
                 kernel::lattice::lattice_stiffness(kernel::Wendland::new(self.h, D), &self.fluid_properties::<D>())
             }
         }
@@ -249,9 +249,9 @@ impl Model {
 
     /// What of the choices does not go together, if anything.
     pub fn conflict(&self) -> Option<&'static str> {
-        let alone = matches!(self.kernel, Kernel::Wendland) && self.shifting == Shifting::None;
+        let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
-        (self.gradient == Gradient::Corrected && !alone).then_some(clash)
+        (self.gradient == PressureGradient::Corrected && !alone).then_some(clash)
     }
 
     /// The shifting parameters, if any.
@@ -287,21 +287,25 @@ impl Model {
     /// The pair loop with the terms that this model names, and no others.
     fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
         let (units, level) = self.units::<D>();
-        let make =
-            PairLoopBuilder { model: self, properties: self.fluid_properties::<D>().in_units(&units), units, level };
+        let make = PairLoopBuilder {
+            model: self,
+            properties: self.fluid_properties::<D>().in_units(&units),
+            units,
+            instruction_set: level,
+        };
         let FluidProperties { h, dp, .. } = make.properties;
         let plain = (Pressure, Continuity);
         match self.kernel {
-            Kernel::Wendland => match self.gradient {
-                Gradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
-                Gradient::Corrected => make.with_viscosity(
+            KernelKind::Wendland => match self.gradient {
+                PressureGradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
+                PressureGradient::Corrected => make.with_viscosity(
                     kernel::Wendland::new(h, D),
-                    ((Pressure, CorrectedGradient), Continuity),
-                    ((Pressure, RenormalizationMatrix), Continuity),
+                    ((Pressure, CorrectedGradientTerm), Continuity),
+                    ((Pressure, RenormalizationTerm), Continuity),
                 ),
             },
-            Kernel::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
-            Kernel::Cubic { tensile: true } => {
+            KernelKind::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
+            KernelKind::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
                 let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.properties).w(dp * dp) };
                 make.with_shifting(kernel, ((Pressure, tensile), Continuity))
@@ -335,7 +339,7 @@ struct PairLoopBuilder<'a, const D: usize> {
     model: &'a Model,
     properties: FluidProperties<D>,
     units: Units,
-    level: Option<Level>,
+    instruction_set: Option<Level>,
 }
 
 impl<const D: usize> PairLoopBuilder<'_, D> {
@@ -359,7 +363,13 @@ impl<const D: usize> PairLoopBuilder<'_, D> {
         let wall = (wall, Repulsion::new(kernel, &self.properties));
         let Model { viscosity, slip, .. } = *self.model;
         let next = Diffusive { builder: self, kernel, fluid: base, wall };
-        viscosity.terms(&self.properties, &self.units, slip.wall_share(), || kernel.viscous_sum(&self.properties), next)
+        viscosity.terms(
+            &self.properties,
+            &self.units,
+            slip.wall_viscosity_factor(),
+            || kernel.viscous_sum(&self.properties),
+            next,
+        )
     }
 }
 
@@ -371,17 +381,17 @@ struct Diffusive<'a, K, T, W, const D: usize> {
     wall: W,
 }
 
-impl<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static, const D: usize> WithTerms<D>
+impl<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static, const D: usize> TermConsumer<D>
     for Diffusive<'_, K, T, W, D>
 {
     type Output = Box<dyn PairLoop<D>>;
 
     fn with_terms<V: Term<D> + 'static, X: Term<D> + 'static>(self, fluid: V, wall: X) -> Self::Output {
-        let Self { builder: PairLoopBuilder { model, properties, units, level }, kernel, .. } = self;
+        let Self { builder: PairLoopBuilder { model, properties, units, instruction_set }, kernel, .. } = self;
         let (fluid, wall) = ((self.fluid, fluid), (self.wall, wall));
         match model.diffusion.term(properties) {
-            None => interaction::compile(kernel, fluid, wall, properties, *units, *level),
-            Some(term) => interaction::compile(kernel, (fluid, term), wall, properties, *units, *level),
+            None => interaction::compile(kernel, fluid, wall, properties, *units, *instruction_set),
+            Some(term) => interaction::compile(kernel, (fluid, term), wall, properties, *units, *instruction_set),
         }
     }
 }

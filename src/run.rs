@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 use resume_point::ResumePoint;
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     output::{Checkpoint, Manifest, manifest::RunStatus},
     scene::Scene,
@@ -167,7 +167,9 @@ pub fn resume(
     // Read again under the lock: a run that was still going on may have finished since.
     if Manifest::read(folder)?.status == RunStatus::Finished {
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
-        return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
+        return Err(
+            Error::new(ErrorKind::Restart, what).help("`pontoon run` with a larger --until starts a longer one")
+        );
     }
     let ResumePoint { checkpoint, scene, warning } =
         resume_point::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
@@ -203,7 +205,7 @@ where
 
 /// The error of a scene in a dimension that this program was built without.
 pub(crate) fn missing_dimension(dimension: usize) -> Error {
-    Error::new(Kind::Usage, format!("this program was built without the {dimension}-D engine"))
+    Error::new(ErrorKind::Usage, format!("this program was built without the {dimension}-D engine"))
         .help(format!("build it with the feature dim{dimension}: cargo build --release --features dim{dimension}"))
 }
 
@@ -216,10 +218,11 @@ fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T
 pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if threads == Some(0) {
         return Err(
-            Error::new(Kind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
+            Error::new(ErrorKind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
         );
     }
     rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(|why| {
-        Error::new(Kind::Usage, format!("the threads cannot be started: {why}")).help("ask for fewer with --threads")
+        Error::new(ErrorKind::Usage, format!("the threads cannot be started: {why}"))
+            .help("ask for fewer with --threads")
     })
 }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 pub use crate::{
     coupling::BodyStep,
-    system::{Escape, Limits, RemovedParticle, Setup},
+    system::{Escape, ParticleLimits, RemovedParticle, Setup},
 };
 pub use change::Added;
 pub use rescue::Rollback;
@@ -23,7 +23,7 @@ use rescue::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
-    error::{Error, Fault, Kind, Result},
+    error::{Error, ErrorKind, Fault, Result},
     interaction::PairLoop,
     math::{Bivector, Vector},
     model::Dimension,
@@ -166,10 +166,10 @@ impl<const D: usize> Simulation<D> {
 
     /// Goes back to a good state after the alarm `error`, or gives it on if that is no use.
     fn roll_back(&mut self, error: Error) -> Result<()> {
-        if error.kind != Kind::Fault {
+        if error.kind != ErrorKind::Fault {
             return Err(error);
         }
-        match self.rollback.state_before(&error.what, self.clock.steps, self.clock.time) {
+        match self.rollback.state_before(&error.message, self.clock.steps, self.clock.time) {
             Some(good) => {
                 let rescue = std::mem::take(&mut self.rollback);
                 self.restore(&good)?;
@@ -210,9 +210,9 @@ impl<const D: usize> Simulation<D> {
         if let Some(reordering) = self.system.rebuild_neighbours() {
             self.stepper.reorder(&reordering, self.system.properties().rho0);
             if let Some(accounting) = &mut self.bodies.accounting {
-                accounting.add_removed(&self.system, &reordering.lost);
+                accounting.add_removed(&self.system, &reordering.removed);
             }
-            self.removed.extend(reordering.lost.into_iter().map(|lost| (self.clock.time, lost)));
+            self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
         }
         self.system.update_rates();
         let allowed = self.step_limit();
@@ -244,7 +244,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Stops at the first particle that has left the valid range.
     fn guard(&self) -> Result<()> {
-        match self.system.first_fault() {
+        match self.system.first_invalid_particle() {
             None => Ok(()),
             Some((i, reason, cause)) => Err(self.fault(reason, cause, i)),
         }
@@ -298,7 +298,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Force passes so far.
     pub fn passes(&self) -> u64 {
-        self.system.passes()
+        self.system.force_passes()
     }
 
     /// Pushes free solid number `solid` with `force` (N; N/m in 2-D) at the world point `at` (m) during the
@@ -370,7 +370,7 @@ impl<const D: usize> Simulation<D> {
             accounting,
             removed_solids: gone,
         };
-        postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
+        postcard::to_stdvec(&kept).map_err(|e| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}")))
     }
 
     /// Numbers of the solids that have been removed.
@@ -381,7 +381,7 @@ impl<const D: usize> Simulation<D> {
 
     fn read(bytes: &[u8]) -> Result<SimulationState<D>> {
         postcard::from_bytes(bytes)
-            .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint's state is damaged: {e}")))
+            .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
     }
 
     /// Goes back to a state that [`Simulation::save`] gave, in a simulation made from the same setup.
@@ -391,23 +391,31 @@ impl<const D: usize> Simulation<D> {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
         if kept.removed_solids != self.removed_solids() {
-            return Err(Error::new(Kind::Restart, "solids had been removed from the simulation whose state this is")
-                .help("restore_with takes it up in a simulation made from the same setup"));
+            return Err(Error::new(
+                ErrorKind::Restart,
+                "solids had been removed from the simulation whose state this is",
+            )
+            .help("restore_with takes it up in a simulation made from the same setup"));
         }
         match (self.bodies.engine_mut(), kept.engine) {
             (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
             (None, None) => {}
-            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
+            _ => return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies")),
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
             || !self.bodies.constraints_mut().restore(kept.constraints)
         {
-            return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
+            return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies"));
         }
         match (&self.bodies.accounting, &kept.accounting) {
             (Some(own), Some(state)) if own.matches(state) => {}
             (None, None) => {}
-            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds another load breakdown or energy budget")),
+            _ => {
+                return Err(Error::new(
+                    ErrorKind::Restart,
+                    "the checkpoint holds another load breakdown or energy budget",
+                ));
+            }
         }
         self.system.restore(kept.system)?;
         if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {

@@ -9,7 +9,7 @@ use super::{
     spectrum::{SEGMENTS, segment_transforms},
     zero_crossing_waves,
 };
-use crate::math::time_series::Series;
+use crate::math::time_series::TimeSeries;
 
 /// How far about the peak of the waves lines count, over its frequency.
 const PEAK_HALF_WIDTH: f64 = 0.1;
@@ -33,7 +33,7 @@ pub struct Rao {
 
 /// How `motion` answers `wave`: by a fit of both harmonics of this `period` (s), or else within a tenth about the peak of the
 /// waves, as the cross spectrum over that of the waves. None if there is no such wave, or the series are too short.
-pub fn rao(motion: &Series, wave: &Series, period: Option<f64>) -> Option<Rao> {
+pub fn rao(motion: &TimeSeries, wave: &TimeSeries, period: Option<f64>) -> Option<Rao> {
     let (ratio, period) = match period {
         Some(period) => {
             let of = |series| harmonic(series, TAU / period).map(|h| Complex::from_polar(h.amplitude, h.phase));
@@ -72,7 +72,7 @@ pub struct RaoPoint {
 ///
 /// by means over seven parts, quarters of the record and those that lie half over two ([@bendat2010], [@welch1967]). Only where
 /// the waves have a fiftieth of the density at their peak or more. None of fewer than 32 waves, or where nothing moves.
-pub fn rao_over_frequency(motion: &Series, wave: &Series) -> Vec<RaoPoint> {
+pub fn rao_over_frequency(motion: &TimeSeries, wave: &TimeSeries) -> Vec<RaoPoint> {
     let swings = zero_crossing_waves(motion).is_some()
         && zero_crossing_waves(wave).is_some_and(|waves| waves.count >= MIN_WAVES_FOR_RAO);
     let Some((step, parts)) = swings.then(|| segment_transforms(&[motion, wave], SEGMENTS)).flatten() else {
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn an_oscillator_in_an_irregular_sea_is_told_by_ratio_phase_and_coherence() -> Result<()> {
         let (t, wave, motion) = sea();
-        let bands = rao_over_frequency(&Series::new(t.clone(), motion)?, &Series::new(t, wave)?);
+        let bands = rao_over_frequency(&TimeSeries::new(t.clone(), motion)?, &TimeSeries::new(t, wave)?);
         // Lines 1/100 Hz apart, from where the sea has 2 % of its peak's density to where it has no longer.
         assert!((65..80).contains(&bands.len()), "{} bands", bands.len());
         for RaoPoint { frequency, ratio, phase, coherence } in bands {
@@ -155,7 +155,7 @@ mod tests {
             0.5 * deviation * 12.0_f64.sqrt() * ((seed >> 11) as f64 / 2.0_f64.powi(53) - 0.5)
         };
         let noisy: Vec<f64> = motion.iter().map(|x| x + noise()).collect();
-        let bands = rao_over_frequency(&Series::new(t.clone(), noisy)?, &Series::new(t, wave)?);
+        let bands = rao_over_frequency(&TimeSeries::new(t.clone(), noisy)?, &TimeSeries::new(t, wave)?);
         let inside = |from: f64, until: f64| bands.iter().filter(move |b| b.frequency > from && b.frequency < until);
         // About the resonance the motion is dozens of times the noise, beyond 0.8 Hz as weak as it.
         for band in inside(0.45, 0.65) {
@@ -170,10 +170,10 @@ mod tests {
     #[test]
     fn few_waves_and_what_does_not_move_have_no_answer_over_frequency() -> Result<()> {
         let t: Vec<f64> = (0..1000).map(|i| 0.05 * f64::from(i)).collect();
-        let swings = |f: f64| Series::new(t.clone(), t.iter().map(|t| (TAU * f * t).sin()).collect::<Vec<_>>());
+        let swings = |f: f64| TimeSeries::new(t.clone(), t.iter().map(|t| (TAU * f * t).sin()).collect::<Vec<_>>());
         assert!(rao_over_frequency(&swings(0.5)?, &swings(0.5)?).is_empty(), "25 waves");
         assert!(
-            rao_over_frequency(&Series::new(t.clone(), vec![0.2; 1000])?, &swings(1.0)?).is_empty(),
+            rao_over_frequency(&TimeSeries::new(t.clone(), vec![0.2; 1000])?, &swings(1.0)?).is_empty(),
             "it does not move"
         );
         assert!(!rao_over_frequency(&swings(1.0)?, &swings(1.0)?).is_empty(), "50 waves");
@@ -185,7 +185,7 @@ mod tests {
         let (period, phase) = (1.3, -0.8);
         let t: Vec<f64> = (0..1500).map(|i| 0.02 * f64::from(i)).collect();
         let made = |a: f64, phase: f64| {
-            Series::new(t.clone(), t.iter().map(|t| 0.1 + a * (TAU * t / period + phase).cos()).collect::<Vec<_>>())
+            TimeSeries::new(t.clone(), t.iter().map(|t| 0.1 + a * (TAU * t / period + phase).cos()).collect::<Vec<_>>())
         };
         let (wave, motion) = (made(0.05, 0.3)?, made(0.08, 0.3 + phase)?);
         // The fit is exact; of lines about the peak the spline through 65 samples a period keeps a thousandth.

@@ -3,7 +3,7 @@
 use realfft::{RealFftPlanner, num_complex::Complex};
 
 use super::{moments, zero_crossing_waves};
-use crate::math::time_series::Series;
+use crate::math::time_series::TimeSeries;
 
 /// Fewest samples of a record.
 const LEAST: usize = 16;
@@ -73,7 +73,7 @@ impl WelchSpectrum {
 ///
 /// Samples are taken evenly from the smooth curve through the series, less their mean. A record of 64 waves or more is cut
 /// into quarters that overlap by half; a shorter one is taken whole.
-pub fn spectrum(series: &Series) -> Option<WelchSpectrum> {
+pub fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     let of = moments(series);
     if of.min.0 == of.max.0 {
         return None;
@@ -95,7 +95,7 @@ pub fn spectrum(series: &Series) -> Option<WelchSpectrum> {
 }
 
 /// The spectrum of `series` as it is shown: of eight waves or more, up to the frequency below which 99.9 % of the variance lies.
-pub fn displayed_spectrum(series: &Series) -> Option<WelchSpectrum> {
+pub fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     zero_crossing_waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
     let mut all = spectrum(series)?;
     let whole: f64 = all.density.iter().sum();
@@ -111,14 +111,14 @@ pub fn displayed_spectrum(series: &Series) -> Option<WelchSpectrum> {
 
 /// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
 /// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
-pub fn complex_amplitudes(series: &[&Series]) -> Option<(f64, Vec<ComplexAmplitudes>)> {
+pub fn complex_amplitudes(series: &[&TimeSeries]) -> Option<(f64, Vec<ComplexAmplitudes>)> {
     let (step, parts) = segment_transforms(series, 1)?;
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }
 
 /// From one frequency to the next (Hz), and for each series the transforms of its windowed parts, over the time that all
 /// cover: `cut` into so many, and those that lie half over two.
-pub(super) fn segment_transforms(series: &[&Series], cut: usize) -> Option<(f64, Vec<Vec<ComplexAmplitudes>>)> {
+pub(super) fn segment_transforms(series: &[&TimeSeries], cut: usize) -> Option<(f64, Vec<Vec<ComplexAmplitudes>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));
     let count = series.iter().map(|s| s.times().len()).min()?;
@@ -153,7 +153,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     /// A sea of so many components evenly apart in frequency, with phases that a golden angle apart make irregular.
-    fn sea(density: impl Fn(f64) -> f64, step: f64, count: u32, until: f64) -> Result<Series> {
+    fn sea(density: impl Fn(f64) -> f64, step: f64, count: u32, until: f64) -> Result<TimeSeries> {
         let t: Vec<f64> = (0..=(until / 0.05) as usize).map(|i| i as f64 * 0.05).collect();
         let part = |t: f64, i: u32| {
             let f = (f64::from(i) + 0.5) * step;
@@ -161,7 +161,7 @@ mod tests {
             (2.0 * density(f) * step).sqrt() * (TAU * f * t + phase).cos()
         };
         let x: Vec<f64> = t.iter().map(|&t| (0..count).map(|i| part(t, i)).sum()).collect();
-        Series::new(t, x)
+        TimeSeries::new(t, x)
     }
 
     /// JONSWAP of peak frequency `peak` (Hz) and γ = 3.3, not normed.
@@ -175,7 +175,7 @@ mod tests {
     fn a_sine_has_its_period_and_four_deviations() -> Result<()> {
         let t: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.02).collect();
         let x: Vec<f64> = t.iter().map(|t| 0.3 + 0.1 * (TAU * t / 1.37).sin()).collect();
-        let Some(found) = spectrum(&Series::new(t, x)?) else { panic!("it has a spectrum") };
+        let Some(found) = spectrum(&TimeSeries::new(t, x)?) else { panic!("it has a spectrum") };
         // 14.6 periods, not a whole number: the variance of what is over is within 2 %, half of that of the root.
         assert!(
             (found.significant_height() / (0.4 / 2.0_f64.sqrt()) - 1.0).abs() < 0.02,
@@ -209,8 +209,8 @@ mod tests {
     #[test]
     fn what_does_not_change_has_no_spectrum() -> Result<()> {
         let t: Vec<f64> = (0..100).map(f64::from).collect();
-        assert_eq!(spectrum(&Series::new(t.clone(), vec![0.3; 100])?), None);
-        assert_eq!(spectrum(&Series::new(t[..8].to_vec(), t[..8].to_vec())?), None, "too short");
+        assert_eq!(spectrum(&TimeSeries::new(t.clone(), vec![0.3; 100])?), None);
+        assert_eq!(spectrum(&TimeSeries::new(t[..8].to_vec(), t[..8].to_vec())?), None, "too short");
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! Waves of a series, one by one: from one crossing of the mean upwards to the next. [@goda2010], ch. 10.
 
 use super::moments;
-use crate::math::time_series::Series;
+use crate::math::time_series::TimeSeries;
 
 /// How far a wave must go to both sides of the mean to be one, over the standard deviation: what trembles about the mean
 /// is none.
@@ -30,7 +30,7 @@ pub struct ZeroCrossingWaves {
 /// The waves of `series`; none if there are fewer than two. Crossings are linear between samples; a wave goes a tenth of
 /// the standard deviation to both sides of the mean. Round-off has none: a range below 1e-9 of the largest magnitude, or below
 /// 1e-12 in the unit of the series.
-pub fn zero_crossing_waves(series: &Series) -> Option<ZeroCrossingWaves> {
+pub fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWaves> {
     let of = moments(series);
     let (least, largest) = (of.min.0, of.max.0);
     if largest - least < (ROUND_OFF[0] * largest.abs().max(least.abs())).max(ROUND_OFF[1]) {
@@ -84,10 +84,10 @@ mod tests {
     use crate::error::Result;
     use std::f64::consts::TAU;
 
-    fn sampled(f: impl Fn(f64) -> f64, until: f64) -> Result<Series> {
+    fn sampled(f: impl Fn(f64) -> f64, until: f64) -> Result<TimeSeries> {
         let t: Vec<f64> = (0..=(until * 100.0) as usize).map(|i| i as f64 * 0.01).collect();
         let x: Vec<f64> = t.iter().map(|&t| f(t)).collect();
-        Series::new(t, x)
+        TimeSeries::new(t, x)
     }
 
     #[test]

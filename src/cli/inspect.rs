@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, GeneratedWave, Severity, three_digits},
     run::{self, InspectOptions, InspectReport},
 };
@@ -37,7 +37,8 @@ pub fn inspect(args: &InspectArgs) -> Result<String> {
     let asked = InspectOptions { overrides: args.scene.overrides(), threads: args.threads, timing: !args.no_timing };
     let report = found.with_scene_name(run::inspect(found.path(), &asked))?;
     if args.json {
-        let text = serde_json::to_string_pretty(&report).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
+        let text =
+            serde_json::to_string_pretty(&report).map_err(|why| Error::new(ErrorKind::Usage, why.to_string()))?;
         return Ok(text + "\n");
     }
     Ok(report_text(&report))

@@ -15,7 +15,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folder, write_partial};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// The last checkpoint, in the run's folder.
 pub const LAST: &str = "checkpoint.bin";
@@ -118,8 +118,9 @@ impl Checkpoint {
     /// # Errors
     /// `Restart` if it cannot be packed.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        let cannot =
-            |why: &dyn std::fmt::Display| Error::new(Kind::Restart, format!("the checkpoint cannot be packed: {why}"));
+        let cannot = |why: &dyn std::fmt::Display| {
+            Error::new(ErrorKind::Restart, format!("the checkpoint cannot be packed: {why}"))
+        };
         let known = postcard::to_stdvec(self).map_err(|why| cannot(&why))?;
         let pack = || -> io::Result<Vec<u8>> {
             // More than the fastest level takes longer, and numbers of a flow hardly pack better.
@@ -148,8 +149,8 @@ impl Checkpoint {
             _ => Error::file(path, why),
         });
         bytes.and_then(|bytes| Self::from_bytes(&bytes)).map_err(|mut error| {
-            if error.kind == Kind::Restart {
-                error.what = format!("{}: {}", path.display(), error.what);
+            if error.kind == ErrorKind::Restart {
+                error.message = format!("{}: {}", path.display(), error.message);
             }
             error
         })
@@ -208,7 +209,7 @@ impl Checkpoint {
 }
 
 fn restart_error(what: &str, help: &str) -> Error {
-    Error::new(Kind::Restart, what).help(help)
+    Error::new(ErrorKind::Restart, what).help(help)
 }
 
 /// FNV-1a hash of `bytes`.
@@ -245,7 +246,7 @@ mod tests {
         }
     }
 
-    fn refusal(bytes: &[u8]) -> Option<Kind> {
+    fn refusal(bytes: &[u8]) -> Option<ErrorKind> {
         Checkpoint::from_bytes(bytes).err().map(|e| e.kind)
     }
 
@@ -260,19 +261,19 @@ mod tests {
         let good = example().to_bytes()?;
         assert_eq!(Checkpoint::from_bytes(&good)?, example());
         for cut in 0..good.len() {
-            let what = Checkpoint::from_bytes(&good[..cut]).err().map(|e| e.what).unwrap_or_default();
+            let what = Checkpoint::from_bytes(&good[..cut]).err().map(|e| e.message).unwrap_or_default();
             assert!(what.contains("cut short"), "cut at {cut}: {what}");
         }
         for place in 0..good.len() {
             for bit in 0..8 {
                 let mut bad = good.clone();
                 bad[place] ^= 1 << bit;
-                assert_eq!(refusal(&bad), Some(Kind::Restart), "bit {bit} of byte {place} changed");
+                assert_eq!(refusal(&bad), Some(ErrorKind::Restart), "bit {bit} of byte {place} changed");
             }
         }
-        assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(Kind::Restart), "a byte too many");
+        assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(ErrorKind::Restart), "a byte too many");
         let other = Checkpoint { version: "0.0.0".into(), ..example() }.to_bytes()?;
-        assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.what.contains("written by pontoon 0.0.0")));
+        assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.message.contains("written by pontoon 0.0.0")));
         Ok(())
     }
 
@@ -288,12 +289,12 @@ mod tests {
         // 64 MB of nothing in some kB: refused for its ratio, and for a length that is not its own.
         let bomb = zstd::encode_all(io::repeat(0).take(1 << 26), 1)?;
         for unfolded in [u64::MAX, 1 << 26, 1 << 40, 1000, 0] {
-            assert_eq!(refusal(&forged(unfolded, &bomb)), Some(Kind::Restart), "{unfolded} bytes promised");
+            assert_eq!(refusal(&forged(unfolded, &bomb)), Some(ErrorKind::Restart), "{unfolded} bytes promised");
         }
-        assert_eq!(refusal(&forged(100, b"no zstd at all")), Some(Kind::Restart));
+        assert_eq!(refusal(&forged(100, b"no zstd at all")), Some(ErrorKind::Restart));
         // Lists that promise 2⁶⁰ entries.
         let lists = [&[1, b'x', 7, 0][..], &[0xff; 9], &[1]].concat();
-        assert_eq!(refusal(&forged(lists.len() as u64, &zstd::encode_all(&lists[..], 1)?)), Some(Kind::Restart));
+        assert_eq!(refusal(&forged(lists.len() as u64, &zstd::encode_all(&lists[..], 1)?)), Some(ErrorKind::Restart));
         Ok(())
     }
 
@@ -310,7 +311,7 @@ mod tests {
         fs::write(folder.join(LAST), "damaged").map_err(|e| Error::file(&folder, e))?;
         at(3.0).write(&folder, false)?;
         assert_eq!([time(LAST), time(PREVIOUS)], [Some(3.0), Some(1.0)]);
-        let none = Checkpoint::read(&folder.join("none")).err().map(|e| e.what).unwrap_or_default();
+        let none = Checkpoint::read(&folder.join("none")).err().map(|e| e.message).unwrap_or_default();
         assert!(none.ends_with("there is no checkpoint"), "{none}");
         fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
     }

@@ -8,8 +8,8 @@ use std::{
 
 use super::cannot_write;
 use crate::{
-    error::{Error, Kind, Result},
-    math::time_series::Series,
+    error::{Error, ErrorKind, Result},
+    math::time_series::TimeSeries,
 };
 
 /// A CSV file that grows by whole rows.
@@ -49,7 +49,7 @@ impl CsvTable {
         let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
         if kept.is_none_or(|k| !k.starts_with(header.as_bytes()) || !k.ends_with(b"\n")) {
             let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
-            return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
+            return Err(Error::new(ErrorKind::Restart, what).help("start the run afresh with `pontoon run`"));
         }
         let file = OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?;
         let mut table = Self { path: path.to_owned(), file, bytes, columns: columns.len(), first: None, last: None };
@@ -183,11 +183,11 @@ impl SeriesTable {
     }
 
     /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.
-    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<Series> {
+    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<TimeSeries> {
         let column = &self.values[self.columns.iter().position(|column| column == name)?];
         let known = self.times.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
         let (t, x): (Vec<f64>, Vec<f64>) = known.unzip();
-        Series::new(t, x).ok()
+        TimeSeries::new(t, x).ok()
     }
 }
 

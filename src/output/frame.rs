@@ -16,7 +16,7 @@ use vtkio::{
 
 use super::{cannot_write, sync_folder, write_atomically};
 use crate::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     math::Vector,
     particles::ParticlesView,
     plan::FramesPlan,
@@ -62,7 +62,7 @@ impl FrameWriter {
     pub fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> {
         let FramesPlan { fields, crop, .. } = words.clone();
         if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
-            let help = match nearest(word, FIELDS) {
+            let help = match nearest_name(word, FIELDS) {
                 Some(near) => format!("did you mean {near:?}?"),
                 None => format!("the fields are: {}", FIELDS.join(", ")),
             };
@@ -130,7 +130,7 @@ impl FrameWriter {
             let inside = |i: &usize| (0..D).all(|k| (min[k]..=max[k]).contains(&water.r[*i][k]));
             water.select((0..water.len()).filter(inside))
         });
-        let water = kept.as_ref().map_or(water, |kept| kept.first(kept.len()));
+        let water = kept.as_ref().map_or(water, |kept| kept.first_n(kept.len()));
         let [wet, dry] = piece_names(number);
         let mut bytes = self.write_piece(&wet, system, water, None)?;
         let mut owner = vec![0.0; system.boundary().len()];
@@ -174,8 +174,8 @@ impl FrameWriter {
             owner.map(|numbers| data_array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)),
         );
         let path = self.folder.join("frames").join(name);
-        let bytes =
-            points_vtu(particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
+        let bytes = points_vtu(particles.r, fields)
+            .map_err(|e| Error::new(ErrorKind::File, format!("{}: {e}", path.display())))?;
         write_atomically(&path, &bytes)?;
         Ok(bytes.len() as u64)
     }

@@ -12,7 +12,7 @@ use super::{
     frame_sequence::{FramePoints, FrameSequence},
     write_atomically,
 };
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// How far a particle is seen, dp.
 const REACH: f64 = 3.0;
@@ -46,7 +46,7 @@ impl FreeSurfaceMesh {
         let mut how = Parameters::new((0.5 * dp) as f32, (REACH * dp) as f32, (CUBE * dp) as f32);
         how.iso_surface_threshold = ISO_LEVEL;
         let made = reconstruct_surface::<i64, f32>(&points, &how)
-            .map_err(|why| Error::new(Kind::Usage, format!("no surface can be made: {why}")))?;
+            .map_err(|why| Error::new(ErrorKind::Usage, format!("no surface can be made: {why}")))?;
         let corners = made.mesh.vertices;
         let velocity = match &made.particle_densities {
             Some(densities) if !water.velocity.is_empty() => {
@@ -89,7 +89,7 @@ pub fn write(folder: &Path, shown: &FrameSequence, dp: f64) -> Result<usize> {
     for number in 0..shown.times().len() {
         let path = pictures.join(format!("surface_{number:05}.vtu"));
         let surface = FreeSurfaceMesh::reconstruct(&shown.water(number)?, dp)?;
-        let text = surface.to_vtu().map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
+        let text = surface.to_vtu().map_err(|why| Error::new(ErrorKind::File, format!("{}: {why}", path.display())))?;
         write_atomically(&path, &text)?;
     }
     write_atomically(&folder.join("surface.pvd"), pvd_index(shown.times(), "surface", &["surface"]).as_bytes())?;

@@ -8,7 +8,7 @@ use std::{
 use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
 
 use super::{require_parent_folder, write_atomically};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// Headers of arrays end at a multiple of so many bytes.
 const ALIGNED: usize = 64;
@@ -19,7 +19,7 @@ const ALIGNED: usize = 64;
 /// `File` if it cannot be written, or two arrays have the same name.
 pub fn write<'a>(path: &Path, arrays: impl IntoIterator<Item = (String, &'a [f64])>) -> Result<()> {
     require_parent_folder(path)?;
-    let bytes = npz_bytes(arrays).map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
+    let bytes = npz_bytes(arrays).map_err(|why| Error::new(ErrorKind::File, format!("{}: {why}", path.display())))?;
     write_atomically(path, &bytes)
 }
 

@@ -78,7 +78,7 @@ impl Finding {
     /// That the timing stopped with `error` after so many `steps`.
     pub fn timing_stopped(error: &Error, steps: usize) -> Self {
         let mend = error.help.clone().unwrap_or_else(|| "see the other findings".into());
-        Self::warning("breaks_down", format!("after {steps} steps: {}", error.what), mend)
+        Self::warning("breaks_down", format!("after {steps} steps: {}", error.message), mend)
     }
 
     /// The finding in one line, for a record.

@@ -7,7 +7,7 @@
 
 use super::Probe;
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::Vector,
     simulation::Simulation,
     system::System,
@@ -51,7 +51,7 @@ impl<const D: usize> FlowProbe<D> {
         } else {
             "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one"
         };
-        Err(Error::new(Kind::Usage, what))
+        Err(Error::new(ErrorKind::Usage, what))
     }
 
     /// The flow now.

@@ -4,11 +4,11 @@ use serde::Serialize;
 
 use super::{
     encoding::BinaryData,
-    html::{name_without_unit, unit},
+    html::{column_label, unit},
     run_data::{ProbeTable, RunData},
     summary_tables::column_series,
 };
-use crate::{analysis, analysis::Verdict, math::time_series::Series, run::RaoResult};
+use crate::{analysis, analysis::Verdict, math::time_series::TimeSeries, run::RaoResult};
 
 /// Rows of a table above which it is thinned.
 const MOST_ROWS: usize = 6000;
@@ -150,7 +150,7 @@ pub fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePlots {
     let t = blob.push_floats(rows.iter().map(|&i| table.times[i] as f32));
     let columns = table.columns.iter().zip(&table.values).map(|(name, x)| PlotColumn {
         name: name.clone(),
-        label: name_without_unit(name),
+        label: column_label(name),
         unit: unit(name),
         x: blob.push_floats(rows.iter().map(|&i| x[i] as f32)),
     });
@@ -191,7 +191,7 @@ pub fn encode_raos<'a>(answers: &'a [RaoResult], blob: &mut BinaryData) -> Vec<R
         let mut put = |x: fn(&RaoResult) -> f64| blob.push_floats(rows.iter().map(|row| x(row) as f32));
         RaoPlot {
             name: &rows[0].name,
-            label: format!("{probe} {}", name_without_unit(column)),
+            label: format!("{probe} {}", column_label(column)),
             unit: &rows[0].unit,
             rows: rows.len(),
             f: put(|row| row.point.frequency),
@@ -230,7 +230,7 @@ fn thinned_rows(table: &ProbeTable) -> Vec<usize> {
 fn group_columns(columns: &[String]) -> Vec<Chart> {
     // A row of gauges is one chart, wherever they stand.
     let names: Vec<String> =
-        columns.iter().map(|name| name_without_unit(name.split("_at_").next().unwrap_or(name))).collect();
+        columns.iter().map(|name| column_label(name.split("_at_").next().unwrap_or(name))).collect();
     let mut left: Vec<usize> = (0..columns.len()).collect();
     let mut charts = Vec::new();
     for (family, folded) in FAMILIES {
@@ -255,7 +255,7 @@ fn breakdown_charts(table: &ProbeTable) -> (Vec<Chart>, Vec<String>) {
     let mut charts: Vec<Chart> = Vec::new();
     let mut kinds: Vec<(String, bool)> = Vec::new();
     for (i, name) in table.columns.iter().enumerate() {
-        let (label, idle) = (name_without_unit(name), table.is_zero(i));
+        let (label, idle) = (column_label(name), table.is_zero(i));
         let (kind, way) = label.rsplit_once(' ').unwrap_or((&label, ""));
         match kinds.iter_mut().find(|known| known.0 == kind) {
             Some(known) => known.1 &= idle,
@@ -291,7 +291,7 @@ fn fold_empty_charts(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
 /// The checks of `run` that have curves, added to `blob`; `caption` says the figures of a verdict.
 pub fn encode_checks(run: &RunData, caption: impl Fn(&Verdict) -> String, blob: &mut BinaryData) -> Vec<CheckPlot> {
     let verdicts = &run.manifest.checks;
-    let mut line = |series: &Series| CurveData {
+    let mut line = |series: &TimeSeries| CurveData {
         rows: series.times().len(),
         t: blob.push_floats(series.times().iter().map(|t| *t as f32)),
         x: blob.push_floats(series.values().iter().map(|x| *x as f32)),
@@ -302,7 +302,7 @@ pub fn encode_checks(run: &RunData, caption: impl Fn(&Verdict) -> String, blob: 
         let series = check.plan().label();
         let column = series.split_once('.').map_or(series.as_str(), |(_, column)| column);
         held.push(CheckPlot {
-            label: name_without_unit(column.split(',').next().unwrap_or(column)),
+            label: column_label(column.split(',').next().unwrap_or(column)),
             unit: unit(column),
             sim: line(&curves.sim),
             meaned: curves.running_mean.as_ref().map(&mut line),

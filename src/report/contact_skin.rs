@@ -250,7 +250,7 @@ mod tests {
     fn the_rim_of_a_drawn_box_is_that_of_the_box() -> crate::error::Result<()> {
         use std::collections::BTreeSet;
 
-        use crate::geometry::{Mesh, Touchable};
+        use crate::geometry::{ContactGeometry, Mesh};
 
         let size = Vector::<3>::from([0.4, 0.2, 0.3]);
         let corner = |i: u32| Vector::from_fn(|axis, _| (f64::from(i >> axis & 1) - 0.5) * size[axis]);
@@ -264,7 +264,7 @@ mod tests {
             let lines = ContactSkinOutline::of_shape(shape, 0.02, 0.05).lines;
             lines.iter().flat_map(|line| &line.points).map(|x| x.map(|x| (x / 5e-5).round() as i64)).collect()
         };
-        let drawn = places(&Shape::Mesh { mesh, contact: Touchable::default() });
+        let drawn = places(&Shape::Mesh { mesh, contact: ContactGeometry::default() });
         assert!(drawn.len() > 50 && drawn == places(&Shape::Box { size }), "{drawn:?}");
         Ok(())
     }

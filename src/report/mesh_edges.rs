@@ -162,7 +162,10 @@ mod tests {
         assert_eq!(lines.len(), CUTS.len() + 2);
         for line in &lines {
             assert!(line.closed);
-            assert!(line.points.iter().all(|x| mesh.distance(&Vector::from(*x)).0.abs() < 1e-9), "on its surface");
+            assert!(
+                line.points.iter().all(|x| mesh.distance_and_normal(&Vector::from(*x)).0.abs() < 1e-9),
+                "on its surface"
+            );
             let round = line.points.iter().zip(line.points.iter().cycle().skip(1));
             let length: f64 = round.map(|(a, b)| (Vector::from(*a) - Vector::from(*b)).norm()).sum();
             let radius = Vector::from(line.points[0]).norm_squared() - off(line).powi(2);

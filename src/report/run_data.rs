@@ -102,7 +102,7 @@ impl RunData {
         let manifest = Manifest::read(folder)?;
         let file = run::scene_file(&folder.join("scene"));
         let mut remarks = Vec::new();
-        let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.what));
+        let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.message));
         let sets: Vec<(String, String)> = manifest.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
         let set = Scene::read(&file, &sets).and_then(|scene| SceneGeometry::from_scene(&scene));
         let set = set.map_err(|why| noted("bodies and gauges are not drawn, for the scene cannot be built", why)).ok();

@@ -9,7 +9,7 @@ use std::{
 };
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
     probe::{self, Probe},
     scene::Plan,
@@ -127,7 +127,7 @@ impl<const D: usize> Outputs<D> {
         let lists = plan.contacts.len();
         let all = probes.len() + lists;
         if from.is_some_and(|c| c.table_bytes.len() != all || c.next_due.len() != all + 2) {
-            return Err(Error::new(Kind::Restart, "the checkpoint was made with other probes"));
+            return Err(Error::new(ErrorKind::Restart, "the checkpoint was made with other probes"));
         }
         let series = series_folder(folder);
         let lists = (lists > 0).then(|| folder.join(LISTS));

@@ -2,7 +2,7 @@
 
 use crate::{
     analysis::ReferenceCheck,
-    error::{Error, Result, nearest},
+    error::{Error, Result, nearest_name},
     model::Dimension,
     probe::{self, Probe},
     scene::{CheckPlan, Plan, ProbeKind, ProbePlan},
@@ -71,7 +71,7 @@ fn probe_at_places<const D: usize>(
 
 /// That `series`, which a check or a statistic names, is none of `known`.
 fn unknown_series(series: &str, known: &[String]) -> Error {
-    let help = match nearest(series, known.iter().map(String::as_str)) {
+    let help = match nearest_name(series, known.iter().map(String::as_str)) {
         Some(near) => format!("did you mean {near:?}?"),
         None => format!("the series are: {}", known.join(", ")),
     };

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::checkpoint,
     scene::table,
 };
@@ -46,7 +46,7 @@ pub fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
             } else {
                 "choose another folder; results are never written over other files".into()
             };
-            return Err(Error::new(Kind::Usage, format!("the folder {} is not empty", out.display())).help(help));
+            return Err(Error::new(ErrorKind::Usage, format!("the folder {} is not empty", out.display())).help(help));
         }
         return Ok(out.to_owned());
     }
@@ -147,7 +147,7 @@ mod tests {
         assert!(out.join("scene/data/flap.csv").is_file() && out.join(SCENE).is_file());
         assert!(!out.join("scene/other.csv").exists() && !out.join("secret.csv").exists());
         let again = create_run_folder(&file, Some(&out)).err().map(|e| e.kind);
-        assert_eq!(again, Some(Kind::Usage), "a folder that holds something is never written to");
+        assert_eq!(again, Some(ErrorKind::Usage), "a folder that holds something is never written to");
         fs::remove_dir_all(home)
     }
 }

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     analysis::{ReferenceCheck, Verdict},
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     output::{
         Checkpoint, Manifest, OutputPositions, checkpoint,
@@ -257,7 +257,7 @@ impl<const D: usize> Runner<D> {
         if self.folder.exists() {
             help += &format!("{kept} in {}", self.folder.display());
         }
-        if error.kind == Kind::File && resume_point::has_checkpoint(&self.folder) {
+        if error.kind == ErrorKind::File && resume_point::has_checkpoint(&self.folder) {
             help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
         }
         error.help(help)

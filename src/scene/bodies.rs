@@ -7,7 +7,7 @@ use super::{
     flexible::{DraftChoice, LengthUnit, NumberOrArray, PolylineConfig},
     waves::WaveConfig,
 };
-use crate::geometry::Touchable;
+use crate::geometry::ContactGeometry;
 
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -113,7 +113,7 @@ pub struct MeshConfig {
     pub flip: Option<bool>,
     /// What other bodies touch; fitting if not said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<Touchable>,
+    pub contact: Option<ContactGeometry>,
 }
 
 /// A coordinate direction.

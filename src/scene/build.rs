@@ -9,10 +9,10 @@ use super::{
     resolve::CHECKPOINT_WALL,
 };
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     geometry::{
         Shape,
-        fill::{Region, fill},
+        fill::{WaterRegion, fill},
     },
     math::{Bounds, Pose, Vector},
     model::Model,
@@ -67,7 +67,7 @@ pub(crate) struct SceneLayout<const D: usize> {
 
 /// A body of water: where it is and how high it stands.
 pub(super) struct WaterBody<const D: usize> {
-    pub(super) region: Region<D>,
+    pub(super) region: WaterRegion<D>,
     bottom: f64,
     pub(super) level: f64,
     flow: InitialFlow<D>,
@@ -102,7 +102,7 @@ impl Scene {
     /// none, a body sinks that should float, the particles are too many; `File` if a table cannot be read.
     pub fn build<const D: usize>(&self) -> Result<BuiltScene<D>> {
         if self.dimension != D {
-            return Err(Error::new(Kind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
+            return Err(Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
         }
         let (scene, _) = self.with_defaults()?;
         let water = scene.water_bodies::<D>()?;
@@ -119,8 +119,8 @@ impl Scene {
         let periodic = scene.periods();
         periodic::check(&periodic, &model, &solids).map_err(|e| scene.origin.with_location(e, "periodic"))?;
         scene.require_affordable(&water, &solids)?;
-        let regions: Vec<Region<D>> =
-            water.iter().map(|b| Region { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
+        let regions: Vec<WaterRegion<D>> =
+            water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // A driven solid starts where its law says.
         let starts: Vec<Pose<D>> = solids.iter().map(|s| s.start().pose).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
@@ -148,7 +148,7 @@ impl Scene {
         let setup = Setup {
             model,
             water,
-            levels,
+            surface_levels: levels,
             velocity,
             pressure,
             solids,
@@ -161,8 +161,8 @@ impl Scene {
         Ok(BuiltScene {
             setup,
             plan,
-            removed_by_solids: filled.overlapped,
-            removed_by_water: filled.doubled,
+            removed_by_solids: filled.removed_in_solids,
+            removed_by_water: filled.removed_in_regions,
             still_water: still,
         })
     }
@@ -226,7 +226,7 @@ impl Scene {
                 return Err(self.error_at(&format!("{key}.level"), what));
             }
             bodies.push(WaterBody {
-                region: Region { shape, pose },
+                region: WaterRegion { shape, pose },
                 bottom,
                 level,
                 flow: self.initial_flow(&key, words)?,
@@ -421,8 +421,8 @@ impl Scene {
 
 /// Volume of the water (m³; m² in 2-D) and surface of the solids (m²; m).
 fn volume_and_surface<const D: usize>(water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
-    let volume = water.iter().map(|body| body.region.shape.volume().volume).sum();
-    (volume, solids.iter().map(|solid| solid.shape.surface()).sum())
+    let volume = water.iter().map(|body| body.region.shape.volume_properties().volume).sum();
+    (volume, solids.iter().map(|solid| solid.shape.surface_area()).sum())
 }
 
 /// Moves every point by up to `by` (m) in each direction, always to the same place: by its number.

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Bivector, Matrix, Pose, Vector, expression::Formula, time_series::Series},
+    math::{Bivector, Matrix, Pose, Vector, expression::Formula, time_series::TimeSeries},
     solid::{FreeBody, Law, Role, SolidSpec, hydrostatics::equilibrium_height},
 };
 
@@ -49,7 +49,7 @@ impl Scene {
                 let body = free_body(words, &shape);
                 let part = if words.inertia.is_some() { "free.inertia" } else { "free" };
                 body.check()
-                    .map_err(|e| Error { what: format!("solid \"{}\": {}", name, e.what), ..e })
+                    .map_err(|e| Error { message: format!("solid \"{}\": {}", name, e.message), ..e })
                     .map_err(place(part))?;
                 Role::Free(body)
             }
@@ -109,7 +109,7 @@ impl Scene {
         let (rho0, heavy) = (self.model.rho0.unwrap_or_default(), self.gravity.iter().flatten().any(|g| *g != 0.0));
         let Role::Free(body) = &spec.role else { return Ok(()) };
         let thickness = spec.shape.bounds_at(&Pose::identity()).size().min();
-        let density = body.mass / (rho0 * spec.shape.volume().volume);
+        let density = body.mass / (rho0 * spec.shape.volume_properties().volume);
         if !heavy || thickness >= THIN * self.dp || density >= THIN_DENSITY {
             return Ok(());
         }
@@ -146,7 +146,7 @@ impl Scene {
         let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
         let factor = words.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
         let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
-        Series::new(series.times(), values).map(Law::Table).map_err(|e| place("scale", e))
+        TimeSeries::new(series.times(), values).map(Law::Table).map_err(|e| place("scale", e))
     }
 }
 

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Bivector, Bounds, Pose, Vector, time_series::Series},
+    math::{Bivector, Bounds, Pose, Vector, time_series::TimeSeries},
     solid::{Law, Motion},
     wavemaker::{Component, Paddle, Spectrum, Wave, Wavemaker},
 };
@@ -243,11 +243,11 @@ impl Scene {
     }
 
     /// The elevation of a table.
-    fn read_elevation(&self, words: &MeasuredElevationConfig) -> Result<Series> {
+    fn read_elevation(&self, words: &MeasuredElevationConfig) -> Result<TimeSeries> {
         let path = table::path_beside(&self.origin.folder, &words.file)?;
         let series = table::read_series(&path, words.time.as_deref().unwrap_or("t_s"), &words.column)?;
         let scale = words.scale.unwrap_or(1.0);
-        Series::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
+        TimeSeries::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
     }
 }
 

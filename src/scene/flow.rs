@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, WaterConfig, flexible::FieldFormulaConfig};
-use crate::{error::Result, math::Vector, math::expression::Field, system::Periodic};
+use crate::{error::Result, math::Vector, math::expression::ScalarField, system::Periodic};
 
 /// Where a period begins and ends along each axis that has one, m.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -56,7 +56,7 @@ impl Scene {
     /// How the water `water` at `key` moves at the start.
     pub(super) fn initial_flow<const D: usize>(&self, key: &str, water: &WaterConfig) -> Result<InitialFlow<D>> {
         let field = |key: &str, words: &FieldFormulaConfig| {
-            Field::parse(&words.0).map_err(|e| self.origin.with_location(e, key))
+            ScalarField::parse(&words.0).map_err(|e| self.origin.with_location(e, key))
         };
         let mut flow = InitialFlow { velocity: Vec::new(), pressure: None };
         if let Some(words) = &water.velocity {
@@ -75,14 +75,14 @@ impl Scene {
 
 /// How a body of water moves at the start.
 pub(super) struct InitialFlow<const D: usize> {
-    velocity: Vec<Field<D>>,
-    pressure: Option<Field<D>>,
+    velocity: Vec<ScalarField<D>>,
+    pressure: Option<ScalarField<D>>,
 }
 
 impl<const D: usize> InitialFlow<D> {
     /// Velocity (m/s) and pressure beyond that of water at rest (Pa) at `r` (m).
     pub(super) fn at(&self, r: &Vector<D>) -> (Vector<D>, f64) {
-        let velocity = Vector::from_fn(|i, _| self.velocity.get(i).map_or(0.0, |field| field.at(r)));
-        (velocity, self.pressure.as_ref().map_or(0.0, |field| field.at(r)))
+        let velocity = Vector::from_fn(|i, _| self.velocity.get(i).map_or(0.0, |field| field.value_at(r)));
+        (velocity, self.pressure.as_ref().map_or(0.0, |field| field.value_at(r)))
     }
 }

@@ -19,7 +19,7 @@ use super::{
     statistics::StatisticConfig,
 };
 use crate::{
-    model::{Diffusion, Gradient, Kernel, PairLoopKind, Scheme, Shifting, Slip, Viscosity, Walls},
+    model::{Diffusion, KernelKind, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity, Walls},
     plan::{Align, Score},
 };
 
@@ -149,7 +149,7 @@ pub struct FillConfig {
 pub struct ModelConfig {
     /// Kernel.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub kernel: Option<Kernel>,
+    pub kernel: Option<KernelKind>,
     /// Smoothing length over particle spacing, –.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub h_over_dp: Option<f64>,
@@ -158,7 +158,7 @@ pub struct ModelConfig {
     pub c_h: Option<f64>,
     /// The pressure's gradient.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub gradient: Option<Gradient>,
+    pub gradient: Option<PressureGradient>,
     /// Viscosity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Viscosity>,
@@ -197,7 +197,7 @@ pub struct ModelConfig {
 pub struct TimeSteppingConfig {
     /// Scheme.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub scheme: Option<Scheme>,
+    pub scheme: Option<TimeScheme>,
     /// Courant number, –.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cfl: Option<f64>,

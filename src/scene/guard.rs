@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Scene, resolve::Defaults};
 use crate::{
     error::Result,
-    simulation::{Escape, Limits},
+    simulation::{Escape, ParticleLimits},
 };
 
 /// What a run's guards let pass.
@@ -44,7 +44,7 @@ impl Scene {
     }
 
     pub(super) fn fill_guard_defaults(&mut self, filler: &mut Defaults) {
-        let (words, usual) = (self.guard.get_or_insert_default(), Limits::default());
+        let (words, usual) = (self.guard.get_or_insert_default(), ParticleLimits::default());
         let why = "of c₀: beyond, the water is compressed by an eighth";
         filler.fill("guard.speed", &mut words.speed, usual.speed, why);
         filler.fill("guard.density", &mut words.density, usual.density, "of ρ₀: no water is lighter or denser");
@@ -53,9 +53,9 @@ impl Scene {
     }
 
     /// The valid range of a water particle.
-    pub(super) fn limits(&self) -> Limits {
-        let (words, usual) = (self.guard.clone().unwrap_or_default(), Limits::default());
-        Limits {
+    pub(super) fn limits(&self) -> ParticleLimits {
+        let (words, usual) = (self.guard.clone().unwrap_or_default(), ParticleLimits::default());
+        ParticleLimits {
             speed: words.speed.unwrap_or(usual.speed),
             density: words.density.unwrap_or(usual.density),
             escape: words.escape.unwrap_or(usual.escape),

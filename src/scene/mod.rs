@@ -119,9 +119,9 @@ impl Scene {
     /// An error of a simulation that this scene was built into, with the file and the line of the key that it speaks of, if it
     /// speaks of one.
     pub fn with_location(&self, mut error: Error) -> Error {
-        match error.place.take() {
+        match error.location.take() {
             Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
-            place => Error { place, ..error },
+            place => Error { location: place, ..error },
         }
     }
 

@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{
     error::Result,
-    geometry::Touchable,
-    model::{C0_FACTOR, Model, Scheme},
+    geometry::ContactGeometry,
+    model::{C0_FACTOR, Model, TimeScheme},
     plan::GaugeSurface,
 };
 
@@ -138,7 +138,7 @@ impl Scene {
         let why = "second order, without the odd–even mode of Verlet, as exact at the same price";
         filler.fill("time.scheme", &mut time.scheme, usual.scheme, why);
         let (cfl, why) = match time.scheme {
-            Some(Scheme::Verlet { .. }) => (0.2, "the method's, for Verlet"),
+            Some(TimeScheme::Verlet { .. }) => (0.2, "the method's, for Verlet"),
             _ => (usual.cfl, "impacts, contacts and ropes are worse above; waves and still water take 0.6"),
         };
         filler.fill("time.cfl", &mut time.cfl, cfl, why);
@@ -383,7 +383,7 @@ impl ShapeDefaults {
                     "neither STL nor OBJ tells its unit",
                 );
                 let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
-                filler.fill(format!("{key}.contact"), &mut words.contact, Touchable::Fitting, why);
+                filler.fill(format!("{key}.contact"), &mut words.contact, ContactGeometry::Fitting, why);
             }
             ShapeConfig::Polygon(words) if words.is_drawing() => {
                 let key = format!("{key}.polygon");

@@ -8,7 +8,7 @@ use toml::{
 };
 
 use super::document::{CHOICES, OverrideLocations, subkey};
-use crate::error::{Error, Result, nearest};
+use crate::error::{Error, Result, nearest_name};
 
 /// Puts the value written as `text` at `key`, every word of it at a place of `marks`; what is no TOML value is a word.
 /// Returns the key with numbers in place of names.
@@ -82,7 +82,7 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
     let names: Vec<String> = items.iter().enumerate().map(|(i, item)| name(item).unwrap_or(i.to_string())).collect();
     let by_number = || word.parse::<usize>().ok().filter(|i| *i < items.len());
     names.iter().position(|n| n == word).or_else(by_number).ok_or_else(|| {
-        let guess = nearest(word, names.iter().map(String::as_str));
+        let guess = nearest_name(word, names.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
         Error::scene(format!("no {path} is called \"{word}\"{guess}")).help(format!("known: {}", names.join(", ")))
     })

@@ -4,7 +4,7 @@ use super::{
     FramesChoice, FramesConfig, Scene, build::WaterBody, build_waves::StillWater, geometry::world_bounds,
     verify::FIELDS,
 };
-use crate::{error::Result, math::format::bytes, model::Scheme, output::frame::particle_bytes};
+use crate::{error::Result, math::format::bytes, model::TimeScheme, output::frame::particle_bytes};
 
 /// About how large a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +103,7 @@ impl Scene {
         self.require_affordable(&water, &solids)?;
         let (fluid, boundary) = self.estimated_counts(&water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
-        let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1.0 } else { 2.0 };
+        let passes = if matches!(model.scheme, TimeScheme::Verlet { .. }) { 1.0 } else { 2.0 };
         Ok(SizeEstimate { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
     }
 }

@@ -3,8 +3,8 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::{
-    error::{Error, Result, nearest},
-    math::time_series::Series,
+    error::{Error, Result, nearest_name},
+    math::time_series::TimeSeries,
 };
 
 /// Largest table, B.
@@ -31,7 +31,7 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     }
     if !full.is_file() {
         let others = neighbours(folder, path);
-        let guess = nearest(name, others.iter().map(String::as_str));
+        let guess = nearest_name(name, others.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
         return Err(Error::scene(format!("there is no file \"{name}\" beside the scene{guess}"))
             .help("files that a scene names are looked for in the folder of the scene"));
@@ -88,7 +88,7 @@ pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
     let number = |name: &&str| {
         header.iter().position(|column| column == *name).ok_or_else(|| {
-            let guess = nearest(name, header.iter());
+            let guess = nearest_name(name, header.iter());
             let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
             let known: Vec<&str> = header.iter().collect();
             Error::scene(format!("{file} has no column \"{name}\"{guess}"))
@@ -118,9 +118,9 @@ pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
 ///
 /// # Errors
 /// As [`columns`], and as [`Series::new`].
-pub fn read_series(path: &Path, time: &str, column: &str) -> Result<Series> {
+pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> {
     let mut both = read_columns(path, &[time, column])?;
     let x = both.pop().unwrap_or_default();
     let t = both.pop().unwrap_or_default();
-    Series::new(t, x).map_err(|e| Error::scene(format!("{}, {column}: {}", path.display(), e.what)))
+    TimeSeries::new(t, x).map_err(|e| Error::scene(format!("{}, {column}: {}", path.display(), e.message)))
 }

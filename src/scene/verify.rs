@@ -7,7 +7,7 @@ use super::{
     solids::{verify_placement, verify_shape},
     wording,
 };
-use crate::error::{Error, Result, nearest};
+use crate::error::{Error, Result, nearest_name};
 
 /// Largest Courant number: still water round a float stays still at 0.8, and boils at 1.0 without another sign.
 const CFL_MAX: f64 = 0.8;
@@ -216,7 +216,7 @@ pub(super) fn quoted_list(words: &[&str]) -> String {
 
 /// Advice on the nearest of `known`, to end a sentence.
 pub(super) fn suggestion(word: &str, known: &[&str]) -> String {
-    nearest(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
+    nearest_name(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
 }
 
 /// The last part of a key.

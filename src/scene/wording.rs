@@ -1,6 +1,6 @@
 //! Our wording of the parser's messages: what is wrong, the nearest valid word, what to write instead.
 
-use crate::error::{Error, nearest};
+use crate::error::{Error, nearest_name};
 
 /// What to write, by key: the longest entry that the key ends with is shown.
 const EXAMPLES: &[(&str, &str)] = &[
@@ -194,7 +194,7 @@ fn key_noun(key: &str) -> &str {
 pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     let words = quoted(message);
     let did_you_mean = |word: &str, known: &[&str]| {
-        nearest(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
+        nearest_name(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
     };
     let with = |error: Error, lines: Vec<String>| match lines.is_empty() {
         true => error,
@@ -207,7 +207,7 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // Of the same parent: a water's velocity is not a probe's.
-        let near = nearest(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
+        let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
         let guess = near.or_else(|| example(parent));
         let known = format!("known here: {}", list(known));
         return (with(error, [known].into_iter().chain(guess).collect()), shown);

@@ -7,7 +7,7 @@ use std::{
 
 use crate::{
     analysis::{CheckCurves, ReferenceCheck, Verdict},
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{Manifest, manifest::RunStatus},
     run::{self, RunObserver, RunOptions},
     scene::{FramesChoice, FramesConfig, Scene, SizeEstimate},
@@ -81,10 +81,10 @@ impl Job {
     /// `Usage` for no time, or if the job varies `scatter` itself; those of the scene's words.
     pub fn repeated(self, times: usize) -> Result<Vec<Self>> {
         if times == 0 {
-            return Err(Error::new(Kind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
+            return Err(Error::new(ErrorKind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
         }
         if times > 1 && self.varied.iter().any(|(key, _)| key == SCATTER) {
-            return Err(Error::new(Kind::Usage, "scatter tells repeats apart: it cannot be varied too")
+            return Err(Error::new(ErrorKind::Usage, "scatter tells repeats apart: it cannot be varied too")
                 .help("leave out  --vary scatter  or  --repeat"));
         }
         let own = if times > 1 { self.read_scene()?.scatter.unwrap_or(0.0) } else { 0.0 };

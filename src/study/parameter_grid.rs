@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Job;
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::checkpoint::fnv1a,
 };
 
@@ -52,13 +52,12 @@ impl ParameterGrid {
         let mut dp = self.dp.clone();
         dp.sort_by(|a, b| b.total_cmp(a));
         if dp.is_empty() || self.vary.iter().any(|vary| vary.values.iter().any(String::is_empty)) {
-            return Err(Error::new(Kind::Usage, "a list of values has nothing in it")
+            return Err(Error::new(ErrorKind::Usage, "a list of values has nothing in it")
                 .help("write  --dp 0.02,0.01 --vary model.viscosity=none,laminar"));
         }
         if self.vary.iter().any(|vary| vary.key == "dp") {
-            return Err(
-                Error::new(Kind::Usage, "the spacing is varied apart from other keys").help("write  --dp 0.02,0.01")
-            );
+            return Err(Error::new(ErrorKind::Usage, "the spacing is varied apart from other keys")
+                .help("write  --dp 0.02,0.01"));
         }
         let frames = self
             .frames
@@ -76,7 +75,7 @@ impl ParameterGrid {
             }
         }
         match (0..jobs.len()).find(|&i| jobs[..i].iter().any(|job| job.name == jobs[i].name)) {
-            Some(i) => Err(Error::new(Kind::Usage, format!("two runs would be called {:?}", jobs[i].name))
+            Some(i) => Err(Error::new(ErrorKind::Usage, format!("two runs would be called {:?}", jobs[i].name))
                 .help("give each spacing and each value once")),
             None => Ok(jobs.into_iter().map(|job| job.repeated(self.repeat)).collect::<Result<Vec<_>>>()?.concat()),
         }
@@ -247,19 +246,19 @@ mod tests {
         assert_eq!(starts(&jobs)?, [None, Some(1e-6), Some(2e-6)]);
         assert_eq!(starts(&thrice(&[("scatter", "1e-3")])?)?, [1e-3, 1e-3 + 1e-6, 1e-3 + 2e-6].map(Some));
         let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
-        assert_eq!(refused(ParameterGrid { repeat: 0, ..grid(&[0.05], &[]) }), Some(Kind::Usage));
+        assert_eq!(refused(ParameterGrid { repeat: 0, ..grid(&[0.05], &[]) }), Some(ErrorKind::Usage));
         let varied = grid(&[0.05], &[("scatter", &["1e-7", "1e-6"])]);
-        assert_eq!(refused(ParameterGrid { repeat: 2, ..varied }), Some(Kind::Usage));
+        assert_eq!(refused(ParameterGrid { repeat: 2, ..varied }), Some(ErrorKind::Usage));
         Ok(())
     }
 
     #[test]
     fn what_is_given_twice_or_not_at_all_is_refused() {
         let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
-        assert_eq!(refused(grid(&[0.01, 0.01], &[])), Some(Kind::Usage));
-        assert_eq!(refused(grid(&[], &[])), Some(Kind::Usage));
-        assert_eq!(refused(grid(&[0.01], &[("dp", &["0.01", "0.02"])])), Some(Kind::Usage));
-        assert_eq!(refused(grid(&[0.01], &[("a", &["1", ""])])), Some(Kind::Usage));
+        assert_eq!(refused(grid(&[0.01, 0.01], &[])), Some(ErrorKind::Usage));
+        assert_eq!(refused(grid(&[], &[])), Some(ErrorKind::Usage));
+        assert_eq!(refused(grid(&[0.01], &[("dp", &["0.01", "0.02"])])), Some(ErrorKind::Usage));
+        assert_eq!(refused(grid(&[0.01], &[("a", &["1", ""])])), Some(ErrorKind::Usage));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Job, JobResult, JobState};
 use crate::{
     analysis::{ErrorMetrics, Verdict},
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
 };
 
 /// A run under one of its checks; a figure is none where it is not known.
@@ -137,7 +137,7 @@ fn with_verdict(row: ResultRow, verdict: &Verdict) -> ResultRow {
 /// # Errors
 /// `File` if the text cannot be made.
 pub fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
-    let broken = |why: csv::Error| Error::new(Kind::File, format!("the table cannot be made: {why}"));
+    let broken = |why: csv::Error| Error::new(ErrorKind::File, format!("the table cannot be made: {why}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head = ["run", "repeat", "dp_m"].map(String::from).to_vec();
     head.extend(keys.iter().cloned());
@@ -178,7 +178,7 @@ pub fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
         cells.extend([row.status.to_string(), row.reason.clone().unwrap_or_default().replace('\n', " ")]);
         writer.write_record(&cells).map_err(broken)?;
     }
-    writer.into_inner().map_err(|why| Error::new(Kind::File, format!("the table cannot be made: {why}")))
+    writer.into_inner().map_err(|why| Error::new(ErrorKind::File, format!("the table cannot be made: {why}")))
 }
 
 #[cfg(test)]

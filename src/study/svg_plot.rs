@@ -7,7 +7,7 @@ use plotters::{
     prelude::*,
 };
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// Colours that are told apart by everyone (Okabe & Ito), the dark ones first.
 const COLOURS: [RGBColor; 7] = [
@@ -115,7 +115,7 @@ fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
 
 fn draw(titles: [&str; 2], lines: &[PlotLine], x: PlotAxis, y: PlotAxis) -> Result<String> {
     let mut text = String::new();
-    let failed = |why: String| Error::new(Kind::File, format!("a plot cannot be drawn: {why}"));
+    let failed = |why: String| Error::new(ErrorKind::File, format!("a plot cannot be drawn: {why}"));
     {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         area.fill(&WHITE).map_err(|e| failed(e.to_string()))?;

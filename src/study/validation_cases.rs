@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::Job;
 use crate::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     plan::Score,
     scene::Scene,
 };
@@ -88,11 +88,11 @@ pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>>
     }
     let case = |name: &String| {
         all.iter().find(|case| case.name == *name).cloned().ok_or_else(|| {
-            let help = match nearest(name, all.iter().map(|case| case.name.as_str())) {
+            let help = match nearest_name(name, all.iter().map(|case| case.name.as_str())) {
                 Some(near) => format!("did you mean {near:?}? `pontoon validate --list` lists all"),
                 None => "`pontoon validate --list` lists all".into(),
             };
-            Error::new(Kind::Usage, format!("there is no case {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no case {name:?}")).help(help)
         })
     };
     names.iter().map(case).collect()

@@ -193,7 +193,8 @@ fn a_link_beside_the_scene_does_not_lead_out_of_its_folder() {
         try_out(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &bay)
     };
     assert!(
-        with("out.csv").is_err_and(|e| e.what.contains("\"out.csv\" is a link that leads out of the scene's folder"))
+        with("out.csv")
+            .is_err_and(|e| e.message.contains("\"out.csv\" is a link that leads out of the scene's folder"))
     );
     assert_eq!(with("within.csv"), Ok(()), "a link within the folder is as good as the file");
     std::fs::remove_dir_all(home).unwrap();

@@ -3,7 +3,7 @@
 use pontoon::{
     coupling::stiffest_frequency,
     math::Vector,
-    model::{Diffusion, Model, Scheme, Viscosity},
+    model::{Diffusion, Model, TimeScheme, Viscosity},
     simulation::Simulation,
     sph::viscosity::Laminar,
     time_integration::step_size,
@@ -11,10 +11,10 @@ use pontoon::{
 
 use crate::rig;
 
-const SCHEMES: [Scheme; 2] = [Scheme::Verlet { euler_every: 1_000_000 }, Scheme::Symplectic];
+const SCHEMES: [TimeScheme; 2] = [TimeScheme::Verlet { euler_every: 1_000_000 }, TimeScheme::Symplectic];
 
 /// A small drop that swings between round and flat, stepped by `dt` up to `until`.
-fn drop(scheme: Scheme, dt: f64, until: f64) -> Simulation<2> {
+fn drop(scheme: TimeScheme, dt: f64, until: f64) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.2);
     (model.scheme, model.cfl, model.dt_max) = (scheme, 1e3, dt);

@@ -5,7 +5,7 @@ use std::{f64::consts::TAU, path::Path};
 use pontoon::{
     Error,
     math::Vector,
-    model::{Dimension, Model, Scheme, Viscosity},
+    model::{Dimension, Model, TimeScheme, Viscosity},
     preflight::{self, Finding, GeneratedWave, Preflight},
     scene::{BuiltScene, DampingConfig, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, WaveConfig},
     simulation::{Setup, Simulation},
@@ -359,7 +359,7 @@ fn a_piston_makes_waves_of_the_height_that_was_asked_for() {
 #[test]
 fn a_damping_zone_slows_water_by_its_law_whatever_the_scheme() {
     let water = rig::lattice([0.0, 0.0], [0.4, 0.4], 0.05);
-    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
+    for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 50 }] {
         let mut model = Model::water(2, 0.05, 1.0);
         (model.c0, model.gravity, model.viscosity, model.scheme) = (20.0, vec![0.0, 0.0], Viscosity::None, scheme);
         let levels = vec![0.0; water.len()];

@@ -11,7 +11,7 @@ use super::{
     measurements::Measurements,
 };
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     run::{missing_dimension, thread_pool},
     simulation::Simulation,
@@ -91,7 +91,7 @@ impl CaseRun {
             }));
             trial.end = match end {
                 Ok(Ok(end)) => end,
-                Ok(Err(error)) if error.kind == Kind::Fault => CaseEnd::Stopped(one_line(&error)),
+                Ok(Err(error)) if error.kind == ErrorKind::Fault => CaseEnd::Stopped(one_line(&error)),
                 Ok(Err(error)) => CaseEnd::Refused(one_line(&error)),
                 Err(panic) => CaseEnd::Panicked(panic_message(panic.as_ref())),
             };
@@ -117,7 +117,7 @@ impl CaseRun {
         Dim<D>: Dimension<D>,
     {
         let built = case.scene.build::<D>()?;
-        let level = built.setup.levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let level = built.setup.surface_levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         // A rescue would move the border that is asked for.
         let tied = !built.setup.constraints.is_empty();
         let mut sim = Simulation::new(built.setup)?.without_rollback();
@@ -156,7 +156,7 @@ impl CaseRun {
 
 /// An error in one line.
 fn one_line(error: &Error) -> String {
-    error.what.lines().next().unwrap_or_default().into()
+    error.message.lines().next().unwrap_or_default().into()
 }
 
 fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {

@@ -9,8 +9,8 @@ use serde::Deserialize;
 
 use super::criteria::{Bound, Criteria, MotionBound, SolidBound};
 use crate::{
-    error::{Error, Kind, Result, nearest},
-    math::expression::Field,
+    error::{Error, ErrorKind, Result, nearest_name},
+    math::expression::ScalarField,
     output::checkpoint::fnv1a,
     scene::Scene,
 };
@@ -123,11 +123,11 @@ pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result
     let map = |name: &String| {
         all.iter().find(|map| map.name == *name).cloned().ok_or_else(|| {
             let list = "`pontoon stress --list` lists all";
-            let help = match nearest(name, all.iter().map(|map| map.name.as_str())) {
+            let help = match nearest_name(name, all.iter().map(|map| map.name.as_str())) {
                 Some(near) => format!("did you mean {near:?}? {list}"),
                 None => list.into(),
             };
-            Error::new(Kind::Usage, format!("there is no map {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no map {name:?}")).help(help)
         })
     };
     names.iter().map(map).collect()
@@ -164,7 +164,7 @@ impl StressMap {
         let here = |error: Error| error.at(self.file.clone(), None, format!("{} at {}", self.name, words.join(", ")));
         let fill = |text: &str| self.substituted(text, &values, 0).map_err(here);
         let scene = Scene::parse(&fill(&self.scene)?, Path::new(""), &[]).map_err(|mut error| {
-            error.what = format!("map {} at {}: {}", self.name, words.join(", "), error.what);
+            error.message = format!("map {} at {}: {}", self.name, words.join(", "), error.message);
             error
         })?;
         let judge = self.judge.clone().with_defaults(&self.default_criteria);
@@ -202,7 +202,7 @@ impl StressMap {
             return self.substituted(part, values, depth + 1);
         }
         let number = |i: usize| values.get(i).and_then(|value| number(value)).unwrap_or(f64::NAN);
-        let value = Field::<2>::parse(hole)?.at(&[number(0), number(1)].into());
+        let value = ScalarField::<2>::parse(hole)?.value_at(&[number(0), number(1)].into());
         if !value.is_finite() {
             let help = "a formula of x and y, the numbers along the axes, or the name of a part";
             return Err(Error::scene(format!("the hole \"{hole}\" is {value}")).help(help));
@@ -291,7 +291,7 @@ mod tests {
             assert!(case.criteria.energy.is_some() && case.criteria.walls.is_some(), "{}", case.map);
             // A refusal is an outcome too, as long as it says what to write.
             if let Err(error) = case.scene.plan() {
-                assert!(error.kind == Kind::Scene && error.help.is_some(), "{}: {error}", case.map);
+                assert!(error.kind == ErrorKind::Scene && error.help.is_some(), "{}: {error}", case.map);
             }
         }
         for map in &all {
