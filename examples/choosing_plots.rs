@@ -4,7 +4,7 @@
 
 use std::{error::Error, fs, path::Path};
 
-use pontoon::study::{Line, Style, curves, log_log};
+use pontoon::study::{LineStyle, PlotLine, line_plot, log_log_plot};
 use serde::Deserialize;
 
 /// Where the figures are, and the plots.
@@ -62,12 +62,12 @@ impl Sheet {
 impl Plot {
     /// The plot as SVG.
     pub fn svg(&self) -> pontoon::Result<String> {
-        let line = |(colour, of): (usize, &Curve)| Line {
+        let line = |(colour, of): (usize, &Curve)| PlotLine {
             labels: of.labels.clone(),
-            ..Line::new(colour, Style::Dotted, of.points.clone())
+            ..PlotLine::new(colour, LineStyle::Dotted, of.points.clone())
         };
-        let lines: Vec<Line> = self.lines.iter().enumerate().map(line).collect();
-        let draw = if self.log { log_log } else { curves };
+        let lines: Vec<PlotLine> = self.lines.iter().enumerate().map(line).collect();
+        let draw = if self.log { log_log_plot } else { line_plot };
         draw([&self.axes[0], &self.axes[1]], &lines)
     }
 }

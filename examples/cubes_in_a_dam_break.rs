@@ -5,7 +5,7 @@
 
 use pontoon::{
     Result,
-    probe::{Energy, Probe},
+    probe::{EnergyProbe, Probe},
     scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
@@ -36,15 +36,15 @@ fn main() -> Result<()> {
     let built = scene.build::<2>()?;
     let until = built.plan.until;
     let mut sim = Simulation::new(built.setup)?;
-    let energy = Energy::new(sim.system());
+    let energy = EnergyProbe::new(sim.system());
     let column = Probe::<2>::columns(&energy).iter().position(|name| name.starts_with("total")).unwrap_or_default();
 
-    let (start, mut least, mut made) = (energy.look(&sim)[column], f64::INFINITY, 0.0_f64);
+    let (start, mut least, mut made) = (energy.sample(&sim)[column], f64::INFINITY, 0.0_f64);
     let (mut fell, mut struck) = (None, 0.0_f64);
     let (mut height, mut weight) = (0.0, 0.0);
     while sim.time() < until {
         sim.step_to(until)?;
-        let now = energy.look(&sim)[column];
+        let now = energy.sample(&sim)[column];
         least = least.min(now);
         made = made.max(now - least);
         struck = sim.contacts().iter().map(|pair| pair.pressing).fold(struck, f64::max);

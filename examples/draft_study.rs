@@ -13,10 +13,10 @@ use std::f64::consts::TAU;
 
 use pontoon::{
     error::{Error, Result},
-    geometry::{Region, Shape, fill},
+    geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
     model::{Dimension, Model, Walls},
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     simulation::{Setup, Simulation},
     solid::{Dim, FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
 };
@@ -87,7 +87,7 @@ where
         let mut size = self.pool;
         size[D - 1] += 0.5 * HEIGHT;
         let tank = Shape::Tank { size, thickness: 4.0 * dp };
-        let region = Region { shape: Shape::Box { size: self.pool }, pose: Pose::at(self.pool * 0.5) };
+        let region = WaterRegion { shape: Shape::Box { size: self.pool }, pose: Pose::at(self.pool * 0.5) };
         let water = fill(&[region], &[(&tank, &Pose::identity()), (&self.shape, &pose)], dp)?.r;
         let solid = |name: &str, shape, pose, role| {
             let name = name.into();
@@ -106,14 +106,14 @@ where
         let water = sim.system().fluid().len() as f64 * self.dp().powi(D as i32);
         let pose = &sim.system().solids()[1].kinematics.pose;
         // The body covers less than half of the tank: each round halves the error at least.
-        (0..40).fold(water / area, |level, _| (water + self.shape.submerged(pose, level).0) / area)
+        (0..40).fold(water / area, |level, _| (water + self.shape.submerged_volume(pose, level).0) / area)
     }
 
     /// By how much (dp) the body lies too deep on the mean of the last period, by volume and by gauge.
     fn run(&self) -> Result<(f64, f64)> {
         let mut sim = self.simulation()?;
         let beside = 0.25 * (self.pool[0] - HEIGHT);
-        let gauge = Elevation::new(sim.system(), &[beside, 0.5 * self.pool[0]][..D - 1])?;
+        let gauge = ElevationProbe::new(sim.system(), &[beside, 0.5 * self.pool[0]][..D - 1])?;
         let period = TAU * (HEIGHT / G).sqrt();
         let mut mean = (0.0, 0.0);
         for i in 1..=READINGS {
@@ -127,7 +127,7 @@ where
                 Ok(equilibrium_height(&self.shape, &pose, self.body().mass, RHO0, level)? / self.dp())
             };
             mean.0 += too_deep(self.level(&sim))? / READINGS as f64;
-            mean.1 += too_deep(gauge.look(&sim)[0])? / READINGS as f64;
+            mean.1 += too_deep(gauge.sample(&sim)[0])? / READINGS as f64;
         }
         Ok(mean)
     }

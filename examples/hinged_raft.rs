@@ -36,7 +36,7 @@ fn raft(brake: f64) -> Scene {
         )
         .solid(pontoon("fore", 0.9))
         .solid(pontoon("aft", 1.2))
-        .joint(JointConfig::new("hinge", JointKindConfig::Hinge, ["fore", "aft"], [1.05, 0.25]).damped(brake))
+        .joint(JointConfig::new("hinge", JointKindConfig::Hinge, ["fore", "aft"], [1.05, 0.25]).with_damping(brake))
         .spring(mooring)
 }
 

@@ -8,7 +8,7 @@
 use cpu_time::ProcessTime;
 use pontoon::{
     Result,
-    probe::{Energy, Probe},
+    probe::{EnergyProbe, Probe},
     scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
@@ -30,9 +30,9 @@ fn main() -> Result<()> {
     println!("|---|---|---|---|---|---|---|");
     for count in [1, 10, 100, 1000].into_iter().filter(|&count| count <= most) {
         let (mut free, mut fixed) = (tank(water, count, true)?, tank(water, count, false)?);
-        let energy = Energy::new(free.system());
+        let energy = EnergyProbe::new(free.system());
         let column = Probe::<2>::columns(&energy).iter().position(|name| name.starts_with("total")).unwrap_or_default();
-        let total = |sim: &Simulation<2>| energy.look(sim)[column];
+        let total = |sim: &Simulation<2>| energy.sample(sim)[column];
         let (start, mut least, mut made) = (total(&free), f64::INFINITY, 0.0_f64);
         let mut cost = [0.0; 2];
         let before = free.time_spent();

@@ -9,7 +9,7 @@ use std::path::Path;
 use pontoon::{
     Result,
     geometry::Shape,
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     scene::Scene,
     simulation::Simulation,
 };
@@ -28,7 +28,7 @@ fn main() -> Result<()> {
     let hull = find(&sim).unwrap_or_default();
     let start = sim.system().solids()[hull].kinematics.pose.position[2];
     if let Shape::Mesh { mesh, .. } = &sim.system().solids()[hull].spec.shape {
-        let volume = mesh.volume();
+        let volume = mesh.volume_properties();
         println!(
             "{} facets, {:.6} m³, centroid {:.4} m above the waterline",
             mesh.facets().len(),
@@ -37,14 +37,14 @@ fn main() -> Result<()> {
         );
     }
     // Water beside the hull, halfway to the wall; means over the second half.
-    let gauge = Elevation::new(sim.system(), &[0.3, 0.1])?;
+    let gauge = ElevationProbe::new(sim.system(), &[0.3, 0.1])?;
     let (mut draft, mut weight) = (0.0, 0.0);
     let still = 0.42;
     while sim.time() < until {
         sim.step_to(until)?;
         if sim.time() > 0.5 * until {
             let height = sim.system().solids()[hull].kinematics.pose.position[2];
-            draft += (gauge.look(&sim)[0] - height - KEEL) * sim.dt();
+            draft += (gauge.sample(&sim)[0] - height - KEEL) * sim.dt();
             weight += sim.dt();
         }
     }

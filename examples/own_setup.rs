@@ -8,10 +8,10 @@ use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    geometry::{Region, Shape, fill},
+    geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
     model::{Model, Viscosity},
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     simulation::{Setup, Simulation},
     solid::{Role, SolidSpec},
     sph::viscosity::Artificial,
@@ -36,11 +36,11 @@ fn main() -> Result<()> {
     sim.update_rates();
 
     // Where the level at the left passes its start on the way down, half a period is over.
-    let gauge = Elevation::new(sim.system(), &[0.1])?;
+    let gauge = ElevationProbe::new(sim.system(), &[0.1])?;
     let (mut before, mut highest) = ((0.0, 0.0), 0.0_f64);
     let half = loop {
         sim.step()?;
-        let now = (sim.time(), gauge.look(&sim)[1]);
+        let now = (sim.time(), gauge.sample(&sim)[1]);
         highest = highest.max(now.1);
         if highest > 0.005 && now.1 <= 0.0 {
             break before.0 + (now.0 - before.0) * before.1 / (before.1 - now.1);
@@ -71,7 +71,7 @@ fn setup() -> Result<Setup<2>> {
     };
     // The frame of a box is its middle.
     let size = Vector::from(SIZE);
-    let region = Region { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
+    let region = WaterRegion { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
     let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
     let levels = vec![SIZE[1]; water.len()];
     Ok(Setup::new(model, water, levels, vec![tank]))

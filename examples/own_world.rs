@@ -6,7 +6,7 @@
 
 use pontoon::{
     Result,
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     scene::{Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
     solid::rapier2d::{self, rapier::prelude::*},
@@ -24,7 +24,7 @@ const DEPTH: f64 = 0.2;
 fn main() -> Result<()> {
     let (mut world, raft, load) = world();
     let mut water = water(&world, raft)?;
-    let gauge = Elevation::new(water.system(), &[0.15])?;
+    let gauge = ElevationProbe::new(water.system(), &[0.15])?;
 
     let until = 3.0;
     let (mut drafts, mut weights) = ([0.0; 2], [0.0; 2]);
@@ -44,7 +44,7 @@ fn main() -> Result<()> {
         let which = usize::from(time > 0.8);
         if (0.3..0.8).contains(&time) || time > until - 1.0 {
             let bottom = world.bodies[raft].translation().y - 0.5 * SIZE[1];
-            drafts[which] += (gauge.look(&water)[0] - bottom) * water.dt();
+            drafts[which] += (gauge.sample(&water)[0] - bottom) * water.dt();
             weights[which] += water.dt();
         }
     }

@@ -7,7 +7,7 @@
 use pontoon::{
     Result,
     math::Vector,
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
 };
@@ -28,10 +28,10 @@ fn main() -> Result<()> {
     let built = scene.build::<2>()?;
     let until = built.plan.until;
     let mut sim = Simulation::new(built.setup)?;
-    let gauge = Elevation::new(sim.system(), &[0.15])?;
+    let gauge = ElevationProbe::new(sim.system(), &[0.15])?;
     let raft = pontoon::probe::find_solid(sim.system(), "raft")?;
     let draft =
-        |sim: &Simulation<2>| gauge.look(sim)[0] - (sim.system().solids()[raft].kinematics.centre[1] - 0.5 * SIZE[1]);
+        |sim: &Simulation<2>| gauge.sample(sim)[0] - (sim.system().solids()[raft].kinematics.centre[1] - 0.5 * SIZE[1]);
     // First it finds its own draft.
     while sim.time() < 0.5 {
         sim.step_to(0.5)?;

@@ -8,7 +8,7 @@ use pontoon::{
     Result,
     geometry::Shape,
     math::{Pose, Vector},
-    probe::{Elevation, Probe},
+    probe::{ElevationProbe, Probe},
     scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
     solid::{FreeBody, Role, SolidSpec},
@@ -45,7 +45,7 @@ fn main() -> Result<()> {
     let built = scene.build::<2>()?;
     let (start, until) = (0.5, built.plan.until);
     let mut sim = Simulation::new(built.setup)?;
-    let gauge = Elevation::new(sim.system(), &[0.4])?;
+    let gauge = ElevationProbe::new(sim.system(), &[0.4])?;
 
     // Means over the second half.
     let (mut drafts, mut levels, mut weight) = ([0.0; BLOCKS.len()], 0.0, 0.0);
@@ -54,7 +54,7 @@ fn main() -> Result<()> {
         if sim.time() < start {
             continue;
         }
-        let level = gauge.look(&sim)[0];
+        let level = gauge.sample(&sim)[0];
         for (draft, (name, ..)) in drafts.iter_mut().zip(BLOCKS) {
             let block = sim.system().solids().iter().find(|s| s.spec.name == name);
             let height = block.map_or(f64::NAN, |s| s.kinematics.centre[1]);
@@ -87,13 +87,13 @@ fn exchange(mut sim: Simulation<2>, before: f64) -> Result<()> {
 
     // The water closes over the oak's place with a splash; the mean is over a whole swing after it.
     let gauges: Vec<_> =
-        [0.8, 0.9, 1.0, 1.1].map(|x| Elevation::new(sim.system(), &[x])).into_iter().collect::<Result<_>>()?;
+        [0.8, 0.9, 1.0, 1.1].map(|x| ElevationProbe::new(sim.system(), &[x])).into_iter().collect::<Result<_>>()?;
     let (from, until) = (2.5, 2.5 + SLOSH);
     let mut levels = 0.0;
     while sim.time() < until {
         sim.step_to(until)?;
         if sim.time() > from {
-            let level: f64 = gauges.iter().map(|gauge| gauge.look(&sim)[0]).sum();
+            let level: f64 = gauges.iter().map(|gauge| gauge.sample(&sim)[0]).sum();
             levels += level / gauges.len() as f64 * sim.dt();
         }
     }

@@ -5,7 +5,7 @@
 
 use pontoon::{
     Result,
-    scene::{JointConfig, JointKindConfig, PartConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
+    scene::{CompoundPartConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
     solid::{Law, Motor},
 };
@@ -25,8 +25,8 @@ const TURNING: f64 = 5.0;
 /// How long, s.
 const UNTIL: f64 = 3.0;
 
-fn part(size: [f64; 2], at: [f64; 2]) -> PartConfig {
-    PartConfig { shape: ShapeConfig::cuboid(size), at: Some(PlacementConfig::point(&at)) }
+fn part(size: [f64; 2], at: [f64; 2]) -> CompoundPartConfig {
+    CompoundPartConfig { shape: ShapeConfig::cuboid(size), at: Some(PlacementConfig::point(&at)) }
 }
 
 /// The boat afloat in the middle of the pool; its frame is at the water's surface.

@@ -13,10 +13,10 @@ use cpu_time::ProcessTime;
 use serde::Serialize;
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
-    run::{looks, outputs, pool},
-    scene::{Built, Scene},
+    run::{outputs, probe_factory, thread_pool},
+    scene::{BuiltScene, Scene},
     simulation::{Simulation, TimeSpent},
     solid::Dim,
 };
@@ -29,7 +29,7 @@ const DEPTH: f64 = 0.6;
 
 /// One work: so many particles of water, and what else the scene says.
 #[derive(Clone, Debug)]
-pub struct Work {
+pub struct BenchCase {
     /// What it is called.
     pub name: String,
     /// 2 or 3.
@@ -37,20 +37,20 @@ pub struct Work {
     /// Water particles, about.
     pub water: usize,
     /// Keys of the scene that differ from the standard model.
-    pub sets: Vec<(&'static str, &'static str)>,
+    pub overrides: Vec<(&'static str, &'static str)>,
     /// Whether a box floats in it.
-    pub body: bool,
+    pub with_body: bool,
     /// What watches it: entries of a scene.
-    pub watched: String,
+    pub probes_toml: String,
     /// How much longer the tank is than the standard one, all of it dry: 1 or more.
     pub dry: f64,
     /// Simulated before the timing, in units of √(depth/g).
-    pub until: f64,
+    pub spin_up: f64,
 }
 
 /// What a timing gave.
 #[derive(Clone, Debug, Serialize)]
-pub struct Timing {
+pub struct BenchTiming {
     /// Name of the work.
     pub work: String,
     /// Dimensions.
@@ -87,16 +87,25 @@ pub struct Timing {
     pub peak_bytes: f64,
 }
 
-impl Work {
+impl BenchCase {
     /// The standard work with the standard model.
     pub fn standard(dimension: usize, water: usize) -> Self {
         let (sets, watched) = (Vec::new(), String::new());
-        Self { name: "wendland".into(), dimension, water, sets, body: false, watched, dry: 1.0, until: 0.0 }
+        Self {
+            name: "wendland".into(),
+            dimension,
+            water,
+            overrides: sets,
+            with_body: false,
+            probes_toml: watched,
+            dry: 1.0,
+            spin_up: 0.0,
+        }
     }
 
     /// The same under another name with other keys of the scene.
-    pub fn with(&self, name: &str, sets: &[(&'static str, &'static str)]) -> Self {
-        Self { name: name.into(), sets: sets.to_vec(), ..self.clone() }
+    pub fn with_overrides(&self, name: &str, sets: &[(&'static str, &'static str)]) -> Self {
+        Self { name: name.into(), overrides: sets.to_vec(), ..self.clone() }
     }
 
     /// Particle spacing, m: a whole number of them in a metre.
@@ -119,10 +128,10 @@ impl Work {
              water = [{{ fill = {{ box = {{ min = {origin:?}, max = {pool:?} }} }} }}]
              [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = {tank:?} }} }}\n",
             self.dimension,
-            if self.watched.contains("[frames]") { "" } else { "frames = \"off\"" },
+            if self.probes_toml.contains("[frames]") { "" } else { "frames = \"off\"" },
             3f64.sqrt(),
         );
-        if self.body {
+        if self.with_body {
             let axes = ["x = ", "y = ", "z = "];
             let middle = if self.dimension == 2 { vec![0.4, DEPTH] } else { vec![0.4, 0.5, DEPTH] };
             let at: Vec<String> = axes.iter().zip(&middle).map(|(axis, x)| format!("{axis}{:?}", cells(*x))).collect();
@@ -133,8 +142,8 @@ impl Work {
                 at.join(", ")
             );
         }
-        text += &self.watched;
-        let sets: Vec<_> = self.sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+        text += &self.probes_toml;
+        let sets: Vec<_> = self.overrides.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
         Scene::parse(&text, Path::new(""), &sets)
     }
 }
@@ -144,14 +153,14 @@ impl Work {
 ///
 /// # Errors
 /// Whatever stops a simulation, and `Usage` if threads cannot be had.
-pub fn time(works: &[Work], threads: &[usize], rounds: usize) -> Result<Vec<Timing>> {
-    let pools = threads.iter().map(|&n| Ok((n, pool(Some(n))?))).collect::<Result<Vec<_>>>()?;
+pub fn time(works: &[BenchCase], threads: &[usize], rounds: usize) -> Result<Vec<BenchTiming>> {
+    let pools = threads.iter().map(|&n| Ok((n, thread_pool(Some(n))?))).collect::<Result<Vec<_>>>()?;
     let Some((_, largest)) = pools.iter().max_by_key(|(n, _)| n) else { return Ok(Vec::new()) };
-    let mut ready = largest.install(|| works.iter().map(ready_in).collect::<Result<Vec<_>>>())?;
+    let mut ready = largest.install(|| works.iter().map(prepare).collect::<Result<Vec<_>>>())?;
     let mut timings = Vec::new();
     for (threads, pool) in &pools {
         timings.extend(pool.install(|| {
-            let mut best: Vec<Option<Timing>> = vec![None; works.len()];
+            let mut best: Vec<Option<BenchTiming>> = vec![None; works.len()];
             for _ in 0..rounds {
                 for (ready, best) in ready.iter_mut().zip(&mut best) {
                     let timing = ready.time(*threads)?;
@@ -167,25 +176,25 @@ pub fn time(works: &[Work], threads: &[usize], rounds: usize) -> Result<Vec<Timi
 }
 
 /// A work made ready, whatever its dimension.
-trait Timed: Send {
+trait TimedCase: Send {
     fn step(&mut self) -> Result<()>;
-    fn time(&mut self, threads: usize) -> Result<Timing>;
+    fn time(&mut self, threads: usize) -> Result<BenchTiming>;
 }
 
-fn ready_in(work: &Work) -> Result<Box<dyn Timed>> {
+fn prepare(work: &BenchCase) -> Result<Box<dyn TimedCase>> {
     match work.dimension {
         #[cfg(feature = "dim2")]
-        2 => Ok(Box::new(Ready::<2>::new(work)?)),
+        2 => Ok(Box::new(PreparedCase::<2>::new(work)?)),
         #[cfg(feature = "dim3")]
-        3 => Ok(Box::new(Ready::<3>::new(work)?)),
-        n => Err(Error::new(Kind::Usage, format!("this program was built without {n}-D"))),
+        3 => Ok(Box::new(PreparedCase::<3>::new(work)?)),
+        n => Err(Error::new(ErrorKind::Usage, format!("this program was built without {n}-D"))),
     }
 }
 
-struct Ready<const D: usize> {
+struct PreparedCase<const D: usize> {
     sim: Simulation<D>,
     /// What is watched, and the folder for it.
-    outputs: Option<(outputs::Outputs<D>, Folder)>,
+    outputs: Option<(outputs::Outputs<D>, TemporaryFolder)>,
     name: String,
     setup_s: f64,
     peak: f64,
@@ -193,26 +202,26 @@ struct Ready<const D: usize> {
 }
 
 /// A folder that goes when it is dropped.
-struct Folder(PathBuf);
+struct TemporaryFolder(PathBuf);
 
-impl Drop for Folder {
+impl Drop for TemporaryFolder {
     fn drop(&mut self) {
         // What stays lies among temporary files: the system's business.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
-impl<const D: usize> Ready<D>
+impl<const D: usize> PreparedCase<D>
 where
     Dim<D>: Dimension<D>,
 {
-    fn new(work: &Work) -> Result<Self> {
-        forget_peak();
+    fn new(work: &BenchCase) -> Result<Self> {
+        reset_peak_memory();
         let start = Instant::now();
-        let Built { setup, plan, .. } = work.scene()?.build::<D>()?;
+        let BuiltScene { setup, plan, .. } = work.scene()?.build::<D>()?;
         let mut sim = Simulation::new(setup)?;
         let setup_s = start.elapsed().as_secs_f64();
-        let until = work.until * (DEPTH / 9.81).sqrt();
+        let until = work.spin_up * (DEPTH / 9.81).sqrt();
         for _ in 0..3 {
             sim.step()?;
         }
@@ -220,36 +229,39 @@ where
             sim.step()?;
         }
         let peak = peak_memory();
-        let outputs = if work.watched.is_empty() {
+        let outputs = if work.probes_toml.is_empty() {
             None
         } else {
             let name = work.name.replace([' ', ','], "-");
             let name = format!("pontoon-bench-{}-{D}d-{name}", std::process::id());
-            let folder = Folder(std::env::temp_dir().join(name));
-            Some((outputs::Outputs::new(&plan, looks::probes(&plan, &mut sim)?, &folder.0, None)?, folder))
+            let folder = TemporaryFolder(std::env::temp_dir().join(name));
+            Some((
+                outputs::Outputs::new(&plan, probe_factory::probes_from_plan(&plan, &mut sim)?, &folder.0, None)?,
+                folder,
+            ))
         };
         let system = sim.system();
         let mut pairs = 0usize;
         for (i, r) in system.fluid().r.iter().enumerate() {
-            system.water_near(r, &mut |j, _, _| pairs += usize::from(j != i));
+            system.visit_fluid_near(r, &mut |j, _, _| pairs += usize::from(j != i));
             // A pair with a boundary particle is seen from it as well.
-            system.boundary_near(r, &mut |_, _, _| pairs += 2);
+            system.visit_boundary_near(r, &mut |_, _, _| pairs += 2);
         }
         let pairs = pairs as f64 / (system.fluid().len() + system.boundary_near_fluid_count()) as f64;
         Ok(Self { sim, outputs, name: work.name.clone(), setup_s, peak, pairs })
     }
 }
 
-impl<const D: usize> Timed for Ready<D> {
+impl<const D: usize> TimedCase for PreparedCase<D> {
     fn step(&mut self) -> Result<()> {
         self.sim.step()?;
         if let Some((outputs, _)) = &mut self.outputs {
-            outputs.look(&self.sim)?;
+            outputs.write_due(&self.sim)?;
         }
         Ok(())
     }
 
-    fn time(&mut self, threads: usize) -> Result<Timing> {
+    fn time(&mut self, threads: usize) -> Result<BenchTiming> {
         let (before, cpu, start) = (self.sim.time_spent(), ProcessTime::try_now().ok(), Instant::now());
         let mut steps = 0;
         while start.elapsed().as_secs_f64() < LASTS || steps < 3 {
@@ -266,7 +278,7 @@ impl<const D: usize> Timed for Ready<D> {
         let system = self.sim.system();
         let (water, wet) = (system.fluid().len(), system.boundary_near_fluid_count());
         let particle_steps = (steps * (water + wet)) as f64;
-        Ok(Timing {
+        Ok(BenchTiming {
             work: self.name.clone(),
             dimension: D,
             threads,
@@ -289,40 +301,40 @@ impl<const D: usize> Timed for Ready<D> {
 }
 
 /// The laws and other things that a scene may name, each against the standard work (the first).
-pub fn terms(dimension: usize, water: usize) -> Vec<Work> {
-    let base = Work::standard(dimension, water);
+pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> {
+    let base = BenchCase::standard(dimension, water);
     let mut works = vec![
         base.clone(),
-        base.with("without viscosity", &[("model.viscosity", "none")]),
-        base.with("without diffusion", &[("model.diffusion", "none")]),
-        base.with("without both", &[("model.viscosity", "none"), ("model.diffusion", "none")]),
-        base.with("molteni", &[("model.diffusion", "molteni")]),
-        base.with("laminar", &[("model.viscosity", "laminar")]),
-        base.with("sps", &[("model.viscosity", "sps")]),
-        base.with("shifting", &[("model.shifting", "away_from_solids")]),
-        base.with("corrected gradients", &[("model.gradient", "corrected")]),
-        base.with("sps, shifting", &[("model.viscosity", "sps"), ("model.shifting", "away_from_solids")]),
-        base.with("cubic", &[("model.kernel", "{ cubic = { tensile = false } }")]),
-        base.with("cubic, tensile", &[("model.kernel", "cubic")]),
-        base.with("symplectic", &[("time.scheme", "symplectic")]),
+        base.with_overrides("without viscosity", &[("model.viscosity", "none")]),
+        base.with_overrides("without diffusion", &[("model.diffusion", "none")]),
+        base.with_overrides("without both", &[("model.viscosity", "none"), ("model.diffusion", "none")]),
+        base.with_overrides("molteni", &[("model.diffusion", "molteni")]),
+        base.with_overrides("laminar", &[("model.viscosity", "laminar")]),
+        base.with_overrides("sps", &[("model.viscosity", "sps")]),
+        base.with_overrides("shifting", &[("model.shifting", "away_from_solids")]),
+        base.with_overrides("corrected gradients", &[("model.gradient", "corrected")]),
+        base.with_overrides("sps, shifting", &[("model.viscosity", "sps"), ("model.shifting", "away_from_solids")]),
+        base.with_overrides("cubic", &[("model.kernel", "{ cubic = { tensile = false } }")]),
+        base.with_overrides("cubic, tensile", &[("model.kernel", "cubic")]),
+        base.with_overrides("symplectic", &[("time.scheme", "symplectic")]),
     ];
-    let named = |name: &str| base.with(name, &[]);
+    let named = |name: &str| base.with_overrides(name, &[]);
     works.extend([
-        Work { body: true, ..named("a floating box") },
-        Work { dry: 2.0, ..named("twice the tank, dry") },
-        Work { dry: 4.0, ..named("four times the tank, dry") },
+        BenchCase { with_body: true, ..named("a floating box") },
+        BenchCase { dry: 2.0, ..named("twice the tank, dry") },
+        BenchCase { dry: 4.0, ..named("four times the tank, dry") },
     ]);
     let place = if dimension == 2 { "[0.4, 0.1]" } else { "[0.4, 0.5, 0.1]" };
     let surface = if dimension == 2 { "{ x = 0.4 }" } else { "{ x = 0.4, y = 0.5 }" };
     let probes =
         [("force", "\"tank\""), ("energy", "true"), ("elevation", surface), ("velocity", place), ("pressure", place)];
-    works.extend(probes.map(|(kind, what)| Work {
-        watched: format!("[[probe]]\n{kind} = {what}\nevery = 1e-9\n"),
+    works.extend(probes.map(|(kind, what)| BenchCase {
+        probes_toml: format!("[[probe]]\n{kind} = {what}\nevery = 1e-9\n"),
         ..named(&format!("{kind} at every step"))
     }));
     // As many steps, if the speed of sound alone limits them.
     let steps = 20.0 * 0.2 * 3f64.sqrt() * base.dp() / (20.0 * (9.81 * DEPTH).sqrt());
-    works.push(Work { watched: format!("[frames]\nevery = {steps:?}\n"), ..named("a frame every 20 steps") });
+    works.push(BenchCase { probes_toml: format!("[frames]\nevery = {steps:?}\n"), ..named("a frame every 20 steps") });
     works
 }
 
@@ -331,15 +343,15 @@ pub fn terms(dimension: usize, water: usize) -> Vec<Work> {
 ///
 /// # Errors
 /// `Usage` if there is no such work, and whatever stops a simulation.
-pub fn fixed(steps: usize, name: &str) -> Result<()> {
-    let work = |dimension| terms(dimension, 3000).into_iter().find(|w| w.name == name);
+pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> {
+    let work = |dimension| term_cases(dimension, 3000).into_iter().find(|w| w.name == name);
     let (Some(plane), Some(space)) = (work(2), work(3)) else {
-        let names: Vec<String> = terms(2, 3000).into_iter().map(|w| w.name).collect();
-        return Err(Error::new(Kind::Usage, format!("no work {name:?}; there are {}", names.join("; "))));
+        let names: Vec<String> = term_cases(2, 3000).into_iter().map(|w| w.name).collect();
+        return Err(Error::new(ErrorKind::Usage, format!("no work {name:?}; there are {}", names.join("; "))));
     };
-    pool(Some(1))?.install(|| {
-        let mut plane = ready_in(&plane)?;
-        let mut space = ready_in(&space)?;
+    thread_pool(Some(1))?.install(|| {
+        let mut plane = prepare(&plane)?;
+        let mut space = prepare(&space)?;
         (0..steps).try_for_each(|_| {
             plane.step()?;
             space.step()
@@ -355,6 +367,6 @@ fn peak_memory() -> f64 {
 }
 
 /// Lets the largest memory begin anew, where the system can: elsewhere it is that of the whole program.
-fn forget_peak() {
+fn reset_peak_memory() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }

@@ -6,13 +6,13 @@
 mod bench;
 mod export;
 mod inspect;
-mod journal;
-mod page;
+mod json_log;
+mod report_page;
 mod progress;
-mod report;
+mod console_text;
 mod run;
-mod shelf;
-mod stats;
+mod scene_lookup;
+mod statistics;
 mod stress;
 mod study;
 mod validate;
@@ -29,7 +29,7 @@ use std::{
 };
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use pontoon::error::{Error, Kind, Result};
+use pontoon::error::{Error, ErrorKind, Result};
 
 /// Rigid bodies that float, collide and are driven in water.
 #[derive(Parser)]
@@ -130,7 +130,7 @@ Examples:
   pontoon report runs/raft --png raft.png --time 1.2
   pontoon report runs/raft --png raft.png --time 0.5,1,1.5 --by speed --range 0,1.5
 `run` and `resume` write the page at their end. It needs no network and no server.")]
-    Report(page::ReportArgs),
+    Report(report_page::ReportArgs),
     /// Lay several runs over one another: a page with their players side by side, or a picture
     #[command(after_help = "\
 Examples:
@@ -138,7 +138,7 @@ Examples:
   pontoon compare runs/plain runs/delta runs/shifted --png fields.png --time 0.5,1.0
 Players go at equal times, with equal colours; pictures have a column for each run and a row for
 each time.")]
-    Compare(page::CompareArgs),
+    Compare(report_page::CompareArgs),
     /// Write the series of a run for other programs
     #[command(after_help = "\
 Examples:
@@ -181,7 +181,7 @@ Examples:
 A run writes them at its end, to statistics.csv; [[statistic]] in the scene asks for more. H_third
 is the mean of the highest third of the waves, H_m0 four standard deviations. How motions answer
 irregular waves over frequency, as in rao.csv, is the last table, or with --rao the only one.")]
-    Stats(stats::StatsArgs),
+    Stats(statistics::StatsArgs),
     /// List the scenes that come with the program
     Scenes,
     /// Time standard works on this machine: particle-steps per second, where a step goes, memory
@@ -206,13 +206,13 @@ struct SceneArgs {
     #[arg(long, value_name = "SWEEP")]
     sweep: Option<String>,
     /// Change a key of the scene; may be given several times
-    #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_value)]
     set: Vec<(String, String)>,
 }
 
 impl SceneArgs {
     /// The scene keys that the arguments change.
-    fn sets(&self) -> Vec<(String, String)> {
+    fn overrides(&self) -> Vec<(String, String)> {
         let mut sets = self.set.clone();
         sets.extend(self.dp.map(|dp| ("dp".into(), format!("{dp:?}"))));
         sets.extend(self.until.map(|until| ("until".into(), format!("{until:?}"))));
@@ -222,7 +222,7 @@ impl SceneArgs {
 }
 
 /// `key=value` as a pair.
-fn pair(text: &str) -> std::result::Result<(String, String), String> {
+fn key_value(text: &str) -> std::result::Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
         _ => Err("write key=value, as in --set model.h_over_dp=1.7".into()),
@@ -231,58 +231,58 @@ fn pair(text: &str) -> std::result::Result<(String, String), String> {
 
 /// Parses, obeys, and says how it went.
 pub fn main() -> ExitCode {
-    match obey(Cli::parse().command) {
+    match dispatch(Cli::parse().command) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            complain(&format!("error: {error}\n"));
-            ExitCode::from(code(&error))
+            print_error(&format!("error: {error}\n"));
+            ExitCode::from(exit_code(&error))
         }
     }
 }
 
 /// The exit code of an error.
-fn code(error: &Error) -> u8 {
-    if error.kind == Kind::Fault { 1 } else { 2 }
+fn exit_code(error: &Error) -> u8 {
+    if error.kind == ErrorKind::Fault { 1 } else { 2 }
 }
 
-fn obey(command: Command) -> Result<u8> {
+fn dispatch(command: Command) -> Result<u8> {
     match command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => run::resume(&args),
         Command::Inspect(args) => {
-            say(&inspect::inspect(&args)?);
+            print_output(&inspect::inspect(&args)?);
             Ok(0)
         }
         Command::Validate(args) => validate::validate(args),
         Command::Study(args) => study::study(args),
         Command::Stress(args) => stress::stress(args),
         Command::Bench(args) => {
-            say(&bench::bench(&args)?);
+            print_output(&bench::bench(&args)?);
             Ok(0)
         }
-        Command::Report(args) => page::report(&args),
-        Command::Compare(args) => page::compare(&args),
+        Command::Report(args) => report_page::report(&args),
+        Command::Compare(args) => report_page::compare(&args),
         Command::Export(args) => {
-            say(&export::export(&args)?);
+            print_output(&export::export(&args)?);
             Ok(0)
         }
         Command::Watch(args) => watch::watch(&args),
         Command::Schema => {
-            say(&format!("{:#}\n", pontoon::scene::schema()));
+            print_output(&format!("{:#}\n", pontoon::scene::schema()));
             Ok(0)
         }
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "pontoon", &mut text);
-            say(&String::from_utf8_lossy(&text));
+            print_output(&String::from_utf8_lossy(&text));
             Ok(0)
         }
         Command::Stats(args) => {
-            say(&stats::stats(&args)?);
+            print_output(&statistics::stats(&args)?);
             Ok(0)
         }
         Command::Scenes => {
-            say(&report::shelf(&shelf::all()));
+            print_output(&console_text::scene_list(&scene_lookup::scene_infos()));
             Ok(0)
         }
     }
@@ -296,31 +296,32 @@ fn command_line() -> String {
 }
 
 /// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
-fn stopper() -> Result<Arc<AtomicBool>> {
-    stopper_saying("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n")
+fn interrupt_flag() -> Result<Arc<AtomicBool>> {
+    interrupt_flag_with_message("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n")
 }
 
 /// As [`stopper`], in these words.
-fn stopper_saying(words: &'static str) -> Result<Arc<AtomicBool>> {
+fn interrupt_flag_with_message(words: &'static str) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = flag.clone();
     let handler = move || {
         if raised.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        complain(words);
+        print_error(words);
     };
-    ctrlc::set_handler(handler).map_err(|why| Error::new(Kind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
+    ctrlc::set_handler(handler)
+        .map_err(|why| Error::new(ErrorKind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
     Ok(flag)
 }
 
 /// Prints results. A reader who has gone, as `head` does, is no reason to fail.
-fn say(text: &str) {
+fn print_output(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
 /// Prints what is not a result: progress, warnings, errors.
-fn complain(text: &str) {
+fn print_error(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
@@ -338,7 +339,7 @@ mod tests {
         let words = ["pontoon", "run", "raft", "--set", "a.b = [1, 2]", "--dp", "0.02", "--until", "3"];
         let Ok(Cli { command: Command::Run(args) }) = Cli::try_parse_from(words) else { panic!("is a run") };
         let pairs = [("a.b", "[1, 2]"), ("dp", "0.02"), ("until", "3.0")];
-        assert_eq!(args.scene.sets(), pairs.map(|(k, v)| (k.to_string(), v.to_string())));
+        assert_eq!(args.scene.overrides(), pairs.map(|(k, v)| (k.to_string(), v.to_string())));
         assert!(Cli::try_parse_from(["pontoon", "run", "raft", "--set", "dp"]).is_err());
     }
 }

@@ -42,4 +42,4 @@ pub use error::{Error, Result};
 #[cfg(doctest)]
 #[doc = include_str!("../docs/coupling.md")]
 #[doc = include_str!("../docs/scene.md")]
-pub struct Book;
+pub struct DocumentedPrograms;

@@ -1,6 +1,6 @@
 //! The chosen laws, as data; the one place where a name becomes a type.
 
-pub use crate::sph::boundary::Slip;
+pub use crate::sph::{boundary::Slip, density_diffusion::Diffusion, viscosity::Viscosity};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,19 +15,19 @@ use crate::{
         FluidProperties, Term, Units,
         boundary::Repulsion,
         continuity::Continuity,
-        density_diffusion::{Fourtakas, Molteni},
-        gradient_correction::{CorrectedGradient, RenormalizationMatrix},
+        density_diffusion::Fourtakas,
+        gradient_correction::{CorrectedGradientTerm, RenormalizationTerm},
         kernel::{self, Kernel as _, SUPPORT_RATIO},
         particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
-        viscosity::{Artificial, Laminar, Sps},
+        viscosity::{Artificial, TermConsumer},
     },
 };
 
 /// Which kernel weighs the neighbours. Scene word `model.kernel`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Kernel {
+pub enum KernelKind {
     /// Cubic spline (Monaghan & Lattanzio 1985), by default with Monaghan's (2000) tensile correction.
     Cubic {
         /// Whether the tensile correction is on.
@@ -42,41 +42,15 @@ fn yes() -> bool {
     true
 }
 
-/// Which viscosity acts. Scene word `model.viscosity`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Viscosity {
-    /// None: the ideal fluid.
-    None,
-    /// Monaghan's artificial viscosity.
-    Artificial(Artificial),
-    /// Laminar (Lo & Shao 2002; Morris 1997).
-    Laminar(Laminar),
-    /// Laminar with sub-particle-scale turbulence (Dalrymple & Rogers 2006).
-    Sps(Sps),
-}
-
 /// Which slope the pressure has. Scene word `model.gradient`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Gradient {
+pub enum PressureGradient {
     /// By the kernel's gradient as it is.
     #[default]
     Plain,
     /// Corrected by how the neighbours of each particle lie (Bonet & Lok 1999); with the Wendland kernel and no shifting.
     Corrected,
-}
-
-/// Which density diffusion acts. Scene word `model.diffusion`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Diffusion {
-    /// None.
-    None,
-    /// Molteni & Colagrossi (2009).
-    Molteni(Molteni),
-    /// Fourtakas et al. (2019): the hydrostatic part of the density difference is left alone.
-    Fourtakas(Fourtakas),
 }
 
 /// Which particles are shifted. Scene word `model.shifting`.
@@ -91,6 +65,17 @@ pub enum Shifting {
     AwayFromFixed(Shift),
     /// All (type 3).
     Everywhere(Shift),
+}
+
+impl Shifting {
+    /// Whether water is not shifted beside a solid, which is `fixed` or not.
+    pub fn suppressed_beside(self, fixed: bool) -> bool {
+        match self {
+            Self::AwayFromSolids(_) => true,
+            Self::AwayFromFixed(_) => fixed,
+            Self::None | Self::Everywhere(_) => false,
+        }
+    }
 }
 
 /// Which sweep adds up the pairs. Scene word `model.sweep`.
@@ -129,7 +114,7 @@ pub enum Walls {
 /// Which scheme advances time. Scene word `time.scheme`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Scheme {
+pub enum TimeScheme {
     /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.
     Verlet {
         /// Steps from one Euler step to the next.
@@ -148,7 +133,7 @@ fn fifty() -> u32 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// Kernel.
-    pub kernel: Kernel,
+    pub kernel: KernelKind,
     /// Smoothing length h, m.
     pub h: f64,
     /// Particle spacing dp, m.
@@ -163,7 +148,7 @@ pub struct Model {
     pub gravity: Vec<f64>,
     /// The pressure's gradient.
     #[serde(default)]
-    pub gradient: Gradient,
+    pub gradient: PressureGradient,
     /// Viscosity.
     pub viscosity: Viscosity,
     /// Density diffusion.
@@ -178,7 +163,7 @@ pub struct Model {
     #[serde(default)]
     pub pair_loop: PairLoopKind,
     /// Time scheme.
-    pub scheme: Scheme,
+    pub scheme: TimeScheme,
     /// Courant number, –.
     pub cfl: f64,
     /// Longest time step allowed, s (infinite if none).
@@ -199,21 +184,21 @@ impl Model {
             *down = -G;
         }
         Self {
-            kernel: Kernel::Wendland,
+            kernel: KernelKind::Wendland,
             h: dp * if dimension == 3 { 1.5 } else { 1.7 },
             dp,
             rho0: 1000.0,
             c0: C0_FACTOR * (G * depth).sqrt(),
             gamma: 7.0,
             gravity,
-            gradient: Gradient::Plain,
+            gradient: PressureGradient::Plain,
             viscosity: Viscosity::Artificial(Artificial::default()),
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
             walls: Walls::RelaxedAdami,
             slip: Slip::Free,
             pair_loop: PairLoopKind::Fast,
-            scheme: Scheme::Symplectic,
+            scheme: TimeScheme::Symplectic,
             cfl: 0.4,
             dt_max: f64::INFINITY,
         }
@@ -245,18 +230,18 @@ impl Model {
     /// Kernel value W (1/mᴰ) at squared distance `r2` (m²) in `dimension` 2 or 3.
     pub fn kernel_value(&self, r2: f64, dimension: usize) -> f64 {
         match self.kernel {
-            Kernel::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
-            Kernel::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
+            KernelKind::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
+            KernelKind::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
         }
     }
 
     /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::stiffness`].
     pub fn lattice_stiffness<const D: usize>(&self) -> f64 {
         match self.kernel {
-            Kernel::Cubic { .. } => {
+            KernelKind::Cubic { .. } => {
                 kernel::lattice::lattice_stiffness(kernel::Cubic::new(self.h, D), &self.fluid_properties::<D>())
             }
-            Kernel::Wendland => {
+            KernelKind::Wendland => {
                 kernel::lattice::lattice_stiffness(kernel::Wendland::new(self.h, D), &self.fluid_properties::<D>())
             }
         }
@@ -264,9 +249,9 @@ impl Model {
 
     /// What of the choices does not go together, if anything.
     pub fn conflict(&self) -> Option<&'static str> {
-        let alone = matches!(self.kernel, Kernel::Wendland) && self.shifting == Shifting::None;
+        let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
-        (self.gradient == Gradient::Corrected && !alone).then_some(clash)
+        (self.gradient == PressureGradient::Corrected && !alone).then_some(clash)
     }
 
     /// The shifting parameters, if any.
@@ -277,31 +262,52 @@ impl Model {
         }
     }
 
-    /// The one sweep that does what this model names, and nothing else.
-    fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
+    /// The units in which the pair loop computes, and its instructions; SI and `None` for the reference.
+    fn units<const D: usize>(&self) -> (Units, Option<Level>) {
         let level = self.pair_loop.instruction_set();
-        let units = match level {
-            Some(_) => {
-                Units { length: NeighbourLists::<D>::length_unit(self.support_radius()), time: self.h / self.c0 }
-            }
-            None => Units::SI,
+        let length = NeighbourLists::<D>::length_unit(self.support_radius());
+        (level.map_or(Units::SI, |_| Units { length, time: self.h / self.c0 }), level)
+    }
+
+    /// A pair loop of your own terms under the Wendland kernel, for [`Simulation::with_pair_loop`]: `terms` gets the fluid
+    /// properties in the units of the pair loop, and those units, and returns the terms between water particles and those
+    /// between water and solids. The choices of this model that name terms do not apply. See `examples/own_law.rs`.
+    ///
+    /// [`Simulation::with_pair_loop`]: crate::simulation::Simulation::with_pair_loop
+    pub fn custom_pair_loop<T: Term<D> + 'static, W: Term<D> + 'static, const D: usize>(
+        &self,
+        terms: impl FnOnce(&FluidProperties<D>, &Units) -> (T, W),
+    ) -> Box<dyn PairLoop<D>> {
+        let (units, level) = self.units::<D>();
+        let properties = self.fluid_properties::<D>().in_units(&units);
+        let (fluid, wall) = terms(&properties, &units);
+        interaction::compile(kernel::Wendland::new(properties.h, D), fluid, wall, &properties, units, level)
+    }
+
+    /// The pair loop with the terms that this model names, and no others.
+    fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
+        let (units, level) = self.units::<D>();
+        let make = PairLoopBuilder {
+            model: self,
+            properties: self.fluid_properties::<D>().in_units(&units),
+            units,
+            instruction_set: level,
         };
-        let make = PairLoopBuilder { model: self, medium: self.fluid_properties::<D>().in_units(&units), units, level };
-        let FluidProperties { h, dp, .. } = make.medium;
+        let FluidProperties { h, dp, .. } = make.properties;
         let plain = (Pressure, Continuity);
         match self.kernel {
-            Kernel::Wendland => match self.gradient {
-                Gradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
-                Gradient::Corrected => make.with_viscosity(
+            KernelKind::Wendland => match self.gradient {
+                PressureGradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
+                PressureGradient::Corrected => make.with_viscosity(
                     kernel::Wendland::new(h, D),
-                    ((Pressure, CorrectedGradient), Continuity),
-                    ((Pressure, RenormalizationMatrix), Continuity),
+                    ((Pressure, CorrectedGradientTerm), Continuity),
+                    ((Pressure, RenormalizationTerm), Continuity),
                 ),
             },
-            Kernel::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
-            Kernel::Cubic { tensile: true } => {
+            KernelKind::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
+            KernelKind::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
-                let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.medium).w(dp * dp) };
+                let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.properties).w(dp * dp) };
                 make.with_shifting(kernel, ((Pressure, tensile), Continuity))
             }
         }
@@ -331,9 +337,9 @@ impl Dimension<3> for Dim<3> {
 /// The making of a sweep, choice by choice, in the units in which it counts.
 struct PairLoopBuilder<'a, const D: usize> {
     model: &'a Model,
-    medium: FluidProperties<D>,
+    properties: FluidProperties<D>,
     units: Units,
-    level: Option<Level>,
+    instruction_set: Option<Level>,
 }
 
 impl<const D: usize> PairLoopBuilder<'_, D> {
@@ -354,46 +360,38 @@ impl<const D: usize> PairLoopBuilder<'_, D> {
         base: T,
         wall: W,
     ) -> Box<dyn PairLoop<D>> {
-        let damped = || kernel.viscous_sum(&self.medium);
-        let held = (wall, Repulsion::new(kernel, &self.medium));
-        // Which part of the viscosity acts between water and solids.
-        let beside = if self.model.slip == Slip::Free { 0.0 } else { 1.0 };
-        match self.model.viscosity {
-            Viscosity::None => self.with_diffusion(kernel, base, held),
-            Viscosity::Artificial(v) => {
-                let wall = Artificial { alpha: v.alpha * beside };
-                self.with_diffusion(kernel, (base, v.term(&self.medium)), (held, wall.term(&self.medium)))
-            }
-            Viscosity::Laminar(v) => {
-                let wall = Laminar { nu0: v.nu0 * beside };
-                self.with_diffusion(
-                    kernel,
-                    (base, v.term(&self.units, damped())),
-                    (held, wall.term(&self.units, damped())),
-                )
-            }
-            Viscosity::Sps(v) => {
-                let wall = Sps { nu0: v.nu0 * beside, ..v };
-                self.with_diffusion(
-                    kernel,
-                    (base, v.terms(&self.units, damped())),
-                    (held, wall.terms(&self.units, damped())),
-                )
-            }
-        }
+        let wall = (wall, Repulsion::new(kernel, &self.properties));
+        let Model { viscosity, slip, .. } = *self.model;
+        let next = Diffusive { builder: self, kernel, fluid: base, wall };
+        viscosity.terms(
+            &self.properties,
+            &self.units,
+            slip.wall_viscosity_factor(),
+            || kernel.viscous_sum(&self.properties),
+            next,
+        )
     }
+}
 
-    fn with_diffusion<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static>(
-        &self,
-        kernel: K,
-        inner: T,
-        wall: W,
-    ) -> Box<dyn PairLoop<D>> {
-        let term = match self.model.diffusion {
-            Diffusion::None => return interaction::compile(kernel, inner, wall, &self.medium, self.units, self.level),
-            Diffusion::Molteni(d) => d.term(&self.medium),
-            Diffusion::Fourtakas(d) => d.term(&self.medium),
-        };
-        interaction::compile(kernel, (inner, term), wall, &self.medium, self.units, self.level)
+/// A pair loop that lacks its viscosity.
+struct Diffusive<'a, K, T, W, const D: usize> {
+    builder: &'a PairLoopBuilder<'a, D>,
+    kernel: K,
+    fluid: T,
+    wall: W,
+}
+
+impl<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static, const D: usize> TermConsumer<D>
+    for Diffusive<'_, K, T, W, D>
+{
+    type Output = Box<dyn PairLoop<D>>;
+
+    fn with_terms<V: Term<D> + 'static, X: Term<D> + 'static>(self, fluid: V, wall: X) -> Self::Output {
+        let Self { builder: PairLoopBuilder { model, properties, units, instruction_set }, kernel, .. } = self;
+        let (fluid, wall) = ((self.fluid, fluid), (self.wall, wall));
+        match model.diffusion.term(properties) {
+            None => interaction::compile(kernel, fluid, wall, properties, *units, *instruction_set),
+            Some(term) => interaction::compile(kernel, (fluid, term), wall, properties, *units, *instruction_set),
+        }
     }
 }

@@ -13,26 +13,26 @@ pub struct Plan {
     /// Simulated time at which the run ends, s.
     pub until: f64,
     /// What is watched.
-    pub probes: Vec<ProbeWords>,
+    pub probes: Vec<ProbePlan>,
     /// Lists of all contacts.
-    pub contacts: Vec<ListWords>,
+    pub contacts: Vec<ContactListPlan>,
     /// Frames for ParaView, if any.
-    pub frames: Option<FrameWords>,
+    pub frames: Option<FramesPlan>,
     /// Simulated time from one checkpoint to the next, s; none if not asked for.
     pub checkpoint_every: Option<f64>,
     /// Wall time from one checkpoint to the next, s.
     pub checkpoint_wall: f64,
     /// What the run is held against.
-    pub checks: Vec<CheckWords>,
+    pub checks: Vec<CheckPlan>,
     /// What is said of its series besides what is said of all.
-    pub statistics: Vec<StatisticWords>,
+    pub statistics: Vec<StatisticPlan>,
     /// Folder of the scene file: where the tables it names lie.
     pub folder: PathBuf,
 }
 
 /// One probe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ProbeWords {
+pub struct ProbePlan {
     /// Stem of the file it writes; unique within a scene.
     pub name: String,
     /// What it looks at.
@@ -45,7 +45,7 @@ pub struct ProbeWords {
 
 /// A list of all contacts: at each reading a row for each pair that touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ListWords {
+pub struct ContactListPlan {
     /// Stem of the file; no probe of the scene has the same.
     pub name: String,
     /// Simulated time from one reading to the next, s.
@@ -55,7 +55,7 @@ pub struct ListWords {
 /// Which surface of the water an elevation gauge tells, where there are several above one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Surface {
+pub enum GaugeSurface {
     /// The highest: a breaker's jet, water on a deck.
     #[default]
     Highest,
@@ -99,7 +99,7 @@ pub enum ProbeKind {
         /// Horizontal coordinates, m: D − 1 of each.
         places: Vec<Vec<f64>>,
         /// Which surface.
-        surface: Surface,
+        surface: GaugeSurface,
     },
     /// Velocity of the water at points.
     Velocity {
@@ -152,7 +152,7 @@ pub enum ProbeKind {
 
 /// When frames are written, and with which fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrameWords {
+pub struct FramesPlan {
     /// Simulated time from one frame to the next, s.
     pub every: f64,
     /// Fields of the particles, by name.
@@ -163,7 +163,7 @@ pub struct FrameWords {
 
 /// What is said of series of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StatisticWords {
+pub struct StatisticPlan {
     /// Its name.
     pub name: String,
     /// What it is.
@@ -218,7 +218,7 @@ impl StatisticKind {
 
 /// A series of the run held against a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CheckWords {
+pub struct CheckPlan {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
     /// What it is held against.
@@ -239,7 +239,7 @@ pub struct CheckWords {
     pub bound: Option<Score>,
 }
 
-impl CheckWords {
+impl CheckPlan {
     /// The series in words, with when it was set to zero.
     pub fn label(&self) -> String {
         self.zero.map_or(self.series.clone(), |at| format!("{}, 0 at {at} s", self.series))
@@ -283,10 +283,10 @@ pub enum Align {
 pub struct Score {
     /// Relative deviation N, –: 0 is perfect. As a bound: the largest that passes.
     #[serde(rename = "N", skip_serializing_if = "Option::is_none")]
-    pub n: Option<f64>,
+    pub relative_l2: Option<f64>,
     /// Amplitude ratio M, –: 1 is perfect. As a bound: the largest |M − 1| that passes.
     #[serde(rename = "M", skip_serializing_if = "Option::is_none")]
-    pub m: Option<f64>,
+    pub amplitude_ratio: Option<f64>,
     /// Relative error of the first peak, –.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak: Option<f64>,
@@ -295,7 +295,7 @@ pub struct Score {
     pub off: Option<f64>,
     /// Relative deviation N once the delay is taken out, –.
     #[serde(rename = "aligned_N", skip_serializing_if = "Option::is_none")]
-    pub aligned_n: Option<f64>,
+    pub aligned_relative_l2: Option<f64>,
     /// The largest delay of either sign that passes, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delay: Option<f64>,

@@ -10,34 +10,34 @@
 //! # Ok::<(), pontoon::Error>(())
 //! ```
 
-mod course;
-mod drift;
-mod folder;
+mod runner;
+mod energy_drift;
+mod run_folder;
 mod inspect;
-mod kept;
+mod resume_point;
 mod lock;
-pub(crate) mod looks;
+pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 
-pub use drift::Drift;
-pub(crate) use folder::{same_tables, scene_file};
-pub use inspect::{Inspection, MeshFacts, Report, SeriesColumns, SolidCount, Timing, inspect};
-pub(crate) use kept::any as has_checkpoint;
+pub use energy_drift::EnergyDrift;
+pub use inspect::{InspectOptions, InspectReport, MeshSummary, SeriesColumns, SolidSummary, StepTiming, inspect};
 pub(crate) use lock::Lock;
-pub use lock::owner;
+pub use lock::lock_owner;
 pub(crate) use outputs::series_folder;
-pub(crate) use statistics::told;
-pub use statistics::{Answer, Asked, RAO, SPECTRA, Statistic, Told, statistics};
+pub(crate) use resume_point::has_checkpoint;
+pub(crate) use run_folder::{scene_file, tables_unchanged};
+pub(crate) use statistics::run_statistics;
+pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
 use std::path::{Path, PathBuf};
 
-use kept::Kept;
+use resume_point::ResumePoint;
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
-    output::{Checkpoint, Manifest, manifest::Status},
+    output::{Checkpoint, Manifest, manifest::RunStatus},
     scene::Scene,
     simulation::Rollback,
     solid::Dim,
@@ -45,18 +45,18 @@ use crate::{
 
 /// What a run is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Options {
+pub struct RunOptions {
     /// Folder for the results, new or empty. By default `runs/<scene>`, with a number if that is taken.
     pub out: Option<PathBuf>,
     /// Keys of the scene and the values that replace the scene's own, as in `("dp", "0.02")`.
-    pub sets: Vec<(String, String)>,
+    pub overrides: Vec<(String, String)>,
     /// Threads; by default one for each processor. They change the speed, never the result.
     pub threads: Option<usize>,
 }
 
 /// What is known when a run begins.
 #[derive(Clone, Copy, Debug)]
-pub struct Start<'a> {
+pub struct RunStart<'a> {
     /// The run's folder.
     pub folder: &'a Path,
     /// What the manifest says at the start: caption, particles, threads, warnings.
@@ -79,18 +79,18 @@ pub struct Progress {
     /// Water and boundary particles beside it × force passes ÷ wall time of stepping, 1/s.
     pub rate: f64,
     /// What became of the energy, if a probe watches it.
-    pub energy: Option<Drift>,
+    pub energy: Option<EnergyDrift>,
 }
 
 /// Someone who follows a run. Any `FnMut(&Progress) -> bool` does.
-pub trait Watch: Send {
+pub trait RunObserver: Send {
     /// Told once, before the first step.
-    fn start(&mut self, start: &Start) {
+    fn start(&mut self, start: &RunStart) {
         let _ = start;
     }
 
     /// Told when the run goes back to a good state after an alarm.
-    fn rescued(&mut self, how: &Rollback) {
+    fn rolled_back(&mut self, how: &Rollback) {
         let _ = how;
     }
 
@@ -98,7 +98,7 @@ pub trait Watch: Send {
     fn step(&mut self, now: &Progress) -> bool;
 }
 
-impl<F: FnMut(&Progress) -> bool + Send> Watch for F {
+impl<F: FnMut(&Progress) -> bool + Send> RunObserver for F {
     fn step(&mut self, now: &Progress) -> bool {
         self(now)
     }
@@ -106,7 +106,7 @@ impl<F: FnMut(&Progress) -> bool + Send> Watch for F {
 
 /// Where a free body is at the end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Body {
+pub struct FinalBodyState {
     /// Its name.
     pub name: String,
     /// Position of its centre of mass, m.
@@ -114,25 +114,25 @@ pub struct Body {
     /// Speed of its centre of mass, m/s.
     pub speed: f64,
     /// Axial angles of its frame, deg: one in 2-D, a rotation vector in 3-D.
-    pub turn_deg: Vec<f64>,
+    pub rotation_deg: Vec<f64>,
 }
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// The run's folder.
     pub folder: PathBuf,
     /// The manifest as written there.
     pub manifest: Manifest,
     /// The free bodies.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<FinalBodyState>,
     /// The last of the manifest's warnings: those that only the end could tell.
-    pub late: Vec<String>,
+    pub end_warnings: Vec<String>,
 }
 
-impl Outcome {
+impl RunOutcome {
     /// Whether a check misses its bound.
-    pub fn failed_checks(&self) -> bool {
+    pub fn has_failed_checks(&self) -> bool {
         self.manifest.checks.iter().any(|verdict| verdict.passed == Some(false))
     }
 }
@@ -142,10 +142,10 @@ impl Outcome {
 /// # Errors
 /// `Scene`, `Usage`, `File` before anything is written or when a file cannot be written; `Fault` when the
 /// computation cannot go on: then the run's folder holds everything up to then and `failure.json`.
-pub fn run(path: &Path, options: &Options, watch: &mut dyn Watch) -> Result<Outcome> {
-    let file = folder::scene_file(path);
-    let scene = Scene::read(&file, &options.sets)?;
-    let origin = Origin::Fresh { file: &file, out: options.out.as_deref(), sets: &options.sets };
+pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+    let file = run_folder::scene_file(path);
+    let scene = Scene::read(&file, &options.overrides)?;
+    let origin = RunOrigin::Fresh { file: &file, out: options.out.as_deref(), overrides: &options.overrides };
     with_threads(options.threads, || by_dimension(&scene, origin, watch))
 }
 
@@ -160,65 +160,69 @@ pub fn resume(
     folder: &Path,
     guards: &[(String, String)],
     threads: Option<usize>,
-    watch: &mut dyn Watch,
-) -> Result<Outcome> {
+    watch: &mut dyn RunObserver,
+) -> Result<RunOutcome> {
     Manifest::read(folder)?;
-    let lock = Lock::take(folder)?;
+    let lock = Lock::acquire(folder)?;
     // Read again under the lock: a run that was still going on may have finished since.
-    if Manifest::read(folder)?.status == Status::Finished {
+    if Manifest::read(folder)?.status == RunStatus::Finished {
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
-        return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
+        return Err(
+            Error::new(ErrorKind::Restart, what).help("`pontoon run` with a larger --until starts a longer one")
+        );
     }
-    let Kept { checkpoint, scene, warning } = kept::newest(folder)?.guard(folder, guards)?;
-    let origin = Origin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
+    let ResumePoint { checkpoint, scene, warning } =
+        resume_point::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
+    let origin = RunOrigin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
     with_threads(threads, || by_dimension(&scene, origin, watch))
 }
 
 /// Where a run comes from.
-enum Origin<'a> {
+enum RunOrigin<'a> {
     /// A scene file, for the folder `out` or one of our choice.
-    Fresh { file: &'a Path, out: Option<&'a Path>, sets: &'a [(String, String)] },
+    Fresh { file: &'a Path, out: Option<&'a Path>, overrides: &'a [(String, String)] },
     /// A checkpoint in the run's folder.
     Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, warning: Option<String>, lock: Lock },
 }
 
 /// Chooses the dimension: the one place.
-fn by_dimension(scene: &Scene, origin: Origin, watch: &mut dyn Watch) -> Result<Outcome> {
+fn by_dimension(scene: &Scene, origin: RunOrigin, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
     match scene.dimension {
         #[cfg(feature = "dim2")]
-        2 => go::<2>(scene, origin, watch),
+        2 => run_in_dimension::<2>(scene, origin, watch),
         #[cfg(feature = "dim3")]
-        3 => go::<3>(scene, origin, watch),
-        other => Err(not_built(other)),
+        3 => run_in_dimension::<3>(scene, origin, watch),
+        other => Err(missing_dimension(other)),
     }
 }
 
-fn go<const D: usize>(scene: &Scene, origin: Origin, watch: &mut dyn Watch) -> Result<Outcome>
+fn run_in_dimension<const D: usize>(scene: &Scene, origin: RunOrigin, watch: &mut dyn RunObserver) -> Result<RunOutcome>
 where
     Dim<D>: Dimension<D>,
 {
-    course::Course::<D>::new(scene, origin)?.run(watch)
+    runner::Runner::<D>::new(scene, origin)?.run(watch)
 }
 
 /// The error of a scene in a dimension that this program was built without.
-pub(crate) fn not_built(dimension: usize) -> Error {
-    Error::new(Kind::Usage, format!("this program was built without the {dimension}-D engine"))
+pub(crate) fn missing_dimension(dimension: usize) -> Error {
+    Error::new(ErrorKind::Usage, format!("this program was built without the {dimension}-D engine"))
         .help(format!("build it with the feature dim{dimension}: cargo build --release --features dim{dimension}"))
 }
 
 /// Runs `work` in a pool of `threads` threads.
 fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
-    pool(threads)?.install(work)
+    thread_pool(threads)?.install(work)
 }
 
 /// A pool of `threads` threads, by default one for each processor.
-pub(crate) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
+pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if threads == Some(0) {
         return Err(
-            Error::new(Kind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
+            Error::new(ErrorKind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
         );
     }
     rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(|why| {
-        Error::new(Kind::Usage, format!("the threads cannot be started: {why}")).help("ask for fewer with --threads")
+        Error::new(ErrorKind::Usage, format!("the threads cannot be started: {why}"))
+            .help("ask for fewer with --threads")
     })
 }

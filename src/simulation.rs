@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 pub use crate::{
     coupling::BodyStep,
-    system::{Escape, Limits, RemovedParticle, Setup},
+    system::{Escape, ParticleLimits, RemovedParticle, Setup},
 };
 pub use change::Added;
 pub use rescue::Rollback;
@@ -23,7 +23,8 @@ use rescue::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
-    error::{Error, Fault, Kind, Result},
+    error::{Error, ErrorKind, Fault, Result},
+    interaction::PairLoop,
     math::{Bivector, Vector},
     model::Dimension,
     solid::{
@@ -91,11 +92,23 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        Self::with_bodies(setup, false)
+        let pair_loop = Dim::<D>::pair_loop(&setup.model);
+        Self::with_bodies(setup, pair_loop, false)
+    }
+
+    /// As [`Simulation::new`], with a pair loop of your own terms: see [`Model::custom_pair_loop`](crate::model::Model).
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_pair_loop(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>) -> Result<Self>
+    where
+        Dim<D>: Dimension<D>,
+    {
+        Self::with_bodies(setup, pair_loop, false)
     }
 
     /// Sets up a simulation whose free solids it moves itself, or lets be `hosted` by somebody else.
-    fn with_bodies(setup: Setup<D>, external: bool) -> Result<Self>
+    fn with_bodies(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
@@ -113,7 +126,7 @@ impl<const D: usize> Simulation<D> {
         };
         let rig = Assembly::new(&setup.constraints, start);
         let stepper = Stepper::new(&setup.model);
-        let mut system = System::new(setup)?;
+        let mut system = System::new(setup, pair_loop)?;
         let bodies = Bodies::new(engine, AcousticAddedMass::find(&mut system), rig, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
@@ -153,10 +166,10 @@ impl<const D: usize> Simulation<D> {
 
     /// Goes back to a good state after the alarm `error`, or gives it on if that is no use.
     fn roll_back(&mut self, error: Error) -> Result<()> {
-        if error.kind != Kind::Fault {
+        if error.kind != ErrorKind::Fault {
             return Err(error);
         }
-        match self.rollback.state_before(&error.what, self.clock.steps, self.clock.time) {
+        match self.rollback.state_before(&error.message, self.clock.steps, self.clock.time) {
             Some(good) => {
                 let rescue = std::mem::take(&mut self.rollback);
                 self.restore(&good)?;
@@ -197,9 +210,9 @@ impl<const D: usize> Simulation<D> {
         if let Some(reordering) = self.system.rebuild_neighbours() {
             self.stepper.reorder(&reordering, self.system.properties().rho0);
             if let Some(accounting) = &mut self.bodies.accounting {
-                accounting.add_removed(&self.system, &reordering.lost);
+                accounting.add_removed(&self.system, &reordering.removed);
             }
-            self.removed.extend(reordering.lost.into_iter().map(|lost| (self.clock.time, lost)));
+            self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
         }
         self.system.update_rates();
         let allowed = self.step_limit();
@@ -225,12 +238,13 @@ impl<const D: usize> Simulation<D> {
         let model = self.system.model();
         let water = step_size::water(&self.system.step_limits(), self.system.properties(), model.cfl);
         let ties = self.spring_limit().min(self.bodies.constraints().next_release(self.clock.time));
-        water.min(step_size::viscous(model)).min(model.dt_max).min(ties) * self.rollback.step_factor(self.clock.time)
+        water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
+            * self.rollback.step_factor(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
     fn guard(&self) -> Result<()> {
-        match self.system.first_fault() {
+        match self.system.first_invalid_particle() {
             None => Ok(()),
             Some((i, reason, cause)) => Err(self.fault(reason, cause, i)),
         }
@@ -284,7 +298,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Force passes so far.
     pub fn passes(&self) -> u64 {
-        self.system.passes()
+        self.system.force_passes()
     }
 
     /// Pushes free solid number `solid` with `force` (N; N/m in 2-D) at the world point `at` (m) during the
@@ -356,7 +370,7 @@ impl<const D: usize> Simulation<D> {
             accounting,
             removed_solids: gone,
         };
-        postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
+        postcard::to_stdvec(&kept).map_err(|e| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}")))
     }
 
     /// Numbers of the solids that have been removed.
@@ -367,7 +381,7 @@ impl<const D: usize> Simulation<D> {
 
     fn read(bytes: &[u8]) -> Result<SimulationState<D>> {
         postcard::from_bytes(bytes)
-            .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint's state is damaged: {e}")))
+            .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
     }
 
     /// Goes back to a state that [`Simulation::save`] gave, in a simulation made from the same setup.
@@ -377,23 +391,31 @@ impl<const D: usize> Simulation<D> {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
         if kept.removed_solids != self.removed_solids() {
-            return Err(Error::new(Kind::Restart, "solids had been removed from the simulation whose state this is")
-                .help("restore_with takes it up in a simulation made from the same setup"));
+            return Err(Error::new(
+                ErrorKind::Restart,
+                "solids had been removed from the simulation whose state this is",
+            )
+            .help("restore_with takes it up in a simulation made from the same setup"));
         }
         match (self.bodies.engine_mut(), kept.engine) {
             (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
             (None, None) => {}
-            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
+            _ => return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies")),
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
             || !self.bodies.constraints_mut().restore(kept.constraints)
         {
-            return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
+            return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies"));
         }
         match (&self.bodies.accounting, &kept.accounting) {
             (Some(own), Some(state)) if own.matches(state) => {}
             (None, None) => {}
-            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds another load breakdown or energy budget")),
+            _ => {
+                return Err(Error::new(
+                    ErrorKind::Restart,
+                    "the checkpoint holds another load breakdown or energy budget",
+                ));
+            }
         }
         self.system.restore(kept.system)?;
         if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {

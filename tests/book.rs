@@ -8,7 +8,7 @@ use std::{
     process::Command,
 };
 
-use pontoon::scene::{Scene, bundled};
+use pontoon::scene::{Scene, bundled_scenes};
 
 #[path = "../examples/choosing_plots.rs"]
 #[allow(dead_code, reason = "its main is for who draws the plots anew")]
@@ -187,7 +187,7 @@ impl Known {
         let Some(scene) = plain.first().filter(|_| matches!(command, "run" | "inspect" | "study")) else { return };
         let name = scene.trim_start_matches("scenes/");
         if !name.contains(|c: char| c.is_uppercase() || c == '/' || c == '.') {
-            assert!(bundled().iter().any(|(known, ..)| *known == name), "{page}: {line}: there is no {name}");
+            assert!(bundled_scenes().iter().any(|(known, ..)| *known == name), "{page}: {line}: there is no {name}");
             let scene = Scene::read(&here.join("scenes").join(name).join("scene.toml"), &sets(words));
             let why = scene.and_then(|scene| scene.plan()).err();
             assert!(why.is_none(), "{page}: {line}: {}", why.unwrap());
@@ -220,7 +220,7 @@ fn every_change_that_a_page_shows_of_its_scene_can_be_made() {
         count += 1;
     };
     let changes = |code: &str| ["--set ", "--dp "].iter().any(|word| code.starts_with(word));
-    for (name, ..) in bundled() {
+    for (name, ..) in bundled_scenes() {
         let page = format!("scenes/{name}/README.md");
         for piece in pieces(&page) {
             let Piece::Code(code) = piece else { continue };

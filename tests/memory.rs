@@ -7,7 +7,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering::Relaxed},
 };
 
-use pontoon::run::{self, Inspection, Options, Progress};
+use pontoon::run::{self, InspectOptions, Progress, RunOptions};
 
 static NOW: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
@@ -46,11 +46,11 @@ fn a_run_takes_about_the_memory_that_was_told() {
         let mut sets: Vec<(String, String)> = more.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
         sets.push(("until".into(), until.into()));
         let path = home.join(scene);
-        let asked = Inspection { sets: sets.clone(), ..Inspection::default() };
+        let asked = InspectOptions { overrides: sets.clone(), ..InspectOptions::default() };
         let told = run::inspect(&path, &asked).unwrap().preflight.size.memory_bytes;
         let out = std::env::temp_dir().join(format!("pontoon-memory-{}-{i}", std::process::id()));
         let _ = std::fs::remove_dir_all(&out);
-        let options = Options { out: Some(out.clone()), sets, threads: Some(1) };
+        let options = RunOptions { out: Some(out.clone()), overrides: sets, threads: Some(1) };
         let before = NOW.load(Relaxed);
         PEAK.store(before, Relaxed);
         run::run(&path, &options, &mut |_: &Progress| true).unwrap();

@@ -10,7 +10,7 @@ use std::{
 
 use pontoon::{
     error::{Error, Fault, Kind},
-    output::{Manifest, manifest::Status},
+    output::{Manifest, manifest::RunStatus},
     report,
 };
 use serde_json::Value;
@@ -189,7 +189,7 @@ fn number(text: &str, word: &str) -> f64 {
 fn the_page_plays_and_tells_the_value_under_the_pointer() {
     let desk = desk("plays");
     let scene = format!("{BAY}\n[[probe]]\nbudget = true\n");
-    let page = ran(&desk, "bay", &scene, &[]).join(report::FILE);
+    let page = ran(&desk, "bay", &scene, &[]).join(report::REPORT_FILE);
     assert!(page.is_file(), "a run leaves its page");
     if chromium().is_none() {
         return;
@@ -239,14 +239,14 @@ fn the_page_is_looked_at_in_light_and_dark_and_on_a_phone() {
     if chromium().is_none() {
         return;
     }
-    let page = run.join(report::FILE);
+    let page = run.join(report::REPORT_FILE);
     shot(&page, "light.png", &["--window-size=1280,2600"]);
     shot(&page, "dark.png", &["--window-size=1280,2600", "--blink-settings=preferredColorScheme=0"]);
     // A window is never narrower than 500 pixels; a frame in it is.
     let frame = run.join("phone.html");
     let text = format!(
         "<style>body{{margin:0}}</style><iframe style=\"border:0;width:390px;height:3600px\" src=\"{}\"></iframe>",
-        report::FILE
+        report::REPORT_FILE
     );
     fs::write(&frame, text).unwrap();
     shot(&frame, "phone.png", &["--window-size=500,3600"]);
@@ -260,7 +260,7 @@ fn a_deep_tank_turns_and_is_cut() {
         return;
     }
     let said = asked(
-        &run.join(report::FILE),
+        &run.join(report::REPORT_FILE),
         "const view = deck.views[0], seen = () => { const who = new Set(view.raster.who); return [...who].filter(k => k >= 0).length; };
          said.all = films[0].n; said.seen = seen(); deck.look.yaw += 1.2; deck.draw(); said.turned = seen();
          deck.look.mode = 'y'; deck.fit(); said.cut = view.water.near.slice(0, view.water.n).filter(near => near >= 0.45).length;
@@ -283,7 +283,7 @@ fn a_contact_skin_in_space_is_dashed_in_the_whole_and_dotted_in_a_cut() {
         return;
     }
     let said = asked(
-        &run.join(report::FILE),
+        &run.join(report::REPORT_FILE),
         "const view = deck.views[0], on = view.context, stroke = on.stroke.bind(on), { lines, dots } = films[0].solids[1].rim;
          let dashed = 0; on.stroke = (...what) => { if (on.getLineDash().length) dashed++; stroke(...what); };
          const drawn = mode => { dashed = 0; deck.look.mode = mode; deck.draw(); return dashed; };
@@ -302,7 +302,7 @@ fn runs_are_laid_over_one_another_locked_in_time() {
     let desk = desk("compare");
     ran(&desk, "a", BAY, &["--no-report"]);
     ran(&desk, "b", BAY, &["--set", "solid.box.free.density=250", "--no-report"]);
-    assert!(!desk.join("a").join(report::FILE).exists(), "--no-report leaves the page out");
+    assert!(!desk.join("a").join(report::REPORT_FILE).exists(), "--no-report leaves the page out");
     let said = pontoon(&desk, &["compare", "a", "b", "--out", "both.html"]);
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
     let page = desk.join("both.html");
@@ -388,7 +388,7 @@ fn the_answer_of_a_body_to_waves_is_drawn_over_frequency() {
         return;
     }
     let said = asked(
-        &run.join(report::FILE),
+        &run.join(report::REPORT_FILE),
         "said.all = charts.all.filter(chart => chart.what.title.startsWith('rao'))
            .map(({ what }) => [what.title, what.unit, what.lines[0].label, Math.min(...what.lines[0].x), Math.max(...what.lines[0].x)]);",
     );
@@ -483,17 +483,17 @@ fn a_run_that_failed_or_has_not_finished_says_so_on_its_page() {
     let desk = desk("fails");
     let run = ran(&desk, "bay", BAY, &["--no-report"]);
     let mut manifest = Manifest::read(&run).unwrap();
-    manifest.status = Status::Running;
+    manifest.status = RunStatus::Running;
     manifest.write(&run).unwrap();
     let words = |run: &Path| {
         let page = report::write(run).unwrap();
-        assert!(page.bytes < report::MOST_BYTES);
+        assert!(page.bytes < report::MAX_PAGE_BYTES);
         fs::read_to_string(page.path).unwrap()
     };
     assert!(words(&run).contains("This run has not finished"));
     let said = pontoon(&desk, &["report", "nowhere"]);
     assert!(!said.status.success() && String::from_utf8_lossy(&said.stderr).contains("holds no run"));
-    manifest.fail(&fault());
+    manifest.record_failure(&fault());
     manifest.write(&run).unwrap();
     let text = words(&run);
     for word in ["This run could not go on", "the water has left", "shorten the step"] {

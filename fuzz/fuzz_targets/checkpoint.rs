@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use libfuzzer_sys::fuzz_target;
 use pontoon::{
     record::{Checkpoint, restart},
-    scene::{PlacementConfig, ProbeEntry, Scene, ShapeConfig, SolidConfig},
+    scene::{AtWords, ProbeEntry, Scene, ShapeWords, SolidWords},
     simulation::Simulation,
 };
 
@@ -18,8 +18,8 @@ thread_local! {
 fn simulation() -> Simulation<2> {
     let scene = Scene::new(2, 0.25, 1.0)
         .water_box([0.0, 0.0], [1.0, 0.75])
-        .solid(SolidConfig::fixed("tank", ShapeConfig::tank([1.0, 1.25])))
-        .solid(SolidConfig::free("box", ShapeConfig::cuboid([0.3, 0.3]), 500.0).at(PlacementConfig::afloat(&[0.5])))
+        .solid(SolidWords::fixed("tank", ShapeWords::tank([1.0, 1.25])))
+        .solid(SolidWords::free("box", ShapeWords::cuboid([0.3, 0.3]), 500.0).at(AtWords::afloat(&[0.5])))
         .probe(ProbeEntry::motion("box"));
     Simulation::new(scene.build::<2>().expect("a sound scene").setup).expect("a sound setup")
 }

@@ -2,35 +2,35 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error_metrics::{amplitude, deviation};
-use crate::{math::time_series::Series, plan::Align};
+use super::error_metrics::{amplitude_ratio, relative_l2};
+use crate::{math::time_series::TimeSeries, plan::Align};
 
 /// The largest delay of either sign that [`best_delay`] looks at, s.
-const WIDEST: f64 = 0.3;
+const MAX_DELAY: f64 = 0.3;
 
 /// From one delay that is tried to the next, s: a hundredth of the period of the shortest waves in a tank.
 const STEP: f64 = 0.002;
 
 /// Share of the reference that must lie within the run for a delay to count, –: else the best would be that
 /// which moves the difficult part out of sight.
-const KEPT: f64 = 0.9;
+const MIN_OVERLAP: f64 = 0.9;
 
 /// A run against its reference once one constant delay is taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Aligned {
+pub struct AlignedMetrics {
     /// By how much the run is late, s; negative where it leads.
     pub delay: f64,
     /// Relative deviation then, –.
     #[serde(rename = "N")]
-    pub n: f64,
+    pub relative_l2: f64,
     /// Amplitude ratio then, –.
     #[serde(rename = "M")]
-    pub m: f64,
+    pub amplitude_ratio: f64,
 }
 
 /// When both series first pass a threshold, s; none if they never do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Arrival {
+pub struct ArrivalTimes {
     /// The run.
     pub run: Option<f64>,
     /// Its reference; 0 where its clock starts then.
@@ -39,19 +39,28 @@ pub struct Arrival {
 
 /// The two once the delay is taken out that `align` means, and when they arrive if it says so; `sim` may
 /// reach further than `window`, in which arrivals count.
-pub fn align(sim: &Series, reference: &Series, align: Align, window: (f64, f64)) -> (Option<Aligned>, Option<Arrival>) {
+pub fn align(
+    sim: &TimeSeries,
+    reference: &TimeSeries,
+    align: Align,
+    window: (f64, f64),
+) -> (Option<AlignedMetrics>, Option<ArrivalTimes>) {
     let (delay, arrival) = match align {
         Align::Crossing(threshold) => {
-            let run = sim.within(window.0, window.1).ok().and_then(|sim| sim.crossing(threshold));
-            let arrival = Arrival { run, reference: reference.crossing(threshold) };
+            let run = sim.window(window.0, window.1).ok().and_then(|sim| sim.first_crossing(threshold));
+            let arrival = ArrivalTimes { run, reference: reference.first_crossing(threshold) };
             (arrival.run.zip(arrival.reference).map(|(run, reference)| run - reference), Some(arrival))
         }
         Align::Start(_) => (None, None),
         Align::Best => (best_delay(sim, reference), None),
     };
     let aligned = delay.and_then(|delay| {
-        let moved = moved(sim, reference, delay)?;
-        Some(Aligned { delay, n: deviation(sim, &moved).ok()?, m: amplitude(sim, &moved).ok()? })
+        let moved = shifted_reference(sim, reference, delay)?;
+        Some(AlignedMetrics {
+            delay,
+            relative_l2: relative_l2(sim, &moved).ok()?,
+            amplitude_ratio: amplitude_ratio(sim, &moved).ok()?,
+        })
     });
     (aligned, arrival)
 }
@@ -69,9 +78,9 @@ pub fn align(sim: &Series, reference: &Series, align: Align, window: (f64, f64))
 /// assert!((delay - 0.05).abs() < 1e-4);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn best_delay(sim: &Series, reference: &Series) -> Option<f64> {
-    let n = |delay: f64| moved(sim, reference, delay).and_then(|moved| deviation(sim, &moved).ok());
-    let count = (WIDEST / STEP).round() as i32;
+pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
+    let n = |delay: f64| shifted_reference(sim, reference, delay).and_then(|moved| relative_l2(sim, &moved).ok());
+    let count = (MAX_DELAY / STEP).round() as i32;
     let mut best: Option<(f64, f64)> = None;
     for i in (0..=count).flat_map(|i| [i, -i]) {
         let delay = f64::from(i) * STEP;
@@ -83,7 +92,7 @@ pub fn best_delay(sim: &Series, reference: &Series) -> Option<f64> {
     }
     let (middle, least) = best?;
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut a, mut b) = ((middle - STEP).max(-WIDEST), (middle + STEP).min(WIDEST));
+    let (mut a, mut b) = ((middle - STEP).max(-MAX_DELAY), (middle + STEP).min(MAX_DELAY));
     while b - a > 1e-6 {
         let (x, y) = (b - golden * (b - a), a + golden * (b - a));
         if n(x).unwrap_or(f64::INFINITY) <= n(y).unwrap_or(f64::INFINITY) { b = y } else { a = x }
@@ -93,8 +102,8 @@ pub fn best_delay(sim: &Series, reference: &Series) -> Option<f64> {
 }
 
 /// `reference` as much later as the run is late, where the run covers it; none if it covers too little.
-fn moved(sim: &Series, reference: &Series, delay: f64) -> Option<Series> {
+fn shifted_reference(sim: &TimeSeries, reference: &TimeSeries, delay: f64) -> Option<TimeSeries> {
     let (first, last) = sim.span();
-    let moved = reference.shifted(delay).within(first, last).ok()?;
-    (moved.times().len() as f64 >= KEPT * reference.times().len() as f64).then_some(moved)
+    let moved = reference.shifted(delay).window(first, last).ok()?;
+    (moved.times().len() as f64 >= MIN_OVERLAP * reference.times().len() as f64).then_some(moved)
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Error, Result},
-    math::time_series::Series,
+    math::time_series::TimeSeries,
 };
 
 /// Relative deviation of a simulated series from a measured one: 0 is perfect.
@@ -24,8 +24,8 @@ use crate::{
 /// assert_eq!(deviation(&sim, &reference)?, (10.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn deviation(sim: &Series, reference: &Series) -> Result<f64> {
-    ratio(sim, reference, |s, r| (s - r) * (s - r))
+pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
+    relative_norm(sim, reference, |s, r| (s - r) * (s - r))
 }
 
 /// Size of a simulated series relative to a measured one: 1 is perfect.
@@ -42,8 +42,8 @@ pub fn deviation(sim: &Series, reference: &Series) -> Result<f64> {
 /// assert_eq!(amplitude(&sim, &reference)?, (108.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn amplitude(sim: &Series, reference: &Series) -> Result<f64> {
-    ratio(sim, reference, |s, _| s * s)
+pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
+    relative_norm(sim, reference, |s, _| s * s)
 }
 
 /// Relative error of the first peak, as of the first impact on a wall: 0 is perfect.
@@ -64,7 +64,7 @@ pub fn amplitude(sim: &Series, reference: &Series) -> Result<f64> {
 /// assert_eq!(peak(&sim, &reference)?, 0.25);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn peak(sim: &Series, reference: &Series) -> Result<f64> {
+pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     let expected = first_peak(reference.values());
     if expected == 0.0 {
         return Err(all_zero());
@@ -88,10 +88,10 @@ pub fn peak(sim: &Series, reference: &Series) -> Result<f64> {
 /// assert_eq!(off(&sim, &still)?, 0.5);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn off(sim: &Series, reference: &Series) -> Result<f64> {
-    covers(sim, reference)?;
+pub fn max_abs(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
+    require_coverage(sim, reference)?;
     let pairs = reference.times().iter().zip(reference.values());
-    Ok(pairs.map(|(&t, &r)| (sim.at(t) - r).abs()).fold(0.0, f64::max))
+    Ok(pairs.map(|(&t, &r)| (sim.value_at(t) - r).abs()).fold(0.0, f64::max))
 }
 
 /// The value of the first peak, with its sign.
@@ -102,19 +102,19 @@ fn first_peak(x: &[f64]) -> f64 {
 }
 
 /// √( Σ term(sim_i, ref_i) / Σ ref_i² ) over the reference's times.
-fn ratio(sim: &Series, reference: &Series, term: impl Fn(f64, f64) -> f64) -> Result<f64> {
-    covers(sim, reference)?;
+fn relative_norm(sim: &TimeSeries, reference: &TimeSeries, term: impl Fn(f64, f64) -> f64) -> Result<f64> {
+    require_coverage(sim, reference)?;
     let size: f64 = reference.values().iter().map(|r| r * r).sum();
     if size == 0.0 {
         return Err(all_zero());
     }
     let pairs = reference.times().iter().zip(reference.values());
-    let sum: f64 = pairs.map(|(&t, &r)| term(sim.at(t), r)).sum();
+    let sum: f64 = pairs.map(|(&t, &r)| term(sim.value_at(t), r)).sum();
     Ok((sum / size).sqrt())
 }
 
 /// Refuses a reference that leaves the simulated span.
-fn covers(sim: &Series, reference: &Series) -> Result<()> {
+fn require_coverage(sim: &TimeSeries, reference: &TimeSeries) -> Result<()> {
     let (inner, outer) = (reference.span(), sim.span());
     if inner.0 < outer.0 || inner.1 > outer.1 {
         let what = format!(

@@ -4,12 +4,12 @@ use super::Verdict;
 use crate::{math::format, plan::Score};
 
 /// A figure with three decimals, or a dash.
-pub fn figure(x: Option<f64>) -> String {
+pub fn format_metric(x: Option<f64>) -> String {
     x.map_or("–".into(), |x| format!("{x:.3}"))
 }
 
 /// A figure in the unit of its series: three digits that count.
-pub fn digits(x: Option<f64>) -> String {
+pub fn format_value(x: Option<f64>) -> String {
     match x {
         None => "–".into(),
         Some(0.0) => "0".into(),
@@ -21,21 +21,27 @@ pub fn digits(x: Option<f64>) -> String {
 }
 
 /// A delay in ms, with its sign.
-pub fn delay(seconds: f64) -> String {
+pub fn format_delay(seconds: f64) -> String {
     format!("{:+.0} ms", seconds * 1e3)
 }
 
 /// The bound in words.
-pub fn bound(bound: Option<Score>) -> String {
+pub fn format_bound(bound: Option<Score>) -> String {
     let Some(b) = bound else { return String::new() };
-    let said = [("N", b.n), ("|M − 1|", b.m), ("peak", b.peak), ("off", b.off), ("aligned N", b.aligned_n)];
+    let said = [
+        ("N", b.relative_l2),
+        ("|M − 1|", b.amplitude_ratio),
+        ("peak", b.peak),
+        ("off", b.off),
+        ("aligned N", b.aligned_relative_l2),
+    ];
     let mut words: Vec<String> = said.iter().filter_map(|(word, x)| x.map(|x| format!("{word} ≤ {x}"))).collect();
     words.extend(b.delay.map(|x| format!("|delay| ≤ {x} s")));
     words.join(", ")
 }
 
 /// Whether the bound is kept, or why nobody knows.
-pub fn remark(verdict: &Verdict) -> String {
+pub fn format_outcome(verdict: &Verdict) -> String {
     match (verdict.passed, &verdict.note) {
         (Some(true), _) => "kept".into(),
         (Some(false), _) => "MISSED".into(),
@@ -45,49 +51,56 @@ pub fn remark(verdict: &Verdict) -> String {
 }
 
 /// A column of the table: its head, and its text for a verdict; an empty one says that it has none.
-type Column = (&'static str, fn(&Verdict) -> String);
+type VerdictColumn = (&'static str, fn(&Verdict) -> String);
 
 /// Columns before the bound. Those after the first three stand only if some check has something to say there.
-const COLUMNS: [Column; 13] = [
+const COLUMNS: [VerdictColumn; 13] = [
     ("check", |v| v.series.clone()),
-    ("N", |v| figure(v.figures.n)),
-    ("M", |v| figure(v.figures.m)),
+    ("N", |v| format_metric(v.metrics.relative_l2)),
+    ("M", |v| format_metric(v.metrics.amplitude_ratio)),
     ("mean over", |v| v.meaned.map_or(String::new(), |m| format!("{} ms", 1e3 * m.seconds))),
-    ("mean N", |v| v.meaned.map_or(String::new(), |m| figure(m.figures.n))),
-    ("mean M", |v| v.meaned.map_or(String::new(), |m| figure(m.figures.m))),
-    ("aligned N", |v| v.aligned.map_or(String::new(), |a| figure(Some(a.n)))),
-    ("aligned M", |v| v.aligned.map_or(String::new(), |a| figure(Some(a.m)))),
-    ("delay", |v| v.aligned.map_or(String::new(), |a| delay(a.delay))),
-    ("peak", |v| if strikes(v) || names(v, |s| s.peak) { figure(v.figures.peak) } else { String::new() }),
-    ("mean peak", |v| v.meaned.filter(|_| strikes(v)).map_or(String::new(), |m| figure(m.figures.peak))),
-    ("off", |v| if names(v, |s| s.off) { digits(v.figures.off) } else { String::new() }),
-    ("paper N, M", |v| v.paper.map_or(String::new(), |p| format!("{}, {}", figure(p.n), figure(p.m)))),
+    ("mean N", |v| v.meaned.map_or(String::new(), |m| format_metric(m.metrics.relative_l2))),
+    ("mean M", |v| v.meaned.map_or(String::new(), |m| format_metric(m.metrics.amplitude_ratio))),
+    ("aligned N", |v| v.aligned.map_or(String::new(), |a| format_metric(Some(a.relative_l2)))),
+    ("aligned M", |v| v.aligned.map_or(String::new(), |a| format_metric(Some(a.amplitude_ratio)))),
+    ("delay", |v| v.aligned.map_or(String::new(), |a| format_delay(a.delay))),
+    (
+        "peak",
+        |v| if is_impact_load(v) || has_limit(v, |s| s.peak) { format_metric(v.metrics.peak) } else { String::new() },
+    ),
+    ("mean peak", |v| v.meaned.filter(|_| is_impact_load(v)).map_or(String::new(), |m| format_metric(m.metrics.peak))),
+    ("off", |v| if has_limit(v, |s| s.off) { format_value(v.metrics.off) } else { String::new() }),
+    ("paper N, M", |v| {
+        v.paper.map_or(String::new(), |p| {
+            format!("{}, {}", format_metric(p.relative_l2), format_metric(p.amplitude_ratio))
+        })
+    }),
 ];
 
 /// Whether the series is a load as an instrument takes it: its first peak is the first impact.
-fn strikes(verdict: &Verdict) -> bool {
+fn is_impact_load(verdict: &Verdict) -> bool {
     // A second check of a series is told as "force.fx_N (2)".
     let column = verdict.series.split(" (").next().unwrap_or_default();
     verdict.meaned.is_some() && ["N", "N/m", "Pa"].contains(&format::unit(column))
 }
 
 /// Whether the bound or the paper names a figure.
-fn names(verdict: &Verdict, which: fn(&Score) -> Option<f64>) -> bool {
+fn has_limit(verdict: &Verdict, which: fn(&Score) -> Option<f64>) -> bool {
     [&verdict.bound, &verdict.paper].into_iter().flatten().any(|score| which(score).is_some())
 }
 
 /// The table of `verdicts`, the first row its head; before each stand the cells that it comes with, under
 /// `heads`.
-pub fn rows(verdicts: &[(&[String], &Verdict)], heads: &[&str]) -> Vec<Vec<String>> {
-    let used = |(i, (_, text)): &(usize, &Column)| *i < 3 || verdicts.iter().any(|(_, v)| !text(v).is_empty());
-    let columns: Vec<&Column> = COLUMNS.iter().enumerate().filter(used).map(|(_, column)| column).collect();
+pub fn verdict_rows(verdicts: &[(&[String], &Verdict)], heads: &[&str]) -> Vec<Vec<String>> {
+    let used = |(i, (_, text)): &(usize, &VerdictColumn)| *i < 3 || verdicts.iter().any(|(_, v)| !text(v).is_empty());
+    let columns: Vec<&VerdictColumn> = COLUMNS.iter().enumerate().filter(used).map(|(_, column)| column).collect();
     let mut head: Vec<String> = heads.iter().map(|h| h.to_string()).collect();
     head.extend(columns.iter().map(|(name, _)| name.to_string()));
     head.extend(["bound".to_string(), String::new()]);
     let row = |(before, verdict): &(&[String], &Verdict)| {
         let mut row = before.to_vec();
         row.extend(columns.iter().map(|(_, text)| text(verdict)));
-        row.extend([bound(verdict.bound), remark(verdict)]);
+        row.extend([format_bound(verdict.bound), format_outcome(verdict)]);
         row
     };
     std::iter::once(head).chain(verdicts.iter().map(row)).collect()

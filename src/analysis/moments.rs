@@ -1,18 +1,18 @@
 //! Extremes, mean and standard deviation of a series.
 
-use crate::math::time_series::Series;
+use crate::math::time_series::TimeSeries;
 
 /// Figures of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     /// Least value and its time, s.
-    pub least: (f64, f64),
+    pub min: (f64, f64),
     /// Largest value and its time, s.
-    pub largest: (f64, f64),
+    pub max: (f64, f64),
     /// Mean over time.
     pub mean: f64,
     /// Standard deviation over time.
-    pub deviation: f64,
+    pub standard_deviation: f64,
     /// Last value.
     pub last: f64,
 }
@@ -22,7 +22,7 @@ pub struct Moments {
 ///   x̄ = 1/T ∫ x dt,   σ² = 1/T ∫ (x − x̄)² dt
 ///
 /// by the trapezoid over the samples, in the unit of the series.
-pub fn moments(series: &Series) -> Moments {
+pub fn moments(series: &TimeSeries) -> Moments {
     let (t, x) = (series.times(), series.values());
     let (first, last) = series.span();
     let mean_of = |f: &dyn Fn(f64) -> f64| {
@@ -31,18 +31,18 @@ pub fn moments(series: &Series) -> Moments {
     };
     let mean = mean_of(&|x| x);
     let mut of = Moments {
-        least: (f64::INFINITY, first),
-        largest: (f64::NEG_INFINITY, first),
+        min: (f64::INFINITY, first),
+        max: (f64::NEG_INFINITY, first),
         mean,
-        deviation: mean_of(&|x| (x - mean).powi(2)).sqrt(),
+        standard_deviation: mean_of(&|x| (x - mean).powi(2)).sqrt(),
         last: x[x.len() - 1],
     };
     for (&t, &x) in t.iter().zip(x) {
-        if x < of.least.0 {
-            of.least = (x, t);
+        if x < of.min.0 {
+            of.min = (x, t);
         }
-        if x > of.largest.0 {
-            of.largest = (x, t);
+        if x > of.max.0 {
+            of.max = (x, t);
         }
     }
     of
@@ -56,11 +56,11 @@ mod tests {
     #[test]
     fn a_ramp_has_its_middle_as_mean_and_its_length_over_root_twelve_as_deviation() -> Result<()> {
         let t: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 1e-3).collect();
-        let of = moments(&Series::new(t.clone(), t)?);
+        let of = moments(&TimeSeries::new(t.clone(), t)?);
         assert!((of.mean - 0.5).abs() < 1e-12, "the trapezoid is exact for a line; got {}", of.mean);
-        let error = of.deviation * 12.0_f64.sqrt() - 1.0;
+        let error = of.standard_deviation * 12.0_f64.sqrt() - 1.0;
         assert!(error.abs() < 1e-5, "of second order in a step of 1e-3; off by {error:e}");
-        assert_eq!((of.least, of.largest, of.last), ((0.0, 0.0), (1.0, 1.0), 1.0));
+        assert_eq!((of.min, of.max, of.last), ((0.0, 0.0), (1.0, 1.0), 1.0));
         Ok(())
     }
 }

@@ -5,24 +5,24 @@ use std::f64::consts::TAU;
 use realfft::num_complex::Complex;
 
 use super::{
-    harmonic, spectra, spectrum,
-    spectrum::{QUARTERS, transforms},
-    waves,
+    complex_amplitudes, harmonic, spectrum,
+    spectrum::{SEGMENTS, segment_transforms},
+    zero_crossing_waves,
 };
-use crate::math::time_series::Series;
+use crate::math::time_series::TimeSeries;
 
 /// How far about the peak of the waves lines count, over its frequency.
-const BESIDE: f64 = 0.1;
+const PEAK_HALF_WIDTH: f64 = 0.1;
 
 /// Waves of a record at least of which the answer is told over frequency: eight in each quarter.
-pub const ENOUGH: usize = 8 * QUARTERS;
+pub const MIN_WAVES_FOR_RAO: usize = 8 * SEGMENTS;
 
 /// Least density of the waves at a frequency at which they are answered, over that at their peak, –.
-const FAINT: f64 = 0.02;
+const MIN_WAVE_DENSITY: f64 = 0.02;
 
 /// An answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
+pub struct Rao {
     /// Amplitude of the motion over that of the wave, in the units of both.
     pub ratio: f64,
     /// Phase of the motion less that of the wave, rad, −π to π: positive if the motion is ahead.
@@ -33,7 +33,7 @@ pub struct Response {
 
 /// How `motion` answers `wave`: by a fit of both harmonics of this `period` (s), or else within a tenth about the peak of the
 /// waves, as the cross spectrum over that of the waves. None if there is no such wave, or the series are too short.
-pub fn response(motion: &Series, wave: &Series, period: Option<f64>) -> Option<Response> {
+pub fn rao(motion: &TimeSeries, wave: &TimeSeries, period: Option<f64>) -> Option<Rao> {
     let (ratio, period) = match period {
         Some(period) => {
             let of = |series| harmonic(series, TAU / period).map(|h| Complex::from_polar(h.amplitude, h.phase));
@@ -41,21 +41,21 @@ pub fn response(motion: &Series, wave: &Series, period: Option<f64>) -> Option<R
             (x / a, period)
         }
         None => {
-            let peak = spectrum(wave)?.peak();
-            let (step, lines) = spectra(&[motion, wave])?;
-            let near = |j: &usize| ((*j as f64 * step) / peak - 1.0).abs() <= BESIDE.max(0.5 * step / peak);
+            let peak = spectrum(wave)?.peak_frequency();
+            let (step, lines) = complex_amplitudes(&[motion, wave])?;
+            let near = |j: &usize| ((*j as f64 * step) / peak - 1.0).abs() <= PEAK_HALF_WIDTH.max(0.5 * step / peak);
             let both: Vec<(Complex<f64>, Complex<f64>)> =
                 (1..lines[0].len()).filter(near).map(|j| (lines[0][j], lines[1][j])).collect();
             let cross: Complex<f64> = both.iter().map(|(x, a)| x * a.conj()).sum();
             (cross / both.iter().map(|(_, a)| a.norm_sqr()).sum::<f64>(), 1.0 / peak)
         }
     };
-    ratio.norm().is_finite().then(|| Response { ratio: ratio.norm(), phase: ratio.arg(), period })
+    ratio.norm().is_finite().then(|| Rao { ratio: ratio.norm(), phase: ratio.arg(), period })
 }
 
 /// An answer at one frequency of irregular waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Band {
+pub struct RaoPoint {
     /// Hz.
     pub frequency: f64,
     /// Amplitude of the motion over that of the wave, in the units of both.
@@ -72,20 +72,21 @@ pub struct Band {
 ///
 /// by means over seven parts, quarters of the record and those that lie half over two ([@bendat2010], [@welch1967]). Only where
 /// the waves have a fiftieth of the density at their peak or more. None of fewer than 32 waves, or where nothing moves.
-pub fn transfer(motion: &Series, wave: &Series) -> Vec<Band> {
-    let swings = waves(motion).is_some() && waves(wave).is_some_and(|waves| waves.count >= ENOUGH);
-    let Some((step, parts)) = swings.then(|| transforms(&[motion, wave], QUARTERS)).flatten() else {
+pub fn rao_over_frequency(motion: &TimeSeries, wave: &TimeSeries) -> Vec<RaoPoint> {
+    let swings = zero_crossing_waves(motion).is_some()
+        && zero_crossing_waves(wave).is_some_and(|waves| waves.count >= MIN_WAVES_FOR_RAO);
+    let Some((step, parts)) = swings.then(|| segment_transforms(&[motion, wave], SEGMENTS)).flatten() else {
         return Vec::new();
     };
     let pairs = |j: usize| parts[0].iter().zip(&parts[1]).map(move |(x, a)| (x[j], a[j]));
     let lines = 1..parts[1].first().map_or(1, Vec::len);
     let density = |j: usize| pairs(j).map(|(_, a)| a.norm_sqr()).sum::<f64>();
-    let faint = FAINT * lines.clone().map(density).fold(0.0, f64::max);
+    let faint = MIN_WAVE_DENSITY * lines.clone().map(density).fold(0.0, f64::max);
     let band = |j: usize| {
         let cross: Complex<f64> = pairs(j).map(|(x, a)| x * a.conj()).sum();
         let (of_motion, of_wave) = (pairs(j).map(|(x, _)| x.norm_sqr()).sum::<f64>(), density(j));
         let (answer, coherence) = (cross / of_wave, cross.norm_sqr() / (of_motion * of_wave));
-        Band { frequency: j as f64 * step, ratio: answer.norm(), phase: answer.arg(), coherence }
+        RaoPoint { frequency: j as f64 * step, ratio: answer.norm(), phase: answer.arg(), coherence }
     };
     lines.filter(|&j| density(j) >= faint).map(band).filter(|band| band.coherence.is_finite()).collect()
 }
@@ -129,10 +130,10 @@ mod tests {
     #[test]
     fn an_oscillator_in_an_irregular_sea_is_told_by_ratio_phase_and_coherence() -> Result<()> {
         let (t, wave, motion) = sea();
-        let bands = transfer(&Series::new(t.clone(), motion)?, &Series::new(t, wave)?);
+        let bands = rao_over_frequency(&TimeSeries::new(t.clone(), motion)?, &TimeSeries::new(t, wave)?);
         // Lines 1/100 Hz apart, from where the sea has 2 % of its peak's density to where it has no longer.
         assert!((65..80).contains(&bands.len()), "{} bands", bands.len());
-        for Band { frequency, ratio, phase, coherence } in bands {
+        for RaoPoint { frequency, ratio, phase, coherence } in bands {
             let exact = oscillator(frequency);
             assert!(coherence > 0.9 && coherence < 1.0 + 1e-9, "nothing else moves it: {coherence} at {frequency} Hz");
             // The bounds of the task; a window of three lines smears a resonance of 0.18 Hz by 3 % and 2 degrees.
@@ -154,7 +155,7 @@ mod tests {
             0.5 * deviation * 12.0_f64.sqrt() * ((seed >> 11) as f64 / 2.0_f64.powi(53) - 0.5)
         };
         let noisy: Vec<f64> = motion.iter().map(|x| x + noise()).collect();
-        let bands = transfer(&Series::new(t.clone(), noisy)?, &Series::new(t, wave)?);
+        let bands = rao_over_frequency(&TimeSeries::new(t.clone(), noisy)?, &TimeSeries::new(t, wave)?);
         let inside = |from: f64, until: f64| bands.iter().filter(move |b| b.frequency > from && b.frequency < until);
         // About the resonance the motion is dozens of times the noise, beyond 0.8 Hz as weak as it.
         for band in inside(0.45, 0.65) {
@@ -169,10 +170,13 @@ mod tests {
     #[test]
     fn few_waves_and_what_does_not_move_have_no_answer_over_frequency() -> Result<()> {
         let t: Vec<f64> = (0..1000).map(|i| 0.05 * f64::from(i)).collect();
-        let swings = |f: f64| Series::new(t.clone(), t.iter().map(|t| (TAU * f * t).sin()).collect::<Vec<_>>());
-        assert!(transfer(&swings(0.5)?, &swings(0.5)?).is_empty(), "25 waves");
-        assert!(transfer(&Series::new(t.clone(), vec![0.2; 1000])?, &swings(1.0)?).is_empty(), "it does not move");
-        assert!(!transfer(&swings(1.0)?, &swings(1.0)?).is_empty(), "50 waves");
+        let swings = |f: f64| TimeSeries::new(t.clone(), t.iter().map(|t| (TAU * f * t).sin()).collect::<Vec<_>>());
+        assert!(rao_over_frequency(&swings(0.5)?, &swings(0.5)?).is_empty(), "25 waves");
+        assert!(
+            rao_over_frequency(&TimeSeries::new(t.clone(), vec![0.2; 1000])?, &swings(1.0)?).is_empty(),
+            "it does not move"
+        );
+        assert!(!rao_over_frequency(&swings(1.0)?, &swings(1.0)?).is_empty(), "50 waves");
         Ok(())
     }
 
@@ -181,12 +185,12 @@ mod tests {
         let (period, phase) = (1.3, -0.8);
         let t: Vec<f64> = (0..1500).map(|i| 0.02 * f64::from(i)).collect();
         let made = |a: f64, phase: f64| {
-            Series::new(t.clone(), t.iter().map(|t| 0.1 + a * (TAU * t / period + phase).cos()).collect::<Vec<_>>())
+            TimeSeries::new(t.clone(), t.iter().map(|t| 0.1 + a * (TAU * t / period + phase).cos()).collect::<Vec<_>>())
         };
         let (wave, motion) = (made(0.05, 0.3)?, made(0.08, 0.3 + phase)?);
         // The fit is exact; of lines about the peak the spline through 65 samples a period keeps a thousandth.
         for (given, bound) in [(Some(period), 1e-9), (None, 1e-3)] {
-            let Some(found) = response(&motion, &wave, given) else { panic!("it answers") };
+            let Some(found) = rao(&motion, &wave, given) else { panic!("it answers") };
             let error = (found.ratio / 1.6 - 1.0).abs().max((found.phase - phase).abs());
             assert!(error < bound, "{given:?}: {found:?}");
         }

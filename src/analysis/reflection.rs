@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 
 use realfft::num_complex::Complex;
 
-use super::{harmonic, spectra, spectrum};
-use crate::{math::time_series::Series, wavemaker::wave_number};
+use super::{complex_amplitudes, harmonic, spectrum};
+use crate::{math::time_series::TimeSeries, wavemaker::wave_number};
 
 /// Least determinant of the least squares over the square of the number of gauges, –: below, the gauges stand so that
 /// both waves look alike.
@@ -42,7 +42,7 @@ impl Reflection {
 /// peak frequency, line by line of the spectra, but for lines to which the gauges are blind.
 ///
 /// None if there are fewer than two gauges, they cannot tell the two apart, or the series are too short.
-pub fn reflection(gauges: &[(f64, &Series)], depth: f64, g: f64, period: Option<f64>) -> Option<Reflection> {
+pub fn reflection(gauges: &[(f64, &TimeSeries)], depth: f64, g: f64, period: Option<f64>) -> Option<Reflection> {
     let places: Vec<f64> = gauges.iter().map(|(x, _)| *x).collect();
     if places.len() < 2 {
         return None;
@@ -52,23 +52,23 @@ pub fn reflection(gauges: &[(f64, &Series)], depth: f64, g: f64, period: Option<
             let omega = TAU / period;
             let fits: Option<Vec<_>> = gauges.iter().map(|(_, series)| harmonic(series, omega)).collect();
             let amplitudes: Vec<_> = fits?.iter().map(|h| Complex::from_polar(h.amplitude, h.phase)).collect();
-            let (i, r) = apart(&places, &amplitudes, wave_number(omega, depth, g))?;
+            let (i, r) = separate_waves(&places, &amplitudes, wave_number(omega, depth, g))?;
             Some(Reflection { incident: 2.0 * i.norm(), reflected: 2.0 * r.norm() })
         }
-        None => irregular(gauges, &places, depth, g),
+        None => irregular_reflection(gauges, &places, depth, g),
     }
 }
 
-fn irregular(gauges: &[(f64, &Series)], places: &[f64], depth: f64, g: f64) -> Option<Reflection> {
-    let all: Vec<&Series> = gauges.iter().map(|(_, series)| *series).collect();
+fn irregular_reflection(gauges: &[(f64, &TimeSeries)], places: &[f64], depth: f64, g: f64) -> Option<Reflection> {
+    let all: Vec<&TimeSeries> = gauges.iter().map(|(_, series)| *series).collect();
     let first = spectrum(all[0])?;
-    let [from, until] = BAND.map(|part| part * first.peak());
-    let (step, lines) = spectra(&all)?;
+    let [from, until] = BAND.map(|part| part * first.peak_frequency());
+    let (step, lines) = complex_amplitudes(&all)?;
     let (mut comes, mut goes, mut seen) = (0.0, 0.0, 0.0);
     for j in (1..lines[0].len()).filter(|&j| (from..=until).contains(&(j as f64 * step))) {
         let amplitudes: Vec<_> = lines.iter().map(|of| of[j]).collect();
         let k = wave_number(TAU * j as f64 * step, depth, g);
-        if let Some((i, r)) = apart(places, &amplitudes, k) {
+        if let Some((i, r)) = separate_waves(places, &amplitudes, k) {
             comes += i.norm_sqr();
             goes += r.norm_sqr();
             seen += lines[0][j].norm_sqr();
@@ -80,7 +80,7 @@ fn irregular(gauges: &[(f64, &Series)], places: &[f64], depth: f64, g: f64) -> O
 }
 
 /// Amplitudes of the waves of number `k` (1/m) that come and that go back, from those at `places` (m).
-fn apart(places: &[f64], amplitudes: &[Complex<f64>], k: f64) -> Option<(Complex<f64>, Complex<f64>)> {
+fn separate_waves(places: &[f64], amplitudes: &[Complex<f64>], k: f64) -> Option<(Complex<f64>, Complex<f64>)> {
     let n = places.len() as f64;
     let turn = |x: &f64| Complex::from_polar(1.0, k * x);
     let twice: Complex<f64> = places.iter().map(|x| turn(&(2.0 * x))).sum();
@@ -102,7 +102,7 @@ mod tests {
     const PLACES: [f64; 3] = [2.0, 2.21, 2.58];
 
     /// Elevation of waves of these frequencies (Hz) and amplitudes at `x`, `back` of which comes back.
-    fn elevation(x: f64, back: f64, parts: &[(f64, f64)], until: f64) -> Result<Series> {
+    fn elevation(x: f64, back: f64, parts: &[(f64, f64)], until: f64) -> Result<TimeSeries> {
         let t: Vec<f64> = (0..=(until * 50.0) as usize).map(|i| i as f64 * 0.02).collect();
         let at = |t: f64| -> f64 {
             let part = |(n, (f, a)): (usize, &(f64, f64))| {
@@ -113,14 +113,14 @@ mod tests {
             parts.iter().enumerate().map(part).sum()
         };
         let x: Vec<f64> = t.iter().map(|&t| at(t)).collect();
-        Series::new(t, x)
+        TimeSeries::new(t, x)
     }
 
     #[test]
     fn regular_waves_to_and_fro_are_told_apart_exactly() -> Result<()> {
-        let series: Result<Vec<Series>> = PLACES.iter().map(|&x| elevation(x, 0.3, &[(0.8, 0.05)], 11.3)).collect();
+        let series: Result<Vec<TimeSeries>> = PLACES.iter().map(|&x| elevation(x, 0.3, &[(0.8, 0.05)], 11.3)).collect();
         let series = series?;
-        let gauges: Vec<(f64, &Series)> = PLACES.into_iter().zip(&series).collect();
+        let gauges: Vec<(f64, &TimeSeries)> = PLACES.into_iter().zip(&series).collect();
         let Some(found) = reflection(&gauges, DEPTH, 9.81, Some(1.25)) else { panic!("they are told apart") };
         assert!((found.coefficient() - 0.3).abs() < 1e-6, "{found:?}");
         assert!((found.incident - 0.1).abs() < 1e-6 * 0.1, "{found:?}");
@@ -130,9 +130,9 @@ mod tests {
     #[test]
     fn irregular_waves_to_and_fro_are_told_apart_line_by_line() -> Result<()> {
         let parts: Vec<(f64, f64)> = (0..60).map(|i| (0.5 + 0.01 * f64::from(i), 0.004)).collect();
-        let series: Result<Vec<Series>> = PLACES.iter().map(|&x| elevation(x, 0.2, &parts, 200.0)).collect();
+        let series: Result<Vec<TimeSeries>> = PLACES.iter().map(|&x| elevation(x, 0.2, &parts, 200.0)).collect();
         let series = series?;
-        let gauges: Vec<(f64, &Series)> = PLACES.into_iter().zip(&series).collect();
+        let gauges: Vec<(f64, &TimeSeries)> = PLACES.into_iter().zip(&series).collect();
         let Some(found) = reflection(&gauges, DEPTH, 9.81, None) else { panic!("they are told apart") };
         // Lines 1/200 Hz apart, to which a window three lines wide smears their neighbours.
         assert!((found.coefficient() / 0.2 - 1.0).abs() < 0.05, "{found:?}");
@@ -143,9 +143,9 @@ mod tests {
     fn gauges_half_a_wave_length_apart_are_blind() -> Result<()> {
         let half = 0.5 * TAU / wave_number(TAU * 0.8, DEPTH, 9.81);
         let places = [1.0, 1.0 + half, 1.0 + 2.0 * half];
-        let series: Result<Vec<Series>> = places.iter().map(|&x| elevation(x, 0.3, &[(0.8, 0.05)], 10.0)).collect();
+        let series: Result<Vec<TimeSeries>> = places.iter().map(|&x| elevation(x, 0.3, &[(0.8, 0.05)], 10.0)).collect();
         let series = series?;
-        let gauges: Vec<(f64, &Series)> = places.into_iter().zip(&series).collect();
+        let gauges: Vec<(f64, &TimeSeries)> = places.into_iter().zip(&series).collect();
         assert_eq!(reflection(&gauges, DEPTH, 9.81, Some(1.25)), None);
         Ok(())
     }

@@ -2,8 +2,8 @@
 
 use realfft::{RealFftPlanner, num_complex::Complex};
 
-use super::{moments, waves};
-use crate::math::time_series::Series;
+use super::{moments, zero_crossing_waves};
+use crate::math::time_series::TimeSeries;
 
 /// Fewest samples of a record.
 const LEAST: usize = 16;
@@ -12,46 +12,46 @@ const LEAST: usize = 16;
 const WAVES_A_PART: usize = 16;
 
 /// Into how many quarters a long record is cut; with those that lie half over two there are seven.
-pub(super) const QUARTERS: usize = 4;
+pub(super) const SEGMENTS: usize = 4;
 
 /// Waves that a series has at least whose spectrum is shown: fewer lines than that a wave's width are no spectrum.
 const SHOWN_WAVES: usize = 8;
 
 /// How much of a spectrum's variance is shown, –; what is faster is noise.
-const SHOWN: f64 = 0.999;
+const DISPLAYED_VARIANCE: f64 = 0.999;
 
 /// Complex amplitudes, from frequency 0 up.
-pub type Lines = Vec<Complex<f64>>;
+pub type ComplexAmplitudes = Vec<Complex<f64>>;
 
 /// A one-sided spectrum, its integral the variance of the record.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spectrum {
+pub struct WelchSpectrum {
     /// From one frequency to the next, Hz; the first is 0.
-    pub step: f64,
+    pub frequency_step: f64,
     /// Density, in the squared unit of the series a Hz.
     pub density: Vec<f64>,
 }
 
-impl Spectrum {
+impl WelchSpectrum {
     /// Frequencies, Hz.
     pub fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.density.len()).map(|i| i as f64 * self.step)
+        (0..self.density.len()).map(|i| i as f64 * self.frequency_step)
     }
 
     /// ∫ fⁿ S df from `from` to `until` (Hz).
     pub fn moment(&self, n: i32, from: f64, until: f64) -> f64 {
         let inside = self.frequencies().zip(&self.density).filter(|(f, _)| (from..=until).contains(f));
-        inside.map(|(f, s)| f.powi(n) * s).sum::<f64>() * self.step
+        inside.map(|(f, s)| f.powi(n) * s).sum::<f64>() * self.frequency_step
     }
 
     /// Significant height H_m0 = 4 √m₀, in the unit of the series.
-    pub fn height(&self) -> f64 {
+    pub fn significant_height(&self) -> f64 {
         4.0 * self.moment(0, 0.0, f64::INFINITY).sqrt()
     }
 
     /// Peak frequency, Hz: the centroid of the highest line and two on either side, over which a Hann window spreads what
     /// swings with one period.
-    pub fn peak(&self) -> f64 {
+    pub fn peak_frequency(&self) -> f64 {
         let lines = 0..self.density.len();
         let top = lines.max_by(|a, b| self.density[*a].total_cmp(&self.density[*b])).unwrap_or(0);
         let near = || self.frequencies().zip(&self.density).take(top + 3).skip(top.saturating_sub(2));
@@ -60,7 +60,7 @@ impl Spectrum {
 
     /// Peak period T_p, s.
     pub fn peak_period(&self) -> f64 {
-        1.0 / self.peak()
+        1.0 / self.peak_frequency()
     }
 
     /// Mean period T_m02 = √(m₀/m₂), s.
@@ -73,14 +73,14 @@ impl Spectrum {
 ///
 /// Samples are taken evenly from the smooth curve through the series, less their mean. A record of 64 waves or more is cut
 /// into quarters that overlap by half; a shorter one is taken whole.
-pub fn spectrum(series: &Series) -> Option<Spectrum> {
+pub fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     let of = moments(series);
-    if of.least.0 == of.largest.0 {
+    if of.min.0 == of.max.0 {
         return None;
     }
-    let variance = of.deviation.powi(2);
-    let cut = waves(series).is_some_and(|w| w.count >= QUARTERS * WAVES_A_PART);
-    let (step, parts) = transforms(&[series], if cut { QUARTERS } else { 1 })?;
+    let variance = of.standard_deviation.powi(2);
+    let cut = zero_crossing_waves(series).is_some_and(|w| w.count >= SEGMENTS * WAVES_A_PART);
+    let (step, parts) = segment_transforms(&[series], if cut { SEGMENTS } else { 1 })?;
     let count = parts[0].first()?.len();
     let mut density = vec![0.0; count];
     for part in &parts[0] {
@@ -91,18 +91,18 @@ pub fn spectrum(series: &Series) -> Option<Spectrum> {
         return None;
     }
     density.iter_mut().for_each(|s| *s *= variance / sum);
-    Some(Spectrum { step, density })
+    Some(WelchSpectrum { frequency_step: step, density })
 }
 
 /// The spectrum of `series` as it is shown: of eight waves or more, up to the frequency below which 99.9 % of the variance lies.
-pub fn swing(series: &Series) -> Option<Spectrum> {
-    waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
+pub fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
+    zero_crossing_waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
     let mut all = spectrum(series)?;
     let whole: f64 = all.density.iter().sum();
     let mut sum = 0.0;
     let below = all.density.iter().take_while(|s| {
         sum += **s;
-        sum - **s < SHOWN * whole
+        sum - **s < DISPLAYED_VARIANCE * whole
     });
     let rows = below.count();
     all.density.truncate(rows);
@@ -111,14 +111,14 @@ pub fn swing(series: &Series) -> Option<Spectrum> {
 
 /// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
 /// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
-pub fn spectra(series: &[&Series]) -> Option<(f64, Vec<Lines>)> {
-    let (step, parts) = transforms(series, 1)?;
+pub fn complex_amplitudes(series: &[&TimeSeries]) -> Option<(f64, Vec<ComplexAmplitudes>)> {
+    let (step, parts) = segment_transforms(series, 1)?;
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }
 
 /// From one frequency to the next (Hz), and for each series the transforms of its windowed parts, over the time that all
 /// cover: `cut` into so many, and those that lie half over two.
-pub(super) fn transforms(series: &[&Series], cut: usize) -> Option<(f64, Vec<Vec<Lines>>)> {
+pub(super) fn segment_transforms(series: &[&TimeSeries], cut: usize) -> Option<(f64, Vec<Vec<ComplexAmplitudes>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));
     let count = series.iter().map(|s| s.times().len()).min()?;
@@ -153,7 +153,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     /// A sea of so many components evenly apart in frequency, with phases that a golden angle apart make irregular.
-    fn sea(density: impl Fn(f64) -> f64, step: f64, count: u32, until: f64) -> Result<Series> {
+    fn sea(density: impl Fn(f64) -> f64, step: f64, count: u32, until: f64) -> Result<TimeSeries> {
         let t: Vec<f64> = (0..=(until / 0.05) as usize).map(|i| i as f64 * 0.05).collect();
         let part = |t: f64, i: u32| {
             let f = (f64::from(i) + 0.5) * step;
@@ -161,7 +161,7 @@ mod tests {
             (2.0 * density(f) * step).sqrt() * (TAU * f * t + phase).cos()
         };
         let x: Vec<f64> = t.iter().map(|&t| (0..count).map(|i| part(t, i)).sum()).collect();
-        Series::new(t, x)
+        TimeSeries::new(t, x)
     }
 
     /// JONSWAP of peak frequency `peak` (Hz) and γ = 3.3, not normed.
@@ -175,9 +175,13 @@ mod tests {
     fn a_sine_has_its_period_and_four_deviations() -> Result<()> {
         let t: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.02).collect();
         let x: Vec<f64> = t.iter().map(|t| 0.3 + 0.1 * (TAU * t / 1.37).sin()).collect();
-        let Some(found) = spectrum(&Series::new(t, x)?) else { panic!("it has a spectrum") };
+        let Some(found) = spectrum(&TimeSeries::new(t, x)?) else { panic!("it has a spectrum") };
         // 14.6 periods, not a whole number: the variance of what is over is within 2 %, half of that of the root.
-        assert!((found.height() / (0.4 / 2.0_f64.sqrt()) - 1.0).abs() < 0.02, "{}", found.height());
+        assert!(
+            (found.significant_height() / (0.4 / 2.0_f64.sqrt()) - 1.0).abs() < 0.02,
+            "{}",
+            found.significant_height()
+        );
         // Lines are 1/20 Hz apart; the centroid of a Hann window's is its middle, but for what other lines have of it.
         assert!((found.peak_period() / 1.37 - 1.0).abs() < 0.01, "{}", found.peak_period());
         Ok(())
@@ -192,7 +196,11 @@ mod tests {
         // 400 s, the time after which a sum of such components repeats itself: all its variance, 200 peak periods.
         let series = sea(|f| scale * jonswap(f, peak), step, count, 400.0)?;
         let Some(found) = spectrum(&series) else { panic!("it has a spectrum") };
-        assert!((found.height() / height - 1.0).abs() < 0.02, "H_m0 within 2 %: {}", found.height());
+        assert!(
+            (found.significant_height() / height - 1.0).abs() < 0.02,
+            "H_m0 within 2 %: {}",
+            found.significant_height()
+        );
         // Lines of a quarter of the record are 1/100 Hz apart, and the peak of one sea of 200 waves wanders by as much.
         assert!((found.peak_period() * peak - 1.0).abs() < 0.05, "T_p within 5 %: {}", found.peak_period());
         Ok(())
@@ -201,8 +209,8 @@ mod tests {
     #[test]
     fn what_does_not_change_has_no_spectrum() -> Result<()> {
         let t: Vec<f64> = (0..100).map(f64::from).collect();
-        assert_eq!(spectrum(&Series::new(t.clone(), vec![0.3; 100])?), None);
-        assert_eq!(spectrum(&Series::new(t[..8].to_vec(), t[..8].to_vec())?), None, "too short");
+        assert_eq!(spectrum(&TimeSeries::new(t.clone(), vec![0.3; 100])?), None);
+        assert_eq!(spectrum(&TimeSeries::new(t[..8].to_vec(), t[..8].to_vec())?), None, "too short");
         Ok(())
     }
 }

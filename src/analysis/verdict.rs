@@ -5,42 +5,42 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    alignment::{Aligned, Arrival, align},
-    error_metrics::{amplitude, deviation, off, peak},
+    alignment::{AlignedMetrics, ArrivalTimes, align},
+    error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2},
     reference_table,
 };
 use crate::{
     error::{Error, Result},
     math::expression::Formula,
-    math::time_series::Series,
-    plan::{Align, CheckWords, Reference, Score},
+    math::time_series::TimeSeries,
+    plan::{Align, CheckPlan, Reference, Score},
 };
 
 /// A reference that a run is to be held against.
 #[derive(Clone, Debug)]
-pub struct Check {
-    words: CheckWords,
-    reference: Known,
+pub struct ReferenceCheck {
+    plan: CheckPlan,
+    reference: KnownReference,
 }
 
 /// What is known of a series.
 #[derive(Clone, Debug)]
-enum Known {
+enum KnownReference {
     /// Samples, their delay added, in the window.
-    Table(Series),
+    Table(TimeSeries),
     /// A value at any time.
     Formula(Formula),
 }
 
 /// A run and what it is held against, as lines.
 #[derive(Clone, Debug)]
-pub struct Curves {
+pub struct CheckCurves {
     /// The run, from its start to its end.
-    pub sim: Series,
+    pub sim: TimeSeries,
     /// The same as the check's instrument shows it, if it has one.
-    pub meaned: Option<Series>,
+    pub running_mean: Option<TimeSeries>,
     /// The reference, where both the window and the run cover it.
-    pub reference: Series,
+    pub reference: TimeSeries,
     /// Whether the reference is a formula.
     pub exact: bool,
     /// Share of the reference in the window that the run covers, –.
@@ -49,13 +49,13 @@ pub struct Curves {
 
 /// Figures of a comparison; one is none where it cannot be formed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Figures {
+pub struct ErrorMetrics {
     /// Relative deviation, –.
     #[serde(rename = "N")]
-    pub n: Option<f64>,
+    pub relative_l2: Option<f64>,
     /// Amplitude ratio, –.
     #[serde(rename = "M")]
-    pub m: Option<f64>,
+    pub amplitude_ratio: Option<f64>,
     /// Relative error of the first peak, –.
     pub peak: Option<f64>,
     /// Largest |run − reference|, in the unit of the series.
@@ -64,12 +64,12 @@ pub struct Figures {
 
 /// The figures of the run as an instrument shows it that takes a running mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Meaned {
+pub struct RunningMeanMetrics {
     /// Over how long, s.
     pub seconds: f64,
     /// The figures.
     #[serde(flatten)]
-    pub figures: Figures,
+    pub metrics: ErrorMetrics,
 }
 
 /// How a run did against a reference.
@@ -79,13 +79,13 @@ pub struct Verdict {
     pub series: String,
     /// The figures of the run as it is.
     #[serde(flatten)]
-    pub figures: Figures,
+    pub metrics: ErrorMetrics,
     /// The figures of its running mean, if the check asks for one.
-    pub meaned: Option<Meaned>,
+    pub meaned: Option<RunningMeanMetrics>,
     /// N and M with one delay taken out, of the running mean if there is one.
-    pub aligned: Option<Aligned>,
+    pub aligned: Option<AlignedMetrics>,
     /// When run and reference first pass the threshold of the check, if it has one.
-    pub arrival: Option<Arrival>,
+    pub arrival: Option<ArrivalTimes>,
     /// What the paper reached.
     pub paper: Option<Score>,
     /// What the run must reach.
@@ -98,30 +98,30 @@ pub struct Verdict {
     pub note: Option<String>,
 }
 
-impl Check {
+impl ReferenceCheck {
     /// The check of a run that `words` mean; the tables that they name lie in `folder`.
     ///
     /// # Errors
     /// `File` if the table cannot be read; `Scene` if it lacks a column, has fewer than two samples in the
     /// window, or the formula is none.
-    pub fn new(words: &CheckWords, folder: &Path) -> Result<Self> {
+    pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> {
         let reference = match &words.reference {
-            Reference::Formula(text) => Known::Formula(Formula::parse(text)?),
+            Reference::Formula(text) => KnownReference::Formula(Formula::parse(text)?),
             Reference::Table { file, time, column, delay } => {
                 let path = folder.join(file);
                 let (from, until) = window(words, 0.0);
-                let whole = reference_table::read(&path, time, column, *delay)?;
-                Known::Table(
-                    whole.within(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
+                let whole = reference_table::read_series(&path, time, column, *delay)?;
+                KnownReference::Table(
+                    whole.window(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
                 )
             }
         };
-        Ok(Self { words: words.clone(), reference })
+        Ok(Self { plan: words.clone(), reference })
     }
 
     /// What it looks at and what for.
-    pub fn words(&self) -> &CheckWords {
-        &self.words
+    pub fn plan(&self) -> &CheckPlan {
+        &self.plan
     }
 
     /// The run whose tables lie in `folder`, and its reference.
@@ -129,68 +129,69 @@ impl Check {
     /// # Errors
     /// `File` if the run's table cannot be read; `Scene` if it has no such column, or the run and the
     /// reference have no time in common.
-    pub fn curves(&self, folder: &Path) -> Result<Curves> {
-        let (sim, meaned) = self.run(folder)?;
-        let (reference, covered, _) = self.common(&sim)?;
-        let exact = matches!(self.reference, Known::Formula(_));
-        Ok(Curves { sim, meaned, reference, exact, covered })
+    pub fn curves(&self, folder: &Path) -> Result<CheckCurves> {
+        let (sim, meaned) = self.run_series(folder)?;
+        let (reference, covered, _) = self.overlap(&sim)?;
+        let exact = matches!(self.reference, KnownReference::Formula(_));
+        Ok(CheckCurves { sim, running_mean: meaned, reference, exact, covered })
     }
 
     /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
     /// comparison that cannot be made says so in its note, and misses its bound unless the run is too short.
-    pub fn judge(&self, folder: &Path) -> Verdict {
-        let mut verdict = self.blank();
-        let (sim, meaned) = match self.run(folder) {
+    pub fn verdict(&self, folder: &Path) -> Verdict {
+        let mut verdict = self.empty_verdict();
+        let (sim, meaned) = match self.run_series(folder) {
             Ok(run) => run,
             Err(why) => {
-                verdict.passed = self.words.bound.map(|_| false);
+                verdict.passed = self.plan.bound.map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
-        let (reference, covered, start) = match self.common(&sim) {
+        let (reference, covered, start) = match self.overlap(&sim) {
             Ok(common) => common,
             Err(why) => {
                 // A run that ends before its reference begins, or before it is set to zero, is too short, no failure.
-                let (from, until) = window(&self.words, 0.0);
-                let set = self.words.zero.is_none_or(|at| at <= sim.span().1);
-                let reaches = set && matches!(self.reference, Known::Formula(_)) && sim.within(from, until).is_ok();
-                verdict.passed = self.words.bound.filter(|_| reaches).map(|_| false);
+                let (from, until) = window(&self.plan, 0.0);
+                let set = self.plan.zero.is_none_or(|at| at <= sim.span().1);
+                let reaches =
+                    set && matches!(self.reference, KnownReference::Formula(_)) && sim.window(from, until).is_ok();
+                verdict.passed = self.plan.bound.filter(|_| reaches).map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
         verdict.covered = covered;
-        verdict.note = deviation(&sim, &reference).err().map(|why| why.to_string());
-        verdict.figures = self.figures(&sim, &reference, start);
+        verdict.note = relative_l2(&sim, &reference).err().map(|why| why.to_string());
+        verdict.metrics = self.metrics(&sim, &reference, start);
         verdict.meaned = self
-            .words
+            .plan
             .mean
             .zip(meaned.as_ref())
-            .map(|(seconds, meaned)| Meaned { seconds, figures: self.figures(meaned, &reference, start) });
-        if let Some(how) = self.words.align {
+            .map(|(seconds, meaned)| RunningMeanMetrics { seconds, metrics: self.metrics(meaned, &reference, start) });
+        if let Some(how) = self.plan.align {
             let shown = meaned.as_ref().unwrap_or(&sim);
             (verdict.aligned, verdict.arrival) = match how {
-                Align::Start(_) => (None, Some(Arrival { run: Some(start), reference: Some(0.0) })),
-                how => align(shown, &reference, how, window(&self.words, start)),
+                Align::Start(_) => (None, Some(ArrivalTimes { run: Some(start), reference: Some(0.0) })),
+                how => align(shown, &reference, how, window(&self.plan, start)),
             };
         }
-        match self.words.bound {
+        match self.plan.bound {
             Some(_) if covered < 0.5 => {
                 verdict.note = Some("the run covers less than half of the reference: not judged".into());
             }
-            bound => verdict.passed = bound.map(|bound| verdict.keeps(&bound)),
+            bound => verdict.passed = bound.map(|bound| verdict.meets(&bound)),
         }
         verdict
     }
 
-    fn blank(&self) -> Verdict {
+    fn empty_verdict(&self) -> Verdict {
         Verdict {
-            series: self.words.label(),
-            figures: Figures::default(),
+            series: self.plan.label(),
+            metrics: ErrorMetrics::default(),
             meaned: None,
             aligned: None,
             arrival: None,
-            paper: self.words.paper,
-            bound: self.words.bound,
+            paper: self.plan.paper,
+            bound: self.plan.bound,
             covered: 0.0,
             passed: None,
             note: None,
@@ -198,37 +199,37 @@ impl Check {
     }
 
     /// The run's series, and what the instrument shows of it.
-    fn run(&self, folder: &Path) -> Result<(Series, Option<Series>)> {
-        let (probe, column) = self.words.series.split_once('.').unwrap_or((&self.words.series, ""));
+    fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>)> {
+        let (probe, column) = self.plan.series.split_once('.').unwrap_or((&self.plan.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
-        let mut sim = reference_table::read(&path, "t_s", column, 0.0)?;
-        if let Some(at) = self.words.zero {
-            sim = sim.minus(sim.at(at));
+        let mut sim = reference_table::read_series(&path, "t_s", column, 0.0)?;
+        if let Some(at) = self.plan.zero {
+            sim = sim.minus(sim.value_at(at));
         }
-        let meaned = self.words.mean.map(|seconds| sim.running_mean(seconds));
+        let meaned = self.plan.mean.map(|seconds| sim.running_mean(seconds));
         Ok((sim, meaned))
     }
 
     /// When the reference's clock starts, s of the run's: 0 unless it has one of its own.
-    fn start(&self, sim: &Series) -> Result<f64> {
-        let Some(Align::Start(threshold)) = self.words.align else { return Ok(0.0) };
-        sim.crossing(threshold).ok_or_else(|| {
+    fn reference_start(&self, sim: &TimeSeries) -> Result<f64> {
+        let Some(Align::Start(threshold)) = self.plan.align else { return Ok(0.0) };
+        sim.first_crossing(threshold).ok_or_else(|| {
             Error::scene(format!("the run never passes {threshold}, with which the clock of its reference starts"))
         })
     }
 
     /// The reference where the run covers it, which share of it that is, and when its clock starts.
-    fn common(&self, sim: &Series) -> Result<(Series, f64, f64)> {
+    fn overlap(&self, sim: &TimeSeries) -> Result<(TimeSeries, f64, f64)> {
         let (first, last) = sim.span();
-        if let Some(at) = self.words.zero.filter(|at| *at > last) {
+        if let Some(at) = self.plan.zero.filter(|at| *at > last) {
             return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
         }
-        let start = self.start(sim)?;
-        let (from, until) = window(&self.words, start);
+        let start = self.reference_start(sim)?;
+        let (from, until) = window(&self.plan, start);
         match &self.reference {
-            Known::Table(whole) => {
+            KnownReference::Table(whole) => {
                 let whole = whole.shifted(start);
-                let common = whole.within(first, last).map_err(|_| {
+                let common = whole.window(first, last).map_err(|_| {
                     let (from, to) = whole.span();
                     Error::scene(format!(
                         "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
@@ -237,9 +238,9 @@ impl Check {
                 let covered = common.times().len() as f64 / whole.times().len() as f64;
                 Ok((common, covered, start))
             }
-            Known::Formula(formula) => {
-                let times = sim.within(from, until)?.times().to_vec();
-                let values: Vec<f64> = times.iter().map(|&t| formula.at(t - start).0).collect();
+            KnownReference::Formula(formula) => {
+                let times = sim.window(from, until)?.times().to_vec();
+                let values: Vec<f64> = times.iter().map(|&t| formula.value_and_rate(t - start).0).collect();
                 if let Some(i) = values.iter().position(|x| !x.is_finite()) {
                     return Err(Error::scene(format!("the formula gives {} at t = {} s", values[i], times[i])));
                 }
@@ -249,38 +250,38 @@ impl Check {
                 } else {
                     1.0
                 };
-                Ok((Series::new(times, values)?, covered, start))
+                Ok((TimeSeries::new(times, values)?, covered, start))
             }
         }
     }
 
-    fn figures(&self, sim: &Series, reference: &Series, start: f64) -> Figures {
-        let (from, until) = window(&self.words, start);
-        Figures {
-            n: deviation(sim, reference).ok(),
-            m: amplitude(sim, reference).ok(),
-            peak: sim.within(from, until).and_then(|sim| peak(&sim, reference)).ok(),
-            off: off(sim, reference).ok(),
+    fn metrics(&self, sim: &TimeSeries, reference: &TimeSeries, start: f64) -> ErrorMetrics {
+        let (from, until) = window(&self.plan, start);
+        ErrorMetrics {
+            relative_l2: relative_l2(sim, reference).ok(),
+            amplitude_ratio: amplitude_ratio(sim, reference).ok(),
+            peak: sim.window(from, until).and_then(|sim| first_peak_error(&sim, reference)).ok(),
+            off: max_abs(sim, reference).ok(),
         }
     }
 }
 
 impl Verdict {
     /// Whether every figure that `bound` names is there and within it.
-    pub fn keeps(&self, bound: &Score) -> bool {
+    pub fn meets(&self, bound: &Score) -> bool {
         let within =
             |limit: Option<f64>, figure: Option<f64>| limit.is_none_or(|most| figure.is_some_and(|x| x <= most));
-        within(bound.n, self.figures.n)
-            && within(bound.m, self.figures.m.map(|m| (m - 1.0).abs()))
-            && within(bound.peak, self.figures.peak)
-            && within(bound.off, self.figures.off)
-            && within(bound.aligned_n, self.aligned.map(|a| a.n))
+        within(bound.relative_l2, self.metrics.relative_l2)
+            && within(bound.amplitude_ratio, self.metrics.amplitude_ratio.map(|m| (m - 1.0).abs()))
+            && within(bound.peak, self.metrics.peak)
+            && within(bound.off, self.metrics.off)
+            && within(bound.aligned_relative_l2, self.aligned.map(|a| a.relative_l2))
             && within(bound.delay, self.aligned.map(|a| a.delay.abs()))
     }
 }
 
 /// First and last time of the run that count, s, where the reference's clock starts at `start` (s).
-fn window(words: &CheckWords, start: f64) -> (f64, f64) {
+fn window(words: &CheckPlan, start: f64) -> (f64, f64) {
     let from = match words.align {
         Some(Align::Start(_)) => 0.0,
         _ => f64::NEG_INFINITY,

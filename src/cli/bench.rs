@@ -3,16 +3,16 @@
 use clap::Args;
 use pontoon::{
     Result,
-    bench::{self, Timing, Work},
-    error::{Error, Kind},
+    bench::{self, BenchCase, BenchTiming},
+    error::{Error, ErrorKind},
     output::manifest::Machine,
 };
 use serde::Serialize;
 
-use super::report::{short, table};
+use super::console_text::{short_number, table};
 
 /// Water particles up to which the oracle is timed beside the fast sweep.
-const LARGEST_FOR_ORACLE: usize = 200_000;
+const MAX_REFERENCE_PARTICLES: usize = 200_000;
 
 /// What is timed.
 #[derive(Args)]
@@ -45,12 +45,12 @@ pub struct BenchArgs {
 
 /// All that was measured.
 #[derive(Serialize)]
-struct Tables {
+struct BenchReport {
     version: &'static str,
     machine: Machine,
-    standard: Vec<Timing>,
-    oracle: Vec<Timing>,
-    terms: Vec<Timing>,
+    standard: Vec<BenchTiming>,
+    oracle: Vec<BenchTiming>,
+    terms: Vec<BenchTiming>,
     /// Time of the oracle's pairs over that of the fast sweep's, of each work.
     fast_over_oracle: Vec<f64>,
 }
@@ -58,15 +58,15 @@ struct Tables {
 /// Times and gives the text to print.
 pub fn bench(args: &BenchArgs) -> Result<String> {
     if let Some(steps) = args.fixed {
-        bench::fixed(steps, &args.work)?;
+        bench::run_fixed_steps(steps, &args.work)?;
         return Ok(String::new());
     }
     if args.size.iter().any(|&n| !(100..=50_000_000).contains(&n)) || args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
+        return Err(Error::new(ErrorKind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
     }
-    let machine = Machine::this();
+    let machine = Machine::current();
     let threads = args.threads.unwrap_or(machine.cpus);
-    let mut tables = Tables {
+    let mut tables = BenchReport {
         version: env!("CARGO_PKG_VERSION"),
         machine,
         standard: Vec::new(),
@@ -77,49 +77,54 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
     for &water in &args.size {
         if args.terms {
             for dimension in [3, 2] {
-                tables.terms.extend(bench::time(&bench::terms(dimension, water), &[1], 5)?);
+                tables.terms.extend(bench::time(&bench::term_cases(dimension, water), &[1], 5)?);
             }
             continue;
         }
         for dimension in [3, 2] {
-            let mut work = Work::standard(dimension, water);
+            let mut work = BenchCase::standard(dimension, water);
             if args.developed {
                 // 2.2 √(depth/g) after its release the water has run up the far wall.
-                work = Work { name: "wendland, developed".into(), until: 4.0, ..work };
+                work = BenchCase { name: "wendland, developed".into(), spin_up: 4.0, ..work };
             }
             let cubic = [("model.kernel", "cubic")];
-            let works =
-                if args.developed { vec![work] } else { vec![work.clone(), work.with("cubic, tensile", &cubic)] };
+            let works = if args.developed {
+                vec![work]
+            } else {
+                vec![work.clone(), work.with_overrides("cubic, tensile", &cubic)]
+            };
             let counts = if threads > 1 { vec![1, threads] } else { vec![1] };
             for work in works {
                 // One after the other, so that the peak of memory is that of one.
                 tables.standard.extend(bench::time(std::slice::from_ref(&work), &counts, 3)?);
                 // The oracle takes a minute and more for a larger one, and tells nothing new.
-                if !args.developed && water <= LARGEST_FOR_ORACLE {
-                    let sets = [&work.sets[..], &[("model.sweep", "reference")]].concat();
-                    tables.oracle.extend(bench::time(&[work.with(&work.name, &sets)], &[1], 2)?);
+                if !args.developed && water <= MAX_REFERENCE_PARTICLES {
+                    let sets = [&work.overrides[..], &[("model.sweep", "reference")]].concat();
+                    tables.oracle.extend(bench::time(&[work.with_overrides(&work.name, &sets)], &[1], 2)?);
                 }
             }
         }
     }
     for oracle in &tables.oracle {
-        let same = |t: &&Timing| {
+        let same = |t: &&BenchTiming| {
             (t.threads, t.dimension, t.water, &t.work) == (1, oracle.dimension, oracle.water, &oracle.work)
         };
         tables.fast_over_oracle.extend(tables.standard.iter().find(same).map(|t| oracle.pair_ns / t.pair_ns));
     }
     if let Some(low) = tables.fast_over_oracle.iter().find(|&&r| r < args.floor.unwrap_or(0.0)) {
         let help = "something in the sweep has become slower: compare `perf` of both versions";
-        return Err(Error::new(Kind::Usage, format!("the fast sweep is only {low:.1} times the oracle's")).help(help));
+        return Err(
+            Error::new(ErrorKind::Usage, format!("the fast sweep is only {low:.1} times the oracle's")).help(help)
+        );
     }
     if args.json {
         let text = serde_json::to_string_pretty(&tables);
-        return text.map(|t| t + "\n").map_err(|e| Error::new(Kind::Usage, format!("no JSON: {e}")));
+        return text.map(|t| t + "\n").map_err(|e| Error::new(ErrorKind::Usage, format!("no JSON: {e}")));
     }
     Ok(text(&tables))
 }
 
-fn text(tables: &Tables) -> String {
+fn text(tables: &BenchReport) -> String {
     let Machine { processor, cpus, instructions, .. } = &tables.machine;
     let instructions = instructions.as_deref().unwrap_or("no lanes: the oracle throughout");
     let mut text = format!("pontoon {}, {processor}, {cpus} processors, {instructions}\n", tables.version);
@@ -143,7 +148,7 @@ fn text(tables: &Tables) -> String {
     text
 }
 
-fn rows(timings: &[Timing]) -> Vec<Vec<String>> {
+fn rows(timings: &[BenchTiming]) -> Vec<Vec<String>> {
     let head = [
         "work",
         "",
@@ -167,8 +172,8 @@ fn rows(timings: &[Timing]) -> Vec<Vec<String>> {
             t.work.clone(),
             format!("{}-D", t.dimension),
             t.threads.to_string(),
-            short(t.water as f64),
-            short(t.wet as f64),
+            short_number(t.water as f64),
+            short_number(t.wet as f64),
             format!("{:.2}", t.particle_steps_per_s * 1e-6),
             format!("{:.2}", t.step_s * 1e3),
             format!("{:.0}", t.cpu_ns),
@@ -184,7 +189,7 @@ fn rows(timings: &[Timing]) -> Vec<Vec<String>> {
     rows
 }
 
-fn term_rows(timings: &[Timing]) -> Vec<Vec<String>> {
+fn term_rows(timings: &[BenchTiming]) -> Vec<Vec<String>> {
     let mut rows = vec![["work", "", "cpu ns", "÷ standard", "pairs ÷ standard", "ms/step"].map(String::from).to_vec()];
     for t in timings {
         let Some(base) = timings.iter().find(|b| b.dimension == t.dimension) else { continue };

@@ -7,8 +7,8 @@ use std::{
 
 use clap::{ArgGroup, Args};
 use pontoon::{
-    error::{Error, Kind, Result},
-    output::{Manifest, Readings, npz},
+    error::{Error, ErrorKind, Result},
+    output::{Manifest, SeriesTable, npz},
     run,
 };
 use serde::{Deserialize, de::DeserializeOwned};
@@ -45,16 +45,16 @@ pub fn export(args: &ExportArgs) -> Result<String> {
 fn series(folder: &Path, out: PathBuf) -> Result<String> {
     let manifest = Manifest::read(folder)?;
     let names = manifest.files.iter().filter_map(|file| file.strip_prefix("series/")?.strip_suffix(".csv"));
-    let read = |name| Ok((name, Readings::read(&folder.join(format!("series/{name}.csv")))?));
-    let tables: Vec<(&str, Readings)> = names.map(read).collect::<Result<_>>()?;
+    let read = |name| Ok((name, SeriesTable::read(&folder.join(format!("series/{name}.csv")))?));
+    let tables: Vec<(&str, SeriesTable)> = names.map(read).collect::<Result<_>>()?;
     if tables.is_empty() {
         let what = format!("the run in {} has no series", folder.display());
-        return Err(Error::new(Kind::Usage, what).help("a [[probe]] in its scene would write some"));
+        return Err(Error::new(ErrorKind::Usage, what).help("a [[probe]] in its scene would write some"));
     }
-    let (spectra, answers) = (spectra(folder)?, answers(folder)?);
+    let (spectra, answers) = (spectra(folder)?, rao_arrays(folder)?);
     let all = tables.iter().flat_map(|(name, of)| {
-        let columns = of.columns.iter().zip(&of.x).map(move |(column, x)| (format!("{name}.{column}"), &x[..]));
-        [(format!("{name}.t_s"), &of.t[..])].into_iter().chain(columns)
+        let columns = of.columns.iter().zip(&of.values).map(move |(column, x)| (format!("{name}.{column}"), &x[..]));
+        [(format!("{name}.t_s"), &of.times[..])].into_iter().chain(columns)
     });
     let told = spectra.iter().chain(&answers).map(|(name, x)| (name.clone(), &x[..]));
     npz::write(&out, all.chain(told))?;
@@ -63,7 +63,7 @@ fn series(folder: &Path, out: PathBuf) -> Result<String> {
 }
 
 /// The rows of a table of the run; none if it has not written it.
-fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
+fn read_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     if !path.exists() {
         return Ok(vec![]);
     }
@@ -74,7 +74,7 @@ fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
 
 /// Frequencies (Hz) and densities of every spectrum of the run, if it wrote some.
 fn spectra(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
-    let rows: Vec<(String, f64, f64, String)> = rows(&folder.join(run::SPECTRA))?;
+    let rows: Vec<(String, f64, f64, String)> = read_rows(&folder.join(run::SPECTRA_FILE))?;
     let of = |rows: &[(String, f64, f64, String)]| {
         let name = &rows[0].0;
         let (f, s) = rows.iter().map(|row| (row.1, row.2)).unzip();
@@ -85,7 +85,7 @@ fn spectra(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
 
 /// How a motion answers at a frequency, by the columns of `rao.csv`.
 #[derive(Deserialize)]
-struct Answer {
+struct RaoRecord {
     name: String,
     series: String,
     frequency_hz: f64,
@@ -96,9 +96,9 @@ struct Answer {
 }
 
 /// A column that becomes an array, and its number in a row.
-type Column = (&'static str, fn(&Answer) -> f64);
+type RaoColumn = (&'static str, fn(&RaoRecord) -> f64);
 
-const COLUMNS: [Column; 5] = [
+const COLUMNS: [RaoColumn; 5] = [
     ("frequency_hz", |row| row.frequency_hz),
     ("period_s", |row| row.period_s),
     ("rao", |row| row.rao),
@@ -107,16 +107,18 @@ const COLUMNS: [Column; 5] = [
 ];
 
 /// The columns of every RAO over frequency of the run, if it wrote some.
-fn answers(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
-    let rows: Vec<Answer> = rows(&folder.join(run::RAO))?;
+fn rao_arrays(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
+    let rows: Vec<RaoRecord> = read_rows(&folder.join(run::RAO_FILE))?;
     let (mut arrays, mut seen) = (Vec::new(), BTreeSet::new());
     // Two statistics may have the same name: with the next one frequencies begin anew.
-    let one = |a: &Answer, b: &Answer| (&a.name, &a.series) == (&b.name, &b.series) && a.frequency_hz < b.frequency_hz;
+    let one =
+        |a: &RaoRecord, b: &RaoRecord| (&a.name, &a.series) == (&b.name, &b.series) && a.frequency_hz < b.frequency_hz;
     for rows in rows.chunk_by(one) {
-        let Answer { name, series, .. } = &rows[0];
+        let RaoRecord { name, series, .. } = &rows[0];
         let numbered = |n: usize| if n == 1 { format!("{name}.{series}") } else { format!("{name}_{n}.{series}") };
         let own = (1..).map(numbered).find(|own| seen.insert(own.clone())).unwrap_or_default();
-        let array = |(column, of): &Column| (format!("rao.{own}.{column}"), rows.iter().map(of).collect::<Vec<f64>>());
+        let array =
+            |(column, of): &RaoColumn| (format!("rao.{own}.{column}"), rows.iter().map(of).collect::<Vec<f64>>());
         arrays.extend(COLUMNS.iter().map(array));
     }
     Ok(arrays)
@@ -124,20 +126,20 @@ fn answers(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
 
 #[cfg(feature = "surface")]
 fn surface(folder: &Path) -> Result<String> {
-    use pontoon::output::{Film, surface};
+    use pontoon::output::{FrameSequence, free_surface_mesh};
 
     let (manifest, run) = (Manifest::read(folder)?, || folder.display());
-    let Some((dimension, dp)) = manifest.told("dimension").zip(manifest.told("dp")) else {
-        return Err(Error::new(Kind::Usage, format!("the manifest in {} does not tell dimension and dp", run())));
+    let Some((dimension, dp)) = manifest.numeric_value("dimension").zip(manifest.numeric_value("dp")) else {
+        return Err(Error::new(ErrorKind::Usage, format!("the manifest in {} does not tell dimension and dp", run())));
     };
     if dimension < 3.0 {
         let what = format!("the run in {} is 2-D: its water has a line for a surface, not a mesh", run());
-        return Err(Error::new(Kind::Usage, what).help("`pontoon report` draws it, an elevation probe reads it"));
+        return Err(Error::new(ErrorKind::Usage, what).help("`pontoon report` draws it, an elevation probe reads it"));
     }
-    let Some(film) = Film::open(folder)? else {
+    let Some(film) = FrameSequence::open(folder)? else {
         let what = format!("the run in {} has no frames to make a surface of", run());
-        return Err(Error::new(Kind::Usage, what).help("run it without `frames = \"off\"`"));
+        return Err(Error::new(ErrorKind::Usage, what).help("run it without `frames = \"off\"`"));
     };
-    let count = surface::write(folder, &film, dp)?;
+    let count = free_surface_mesh::write(folder, &film, dp)?;
     Ok(format!("{}: {count} meshes\n", folder.join("surface.pvd").display()))
 }

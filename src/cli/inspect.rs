@@ -4,15 +4,15 @@ use std::fmt::Write;
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
-    preflight::{Absorber, Body, Disk, Finding, Severity, Wave, three},
-    run::{self, Inspection, Report},
+    error::{Error, ErrorKind, Result},
+    preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, GeneratedWave, Severity, three_digits},
+    run::{self, InspectOptions, InspectReport},
 };
 
 use super::{
     SceneArgs,
-    report::{bytes, duration, short, table, threads},
-    shelf,
+    console_text::{bytes, duration, short_number, table, threads},
+    scene_lookup,
 };
 
 /// What is inspected, and how it is said.
@@ -33,18 +33,19 @@ pub struct InspectArgs {
 
 /// The page, or the JSON.
 pub fn inspect(args: &InspectArgs) -> Result<String> {
-    let found = shelf::find(&args.scene.scene)?;
-    let asked = Inspection { sets: args.scene.sets(), threads: args.threads, timing: !args.no_timing };
-    let report = found.named(run::inspect(found.path(), &asked))?;
+    let found = scene_lookup::find_scene(&args.scene.scene)?;
+    let asked = InspectOptions { overrides: args.scene.overrides(), threads: args.threads, timing: !args.no_timing };
+    let report = found.with_scene_name(run::inspect(found.path(), &asked))?;
     if args.json {
-        let text = serde_json::to_string_pretty(&report).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
+        let text =
+            serde_json::to_string_pretty(&report).map_err(|why| Error::new(ErrorKind::Usage, why.to_string()))?;
         return Ok(text + "\n");
     }
-    Ok(page(&report))
+    Ok(report_text(&report))
 }
 
 /// What `inspect` prints.
-fn page(report: &Report) -> String {
+fn report_text(report: &InspectReport) -> String {
     let mut text = format!("{}\n", report.title);
     text += &findings(&report.preflight.brief());
     text += &table(&facts(report));
@@ -100,27 +101,34 @@ fn findings(findings: &[Finding]) -> String {
 }
 
 /// What the run will cost, line by line.
-fn facts(report: &Report) -> Vec<Vec<String>> {
+fn facts(report: &InspectReport) -> Vec<Vec<String>> {
     let (size, sound, step) = (&report.preflight.size, &report.preflight.sound, &report.preflight.step);
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut row = |name: &str, text: String| rows.push(vec![name.into(), text]);
     row("dimension", format!("{}-D", size.dimension));
-    row("water", format!("{} particles, {} m deep, {} dp", size.fluid, three(size.depth_m), three(size.depth_dp)));
+    row(
+        "water",
+        format!("{} particles, {} m deep, {} dp", size.fluid, three_digits(size.depth_m), three_digits(size.depth_dp)),
+    );
     row(
         "boundary",
         format!("{} particles in {} layers, {} of them beside water", size.boundary, size.layers, size.wet),
     );
     row("memory", format!("about {}", bytes(size.memory_bytes)));
-    let over = sound.over_depth.map_or(String::new(), |x| format!(" = {} √(g·depth)", three(x)));
-    let from = report.sound_from.as_ref().map_or(String::new(), |v| format!(" ({}, {})", v.key, origin(&v.source)));
-    row("sound", format!("{} m/s{over}{from}", three(sound.c0_mps)));
+    let over = sound.over_depth.map_or(String::new(), |x| format!(" = {} √(g·depth)", three_digits(x)));
+    let from =
+        report.sound_from.as_ref().map_or(String::new(), |v| format!(" ({}, {})", v.key, short_source(&v.source)));
+    row("sound", format!("{} m/s{over}{from}", three_digits(sound.c0_mps)));
     if let Some(first) = sound.expected.first() {
-        let times = three(sound.c0_mps / first.speed_mps);
-        row("fastest", format!("{} m/s, {}: sound is {times} times as fast", three(first.speed_mps), first.what));
+        let times = three_digits(sound.c0_mps / first.speed_mps);
+        row(
+            "fastest",
+            format!("{} m/s, {}: sound is {times} times as fast", three_digits(first.speed_mps), first.what),
+        );
     }
     row("time step", format!("at most {:.3e} s, by {}", step.dt_s, step.bound_by));
     let passes = if step.passes == 1 { "one force pass" } else { "two force passes" };
-    row("steps", format!("{} or more to {} s, {passes} each", short(step.steps), report.until_s));
+    row("steps", format!("{} or more to {} s, {passes} each", short_number(step.steps), report.until_s));
     if let Some(timing) = &report.timing {
         row(
             "run time",
@@ -135,39 +143,41 @@ fn facts(report: &Report) -> Vec<Vec<String>> {
     }
     row("disk", disk(&size.disk));
     for wave in &report.preflight.waves {
-        waves(wave).into_iter().for_each(|(name, text)| row(name, text));
+        wave_facts(wave).into_iter().for_each(|(name, text)| row(name, text));
     }
     for absorber in &report.preflight.absorbers {
-        absorbs(absorber).into_iter().for_each(|(name, text)| row(name, text));
+        absorber_facts(absorber).into_iter().for_each(|(name, text)| row(name, text));
     }
     rows
 }
 
 /// A wave and the paddle that makes it.
-fn waves(wave: &Wave) -> Vec<(&'static str, String)> {
+fn wave_facts(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
     let about = if wave.kind.is_some() { "" } else { "about " };
     let kind = wave.kind.map_or("by the motion".into(), |kind| format!("{kind}, order {}", wave.order));
-    let period = wave.period_s.map_or(String::new(), |t| format!(", period {} s", three(t)));
-    let kd = wave.kd.map_or(String::new(), |kd| format!(", kd {}", three(kd)));
-    let high = format!("{about}{} m high, {} dp{period}", three(wave.height_m), three(wave.height_dp));
-    let long = format!("{} m long, {} dp", three(wave.length_m), three(wave.length_dp));
-    let water = format!("{} water{kd}, {} m deep; {}", wave.regime.word(), three(wave.depth_m), wave.region.word());
-    let speeds = format!("crests {} m/s, energy {} m/s", three(wave.celerity_mps), three(wave.group_mps));
-    let (stroke, speed) = (three(wave.stroke_m), three(wave.paddle_mps));
-    let ramp = if wave.ramp_s > 0.0 { format!(", ramp {} s", three(wave.ramp_s)) } else { String::new() };
+    let period = wave.period_s.map_or(String::new(), |t| format!(", period {} s", three_digits(t)));
+    let kd = wave.kd.map_or(String::new(), |kd| format!(", kd {}", three_digits(kd)));
+    let high = format!("{about}{} m high, {} dp{period}", three_digits(wave.height_m), three_digits(wave.height_dp));
+    let long = format!("{} m long, {} dp", three_digits(wave.length_m), three_digits(wave.length_dp));
+    let water =
+        format!("{} water{kd}, {} m deep; {}", wave.regime.word(), three_digits(wave.depth_m), wave.region.word());
+    let speeds = format!("crests {} m/s, energy {} m/s", three_digits(wave.celerity_mps), three_digits(wave.group_mps));
+    let (stroke, speed) = (three_digits(wave.stroke_m), three_digits(wave.paddle_mps));
+    let ramp = if wave.ramp_s > 0.0 { format!(", ramp {} s", three_digits(wave.ramp_s)) } else { String::new() };
     vec![
         ("waves", format!("{high}, {long}")),
         ("", format!("{water}; {speeds}")),
         ("", format!("\"{}\", {kind}: stroke {stroke} m, up to {speed} m/s{ramp}", wave.solid)),
-        ("", wave.first_answer()),
+        ("", wave.first_reflection()),
     ]
 }
 
 /// A paddle that absorbs.
-fn absorbs(own: &Absorber) -> [(&'static str, String); 2] {
-    let [(shorter, less), (longer, more)] = own.sends_back.map(|(period, share)| (three(period), three(100.0 * share)));
-    let (period, gauge) = (three(own.period_s), three(own.gauge_m));
-    let (stroke, speed) = (three(own.stroke_m), three(own.speed_mps));
+fn absorber_facts(own: &AbsorberSummary) -> [(&'static str, String); 2] {
+    let [(shorter, less), (longer, more)] =
+        own.sends_back.map(|(period, share)| (three_digits(period), three_digits(100.0 * share)));
+    let (period, gauge) = (three_digits(own.period_s), three_digits(own.gauge_m));
+    let (stroke, speed) = (three_digits(own.stroke_m), three_digits(own.speed_mps));
     [
         ("absorbs", format!("\"{}\", waves of {period} s, by a gauge {gauge} m before its face", own.solid)),
         (
@@ -180,13 +190,13 @@ fn absorbs(own: &Absorber) -> [(&'static str, String); 2] {
 }
 
 /// The meshes among the solids, as their files have them.
-fn meshes(report: &Report) -> String {
-    let list = |x: &[f64]| x.iter().map(|x| three(*x)).collect::<Vec<_>>().join(", ");
+fn meshes(report: &InspectReport) -> String {
+    let list = |x: &[f64]| x.iter().map(|x| three_digits(*x)).collect::<Vec<_>>().join(", ");
     let mut rows =
         vec![["mesh", "facets", "volume (m³)", "surface (m²)", "size (m)", "centroid (m)"].map(String::from).to_vec()];
     rows.extend(report.solids.iter().filter_map(|s| {
         let mesh = s.mesh.as_ref()?;
-        let (volume, surface) = (three(mesh.volume_m3), three(mesh.surface_m2));
+        let (volume, surface) = (three_digits(mesh.volume_m3), three_digits(mesh.surface_m2));
         // A centroid in the middle is there to round-off.
         let centroid: Vec<f64> = mesh.centroid_m.iter().map(|x| 1e-9 * (x * 1e9).round() + 0.0).collect();
         Some(vec![s.name.clone(), mesh.facets.to_string(), volume, surface, list(&mesh.size_m), list(&centroid)])
@@ -195,11 +205,11 @@ fn meshes(report: &Report) -> String {
 }
 
 /// Who said a value, without the reason of a default.
-fn origin(source: &str) -> &str {
+fn short_source(source: &str) -> &str {
     source.split(':').next().unwrap_or(source)
 }
 
-fn disk(disk: &Disk) -> String {
+fn disk(disk: &DiskUse) -> String {
     let frames = match disk.frames {
         0 => "no frames".to_string(),
         n => format!("{n} frames {}", bytes(disk.frames_bytes)),
@@ -208,22 +218,28 @@ fn disk(disk: &Disk) -> String {
 }
 
 /// How the free bodies float, and whether particles carry them.
-fn bodies(bodies: &[Body], dimension: usize) -> String {
+fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
     let mass = if dimension == 2 { "mass (kg/m)" } else { "mass (kg)" };
     let heads = ["body", mass, "displaced", "ratio", "draft (m)", "at rest", "GM (m)", "heave (s)", "roll (s)"];
     let mut rows = vec![heads.map(String::from).to_vec()];
     let mut grain = vec![["body", "thinnest (dp)", "least ratio"].map(String::from).to_vec()];
     for body in bodies {
-        let mut row = vec![body.name.clone(), three(body.mass_kg), three(body.displaced_kg), three(body.density_ratio)];
-        row.push(three(body.draft_m));
+        let mut row = vec![
+            body.name.clone(),
+            three_digits(body.mass_kg),
+            three_digits(body.displaced_kg),
+            three_digits(body.density_ratio),
+        ];
+        row.push(three_digits(body.draft_m));
         match &body.afloat {
             Some(afloat) => {
-                let gm: Vec<String> = afloat.tilts.iter().map(|t| three(t.gm_m)).collect();
-                let roll: Vec<String> = afloat.tilts.iter().map(|t| t.period_s.map_or("–".into(), three)).collect();
+                let gm: Vec<String> = afloat.tilts.iter().map(|t| three_digits(t.gm_m)).collect();
+                let roll: Vec<String> =
+                    afloat.tilts.iter().map(|t| t.period_s.map_or("–".into(), three_digits)).collect();
                 row.extend([
-                    three(afloat.draft_m),
+                    three_digits(afloat.draft_m),
                     gm.join(" "),
-                    format!("{}–{}", three(afloat.heave_s), three(afloat.heave_with_added_s)),
+                    format!("{}–{}", three_digits(afloat.heave_s), three_digits(afloat.heave_with_added_s)),
                     roll.join(" "),
                 ]);
             }
@@ -231,7 +247,7 @@ fn bodies(bodies: &[Body], dimension: usize) -> String {
             None => {}
         }
         rows.push(row);
-        grain.push(vec![body.name.clone(), three(body.thinnest_dp), three(body.least_ratio)]);
+        grain.push(vec![body.name.clone(), three_digits(body.thinnest_dp), three_digits(body.least_ratio)]);
     }
     let said = "  heave: without and with an estimate of the water that heaves along; roll: without any\n";
     format!("{}{said}\n{}", table(&rows), table(&grain))

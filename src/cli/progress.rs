@@ -12,12 +12,12 @@ use std::{
 use crossterm::terminal::size;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon::{
-    preflight::three,
-    run::{Progress, Start, Watch},
+    preflight::three_digits,
+    run::{Progress, RunObserver, RunStart},
     simulation::Rollback,
 };
 
-use super::{complain, report};
+use super::{console_text, print_error};
 
 /// Columns of a line where nobody tells how wide the terminal is.
 const WIDE: usize = 79;
@@ -29,7 +29,7 @@ const BAR: usize = 11;
 const PAUSE: (f64, f64, f64) = (5.0, 1.25, 300.0);
 
 /// Follows a run for the user, and passes on the wish to stop.
-pub struct Follow {
+pub struct ProgressDisplay {
     quiet: bool,
     stop: Arc<AtomicBool>,
     bar: ProgressBar,
@@ -45,19 +45,19 @@ pub struct Follow {
 }
 
 /// Someone who follows a run for the user.
-pub trait Follower: Watch {
+pub trait CliObserver: RunObserver {
     /// Ends what is shown; the folder of the run, if one has begun.
     fn close(&mut self) -> Option<PathBuf>;
 }
 
-impl Follower for Follow {
+impl CliObserver for ProgressDisplay {
     fn close(&mut self) -> Option<PathBuf> {
         self.bar.finish_and_clear();
         self.folder.take()
     }
 }
 
-impl Follow {
+impl ProgressDisplay {
     /// Shows nothing if `quiet`; asks the run to stop once `stop` is raised.
     pub fn new(quiet: bool, stop: Arc<AtomicBool>) -> Self {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
@@ -73,23 +73,23 @@ impl Follow {
         let (begun, first, steps) = self.begun.unwrap_or((Instant::now(), now.time, now.steps));
         let (wall, done) = (begun.elapsed().as_secs_f64(), now.time - first);
         let going = now.steps > steps && wall > 0.0;
-        let left = || format!("{} left", report::duration(wall * (now.until - now.time) / done));
-        let speed = || format!("{} steps/s", report::short((now.steps - steps) as f64 / wall));
+        let left = || format!("{} left", console_text::duration(wall * (now.until - now.time) / done));
+        let speed = || format!("{} steps/s", console_text::short_number((now.steps - steps) as f64 / wall));
         let words = [
             (done > 0.0).then(left),
-            (now.dt > 0.0).then(|| format!("dt {} s", three(now.dt))),
-            report::warnings(self.warnings),
+            (now.dt > 0.0).then(|| format!("dt {} s", three_digits(now.dt))),
+            console_text::warnings(self.warnings),
             now.energy.map(|drift| drift.to_string()),
             Some(format!("step {}", now.steps)),
             going.then(speed),
-            going.then(|| format!("{} particle-steps/s", report::short(now.rate))),
+            going.then(|| format!("{} particle-steps/s", console_text::short_number(now.rate))),
         ];
-        fitted(format!("t = {:.3} of {} s", now.time, now.until), words.into_iter().flatten(), room)
+        fit_to_width(format!("t = {:.3} of {} s", now.time, now.until), words.into_iter().flatten(), room)
     }
 
     /// How long until the next line (s) where there is no terminal. The first few lines come quickly, so that a user sees
     /// that it runs; a run of a night has a hundred.
-    fn wait(&mut self, steps: u64) -> f64 {
+    fn next_pause(&mut self, steps: u64) -> f64 {
         if steps < 10 {
             return 1.0;
         }
@@ -99,10 +99,10 @@ impl Follow {
     }
 
     /// Says how far the run is, and when it is said next.
-    fn show(&mut self, now: &Progress, clock: Instant) {
+    fn print_progress(&mut self, now: &Progress, clock: Instant) {
         if self.bar.is_hidden() {
-            complain(&format!("{}\n", self.line(now, WIDE)));
-            self.next = Some(clock + Duration::from_secs_f64(self.wait(now.steps)));
+            print_error(&format!("{}\n", self.line(now, WIDE)));
+            self.next = Some(clock + Duration::from_secs_f64(self.next_pause(now.steps)));
         } else {
             let columns = size().map_or(0, |(columns, _)| usize::from(columns));
             let room = if columns == 0 { WIDE } else { columns - 1 };
@@ -113,19 +113,19 @@ impl Follow {
     }
 }
 
-impl Watch for Follow {
-    fn start(&mut self, start: &Start) {
+impl RunObserver for ProgressDisplay {
+    fn start(&mut self, start: &RunStart) {
         self.folder = Some(start.folder.to_owned());
         self.warnings = start.manifest.warnings.len();
         if !self.quiet {
-            complain(&report::started(start));
+            print_error(&console_text::start_text(start));
         }
     }
 
-    fn rescued(&mut self, how: &Rollback) {
+    fn rolled_back(&mut self, how: &Rollback) {
         self.warnings += 1;
         if !self.quiet {
-            self.bar.suspend(|| complain(&format!("warning: {how}\n")));
+            self.bar.suspend(|| print_error(&format!("warning: {how}\n")));
         }
     }
 
@@ -133,14 +133,14 @@ impl Watch for Follow {
         let clock = Instant::now();
         self.begun.get_or_insert((clock, now.time, now.steps));
         if !self.quiet && self.next.is_none_or(|next| clock >= next) {
-            self.show(now, clock);
+            self.print_progress(now, clock);
         }
         !self.stop.load(Ordering::Relaxed)
     }
 }
 
 /// `line` and as many of the `words` as there is room for, in columns.
-fn fitted(line: String, words: impl Iterator<Item = String>, room: usize) -> String {
+fn fit_to_width(line: String, words: impl Iterator<Item = String>, room: usize) -> String {
     words.fold(line, |line, word| {
         let longer = format!("{line}, {word}");
         if longer.chars().count() > room { line } else { longer }
@@ -149,7 +149,7 @@ fn fitted(line: String, words: impl Iterator<Item = String>, room: usize) -> Str
 
 #[cfg(test)]
 mod tests {
-    use pontoon::run::Drift;
+    use pontoon::run::EnergyDrift;
 
     use super::*;
 
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_line_tells_step_and_warnings_and_stays_a_line() {
-        let mut follow = Follow::new(true, Arc::default());
+        let mut follow = ProgressDisplay::new(true, Arc::default());
         let now = now();
         assert_eq!(follow.line(&now, WIDE), "t = 1.250 of 12 s, dt 0.000123 s, step 10234");
         follow.warnings = 2;
@@ -175,24 +175,24 @@ mod tests {
 
     #[test]
     fn a_line_tells_what_became_of_the_energy_if_somebody_watches_it() {
-        let follow = Follow::new(true, Arc::default());
+        let follow = ProgressDisplay::new(true, Arc::default());
         let said = |energy| follow.line(&Progress { energy: Some(energy), ..now() }, WIDE);
-        let residual = Drift::Unaccounted(1.234e-3);
+        let residual = EnergyDrift::Unaccounted(1.234e-3);
         assert_eq!(said(residual), "t = 1.250 of 12 s, dt 0.000123 s, energy off 0.123 %, step 10234");
-        assert!(said(Drift::Changed(0.5, "J/m")).contains(", energy +0.5 J/m, "));
-        assert!(said(Drift::Changed(-0.5, "J")).contains(", energy -0.5 J, "));
+        assert!(said(EnergyDrift::Changed(0.5, "J/m")).contains(", energy +0.5 J/m, "));
+        assert!(said(EnergyDrift::Changed(-0.5, "J")).contains(", energy -0.5 J, "));
     }
 
     #[test]
     fn lines_in_a_pipe_grow_rare() {
-        let mut follow = Follow::new(true, Arc::default());
-        assert_eq!([0, 9, 10, 11].map(|steps| follow.wait(steps)), [1.0, 1.0, 5.0, 6.25]);
+        let mut follow = ProgressDisplay::new(true, Arc::default());
+        assert_eq!([0, 9, 10, 11].map(|steps| follow.next_pause(steps)), [1.0, 1.0, 5.0, 6.25]);
         let (mut wall, mut lines) = (0.0, 0);
         while wall < 8.0 * 3600.0 {
-            wall += follow.wait(1000);
+            wall += follow.next_pause(1000);
             lines += 1;
         }
         assert!((60..130).contains(&lines), "{lines} lines in eight hours");
-        assert_eq!(follow.wait(1000), 300.0);
+        assert_eq!(follow.next_pause(1000), 300.0);
     }
 }

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use pontoon::{
     error::{Error, Result},
-    output::manifest::Status,
-    run::{self, Options, Outcome},
+    output::manifest::RunStatus,
+    run::{self, RunOptions, RunOutcome},
 };
 
 use super::{
-    SceneArgs, code, complain,
-    journal::{self, Journal},
-    page,
-    progress::{Follow, Follower},
-    report, say, shelf, stopper, stopper_saying,
+    SceneArgs, console_text, exit_code, interrupt_flag, interrupt_flag_with_message,
+    json_log::{self, JsonLog},
+    print_error, print_output,
+    progress::{CliObserver, ProgressDisplay},
+    report_page, scene_lookup,
 };
 
 /// Which scene is run, and how.
@@ -27,26 +27,26 @@ pub struct RunArgs {
     out: Option<PathBuf>,
     /// Simulated time from one frame to the next, s, or off: short for --set frames.every=EVERY, frames=off
     #[arg(long, value_name = "EVERY|off", allow_negative_numbers = true, value_parser = frames)]
-    frames: Option<Pair>,
+    frames: Option<KeyValue>,
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     #[command(flatten)]
-    said: SaidArgs,
+    log_args: LogArgs,
 }
 
 /// A key of the scene and its value.
-type Pair = (String, String);
+type KeyValue = (String, String);
 
 impl RunArgs {
     /// The scene keys that the arguments change.
-    fn sets(&self) -> Vec<Pair> {
-        self.scene.sets().into_iter().chain(self.frames.clone()).collect()
+    fn overrides(&self) -> Vec<KeyValue> {
+        self.scene.overrides().into_iter().chain(self.frames.clone()).collect()
     }
 }
 
 /// What `--frames` changes.
-fn frames(text: &str) -> std::result::Result<Pair, String> {
+fn frames(text: &str) -> std::result::Result<KeyValue, String> {
     match text.parse::<f64>() {
         _ if text == "off" => Ok(("frames".into(), "off".into())),
         Ok(every) => Ok(("frames.every".into(), format!("{every:?}"))),
@@ -61,18 +61,18 @@ pub struct ResumeArgs {
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Change a key of [guard] from here on; may be given several times
-    #[arg(long, value_name = "KEY=VALUE", value_parser = super::pair)]
-    set: Vec<Pair>,
+    #[arg(long, value_name = "KEY=VALUE", value_parser = super::key_value)]
+    set: Vec<KeyValue>,
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     #[command(flatten)]
-    said: SaidArgs,
+    log_args: LogArgs,
 }
 
 /// What is said of a run.
 #[derive(Args, Clone, Copy)]
-struct SaidArgs {
+struct LogArgs {
     /// Leave out the page at the end, report.html
     #[arg(long)]
     no_report: bool,
@@ -81,12 +81,12 @@ struct SaidArgs {
     quiet: bool,
     /// How progress, warnings and errors are said on standard error
     #[arg(long, value_name = "FORMAT", default_value = "text")]
-    log: Log,
+    log: LogFormat,
 }
 
 /// How progress is said.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Log {
+enum LogFormat {
     /// For people
     Text,
     /// An object a line, for programs
@@ -99,13 +99,13 @@ enum Log {
 /// As [`run::run`].
 pub fn run(args: &RunArgs) -> Result<u8> {
     let started = |args: &RunArgs| {
-        let found = shelf::find(&args.scene.scene)?;
-        let options = Options { out: args.out.clone(), sets: args.sets(), threads: args.threads };
-        let mut follow = follower(&args.said)?;
-        let outcome = found.named(run::run(found.path(), &options, &mut *follow));
-        end(outcome, follow, &args.said)
+        let found = scene_lookup::find_scene(&args.scene.scene)?;
+        let options = RunOptions { out: args.out.clone(), overrides: args.overrides(), threads: args.threads };
+        let mut follow = make_observer(&args.log_args)?;
+        let outcome = found.with_scene_name(run::run(found.path(), &options, &mut *follow));
+        finish(outcome, follow, &args.log_args)
     };
-    told(started(args), &args.said)
+    report_outcome(started(args), &args.log_args)
 }
 
 /// `pontoon resume`.
@@ -113,56 +113,56 @@ pub fn run(args: &RunArgs) -> Result<u8> {
 /// # Errors
 /// As [`run::resume`].
 pub fn resume(args: &ResumeArgs) -> Result<u8> {
-    let mut follow = follower(&args.said)?;
+    let mut follow = make_observer(&args.log_args)?;
     let outcome = run::resume(&args.folder, &args.set, args.threads, &mut *follow);
-    told(end(outcome, follow, &args.said), &args.said)
+    report_outcome(finish(outcome, follow, &args.log_args), &args.log_args)
 }
 
 /// What comes of a run, its error said as the user wants it.
-fn told(outcome: Result<u8>, said: &SaidArgs) -> Result<u8> {
+fn report_outcome(outcome: Result<u8>, said: &LogArgs) -> Result<u8> {
     match outcome {
-        Err(error) if said.log == Log::Json => {
-            journal::failed(&error);
-            Ok(code(&error))
+        Err(error) if said.log == LogFormat::Json => {
+            json_log::failed(&error);
+            Ok(exit_code(&error))
         }
         outcome => outcome,
     }
 }
 
 /// Who follows a run, as the user wants it.
-fn follower(said: &SaidArgs) -> Result<Box<dyn Follower>> {
+fn make_observer(said: &LogArgs) -> Result<Box<dyn CliObserver>> {
     Ok(match said.log {
-        Log::Text => Box::new(Follow::new(said.quiet, stopper()?)),
-        Log::Json => Box::new(Journal::new(said.quiet, stopper_saying(journal::STOPPING)?)),
+        LogFormat::Text => Box::new(ProgressDisplay::new(said.quiet, interrupt_flag()?)),
+        LogFormat::Json => Box::new(JsonLog::new(said.quiet, interrupt_flag_with_message(json_log::STOPPING)?)),
     })
 }
 
-/// Closes the progress, prints the table, writes the page of the run if it is wanted, chooses the exit code.
-fn end(outcome: Result<Outcome>, mut follow: Box<dyn Follower>, said: &SaidArgs) -> Result<u8> {
-    let (folder, json) = (follow.close(), said.log == Log::Json);
+/// Closes the progress, prints the table, writes the page of the run if it is wanted, chooses the exit exit_code.
+fn finish(outcome: Result<RunOutcome>, mut follow: Box<dyn CliObserver>, said: &LogArgs) -> Result<u8> {
+    let (folder, json) = (follow.close(), said.log == LogFormat::Json);
     match &outcome {
         _ if said.quiet => {}
         Ok(outcome) if json => {
-            outcome.late.iter().for_each(|text| journal::warn(text));
-            journal::ended(outcome);
+            outcome.end_warnings.iter().for_each(|text| json_log::warn(text));
+            json_log::ended(outcome);
         }
         Ok(outcome) => {
-            outcome.late.iter().for_each(|text| complain(&format!("warning: {text}\n")));
-            say(&report::ended(outcome));
+            outcome.end_warnings.iter().for_each(|text| print_error(&format!("warning: {text}\n")));
+            print_output(&console_text::end_text(outcome));
         }
         Err(_) => {}
     }
     if let Some(folder) = folder.filter(|_| !said.no_report) {
         let told = |why: &Error| {
             let text = format!("the page of the run was not written: {why}");
-            if json { journal::warn(&text) } else { complain(&format!("warning: {text}\n")) }
+            if json { json_log::warn(&text) } else { print_error(&format!("warning: {text}\n")) }
         };
-        page::at_end(&folder, said.quiet || json, told);
+        report_page::write_after_run(&folder, said.quiet || json, told);
     }
     let outcome = outcome?;
     Ok(match outcome.manifest.status {
-        Status::Interrupted => 130,
-        _ if outcome.failed_checks() => 3,
+        RunStatus::Interrupted => 130,
+        _ if outcome.has_failed_checks() => 3,
         _ => 0,
     })
 }

@@ -4,14 +4,13 @@ use std::{path::PathBuf, sync::atomic::Ordering};
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
-    study::stress::{EnergyBudget, Entry, Map, Outcome, choose, maps, said},
+    error::{Error, ErrorKind, Result},
+    study::stress::{CaseOutcome, CaseResult, StressMap, StressResults, maps, select_maps, summary_line},
 };
 
 use super::{
-    complain,
-    report::{duration, table},
-    say, stopper_saying,
+    console_text::{duration, table},
+    interrupt_flag_with_message, print_error, print_output,
 };
 
 /// Maps and how they are run.
@@ -47,40 +46,41 @@ pub struct StressArgs {
 pub fn stress(args: StressArgs) -> Result<u8> {
     let all = maps(args.maps.as_deref())?;
     if args.list {
-        say(&listed(&all));
+        print_output(&map_list(&all));
         return Ok(0);
     }
     if args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
-    let mut ledger = EnergyBudget::open(choose(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
-    let due = ledger.entries.iter().filter(|entry| entry.trial.is_none()).count();
+    let mut ledger = StressResults::open(select_maps(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
+    let due = ledger.entries.iter().filter(|entry| entry.run.is_none()).count();
     if args.dry_run {
-        ledger.entries.iter().for_each(|entry| say(&line(entry)));
-        say(&format!("{} cases, {due} to be run\n", ledger.entries.len()));
+        ledger.entries.iter().for_each(|entry| print_output(&case_line(entry)));
+        print_output(&format!("{} cases, {due} to be run\n", ledger.entries.len()));
         return Ok(0);
     }
-    let stop = stopper_saying("\nstopping after the cases in hand; Ctrl-C again stops at once, without them\n")?;
+    let stop =
+        interrupt_flag_with_message("\nstopping after the cases in hand; Ctrl-C again stops at once, without them\n")?;
     let threads = args.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, |n| n.get()));
     let mut done = 0;
-    ledger.work(threads, &stop, |entry| {
+    ledger.run_missing(threads, &stop, |entry| {
         done += 1;
         if !args.quiet {
-            complain(&format!("{done}/{due} {}", line(entry)));
+            print_error(&format!("{done}/{due} {}", case_line(entry)));
         }
     })?;
     let pictures = ledger.write()?;
-    say(&format!("\n{}", table(&ledger.table())));
-    let wrong = |entry: &&Entry| entry.verdict().is_some_and(|(outcome, _)| outcome == Outcome::Wrong);
-    ledger.entries.iter().filter(wrong).for_each(|entry| say(&line(entry)));
-    say(&format!("processor time {}\n{}\n", duration(ledger.seconds()), ledger.file().display()));
-    say(&format!(
+    print_output(&format!("\n{}", table(&ledger.table())));
+    let wrong = |entry: &&CaseResult| entry.verdict().is_some_and(|(outcome, _)| outcome == CaseOutcome::Wrong);
+    ledger.entries.iter().filter(wrong).for_each(|entry| print_output(&case_line(entry)));
+    print_output(&format!("processor time {}\n{}\n", duration(ledger.cpu_seconds()), ledger.file().display()));
+    print_output(&format!(
         "{} pictures, as {}\n",
         pictures.len(),
         pictures.first().map_or(String::new(), |p| p.display().to_string())
     ));
     Ok(if stop.load(Ordering::Relaxed) {
-        complain("interrupted: the same command goes on\n");
+        print_error("interrupted: the same command goes on\n");
         130
     } else if ledger.entries.iter().any(|entry| wrong(&entry)) {
         3
@@ -90,17 +90,17 @@ pub fn stress(args: StressArgs) -> Result<u8> {
 }
 
 /// A case in a line.
-fn line(entry: &Entry) -> String {
-    format!("{} {}\n", entry.case.map, said(entry))
+fn case_line(entry: &CaseResult) -> String {
+    format!("{} {}\n", entry.case.map, summary_line(entry))
 }
 
 /// The list of maps.
-fn listed(all: &[Map]) -> String {
+fn map_list(all: &[StressMap]) -> String {
     let mut rows = vec![["map", "cases", "along", "about"].map(String::from).to_vec()];
     rows.extend(all.iter().map(|map| {
         let axes: Vec<&str> = std::iter::once(&map.x).chain(&map.y).map(|axis| axis.label.as_str()).collect();
         vec![map.name.clone(), map.count().to_string(), axes.join(" × "), map.about.clone()]
     }));
-    let sum: usize = all.iter().map(Map::count).sum();
+    let sum: usize = all.iter().map(StressMap::count).sum();
     format!("{}\n{sum} cases; run one map with: pontoon stress MAP; without a name all are run\n", table(&rows))
 }

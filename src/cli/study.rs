@@ -7,20 +7,22 @@ use std::{
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
-    output::has_folder,
-    report::Shot,
+    error::{Error, ErrorKind, Result},
+    output::require_parent_folder,
+    report::PictureOptions,
     scene::Scene,
-    study::{CHANCE, Grid, Job, Planned, Ran, Row, Sheet, State, USUAL, Vary, heads, interval, plan, split, spreads},
+    study::{
+        DEFAULT_SPEED, Job, JobResult, JobState, ParameterGrid, REPEATS_NOTE, ResultRow, StudyResults, TimeEstimate,
+        VariedKey, distinguishing_labels, estimate_times, frame_interval, split_values, spread_table,
+    },
 };
 
 use super::{
-    complain,
-    page::{LookArgs, draw},
-    pair,
-    progress::{Follow, Follower},
-    report::{duration, short, table},
-    say, shelf, stopper,
+    console_text::{duration, short_number, table},
+    interrupt_flag, key_value, print_error, print_output,
+    progress::{CliObserver, ProgressDisplay},
+    report_page::{PictureStyleArgs, draw_picture},
+    scene_lookup,
 };
 
 /// A grid of runs.
@@ -33,10 +35,10 @@ pub struct StudyArgs {
     #[arg(long, value_name = "METRES,..", value_delimiter = ',')]
     dp: Vec<f64>,
     /// A key of the scene and its values, separated by commas; may be given several times
-    #[arg(long, value_name = "KEY=VALUE,..", value_parser = pair)]
+    #[arg(long, value_name = "KEY=VALUE,..", value_parser = key_value)]
     vary: Vec<(String, String)>,
     /// Change a key of the scene in all runs; may be given several times
-    #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_value)]
     set: Vec<(String, String)>,
     /// Run each N times, with its water moved by a millionth of dp more each time: what differs is chance
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -57,22 +59,22 @@ pub struct StudyArgs {
     #[arg(long, value_name = "FILE")]
     png: Option<PathBuf>,
     #[command(flatten)]
-    look: LookArgs,
+    look: PictureStyleArgs,
     /// Say nothing but errors and the table
     #[arg(long, short)]
     quiet: bool,
 }
 
 /// How a list of runs ended.
-pub struct Done {
+pub struct JobListResult {
     /// What came out, of the first runs if it was interrupted.
-    pub ran: Vec<Ran>,
+    pub ran: Vec<JobResult>,
     /// Whether Ctrl-C ended it.
     pub interrupted: bool,
 }
 
 /// A list of runs and how it is to be worked off.
-pub struct List<'a> {
+pub struct JobList<'a> {
     /// The runs.
     pub jobs: &'a [Job],
     /// Threads of each.
@@ -81,45 +83,49 @@ pub struct List<'a> {
     pub quiet: bool,
 }
 
-impl List<'_> {
+impl JobList<'_> {
     /// Says what is to come, even to who wants quiet if nothing else will be said. Nothing is written.
     pub fn announce(&self, alone: bool) -> Result<()> {
-        let ran = self.jobs.iter().map(Job::look).collect::<Result<Vec<Ran>>>()?;
-        let planned = plan(self.jobs, &ran, self.count())?;
+        let ran = self.jobs.iter().map(Job::existing_result).collect::<Result<Vec<JobResult>>>()?;
+        let planned = estimate_times(self.jobs, &ran, self.count())?;
         if alone || !self.quiet {
-            say(&announced(self.jobs, &ran, &planned));
+            print_output(&planned_table(self.jobs, &ran, &planned));
         }
         Ok(())
     }
 
     /// Runs what is to be run; `after` is told after every run.
-    pub fn work(&self, stop: &Arc<AtomicBool>, mut after: impl FnMut(&[Ran]) -> Result<()>) -> Result<Done> {
-        let mut ran: Vec<Ran> = Vec::new();
+    pub fn run_all(
+        &self,
+        stop: &Arc<AtomicBool>,
+        mut after: impl FnMut(&[JobResult]) -> Result<()>,
+    ) -> Result<JobListResult> {
+        let mut ran: Vec<JobResult> = Vec::new();
         for (i, job) in self.jobs.iter().enumerate() {
-            let known = job.look()?;
-            if known.state == State::Finished {
+            let known = job.existing_result()?;
+            if known.state == JobState::Finished {
                 ran.push(known);
                 continue;
             }
             if !self.quiet {
-                complain(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.said()));
+                print_error(&format!("\nrun {} of {}: {}\n", i + 1, self.jobs.len(), job.display_name()));
             }
-            let mut follow = Box::new(Follow::new(self.quiet, stop.clone()));
-            let outcome = job.attempt(self.threads, &mut *follow);
+            let mut follow = Box::new(ProgressDisplay::new(self.quiet, stop.clone()));
+            let outcome = job.run_or_resume(self.threads, &mut *follow);
             follow.close();
             let outcome = outcome?;
-            if let State::Failed(why) = &outcome.state {
-                complain(&format!("{} failed: {why}\n", job.said()));
+            if let JobState::Failed(why) = &outcome.state {
+                print_error(&format!("{} failed: {why}\n", job.display_name()));
             }
-            let interrupted = outcome.state == State::Interrupted;
+            let interrupted = outcome.state == JobState::Interrupted;
             ran.push(outcome);
             after(&ran)?;
             if interrupted {
-                return Ok(Done { ran, interrupted });
+                return Ok(JobListResult { ran, interrupted });
             }
         }
         after(&ran)?;
-        Ok(Done { ran, interrupted: false })
+        Ok(JobListResult { ran, interrupted: false })
     }
 
     fn count(&self) -> usize {
@@ -128,30 +134,34 @@ impl List<'_> {
 }
 
 /// The table of runs to come.
-fn announced(jobs: &[Job], ran: &[Ran], planned: &[Planned]) -> String {
+fn planned_table(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> String {
     let mut rows =
         vec![["run", "water", "boundary, at most", "steps, at least", "time", ""].map(String::from).to_vec()];
     for ((job, ran), planned) in jobs.iter().zip(ran).zip(planned) {
         let standing = match &ran.state {
-            State::Finished => "has been run",
-            State::Failed(_) => "failed before",
-            State::Interrupted => "goes on",
-            State::Planned if planned.told => "",
-            State::Planned => "at the usual speed",
+            JobState::Finished => "has been run",
+            JobState::Failed(_) => "failed before",
+            JobState::Interrupted => "goes on",
+            JobState::Planned if planned.measured => "",
+            JobState::Planned => "at the usual speed",
         };
         rows.push(vec![
-            job.said(),
-            short(planned.size.fluid),
-            short(planned.size.boundary),
-            short(planned.size.steps),
-            if ran.state == State::Finished { String::new() } else { format!("about {}", duration(planned.seconds)) },
+            job.display_name(),
+            short_number(planned.size.fluid),
+            short_number(planned.size.boundary),
+            short_number(planned.size.steps),
+            if ran.state == JobState::Finished {
+                String::new()
+            } else {
+                format!("about {}", duration(planned.seconds))
+            },
             standing.into(),
         ]);
     }
     let total: f64 = planned.iter().map(|p| p.seconds).sum();
     let mut text = format!("{}in all about {}\n", table(&rows), duration(total));
-    if planned.iter().any(|p| !p.told && p.seconds > 0.0) {
-        let [plane, space] = USUAL.map(short);
+    if planned.iter().any(|p| !p.measured && p.seconds > 0.0) {
+        let [plane, space] = DEFAULT_SPEED.map(short_number);
         text += &format!(
             "the usual speed: {plane} water particles × force passes a second and thread in 2-D, {space} in 3-D\n"
         );
@@ -161,87 +171,93 @@ fn announced(jobs: &[Job], ran: &[Ran], planned: &[Planned]) -> String {
 
 /// Runs the grid, or says what it would run.
 pub fn study(args: StudyArgs) -> Result<u8> {
-    let found = shelf::find(&args.scene)?;
+    let found = scene_lookup::find_scene(&args.scene)?;
     let mut sets = args.set.clone();
     sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
-    let scene = found.named(Scene::read(found.path(), &sets))?;
+    let scene = found.with_scene_name(Scene::read(found.path(), &sets))?;
     if args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
-    let name = name(&args.scene);
+    let name = scene_name(&args.scene);
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
-    let shot = args.png.as_deref().map(|png| shot(&args.look, png, &out, scene.until)).transpose()?;
-    let grid = Grid {
+    let shot = args.png.as_deref().map(|png| picture_options(&args.look, png, &out, scene.until)).transpose()?;
+    let grid = ParameterGrid {
         dp: if args.dp.is_empty() { vec![scene.dp] } else { args.dp.clone() },
-        vary: args.vary.iter().map(|(key, values)| Vary { key: key.clone(), values: split(values) }).collect(),
+        vary: args
+            .vary
+            .iter()
+            .map(|(key, values)| VariedKey { key: key.clone(), values: split_values(values) })
+            .collect(),
         scene: found.path().to_owned(),
-        sets,
+        overrides: sets,
         name: name.clone(),
-        frames: shot.as_ref().map(|shot| interval(&shot.times, scene.until)),
+        frames: shot.as_ref().map(|shot| frame_interval(&shot.times, scene.until)),
         repeat: args.repeat,
     };
-    let sheet = found.named(Sheet::new(&grid, out, super::command_line()))?;
-    let list = List { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
-    found.named(list.announce(args.dry_run))?;
+    let sheet = found.with_scene_name(StudyResults::new(&grid, out, super::command_line()))?;
+    let list = JobList { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
+    found.with_scene_name(list.announce(args.dry_run))?;
     if args.dry_run {
         return Ok(0);
     }
-    let done = list.work(&stopper()?, |ran| sheet.write(ran))?;
+    let done = list.run_all(&interrupt_flag()?, |ran| sheet.write(ran))?;
     let rows = sheet.rows(&done.ran);
-    say(&format!("\n{}", table(&sheet.run_rows(&rows))));
-    say(&chance(&rows));
+    print_output(&format!("\n{}", table(&sheet.run_rows(&rows))));
+    print_output(&repeats_text(&rows));
     for file in sheet.files() {
-        say(&format!("{}\n", file.display()));
+        print_output(&format!("{}\n", file.display()));
     }
     if let (Some(png), Some(shot), false) = (&args.png, shot, done.interrupted) {
-        picture(&sheet.jobs, &done.ran, shot, png)?;
+        draw_runs(&sheet.jobs, &done.ran, shot, png)?;
     }
-    Ok(code(&done))
+    Ok(list_exit_code(&done))
 }
 
 /// How far repeats lie apart; nothing if no run is repeated.
-pub fn chance(rows: &[Row]) -> String {
-    let told = spreads(rows);
-    if told.is_empty() { String::new() } else { format!("\n{}{CHANCE}\n\n", table(&told)) }
+pub fn repeats_text(rows: &[ResultRow]) -> String {
+    let told = spread_table(rows);
+    if told.is_empty() { String::new() } else { format!("\n{}{REPEATS_NOTE}\n\n", table(&told)) }
 }
 
 /// The picture that is to be drawn to `png` of runs that end at `until` (s), the folder `out` being made by them: what is wrong
 /// with it is told before anything is run.
-fn shot(look: &LookArgs, png: &Path, out: &Path, until: f64) -> Result<Shot> {
+fn picture_options(look: &PictureStyleArgs, png: &Path, out: &Path, until: f64) -> Result<PictureOptions> {
     if png.parent() != Some(out) {
-        has_folder(png)?;
+        require_parent_folder(png)?;
     }
-    let shot = look.shot()?;
+    let shot = look.picture_options()?;
     match shot.times.iter().find(|t| !(0.0..=until).contains(*t)) {
-        Some(t) => Err(Error::new(Kind::Usage, format!("--time {t} is not within the runs, which end at {until} s"))
-            .help("give times from 0 to the end, or a later end with --until")),
+        Some(t) => {
+            Err(Error::new(ErrorKind::Usage, format!("--time {t} is not within the runs, which end at {until} s"))
+                .help("give times from 0 to the end, or a later end with --until"))
+        }
         None => Ok(shot),
     }
 }
 
 /// Draws the runs that came to have frames, what is varied over their columns.
-fn picture(jobs: &[Job], ran: &[Ran], mut shot: Shot, png: &Path) -> Result<()> {
+fn draw_runs(jobs: &[Job], ran: &[JobResult], mut shot: PictureOptions, png: &Path) -> Result<()> {
     let mut folders = Vec::new();
-    for ((job, head), ran) in jobs.iter().zip(heads(jobs)).zip(ran) {
+    for ((job, head), ran) in jobs.iter().zip(distinguishing_labels(jobs)).zip(ran) {
         if ran.manifest.as_ref().is_some_and(|manifest| manifest.frames.count > 0) {
             folders.push(job.folder.clone());
-            shot.heads.push(head);
+            shot.column_titles.push(head);
         } else {
-            complain(&format!("warning: {} has no frames: it is not in the picture\n", job.said()));
+            print_error(&format!("warning: {} has no frames: it is not in the picture\n", job.display_name()));
         }
     }
     if folders.is_empty() {
-        return Err(Error::new(Kind::Usage, "no run has frames to be drawn").help("take frames=off out of --set"));
+        return Err(Error::new(ErrorKind::Usage, "no run has frames to be drawn").help("take frames=off out of --set"));
     }
-    draw(&folders, &shot, png)
+    draw_picture(&folders, &shot, png)
 }
 
 /// The exit code of a list of runs.
-pub fn code(done: &Done) -> u8 {
+pub fn list_exit_code(done: &JobListResult) -> u8 {
     if done.interrupted {
-        complain("interrupted: the same command goes on\n");
+        print_error("interrupted: the same command goes on\n");
         130
-    } else if done.ran.iter().any(|r| matches!(r.state, State::Failed(_))) {
+    } else if done.ran.iter().any(|r| matches!(r.state, JobState::Failed(_))) {
         1
     } else if done.ran.iter().flat_map(|r| &r.verdicts).any(|v| v.passed == Some(false)) {
         3
@@ -251,7 +267,7 @@ pub fn code(done: &Done) -> u8 {
 }
 
 /// A short name for what the user called a scene.
-fn name(scene: &Path) -> String {
+fn scene_name(scene: &Path) -> String {
     let whole = std::fs::canonicalize(scene).unwrap_or_else(|_| scene.to_owned());
     let own = if whole.ends_with("scene.toml") { whole.parent().unwrap_or(&whole).to_owned() } else { whole };
     own.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())

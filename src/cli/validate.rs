@@ -4,15 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
-    study::{Case, State, Validation, cases, find},
+    error::{Error, ErrorKind, Result},
+    study::{JobState, Validation, ValidationCase, select_cases, validation_cases},
 };
 
 use super::{
-    complain,
-    report::table,
-    say, shelf, stopper,
-    study::{List, chance, code},
+    console_text::table,
+    interrupt_flag, print_error, print_output, scene_lookup,
+    study::{JobList, list_exit_code, repeats_text},
 };
 
 /// Cases and how they are run.
@@ -50,35 +49,36 @@ pub struct ValidateArgs {
 /// Runs the cases, or lists them.
 pub fn validate(args: ValidateArgs) -> Result<u8> {
     if args.list {
-        say(&listed(&cases()?));
+        print_output(&case_list(&validation_cases()?));
         return Ok(0);
     }
     if args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
-    let cases = find(&args.names, args.full)?;
-    let scenes = cases.iter().map(|case| shelf::find(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
-    let placed = cases.into_iter().zip(scenes.iter().map(shelf::Found::path)).collect();
+    let cases = select_cases(&args.names, args.full)?;
+    let scenes =
+        cases.iter().map(|case| scene_lookup::find_scene(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
+    let placed = cases.into_iter().zip(scenes.iter().map(scene_lookup::FoundScene::path)).collect();
     let validation = Validation::new(placed, args.full, args.repeat, args.out.clone(), super::command_line())?;
-    let list = List { jobs: &validation.jobs, threads: args.threads, quiet: args.quiet };
+    let list = JobList { jobs: &validation.jobs, threads: args.threads, quiet: args.quiet };
     list.announce(args.dry_run)?;
     if args.dry_run {
         return Ok(0);
     }
-    let done = list.work(&stopper()?, |ran| validation.write(ran))?;
-    say(&format!("\n{}", table(&validation.table(&done.ran))));
-    say(&chance(&validation.rows(&done.ran)));
+    let done = list.run_all(&interrupt_flag()?, |ran| validation.write(ran))?;
+    print_output(&format!("\n{}", table(&validation.table(&done.ran))));
+    print_output(&repeats_text(&validation.rows(&done.ran)));
     for file in validation.files() {
-        say(&format!("{}\n", file.display()));
+        print_output(&format!("{}\n", file.display()));
     }
-    if done.ran.iter().any(|r| matches!(r.state, State::Failed(_))) {
-        complain("a case could not be run to its end\n");
+    if done.ran.iter().any(|r| matches!(r.state, JobState::Failed(_))) {
+        print_error("a case could not be run to its end\n");
     }
-    Ok(code(&done))
+    Ok(list_exit_code(&done))
 }
 
 /// The list of cases.
-fn listed(cases: &[Case]) -> String {
+fn case_list(cases: &[ValidationCase]) -> String {
     let mut rows = vec![["case", "quick", "scene", "about"].map(String::from).to_vec()];
     rows.extend(cases.iter().map(|case| {
         let usual = if case.quick.usual { "usual" } else { "" };

@@ -14,17 +14,17 @@ use crossterm::{
     terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode, size},
 };
 use pontoon::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     math::format::unit,
-    output::{Manifest, Readings, manifest::Status},
-    preflight::three,
-    run::{self, Drift},
+    output::{Manifest, SeriesTable, manifest::RunStatus},
+    preflight::three_digits,
+    run::{self, EnergyDrift},
 };
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
 use super::{
-    report::{duration, table, warnings},
-    say,
+    console_text::{duration, table, warnings},
+    print_output,
 };
 
 /// Which run, and which of its series.
@@ -45,7 +45,7 @@ pub struct WatchArgs {
 }
 
 /// Columns that are plotted where nobody says which, the most telling first.
-const TELLING: [&str; 8] = ["heave_m", "eta", "fx_N", "p_", "front_m", "total_J", "angle_deg", "tension_N"];
+const PREFERRED_COLUMNS: [&str; 8] = ["heave_m", "eta", "fx_N", "p_", "front_m", "total_J", "angle_deg", "tension_N"];
 
 /// Lines that a plot, or the table, has at least.
 const LEAST_LINES: usize = 6;
@@ -53,39 +53,39 @@ const LEAST_LINES: usize = 6;
 /// Watches until the run ends or somebody leaves with q or Ctrl-C; prints once where nobody sits.
 pub fn watch(args: &WatchArgs) -> Result<u8> {
     if !(args.every > 0.0 && args.every.is_finite()) {
-        return Err(Error::new(Kind::Usage, format!("--every {} is no time", args.every)).help("give seconds"));
+        return Err(Error::new(ErrorKind::Usage, format!("--every {} is no time", args.every)).help("give seconds"));
     }
-    let seen = Seen::read(&args.folder)?;
+    let seen = RunSnapshot::read(&args.folder)?;
     seen.check(&args.series)?;
     if args.once || !stdout().is_terminal() {
-        say(&seen.page(&args.series, (80, 24)));
+        print_output(&seen.screen_text(&args.series, (80, 24)));
         return Ok(0);
     }
-    let screen = Screen::open()?;
-    let left = follow(args);
+    let screen = AlternateScreen::open()?;
+    let left = watch_live(args);
     drop(screen);
     left?;
     // What was seen last stays to be read.
-    say(&Seen::read(&args.folder)?.page(&args.series, size().unwrap_or((80, 24))));
+    print_output(&RunSnapshot::read(&args.folder)?.screen_text(&args.series, size().unwrap_or((80, 24))));
     Ok(0)
 }
 
-fn follow(args: &WatchArgs) -> Result<()> {
+fn watch_live(args: &WatchArgs) -> Result<()> {
     loop {
-        let seen = Seen::read(&args.folder)?;
-        let text = seen.page(&args.series, size().unwrap_or((80, 24))) + "q leaves\n";
+        let seen = RunSnapshot::read(&args.folder)?;
+        let text = seen.screen_text(&args.series, size().unwrap_or((80, 24))) + "q leaves\n";
         let _ = execute!(stdout(), MoveTo(0, 0), Clear(ClearType::All));
         // A raw terminal does not go back to the first column by itself.
         let _ = stdout().write_all(text.replace('\n', "\r\n").as_bytes());
         let _ = stdout().flush();
-        if seen.manifest.status != Status::Running || left(Duration::from_secs_f64(args.every)) {
+        if seen.manifest.status != RunStatus::Running || quit_requested(Duration::from_secs_f64(args.every)) {
             return Ok(());
         }
     }
 }
 
 /// Waits so long; whether somebody leaves meanwhile.
-fn left(wait: Duration) -> bool {
+fn quit_requested(wait: Duration) -> bool {
     if !poll(wait).unwrap_or(true) {
         return false;
     }
@@ -98,24 +98,25 @@ fn left(wait: Duration) -> bool {
 }
 
 /// The process that the lock in `folder` names, and whether it lives, where the system keeps /proc.
-fn process(folder: &Path) -> Option<(u32, Option<bool>)> {
-    let id = run::owner(folder)?;
+fn lock_process(folder: &Path) -> Option<(u32, Option<bool>)> {
+    let id = run::lock_owner(folder)?;
     let all = Path::new("/proc");
     Some((id, all.join("self").exists().then(|| all.join(id.to_string()).exists())))
 }
 
 /// The terminal in its other screen; as it was when this is dropped.
-struct Screen;
+struct AlternateScreen;
 
-impl Screen {
+impl AlternateScreen {
     fn open() -> Result<Self> {
-        enable_raw_mode().map_err(|why| Error::new(Kind::Usage, format!("the terminal cannot be watched: {why}")))?;
+        enable_raw_mode()
+            .map_err(|why| Error::new(ErrorKind::Usage, format!("the terminal cannot be watched: {why}")))?;
         let _ = execute!(stdout(), EnterAlternateScreen, Hide);
         Ok(Self)
     }
 }
 
-impl Drop for Screen {
+impl Drop for AlternateScreen {
     fn drop(&mut self) {
         let _ = execute!(stdout(), Show, LeaveAlternateScreen);
         let _ = disable_raw_mode();
@@ -123,22 +124,22 @@ impl Drop for Screen {
 }
 
 /// A run as it stands.
-struct Seen {
+struct RunSnapshot {
     manifest: Manifest,
     /// The process that writes here, if one is named, and whether it lives, if the system tells.
     process: Option<(u32, Option<bool>)>,
-    tables: Vec<(String, Readings)>,
+    tables: Vec<(String, SeriesTable)>,
 }
 
-impl Seen {
+impl RunSnapshot {
     fn read(folder: &Path) -> Result<Self> {
         let manifest = Manifest::read(folder)?;
         let files = manifest.files.iter().filter_map(|file| file.strip_prefix("series/")?.strip_suffix(".csv"));
         let read = |name: &str| {
             let path = folder.join("series").join(format!("{name}.csv"));
-            Some((name.to_string(), Readings::read(&path).ok()?))
+            Some((name.to_string(), SeriesTable::read(&path).ok()?))
         };
-        Ok(Self { tables: files.filter_map(read).collect(), process: process(folder), manifest })
+        Ok(Self { tables: files.filter_map(read).collect(), process: lock_process(folder), manifest })
     }
 
     /// All series.
@@ -151,11 +152,11 @@ impl Seen {
         let names: Vec<String> = self.names().collect();
         match series.iter().find(|series| !names.contains(series)) {
             Some(series) => {
-                let help = match nearest(series, names.iter().map(String::as_str)) {
+                let help = match nearest_name(series, names.iter().map(String::as_str)) {
                     Some(near) => format!("did you mean {near:?}?"),
                     None => format!("the series are: {}", names.join(", ")),
                 };
-                Err(Error::new(Kind::Usage, format!("the run has no series {series:?}")).help(help))
+                Err(Error::new(ErrorKind::Usage, format!("the run has no series {series:?}")).help(help))
             }
             None => Ok(()),
         }
@@ -165,13 +166,13 @@ impl Seen {
     fn curve(&self, series: &str) -> Option<(&[f64], &[f64])> {
         let (name, column) = series.split_once('.')?;
         let (_, of) = self.tables.iter().find(|(known, _)| known == name)?;
-        Some((&of.t, &of.x[of.columns.iter().position(|known| known == column)?]))
+        Some((&of.times, &of.values[of.columns.iter().position(|known| known == column)?]))
     }
 
     /// What a terminal of so many columns and lines shows.
-    fn page(&self, series: &[String], (wide, high): (u16, u16)) -> String {
+    fn screen_text(&self, series: &[String], (wide, high): (u16, u16)) -> String {
         let mut text = format!("{}\n{}\n", self.manifest.title, self.status());
-        let telling = TELLING.iter().filter_map(|word| self.names().find(|name| name.contains(word)));
+        let telling = PREFERRED_COLUMNS.iter().filter_map(|word| self.names().find(|name| name.contains(word)));
         let mut plots: Vec<String> = match series.is_empty() {
             true => telling.chain(self.names().next()).take(2).collect(),
             false => series.to_vec(),
@@ -180,7 +181,7 @@ impl Seen {
         let room = usize::from(high.max(24)) - 5;
         let lines = (room / 2).checked_div(plots.len()).unwrap_or(0).max(LEAST_LINES);
         let rows = room.saturating_sub(plots.len() * lines).max(LEAST_LINES);
-        text += &self.latest(rows);
+        text += &self.latest_readings(rows);
         for name in &plots {
             text += &self.plot(name, wide, lines);
         }
@@ -190,15 +191,15 @@ impl Seen {
     fn status(&self) -> String {
         let m = &self.manifest;
         let how = match (m.status, self.process) {
-            (Status::Running, Some((id, Some(true)))) => format!("running (process {id})"),
-            (Status::Running, Some((id, Some(false)))) => format!("killed (process {id} is gone)"),
-            (Status::Running, _) => "running, or killed".into(),
-            (Status::Finished, _) => "finished".into(),
-            (Status::Interrupted, _) => "interrupted".into(),
-            (Status::Failed, _) => "failed".into(),
+            (RunStatus::Running, Some((id, Some(true)))) => format!("running (process {id})"),
+            (RunStatus::Running, Some((id, Some(false)))) => format!("killed (process {id} is gone)"),
+            (RunStatus::Running, _) => "running, or killed".into(),
+            (RunStatus::Finished, _) => "finished".into(),
+            (RunStatus::Interrupted, _) => "interrupted".into(),
+            (RunStatus::Failed, _) => "failed".into(),
         };
-        let t = self.tables.iter().filter_map(|(_, of)| of.t.last()).copied().fold(m.simulated_s, f64::max);
-        let words = self.drift().map(|drift| drift.to_string()).into_iter().chain(warnings(m.warnings.len()));
+        let t = self.tables.iter().filter_map(|(_, of)| of.times.last()).copied().fold(m.simulated_s, f64::max);
+        let words = self.energy_drift().map(|drift| drift.to_string()).into_iter().chain(warnings(m.warnings.len()));
         let more: String = words.map(|word| format!(", {word}")).collect();
         let text = format!(
             "{how}: t = {t:.3} of {} s, {} of wall time at the last frame{more}",
@@ -206,7 +207,7 @@ impl Seen {
             duration(m.wall_s)
         );
         let cost = m.wall_s / m.simulated_s;
-        if m.status == Status::Finished || !(cost > 0.0 && cost.is_finite()) {
+        if m.status == RunStatus::Finished || !(cost > 0.0 && cost.is_finite()) {
             return text;
         }
         format!(
@@ -217,26 +218,27 @@ impl Seen {
     }
 
     /// What became of the energy, if a table tells it.
-    fn drift(&self) -> Option<Drift> {
+    fn energy_drift(&self) -> Option<EnergyDrift> {
         let table = |first: &str| self.tables.iter().find(|(_, of)| of.columns.iter().any(|c| c.starts_with(first)));
-        let row = |of: &Readings, i: usize| of.x.iter().map(|x| x.get(i).copied()).collect::<Option<Vec<f64>>>();
+        let row =
+            |of: &SeriesTable, i: usize| of.values.iter().map(|x| x.get(i).copied()).collect::<Option<Vec<f64>>>();
         if let Some((_, of)) = table("residual_J") {
-            return Drift::of_budget(&row(of, of.t.len().checked_sub(1)?)?);
+            return EnergyDrift::from_budget(&row(of, of.times.len().checked_sub(1)?)?);
         }
         let (_, of) = table("total_J")?;
         let unit = unit(of.columns.last()?);
-        Drift::of_energy(&row(of, 0)?, &row(of, of.t.len().checked_sub(1)?)?, unit)
+        EnergyDrift::from_energy(&row(of, 0)?, &row(of, of.times.len().checked_sub(1)?)?, unit)
     }
 
     /// The last reading of each series, its least and its largest.
-    fn latest(&self, most: usize) -> String {
+    fn latest_readings(&self, most: usize) -> String {
         let mut rows = vec![["series", "t (s)", "now", "least", "largest"].map(String::from).to_vec()];
         for name in self.names() {
             let Some((t, x)) = self.curve(&name) else { continue };
             let known = || x.iter().copied().filter(|x| x.is_finite());
             let Some((t, x)) = t.iter().zip(x).rev().find(|(_, x)| x.is_finite()) else { continue };
             let ends = [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)];
-            rows.push(vec![name, format!("{t:.3}"), three(*x), three(ends[0]), three(ends[1])]);
+            rows.push(vec![name, format!("{t:.3}"), three_digits(*x), three_digits(ends[0]), three_digits(ends[1])]);
         }
         let left_out = rows.len().saturating_sub(most);
         rows.truncate(most);
@@ -255,7 +257,7 @@ impl Seen {
         let (wide, high) = (2 * u32::from(wide.clamp(60, 200) - 12), 4 * (lines - 3) as u32);
         let mut chart = Chart::new(wide, high, first.0, last.0);
         let shape = Shape::Lines(&points);
-        let digits = || LabelFormat::Custom(Box::new(|x| three(f64::from(x))));
+        let digits = || LabelFormat::Custom(Box::new(|x| three_digits(f64::from(x))));
         let chart = chart.x_label_format(digits()).y_label_format(digits()).lineplot(&shape);
         chart.axis();
         chart.figures();

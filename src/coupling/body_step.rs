@@ -9,7 +9,7 @@ use super::{
     place,
 };
 use crate::{
-    error::{Error, Fault, Kind, Result},
+    error::{Error, ErrorKind, Fault, Result},
     math::{Bivector, Pose, Vector},
     solid::{
         Contact, Engine, EngineFault, Kinematics, Load, Role, Solid,
@@ -228,8 +228,11 @@ impl<const D: usize> BodyStep<'_, D> {
     /// `Usage` where the bodies are external; `Fault` if a body leaves the valid range.
     pub fn advance_bodies(&mut self) -> Result<()> {
         if self.bodies.external {
-            return Err(Error::new(Kind::Usage, "a simulation with external bodies has none of its own to advance")
-                .help("step your own world, and write the poses of its bodies into step.solids"));
+            return Err(Error::new(
+                ErrorKind::Usage,
+                "a simulation with external bodies has none of its own to advance",
+            )
+            .help("step your own world, and write the poses of its bodies into step.solids"));
         }
         if std::mem::replace(&mut self.advanced, true) || self.bodies.engine.is_none() {
             return Ok(());
@@ -332,7 +335,7 @@ impl<const D: usize> BodyStep<'_, D> {
         if let Some(solid) = self.solids.iter().position(|k| !finite(k)) {
             let name = &self.system.solids[solid].spec.name;
             let what = format!("the kinematics of body {name:?} after the step are not set, or are not finite");
-            return Err(Error::new(Kind::Usage, what).help(
+            return Err(Error::new(ErrorKind::Usage, what).help(
                 "advance a simulation with external bodies by step_with, and write each free body into step.solids",
             ));
         }

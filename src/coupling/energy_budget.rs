@@ -185,7 +185,7 @@ impl<const D: usize> Accounting<D> {
             self.budget.diffusion += diffusion * dt;
             self.budget.gradient += gradient * dt;
             self.budget.walls += (total_power(system) - viscous - diffusion - gradient) * dt;
-            self.budget.driven += system.periodic_power() * dt;
+            self.budget.driven += system.periodic_gravity_power() * dt;
         }
         for (solid, work) in system.solids().iter().zip(&mut self.work) {
             *work = solid.load.power(&solid.kinematics) * dt;

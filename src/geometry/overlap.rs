@@ -18,14 +18,14 @@ impl<const D: usize> Shape<D> {
     ///
     /// # Errors
     /// A scene error that names two parts, counted from 1, where they overlap (m, in the compound's frame), and how much.
-    pub(crate) fn check_apart(&self) -> Result<()> {
+    pub(crate) fn check_no_overlap(&self) -> Result<()> {
         let Shape::Compound(parts) = self else { return Ok(()) };
-        parts.iter().try_for_each(|(_, part)| part.check_apart())?;
+        parts.iter().try_for_each(|(_, part)| part.check_no_overlap())?;
         let least = |part: &Shape<D>| part.bounds().size().min();
         for (j, (there, second)) in parts.iter().enumerate() {
             for (i, (here, first)) in parts[..j].iter().enumerate() {
                 let deeper = DEEPEST * least(first).min(least(second));
-                if let Some((x, depth)) = shared((first, here), (second, there), deeper) {
+                if let Some((x, depth)) = find_overlap((first, here), (second, there), deeper) {
                     let at: Vec<String> = x.iter().map(|x| format!("{x:.4}")).collect();
                     let (i, j, at) = (i + 1, j + 1, at.join(", "));
                     let what =
@@ -42,7 +42,7 @@ impl<const D: usize> Shape<D> {
 
 /// A place (m) more than `deeper` (m, above zero) inside both posed shapes, and how deep it is (m): looked for in boxes
 /// that are halved as long as they may hold one.
-pub(crate) fn shared<const D: usize>(
+pub(crate) fn find_overlap<const D: usize>(
     (one, here): (&Shape<D>, &Pose<D>),
     (other, there): (&Shape<D>, &Pose<D>),
     deeper: f64,
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     fn refusal<const D: usize>(parts: Vec<(Pose<D>, Shape<D>)>) -> String {
-        Shape::Compound(parts).check_apart().err().map(|e| e.to_string()).unwrap_or_default()
+        Shape::Compound(parts).check_no_overlap().err().map(|e| e.to_string()).unwrap_or_default()
     }
 
     fn bar(at: [f64; 3], turn: f64) -> (Pose<3>, Shape<3>) {

@@ -47,7 +47,7 @@ pub(super) trait PairTerms<const D: usize>: Send + Sync {
 pub(super) struct CompiledTerms<K, T, W> {
     /// Weighed with a particle's volume at ρ₀.
     pub(super) kernel: K,
-    pub(super) inner: T,
+    pub(super) fluid: T,
     pub(super) wall: W,
     pub(super) eta2: f64,
     /// Square of the kernel's support.
@@ -58,13 +58,13 @@ impl<K: Kernel, T, W> CompiledTerms<K, T, W> {
     /// With kernel and laws made for `medium`, in its units.
     pub(super) fn new<const D: usize>(kernel: K, inner: T, wall: W, medium: &FluidProperties<D>) -> Self {
         let (kernel, reach2) = (kernel.normalised_on_lattice(medium), (SUPPORT_RATIO * medium.h).powi(2));
-        Self { kernel, inner, wall, eta2: medium.eta2(), reach2 }
+        Self { kernel, fluid: inner, wall, eta2: medium.eta2(), reach2 }
     }
 }
 
 impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for CompiledTerms<K, T, W> {
     fn required_sums(&self) -> RequiredSums {
-        RequiredSums::of::<(T, W), D>()
+        RequiredSums::of_terms::<(T, W), D>()
     }
 
     fn sum_fluid(
@@ -75,7 +75,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for Compile
         sums: &mut [PairSums<D>],
         extra: &mut [AuxiliarySums<f64, D>],
     ) -> f64 {
-        reference::water(self, nodes, first, lists, sums, extra)
+        reference::sum_fluid(self, nodes, first, lists, sums, extra)
     }
 
     fn sum_boundary(
@@ -85,10 +85,10 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for Compile
         lists: &ParticleListChunk,
         sums: &mut [PairSums<D>],
     ) {
-        reference::skin(self, nodes, wet, lists, sums);
+        reference::sum_boundary(self, nodes, wet, lists, sums);
     }
 
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, sums: &mut [LaneRow]) -> f32 {
-        simd::slab(self, level, packed, slab, sums)
+        simd::sum_slab(self, level, packed, slab, sums)
     }
 }

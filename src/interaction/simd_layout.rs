@@ -39,7 +39,7 @@ impl<const D: usize> PackedParticles<D> {
     pub(super) fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
         self.clusters.resize(clusters.len(), PackedCluster::EMPTY);
         let inv_unit = 1.0 / units.length;
-        clusters.by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
+        clusters.split_by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
             let skip = if water_stays { slab.middle - slab.first } else { 0 };
             for (c, cluster) in (slab.first..).zip(packed).skip(skip) {
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
@@ -48,7 +48,7 @@ impl<const D: usize> PackedParticles<D> {
                 } else {
                     (input.boundary, input.boundary_velocity)
                 };
-                neighbours::fill(&mut cluster.x, source, &particles.r, inv_unit);
+                neighbours::fill_positions(&mut cluster.x, source, &particles.r, inv_unit);
                 state(cluster, source, (&particles.rho, v), input, units);
             }
         });
@@ -62,20 +62,20 @@ impl<const D: usize> PackedParticles<D> {
         units: &Units,
         needs: RequiredSums,
     ) {
-        let (mark, count) = (needs.suppression, needs.inputs(D));
+        let (mark, count) = (needs.suppression, needs.input_rows(D));
         self.rows.clear();
         self.rows.resize(clusters.len() * count, LaneRow::default());
         let scale = (units.time / units.length).powi(2);
         let packed = &self.clusters;
-        clusters.by_slab(&mut self.rows, count).into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
+        clusters.split_by_slab(&mut self.rows, count).into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
             for (c, rows) in (slab.first..).zip(rows.chunks_mut(count)) {
                 if needs.repulsion {
                     let [_, _, p, s] = packed[c].s;
                     let of = |l: usize| repulsion(f64::from(p[l]), f64::from(s[l])) as f32;
-                    rows[needs.repulsion_at()] = LaneRow(std::array::from_fn(of));
+                    rows[needs.repulsion_row()] = LaneRow(std::array::from_fn(of));
                 }
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
-                for (l, &i) in source[..neighbours::filled(source)].iter().enumerate() {
+                for (l, &i) in source[..neighbours::occupied_lanes(source)].iter().enumerate() {
                     let i = i as usize;
                     if mark && c >= slab.middle {
                         rows[0].0[l] = f32::from(u8::from(input.shifting_suppressed[i]));
@@ -89,10 +89,10 @@ impl<const D: usize> PackedParticles<D> {
                         }
                     };
                     if needs.stress && c < slab.middle {
-                        tensor(&input.stress[i], needs.stress_at(), scale);
+                        tensor(&input.stress[i], needs.stress_row(), scale);
                     }
                     if needs.gradient_correction && c < slab.middle {
-                        tensor(&input.gradient_correction[i], needs.form_at(D), 1.0);
+                        tensor(&input.gradient_correction[i], needs.gradient_correction_row(D), 1.0);
                     }
                 }
             }
@@ -111,7 +111,7 @@ fn state<const D: usize>(
 ) {
     let speed = units.time / units.length;
     let (rho0, inv_rho0) = (input.properties.rho0, 1.0 / input.properties.rho0);
-    let n = neighbours::filled(source);
+    let n = neighbours::occupied_lanes(source);
     if n < LANES {
         (cluster.v, cluster.s) = (PackedCluster::<D>::EMPTY.v, PackedCluster::<D>::EMPTY.s);
     }

@@ -83,8 +83,8 @@ impl Formula {
     }
 
     /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
-    pub fn at(&self, t: f64) -> (f64, f64) {
-        self.root.at(&[t])
+    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
+        self.root.evaluate(&[t])
     }
 }
 
@@ -97,11 +97,11 @@ impl Formula {
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Field<const D: usize> {
+pub struct ScalarField<const D: usize> {
     root: Node,
 }
 
-impl<const D: usize> Field<D> {
+impl<const D: usize> ScalarField<D> {
     /// Reads a formula.
     ///
     /// # Errors
@@ -111,23 +111,23 @@ impl<const D: usize> Field<D> {
     }
 
     /// Value at the place `r` (m).
-    pub fn at(&self, r: &Vector<D>) -> f64 {
-        self.root.at(r.as_slice()).0
+    pub fn value_at(&self, r: &Vector<D>) -> f64 {
+        self.root.evaluate(r.as_slice()).0
     }
 }
 
 impl Node {
-    fn at(&self, t: &[f64]) -> (f64, f64) {
+    fn evaluate(&self, t: &[f64]) -> (f64, f64) {
         match self {
             Self::Number(x) => (*x, 0.0),
             Self::Variable(i) => (t[*i], if *i == 0 { 1.0 } else { 0.0 }),
             Self::Negate(x) => {
-                let (x, dx) = x.at(t);
+                let (x, dx) = x.evaluate(t);
                 (-x, -dx)
             }
-            Self::Binary(binary, x, y) => binary.at(x.at(t), y.at(t)),
+            Self::Binary(binary, x, y) => binary.evaluate(x.evaluate(t), y.evaluate(t)),
             Self::Call(function, x) => {
-                let (x, dx) = x.at(t);
+                let (x, dx) = x.evaluate(t);
                 let (value, slope) = function(x);
                 (value, if dx == 0.0 { 0.0 } else { slope * dx })
             }
@@ -136,7 +136,7 @@ impl Node {
 }
 
 impl Binary {
-    fn at(self, (x, dx): (f64, f64), (y, dy): (f64, f64)) -> (f64, f64) {
+    fn evaluate(self, (x, dx): (f64, f64), (y, dy): (f64, f64)) -> (f64, f64) {
         match self {
             Self::Add => (x + y, dx + dy),
             Self::Subtract => (x - y, dx - dy),
@@ -183,7 +183,7 @@ mod tests {
             ("max(t, 1) - min(t, 1)", 2.0),
             ("(-t)^2", 9.0),
         ] {
-            assert_eq!(Formula::parse(text).unwrap().at(3.0).0, value, "{text}");
+            assert_eq!(Formula::parse(text).unwrap().value_and_rate(3.0).0, value, "{text}");
         }
     }
 
@@ -196,16 +196,16 @@ mod tests {
         {
             check_rate(text);
         }
-        assert_eq!(Formula::parse("t^2").unwrap().at(0.0), (0.0, 0.0));
-        assert_eq!(Formula::parse("(t-1)^3").unwrap().at(0.0), (-1.0, 3.0));
+        assert_eq!(Formula::parse("t^2").unwrap().value_and_rate(0.0), (0.0, 0.0));
+        assert_eq!(Formula::parse("(t-1)^3").unwrap().value_and_rate(0.0), (-1.0, 3.0));
     }
 
     /// The central difference of step 1e-5 is exact to 1e-10 f''' and to the round-off 1e-11 of its quotient.
     fn check_rate(text: &str) {
         let formula = Formula::parse(text).unwrap();
         let (t, step) = (0.7, 1e-5);
-        let difference = (formula.at(t + step).0 - formula.at(t - step).0) / (2.0 * step);
-        let rate = formula.at(t).1;
+        let difference = (formula.value_and_rate(t + step).0 - formula.value_and_rate(t - step).0) / (2.0 * step);
+        let rate = formula.value_and_rate(t).1;
         assert!((rate - difference).abs() < 1e-8 * (1.0 + rate.abs()), "{text}: {rate} against {difference}");
     }
 

@@ -32,7 +32,7 @@ pub fn unit(column: &str) -> &'static str {
 
 /// The name of a column without its unit, in words: `water_kinetic_J` is "water kinetic", `vx_at_1_0.2_mps` of a row of
 /// gauges "vx at 1, 0.2 m".
-pub fn name_without_unit(column: &str) -> String {
+pub fn column_label(column: &str) -> String {
     let end = UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("", |(end, _)| end);
     let name = &column[..column.len() - end.len()];
     match name.split_once("_at_") {
@@ -70,12 +70,9 @@ mod tests {
         assert_eq!(["fx_N_per_m", "fx_N", "heave_m, 0 at 2 s", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
         assert_eq!(unit("front_m (2)"), "m", "the second check of a series");
         assert_eq!(["power_W_per_m", "flow_m2ps", "eta_at_1.5_m"].map(unit), ["W/m", "m²/s", "m"]);
-        assert_eq!(["fx_N_per_m", "water_kinetic_J", "x"].map(name_without_unit), ["fx", "water kinetic", "x"]);
+        assert_eq!(["fx_N_per_m", "water_kinetic_J", "x"].map(column_label), ["fx", "water kinetic", "x"]);
         let row = ["eta_at_1.5_m", "below_1_at_-0.5_0.3_m", "vx_at_1_0.2_mps", "p_at_0_0_Pa"];
-        assert_eq!(
-            row.map(name_without_unit),
-            ["eta at 1.5 m", "below 1 at -0.5, 0.3 m", "vx at 1, 0.2 m", "p at 0, 0 m"]
-        );
+        assert_eq!(row.map(column_label), ["eta at 1.5 m", "below 1 at -0.5, 0.3 m", "vx at 1, 0.2 m", "p at 0, 0 m"]);
         assert_eq!(row.map(unit), ["m", "m", "m/s", "Pa"]);
     }
 

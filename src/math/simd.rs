@@ -35,7 +35,7 @@ pub fn best_instruction_set() -> Option<Level> {
 }
 
 /// The name of a level, for people.
-pub fn name(level: Level) -> String {
+pub fn instruction_set_name(level: Level) -> String {
     format!("{level:?}").split('(').next().unwrap_or_default().to_lowercase()
 }
 

@@ -10,8 +10,8 @@ mod grid;
 mod lists;
 mod search;
 
-pub use clusters::{Clusters, FAR_POSITION, PAD, Slab, fill, filled};
-pub use grid::Grid;
+pub use clusters::{Clusters, FAR_POSITION, PAD, Slab, fill_positions, occupied_lanes};
+pub use grid::CellGrid;
 pub use lists::{CHUNK, ParticleListChunk, ParticleLists, Span};
 
 use std::sync::OnceLock;
@@ -33,7 +33,7 @@ const UNITS: f64 = (1 << 24) as f64;
 
 /// Which particles meet which.
 #[derive(Clone, Debug)]
-pub enum Pairs {
+pub enum PairLists {
     /// Each with its list of single neighbours.
     Lists(ParticleLists),
     /// Each with its list of later clusters, searched with the instructions of that level.
@@ -47,13 +47,13 @@ pub struct NeighbourLists<const D: usize> {
     support_radius: f64,
     /// Particle spacing, m.
     dp: f64,
-    pairs: Pairs,
+    pair_lists: PairLists,
     /// Boundary particles with water within the lists' reach, in ascending order.
     boundary_near_fluid: Vec<u32>,
     /// Positions of water and skin at the last build, m.
     positions_at_build: (Vec<Vector<D>>, Vec<Vector<D>>),
     /// The same in grids, for those who ask what is near a place; made when one asks.
-    grids: OnceLock<(Grid<D>, Grid<D>)>,
+    grids: OnceLock<(CellGrid<D>, CellGrid<D>)>,
 }
 
 impl<const D: usize> NeighbourLists<D> {
@@ -61,13 +61,13 @@ impl<const D: usize> NeighbourLists<D> {
     /// the instructions of `level`, or else of single neighbours.
     pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self {
         let pairs = match level {
-            Some(level) => Pairs::Clusters(Clusters::default(), level),
-            None => Pairs::Lists(ParticleLists::default()),
+            Some(level) => PairLists::Clusters(Clusters::default(), level),
+            None => PairLists::Lists(ParticleLists::default()),
         };
         Self {
             support_radius: reach,
             dp,
-            pairs,
+            pair_lists: pairs,
             boundary_near_fluid: Vec::new(),
             positions_at_build: (Vec::new(), Vec::new()),
             grids: OnceLock::new(),
@@ -92,7 +92,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The order in which water at `r` lies along the columns: `order[new] = old`.
-    pub fn order(&self, r: &[Vector<D>]) -> Vec<u32> {
+    pub fn column_order(&self, r: &[Vector<D>]) -> Vec<u32> {
         let columns = Columns::new(r, WIDTH * self.dp, self.list_radius());
         columns.sort(r, &all_indices(r.len())).order
     }
@@ -112,14 +112,14 @@ impl<const D: usize> NeighbourLists<D> {
         let look = self.list_radius();
         let columns = Columns::new(water, WIDTH * self.dp, look);
         let water_sorted = columns.sort(water, &all_indices(water.len()));
-        let near = columns.near_water(water, &water_sorted, skin, look);
-        self.boundary_near_fluid = match &mut self.pairs {
-            Pairs::Lists(lists) => {
-                let (grid, skin_grid) = (Grid::new(water, look), Grid::new(skin, look));
+        let near = columns.near_fluid(water, &water_sorted, skin, look);
+        self.boundary_near_fluid = match &mut self.pair_lists {
+            PairLists::Lists(lists) => {
+                let (grid, skin_grid) = (CellGrid::new(water, look), CellGrid::new(skin, look));
                 lists.build((&grid, water), (&skin_grid, skin), &near, look)
             }
-            Pairs::Clusters(clusters, level) => {
-                let sizes = search::Sizes {
+            PairLists::Clusters(clusters, level) => {
+                let sizes = search::SearchSizes {
                     reach: look,
                     width: WIDTH * self.dp,
                     inv_unit: 1.0 / Self::length_unit(self.support_radius),
@@ -136,8 +136,8 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Which particles meet which.
-    pub fn pairs(&self) -> &Pairs {
-        &self.pairs
+    pub fn pair_lists(&self) -> &PairLists {
+        &self.pair_lists
     }
 
     /// The boundary particles that have water within the lists' reach, in ascending order.
@@ -146,47 +146,50 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Memory of the lists, and of the particles as the sweep packs them, B.
-    pub fn bytes(&self) -> usize {
-        match &self.pairs {
-            Pairs::Lists(lists) => {
-                lists.bytes() + (self.positions_at_build.0.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
+    pub fn memory_bytes(&self) -> usize {
+        match &self.pair_lists {
+            PairLists::Lists(lists) => {
+                lists.memory_bytes()
+                    + (self.positions_at_build.0.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
             }
             // Eight particles packed in single precision: places, velocities, four numbers; and two rows of sums.
-            Pairs::Clusters(clusters, _) => clusters.bytes() + clusters.source.len() * 4 * (2 * D + 4 + 2 * (D + 1)),
+            PairLists::Clusters(clusters, _) => {
+                clusters.memory_bytes() + clusters.source.len() * 4 * (2 * D + 4 + 2 * (D + 1))
+            }
         }
     }
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
-    pub fn water_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        self.around(&self.grids().0, x, visit);
+    pub fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+        self.visit_around(&self.grids().0, x, visit);
     }
 
     /// The indices of every water particle that may be within `bounds` (m), in order.
-    pub fn water_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
+    pub fn fluid_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
         let mut these = Vec::new();
         let bounds = bounds.grown(self.margin());
-        self.grids().0.rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
+        self.grids().0.visit_rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
         these.sort_unstable();
         these
     }
 
     /// Calls `visit` with the index of every boundary particle that may be within the support of `x`.
-    pub fn skin_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        self.around(&self.grids().1, x, visit);
+    pub fn visit_boundary_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+        self.visit_around(&self.grids().1, x, visit);
     }
 
-    fn grids(&self) -> &(Grid<D>, Grid<D>) {
+    fn grids(&self) -> &(CellGrid<D>, CellGrid<D>) {
         self.grids.get_or_init(|| {
             (
-                Grid::new(&self.positions_at_build.0, self.list_radius()),
-                Grid::new(&self.positions_at_build.1, self.list_radius()),
+                CellGrid::new(&self.positions_at_build.0, self.list_radius()),
+                CellGrid::new(&self.positions_at_build.1, self.list_radius()),
             )
         })
     }
 
-    fn around(&self, grid: &Grid<D>, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+    fn visit_around(&self, grid: &CellGrid<D>, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
         let box_ = Bounds { min: *x, max: *x }.grown(self.list_radius());
-        grid.rows(&box_, |row| row.iter().for_each(|&i| visit(i as usize)));
+        grid.visit_rows(&box_, |row| row.iter().for_each(|&i| visit(i as usize)));
     }
 }
 

@@ -14,8 +14,8 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{Mean, cannot_write, part_of, put_part, settle, write_part};
-use crate::error::{Error, Kind, Result};
+use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folder, write_partial};
+use crate::error::{Error, ErrorKind, Result};
 
 /// The last checkpoint, in the run's folder.
 pub const LAST: &str = "checkpoint.bin";
@@ -31,19 +31,19 @@ const FORMAT: u32 = 5;
 
 /// What a file of so many bytes may unfold to at most, per byte. Particles' numbers alone, which do not pack, keep a
 /// true checkpoint below 200.
-const MOST_UNFOLDED: u64 = 1000;
+const MAX_EXPANSION: u64 = 1000;
 
 /// How far the outputs of a run are.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Extent {
+pub struct OutputPositions {
     /// Length of each table, bytes, in the order of the probes, then of the lists.
-    pub tables: Vec<u64>,
+    pub table_bytes: Vec<u64>,
     /// Means in the making, of the probes that take some.
-    pub means: Vec<Option<Mean>>,
+    pub means: Vec<Option<IntervalMean>>,
     /// Times of the frames written, s.
-    pub frames: Vec<f64>,
+    pub frame_times: Vec<f64>,
     /// Numbers of the next looks, frame and checkpoint that are due, then of the lists' looks.
-    pub due: Vec<u64>,
+    pub next_due: Vec<u64>,
 }
 
 /// What a checkpoint holds.
@@ -52,21 +52,21 @@ pub struct Checkpoint {
     /// Version of this crate that wrote it.
     pub version: String,
     /// [`hash`] of the scene with every default filled in.
-    pub scene: u64,
+    pub scene_hash: u64,
     /// Scene keys changed for this run, and their values.
-    pub sets: Vec<(String, String)>,
+    pub overrides: Vec<(String, String)>,
     /// Simulated time, s.
     pub time: f64,
     /// How far the outputs were.
-    pub outputs: Extent,
+    pub outputs: OutputPositions,
     /// Wall time of the run so far, s.
-    pub wall: f64,
+    pub wall_seconds: f64,
     /// Processor time of the run so far, s.
-    pub cpu: f64,
+    pub cpu_seconds: f64,
     /// Water and wet boundary particles × force passes so far.
     pub particle_steps: u64,
     /// Wall time of stepping alone, s.
-    pub stepping: f64,
+    pub stepping_seconds: f64,
     /// The simulation's own bytes: they lie behind the rest as they are.
     #[serde(skip)]
     pub state: Vec<u8>,
@@ -74,17 +74,17 @@ pub struct Checkpoint {
 
 impl Checkpoint {
     /// What there is to say before the first step of the `scene`, with `sets` changed.
-    pub fn first(scene: &str, sets: &[(String, String)]) -> Self {
+    pub fn initial(scene: &str, sets: &[(String, String)]) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
-            scene: hash(scene.as_bytes()),
-            sets: sets.to_vec(),
+            scene_hash: fnv1a(scene.as_bytes()),
+            overrides: sets.to_vec(),
             time: 0.0,
-            outputs: Extent::default(),
-            wall: 0.0,
-            cpu: 0.0,
+            outputs: OutputPositions::default(),
+            wall_seconds: 0.0,
+            cpu_seconds: 0.0,
             particle_steps: 0,
-            stepping: 0.0,
+            stepping_seconds: 0.0,
             state: vec![],
         }
     }
@@ -98,18 +98,18 @@ impl Checkpoint {
         let (last, previous) = (folder.join(LAST), folder.join(PREVIOUS));
         let bytes = self.to_bytes()?;
         // On the disk under its passing name before the others move: from here on there are two whole ones.
-        write_part(&last, |file| file.write_all(&bytes).and_then(|()| file.sync_all()))?;
+        write_partial(&last, |file| file.write_all(&bytes).and_then(|()| file.sync_all()))?;
         if good {
             match fs::rename(&last, &previous) {
                 Err(why) if why.kind() != io::ErrorKind::NotFound => {
-                    let _ = fs::remove_file(part_of(&last));
+                    let _ = fs::remove_file(partial_path(&last));
                     return Err(cannot_write(&previous, &why));
                 }
                 _ => {}
             }
         }
-        put_part(&last)?;
-        settle(folder);
+        commit_partial(&last)?;
+        sync_folder(folder);
         Ok(())
     }
 
@@ -118,8 +118,9 @@ impl Checkpoint {
     /// # Errors
     /// `Restart` if it cannot be packed.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        let cannot =
-            |why: &dyn std::fmt::Display| Error::new(Kind::Restart, format!("the checkpoint cannot be packed: {why}"));
+        let cannot = |why: &dyn std::fmt::Display| {
+            Error::new(ErrorKind::Restart, format!("the checkpoint cannot be packed: {why}"))
+        };
         let known = postcard::to_stdvec(self).map_err(|why| cannot(&why))?;
         let pack = || -> io::Result<Vec<u8>> {
             // More than the fastest level takes longer, and numbers of a flow hardly pack better.
@@ -130,7 +131,7 @@ impl Checkpoint {
         };
         let packed = pack().map_err(|why| cannot(&why))?;
         let lengths = [(known.len() + self.state.len()) as u64, packed.len() as u64].map(u64::to_le_bytes).concat();
-        let sum = continued(hash(&lengths), &packed).to_le_bytes();
+        let sum = fnv1a_continue(fnv1a(&lengths), &packed).to_le_bytes();
         Ok([MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum, &packed].concat())
     }
 
@@ -141,15 +142,15 @@ impl Checkpoint {
     /// cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).map_err(|why| match why.kind() {
-            io::ErrorKind::NotFound => refused(
+            io::ErrorKind::NotFound => restart_error(
                 "there is no checkpoint",
                 "a run writes one on Ctrl-C, and as often as [checkpoint] says, every ten minutes by default",
             ),
             _ => Error::file(path, why),
         });
         bytes.and_then(|bytes| Self::from_bytes(&bytes)).map_err(|mut error| {
-            if error.kind == Kind::Restart {
-                error.what = format!("{}: {}", path.display(), error.what);
+            if error.kind == ErrorKind::Restart {
+                error.message = format!("{}: {}", path.display(), error.message);
             }
             error
         })
@@ -162,13 +163,13 @@ impl Checkpoint {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         const AFRESH: &str = "start the run afresh with `pontoon run`";
         const OTHER: &str = "resume with the version that wrote it";
-        let short = || refused("the checkpoint is cut short", AFRESH);
-        let damaged = || refused("the checkpoint is damaged", AFRESH);
+        let short = || restart_error("the checkpoint is cut short", AFRESH);
+        let damaged = || restart_error("the checkpoint is damaged", AFRESH);
         let Some(rest) = bytes.strip_prefix(MAGIC) else {
             if MAGIC.starts_with(bytes) {
                 return Err(short());
             }
-            return Err(refused(
+            return Err(restart_error(
                 "this is no checkpoint of pontoon",
                 "name the folder of a run, as in `pontoon resume runs/raft`",
             ));
@@ -177,7 +178,7 @@ impl Checkpoint {
         let format = u32::from_le_bytes(*format);
         if format != FORMAT {
             let what = format!("the checkpoint has format {format}; this program reads {FORMAT}");
-            return Err(refused(&what, OTHER));
+            return Err(restart_error(&what, OTHER));
         }
         let (lengths, rest) = rest.split_first_chunk::<16>().ok_or_else(short)?;
         let (sum, packed) = rest.split_first_chunk::<8>().ok_or_else(short)?;
@@ -186,8 +187,8 @@ impl Checkpoint {
             return Err(short());
         }
         let sound = packed.len() as u64 == length
-            && continued(hash(lengths), packed) == u64::from_le_bytes(*sum)
-            && unfolded <= MOST_UNFOLDED.saturating_mul(length);
+            && fnv1a_continue(fnv1a(lengths), packed) == u64::from_le_bytes(*sum)
+            && unfolded <= MAX_EXPANSION.saturating_mul(length);
         if !sound {
             return Err(damaged());
         }
@@ -200,24 +201,24 @@ impl Checkpoint {
         let (mut found, state) = postcard::take_from_bytes::<Self>(&payload).map_err(|_| damaged())?;
         if found.version != env!("CARGO_PKG_VERSION") {
             let what = format!("written by pontoon {}, this is {}", found.version, env!("CARGO_PKG_VERSION"));
-            return Err(refused(&what, &format!("{OTHER}: another may not go on to the same bits")));
+            return Err(restart_error(&what, &format!("{OTHER}: another may not go on to the same bits")));
         }
         found.state = state.to_vec();
         Ok(found)
     }
 }
 
-fn refused(what: &str, help: &str) -> Error {
-    Error::new(Kind::Restart, what).help(help)
+fn restart_error(what: &str, help: &str) -> Error {
+    Error::new(ErrorKind::Restart, what).help(help)
 }
 
 /// FNV-1a hash of `bytes`.
-pub fn hash(bytes: &[u8]) -> u64 {
-    continued(0xcbf2_9ce4_8422_2325, bytes)
+pub fn fnv1a(bytes: &[u8]) -> u64 {
+    fnv1a_continue(0xcbf2_9ce4_8422_2325, bytes)
 }
 
 /// The hash of what had the hash `before`, and `bytes` behind it.
-fn continued(before: u64, bytes: &[u8]) -> u64 {
+fn fnv1a_continue(before: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(before, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
@@ -228,31 +229,31 @@ mod tests {
     fn example() -> Checkpoint {
         Checkpoint {
             version: env!("CARGO_PKG_VERSION").into(),
-            scene: hash(b"scene"),
-            sets: vec![("dp".into(), "0.02".into())],
+            scene_hash: fnv1a(b"scene"),
+            overrides: vec![("dp".into(), "0.02".into())],
             time: 0.25,
-            outputs: Extent {
-                tables: vec![12, 40],
-                means: vec![None, Some(Mean::default())],
-                frames: vec![0.0, 0.1],
-                due: vec![3, 1],
+            outputs: OutputPositions {
+                table_bytes: vec![12, 40],
+                means: vec![None, Some(IntervalMean::default())],
+                frame_times: vec![0.0, 0.1],
+                next_due: vec![3, 1],
             },
-            wall: 1.5,
-            cpu: 2.5,
+            wall_seconds: 1.5,
+            cpu_seconds: 2.5,
             particle_steps: 1200,
-            stepping: 1.25,
+            stepping_seconds: 1.25,
             state: vec![1, 2, 3, 250],
         }
     }
 
-    fn refusal(bytes: &[u8]) -> Option<Kind> {
+    fn refusal(bytes: &[u8]) -> Option<ErrorKind> {
         Checkpoint::from_bytes(bytes).err().map(|e| e.kind)
     }
 
     #[test]
     fn the_hash_is_fnv_1a() {
-        assert_eq!(hash(b""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(hash(b"foobar"), 0x8594_4171_f739_67e8, "the published test vector");
+        assert_eq!(fnv1a(b""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(fnv1a(b"foobar"), 0x8594_4171_f739_67e8, "the published test vector");
     }
 
     #[test]
@@ -260,26 +261,26 @@ mod tests {
         let good = example().to_bytes()?;
         assert_eq!(Checkpoint::from_bytes(&good)?, example());
         for cut in 0..good.len() {
-            let what = Checkpoint::from_bytes(&good[..cut]).err().map(|e| e.what).unwrap_or_default();
+            let what = Checkpoint::from_bytes(&good[..cut]).err().map(|e| e.message).unwrap_or_default();
             assert!(what.contains("cut short"), "cut at {cut}: {what}");
         }
         for place in 0..good.len() {
             for bit in 0..8 {
                 let mut bad = good.clone();
                 bad[place] ^= 1 << bit;
-                assert_eq!(refusal(&bad), Some(Kind::Restart), "bit {bit} of byte {place} changed");
+                assert_eq!(refusal(&bad), Some(ErrorKind::Restart), "bit {bit} of byte {place} changed");
             }
         }
-        assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(Kind::Restart), "a byte too many");
+        assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(ErrorKind::Restart), "a byte too many");
         let other = Checkpoint { version: "0.0.0".into(), ..example() }.to_bytes()?;
-        assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.what.contains("written by pontoon 0.0.0")));
+        assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.message.contains("written by pontoon 0.0.0")));
         Ok(())
     }
 
     /// A file with a true hash over whatever lengths and payload.
     fn forged(unfolded: u64, packed: &[u8]) -> Vec<u8> {
         let lengths = [unfolded, packed.len() as u64].map(u64::to_le_bytes).concat();
-        let sum = continued(hash(&lengths), packed).to_le_bytes();
+        let sum = fnv1a_continue(fnv1a(&lengths), packed).to_le_bytes();
         [MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum, packed].concat()
     }
 
@@ -288,12 +289,12 @@ mod tests {
         // 64 MB of nothing in some kB: refused for its ratio, and for a length that is not its own.
         let bomb = zstd::encode_all(io::repeat(0).take(1 << 26), 1)?;
         for unfolded in [u64::MAX, 1 << 26, 1 << 40, 1000, 0] {
-            assert_eq!(refusal(&forged(unfolded, &bomb)), Some(Kind::Restart), "{unfolded} bytes promised");
+            assert_eq!(refusal(&forged(unfolded, &bomb)), Some(ErrorKind::Restart), "{unfolded} bytes promised");
         }
-        assert_eq!(refusal(&forged(100, b"no zstd at all")), Some(Kind::Restart));
+        assert_eq!(refusal(&forged(100, b"no zstd at all")), Some(ErrorKind::Restart));
         // Lists that promise 2⁶⁰ entries.
         let lists = [&[1, b'x', 7, 0][..], &[0xff; 9], &[1]].concat();
-        assert_eq!(refusal(&forged(lists.len() as u64, &zstd::encode_all(&lists[..], 1)?)), Some(Kind::Restart));
+        assert_eq!(refusal(&forged(lists.len() as u64, &zstd::encode_all(&lists[..], 1)?)), Some(ErrorKind::Restart));
         Ok(())
     }
 
@@ -310,7 +311,7 @@ mod tests {
         fs::write(folder.join(LAST), "damaged").map_err(|e| Error::file(&folder, e))?;
         at(3.0).write(&folder, false)?;
         assert_eq!([time(LAST), time(PREVIOUS)], [Some(3.0), Some(1.0)]);
-        let none = Checkpoint::read(&folder.join("none")).err().map(|e| e.what).unwrap_or_default();
+        let none = Checkpoint::read(&folder.join("none")).err().map(|e| e.message).unwrap_or_default();
         assert!(none.ends_with("there is no checkpoint"), "{none}");
         fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
     }

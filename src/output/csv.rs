@@ -8,8 +8,8 @@ use std::{
 
 use super::cannot_write;
 use crate::{
-    error::{Error, Kind, Result},
-    math::time_series::Series,
+    error::{Error, ErrorKind, Result},
+    math::time_series::TimeSeries,
 };
 
 /// A CSV file that grows by whole rows.
@@ -17,7 +17,7 @@ use crate::{
 /// Every row reaches the system at once, so a run that dies loses none; a row that fails half-way, as on a
 /// full disk, is taken back. Numbers are written so that reading them gives the same bits; a number that
 /// does not exist (NaN) is an empty field.
-pub struct Table {
+pub struct CsvTable {
     path: PathBuf,
     file: File,
     bytes: u64,
@@ -26,7 +26,7 @@ pub struct Table {
     last: Option<(f64, Vec<f64>)>,
 }
 
-impl Table {
+impl CsvTable {
     /// A new table at `path` with the columns `t_s` and `columns`.
     ///
     /// # Errors
@@ -49,11 +49,11 @@ impl Table {
         let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
         if kept.is_none_or(|k| !k.starts_with(header.as_bytes()) || !k.ends_with(b"\n")) {
             let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
-            return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
+            return Err(Error::new(ErrorKind::Restart, what).help("start the run afresh with `pontoon run`"));
         }
         let file = OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?;
         let mut table = Self { path: path.to_owned(), file, bytes, columns: columns.len(), first: None, last: None };
-        table.cut(bytes)?;
+        table.truncate(bytes)?;
         Ok(table)
     }
 
@@ -61,7 +61,7 @@ impl Table {
     ///
     /// # Errors
     /// `File` if it cannot be read or cut.
-    pub fn cut(&mut self, bytes: u64) -> Result<()> {
+    pub fn truncate(&mut self, bytes: u64) -> Result<()> {
         let text = std::fs::read(&self.path).map_err(|e| Error::file(&self.path, e))?;
         let kept = usize::try_from(bytes).map_or(&text[..], |n| &text[..n.min(text.len())]);
         let kept = String::from_utf8_lossy(kept);
@@ -78,7 +78,7 @@ impl Table {
     ///
     /// # Errors
     /// `File` if it cannot be written; the rows before stay whole.
-    pub fn row(&mut self, t: f64, values: &[f64]) -> Result<()> {
+    pub fn append_row(&mut self, t: f64, values: &[f64]) -> Result<()> {
         assert_eq!(values.len(), self.columns, "a value for each column");
         let mut line = number(t);
         for &x in values {
@@ -96,7 +96,7 @@ impl Table {
     ///
     /// # Errors
     /// `File` if they cannot be written; the rows before stay whole.
-    pub fn rows(&mut self, t: f64, rows: &[([&str; 2], Vec<f64>)]) -> Result<()> {
+    pub fn append_rows(&mut self, t: f64, rows: &[([&str; 2], Vec<f64>)]) -> Result<()> {
         let mut lines = String::new();
         for (words, values) in rows {
             assert_eq!(words.len() + values.len(), self.columns, "a word or a value for each column");
@@ -112,12 +112,12 @@ impl Table {
     }
 
     /// Values of the first row.
-    pub fn first(&self) -> Option<&[f64]> {
+    pub fn first_row(&self) -> Option<&[f64]> {
         self.first.as_deref()
     }
 
     /// Time (s) and values of the last row.
-    pub fn last(&self) -> Option<(f64, &[f64])> {
+    pub fn last_row(&self) -> Option<(f64, &[f64])> {
         self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
     }
 
@@ -152,16 +152,16 @@ impl Table {
 
 /// A table as it stands in its file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Readings {
+pub struct SeriesTable {
     /// Names of the columns after the time.
     pub columns: Vec<String>,
     /// Times, s.
-    pub t: Vec<f64>,
+    pub times: Vec<f64>,
     /// A row of numbers for each column; NaN where there was nothing to measure.
-    pub x: Vec<Vec<f64>>,
+    pub values: Vec<Vec<f64>>,
 }
 
-impl Readings {
+impl SeriesTable {
     /// The table at `path`. A last row that is cut, as that of a killed run may be, is left out.
     ///
     /// # Errors
@@ -179,15 +179,15 @@ impl Readings {
                 x.iter_mut().enumerate().for_each(|(i, column)| column.push(field(i + 1)));
             }
         }
-        Ok(Self { columns, t, x })
+        Ok(Self { columns, times: t, values: x })
     }
 
     /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.
-    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<Series> {
-        let column = &self.x[self.columns.iter().position(|column| column == name)?];
-        let known = self.t.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
+    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<TimeSeries> {
+        let column = &self.values[self.columns.iter().position(|column| column == name)?];
+        let known = self.times.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
         let (t, x): (Vec<f64>, Vec<f64>) = known.unzip();
-        Series::new(t, x).ok()
+        TimeSeries::new(t, x).ok()
     }
 }
 
@@ -215,26 +215,30 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("pontoon-table-{}", std::process::id()));
         std::fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
         let path = folder.join("x.csv");
-        let mut table = Table::create(&path, &columns())?;
-        table.row(0.0, &[1.0 / 3.0, f64::NAN])?;
+        let mut table = CsvTable::create(&path, &columns())?;
+        table.append_row(0.0, &[1.0 / 3.0, f64::NAN])?;
         let bytes = table.bytes();
-        table.row(0.1, &[-1e-9, 2.0])?;
+        table.append_row(0.1, &[-1e-9, 2.0])?;
         let whole = std::fs::read(&path).map_err(|e| Error::file(&path, e))?;
-        assert!(Table::create(&path, &columns()).is_err(), "an existing table is never overwritten");
+        assert!(CsvTable::create(&path, &columns()).is_err(), "an existing table is never overwritten");
 
-        let mut again = Table::resume(&path, &columns(), bytes)?;
-        let (t, row) = again.last().map(|(t, row)| (t, row.to_vec())).unwrap_or_default();
+        let mut again = CsvTable::resume(&path, &columns(), bytes)?;
+        let (t, row) = again.last_row().map(|(t, row)| (t, row.to_vec())).unwrap_or_default();
         assert!(t == 0.0 && row[0] == 1.0 / 3.0 && row[1].is_nan(), "the same bits; got {t} {row:?}");
-        again.row(0.1, &[-1e-9, 2.0])?;
-        again.row(0.2, &[0.0, 0.0])?;
-        again.cut(whole.len() as u64)?;
-        assert_eq!(again.last(), Some((0.1, &[-1e-9, 2.0][..])), "the row that is the last again");
-        assert!(again.first().is_some_and(|row| row[0] == 1.0 / 3.0), "the first row stays: {:?}", again.first());
+        again.append_row(0.1, &[-1e-9, 2.0])?;
+        again.append_row(0.2, &[0.0, 0.0])?;
+        again.truncate(whole.len() as u64)?;
+        assert_eq!(again.last_row(), Some((0.1, &[-1e-9, 2.0][..])), "the row that is the last again");
+        assert!(
+            again.first_row().is_some_and(|row| row[0] == 1.0 / 3.0),
+            "the first row stays: {:?}",
+            again.first_row()
+        );
         assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
         assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
-        assert!(Table::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");
-        assert!(Table::resume(&path, &columns()[..1], bytes).is_err(), "other columns");
-        assert!(Table::resume(&path, &columns(), bytes - 1).is_err(), "a row that is not whole");
+        assert!(CsvTable::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");
+        assert!(CsvTable::resume(&path, &columns()[..1], bytes).is_err(), "other columns");
+        assert!(CsvTable::resume(&path, &columns(), bytes - 1).is_err(), "a row that is not whole");
         std::fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
     }
 }

@@ -14,12 +14,12 @@ use vtkio::{
     xml::Compressor,
 };
 
-use super::{cannot_write, settle, write_whole};
+use super::{cannot_write, sync_folder, write_atomically};
 use crate::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     math::Vector,
     particles::ParticlesView,
-    plan::FrameWords,
+    plan::FramesPlan,
     system::System,
 };
 
@@ -41,7 +41,7 @@ pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
 const PARTS: [&str; 2] = ["water", "solids"];
 
 /// The frames of a run. Solids carry the number of their solid besides the chosen fields.
-pub struct Frames {
+pub struct FrameWriter {
     folder: PathBuf,
     fields: Vec<String>,
     /// Lowest and highest corner (m) of the box whose water is kept; all if none.
@@ -50,19 +50,19 @@ pub struct Frames {
     /// What they take, B.
     bytes: u64,
     /// How many of them are on the disk itself.
-    settled: usize,
+    synced: usize,
 }
 
-impl Frames {
+impl FrameWriter {
     /// The frames in the run's `folder`, holding what `words` say (fields of [`FIELDS`]); `times` (s) are those that are
     /// there already.
     ///
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
-    pub fn new(folder: &Path, words: &FrameWords, times: Vec<f64>) -> Result<Self> {
-        let FrameWords { fields, crop, .. } = words.clone();
+    pub fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> {
+        let FramesPlan { fields, crop, .. } = words.clone();
         if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
-            let help = match nearest(word, FIELDS) {
+            let help = match nearest_name(word, FIELDS) {
                 Some(near) => format!("did you mean {near:?}?"),
                 None => format!("the fields are: {}", FIELDS.join(", ")),
             };
@@ -70,8 +70,8 @@ impl Frames {
         }
         let pictures = folder.join("frames");
         std::fs::create_dir_all(&pictures).map_err(|e| cannot_write(&pictures, &e))?;
-        let mut frames = Self { folder: folder.to_owned(), fields, crop, settled: times.len(), times, bytes: 0 };
-        frames.measure();
+        let mut frames = Self { folder: folder.to_owned(), fields, crop, synced: times.len(), times, bytes: 0 };
+        frames.update_size();
         Ok(frames)
     }
 
@@ -79,34 +79,34 @@ impl Frames {
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub fn cut(&mut self, kept: usize) -> Result<()> {
+    pub fn truncate(&mut self, kept: usize) -> Result<()> {
         if kept >= self.times.len() {
             return Ok(());
         }
         let gone = kept..self.times.len();
         self.times.truncate(kept);
-        self.settled = self.settled.min(kept);
-        self.list()?;
-        for path in gone.flat_map(names).map(|name| self.folder.join("frames").join(name)) {
+        self.synced = self.synced.min(kept);
+        self.write_index()?;
+        for path in gone.flat_map(piece_names).map(|name| self.folder.join("frames").join(name)) {
             match std::fs::remove_file(&path) {
                 Err(why) if why.kind() != std::io::ErrorKind::NotFound => return Err(cannot_write(&path, &why)),
                 _ => {}
             }
         }
-        self.measure();
+        self.update_size();
         Ok(())
     }
 
     /// Sums up what the frames take.
-    fn measure(&mut self) {
+    fn update_size(&mut self) {
         let pictures = self.folder.join("frames");
-        let there = (0..self.times.len()).flat_map(names);
+        let there = (0..self.times.len()).flat_map(piece_names);
         self.bytes = there.filter_map(|name| Some(std::fs::metadata(pictures.join(name)).ok()?.len())).sum();
     }
 
     /// Writes the list of all frames.
-    fn list(&self) -> Result<()> {
-        write_whole(&self.folder.join("frames.pvd"), film(&self.times, "frames", &PARTS).as_bytes())
+    fn write_index(&self) -> Result<()> {
+        write_atomically(&self.folder.join("frames.pvd"), pvd_index(&self.times, "frames", &PARTS).as_bytes())
     }
 
     /// Times of the frames so far, s.
@@ -130,17 +130,17 @@ impl Frames {
             let inside = |i: &usize| (0..D).all(|k| (min[k]..=max[k]).contains(&water.r[*i][k]));
             water.select((0..water.len()).filter(inside))
         });
-        let water = kept.as_ref().map_or(water, |kept| kept.first(kept.len()));
-        let [wet, dry] = names(number);
-        let mut bytes = self.picture(&wet, system, water, None)?;
+        let water = kept.as_ref().map_or(water, |kept| kept.first_n(kept.len()));
+        let [wet, dry] = piece_names(number);
+        let mut bytes = self.write_piece(&wet, system, water, None)?;
         let mut owner = vec![0.0; system.boundary().len()];
         for (i, solid) in system.solids().iter().enumerate() {
             owner[solid.boundary.clone()].fill(i as f32);
         }
-        bytes += self.picture(&dry, system, system.boundary(), Some(owner))?;
+        bytes += self.write_piece(&dry, system, system.boundary(), Some(owner))?;
         self.bytes += bytes;
         self.times.push(t);
-        self.list()
+        self.write_index()
     }
 
     /// Waits until all frames are on the disk itself.
@@ -149,20 +149,20 @@ impl Frames {
     /// `File` if one cannot be opened or the disk refuses.
     pub fn sync(&mut self) -> Result<()> {
         let pictures = self.folder.join("frames");
-        for number in self.settled..self.times.len() {
-            for name in names(number).map(|name| pictures.join(name)) {
+        for number in self.synced..self.times.len() {
+            for name in piece_names(number).map(|name| pictures.join(name)) {
                 File::open(&name).and_then(|file| file.sync_data()).map_err(|e| cannot_write(&name, &e))?;
             }
         }
-        if self.settled < self.times.len() {
-            settle(&pictures);
-            self.settled = self.times.len();
+        if self.synced < self.times.len() {
+            sync_folder(&pictures);
+            self.synced = self.times.len();
         }
         Ok(())
     }
 
     /// Writes a picture; its size, B.
-    fn picture<const D: usize>(
+    fn write_piece<const D: usize>(
         &self,
         name: &str,
         system: &System<D>,
@@ -171,18 +171,18 @@ impl Frames {
     ) -> Result<u64> {
         let mut fields: Vec<Attribute> = self.fields.iter().map(|name| attribute(name, system, particles)).collect();
         fields.extend(
-            owner.map(|numbers| array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)),
+            owner.map(|numbers| data_array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)),
         );
         let path = self.folder.join("frames").join(name);
-        let bytes =
-            cloud(particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
-        write_whole(&path, &bytes)?;
+        let bytes = points_vtu(particles.r, fields)
+            .map_err(|e| Error::new(ErrorKind::File, format!("{}: {e}", path.display())))?;
+        write_atomically(&path, &bytes)?;
         Ok(bytes.len() as u64)
     }
 }
 
 /// The files of a frame.
-fn names(number: usize) -> [String; 2] {
+fn piece_names(number: usize) -> [String; 2] {
     PARTS.map(|part| format!("{part}_{number:05}.vtu"))
 }
 
@@ -191,9 +191,9 @@ fn attribute<const D: usize>(field: &str, system: &System<D>, particles: Particl
     let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
     let all = |f: &dyn Fn(usize) -> f64| (0..particles.len()).map(|i| f(i) as f32).collect();
     match field {
-        "velocity" => array(field, ElementType::Vectors, padded(particles.v)),
-        "density" => array(field, scalar, all(&|i| particles.rho[i])),
-        "pressure" => array(field, scalar, all(&|i| system.pressure(particles.rho[i]))),
+        "velocity" => data_array(field, ElementType::Vectors, to_3d(particles.v)),
+        "density" => data_array(field, scalar, all(&|i| particles.rho[i])),
+        "pressure" => data_array(field, scalar, all(&|i| system.pressure(particles.rho[i]))),
         _ => Attribute::DataArray(DataArrayBase {
             name: field.into(),
             elem: scalar,
@@ -202,27 +202,30 @@ fn attribute<const D: usize>(field: &str, system: &System<D>, particles: Particl
     }
 }
 
-pub(super) fn array(name: &str, elem: ElementType, numbers: Vec<f32>) -> Attribute {
+pub(super) fn data_array(name: &str, elem: ElementType, numbers: Vec<f32>) -> Attribute {
     Attribute::DataArray(DataArrayBase { name: name.into(), elem, data: IOBuffer::F32(numbers) })
 }
 
 /// Three components for each vector, in a row.
-fn padded<const D: usize>(vectors: &[Vector<D>]) -> Vec<f32> {
+fn to_3d<const D: usize>(vectors: &[Vector<D>]) -> Vec<f32> {
     vectors.iter().flat_map(|v| (0..3).map(|i| if i < D { v[i] as f32 } else { 0.0 })).collect()
 }
 
 /// The text of a .vtu file with a vertex at each point.
-fn cloud<const D: usize>(points: &[Vector<D>], fields: Vec<Attribute>) -> std::result::Result<Vec<u8>, vtkio::Error> {
+fn points_vtu<const D: usize>(
+    points: &[Vector<D>],
+    fields: Vec<Attribute>,
+) -> std::result::Result<Vec<u8>, vtkio::Error> {
     let count = points.len() as u64;
     let cells = Cells {
         cell_verts: VertexNumbers::XML { connectivity: (0..count).collect(), offsets: (1..=count).collect() },
         types: vec![CellType::Vertex; points.len()],
     };
-    grid(padded(points), cells, fields)
+    mesh_vtu(to_3d(points), cells, fields)
 }
 
 /// The text of a .vtu file with these points (three coordinates each, m), cells and fields of the points.
-pub(super) fn grid(
+pub(super) fn mesh_vtu(
     points: Vec<f32>,
     cells: Cells,
     fields: Vec<Attribute>,
@@ -245,7 +248,7 @@ pub(super) fn grid(
 }
 
 /// The text of a .pvd file: which pictures, of all `parts` and in the `folder` beside it, belong to which time.
-pub(super) fn film(times: &[f64], folder: &str, parts: &[&str]) -> String {
+pub(super) fn pvd_index(times: &[f64], folder: &str, parts: &[&str]) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
     );
@@ -268,13 +271,13 @@ mod tests {
         for points in [vec![Vector::<2>::new(1.0, 2.0), Vector::<2>::new(3.0, 4.0)], vec![]] {
             let numbers: Vec<f32> = points.iter().map(|x| x[0] as f32).collect();
             let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
-            let text = cloud(&points, vec![array("density", scalar, numbers)])?;
+            let text = points_vtu(&points, vec![data_array("density", scalar, numbers)])?;
             let Vtk { data: DataSet::UnstructuredGrid { pieces, .. }, .. } = Vtk::parse_xml(text.as_slice())? else {
                 return Err(vtkio::Error::UnknownFileExtension(None));
             };
             let piece = pieces.into_iter().next().ok_or(vtkio::Error::UnknownFileExtension(None))?;
             let piece = piece.into_loaded_piece_data(None).map_err(|_| vtkio::Error::UnknownFileExtension(None))?;
-            assert_eq!(piece.points, IOBuffer::F32(padded(&points)));
+            assert_eq!(piece.points, IOBuffer::F32(to_3d(&points)));
             assert_eq!(piece.cells.types.len(), points.len());
         }
         Ok(())
@@ -282,15 +285,15 @@ mod tests {
 
     #[test]
     fn the_film_names_both_pictures_of_each_time() {
-        let text = film(&[0.0, 0.25], "frames", &PARTS);
+        let text = pvd_index(&[0.0, 0.25], "frames", &PARTS);
         assert!(text.contains("timestep=\"0.25\" part=\"1\" name=\"solids\" file=\"frames/solids_00001.vtu\""));
         assert_eq!(text.matches("<DataSet ").count(), 4);
     }
 
     #[test]
     fn an_unknown_field_names_the_nearest() {
-        let words = FrameWords { every: 1.0, fields: vec!["presure".into()], crop: None };
-        let error = Frames::new(&std::env::temp_dir(), &words, vec![]).err();
+        let words = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None };
+        let error = FrameWriter::new(&std::env::temp_dir(), &words, vec![]).err();
         assert_eq!(error.and_then(|e| e.help), Some("did you mean \"pressure\"?".into()));
     }
 }

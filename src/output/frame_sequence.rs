@@ -8,16 +8,16 @@ use crate::error::{Error, Result};
 
 /// The film of a run.
 #[derive(Clone, Debug)]
-pub struct Film {
+pub struct FrameSequence {
     folder: PathBuf,
     times: Vec<f64>,
 }
 
 /// The points of a picture. A field that was not kept is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Cloud {
+pub struct FramePoints {
     /// Positions, m; in 2-D the third coordinate is zero.
-    pub r: Vec<[f32; 3]>,
+    pub position: Vec<[f32; 3]>,
     /// Velocities, m/s.
     pub velocity: Vec<[f32; 3]>,
     /// Densities, kg/m³.
@@ -27,10 +27,10 @@ pub struct Cloud {
     /// Numbers of the particles, the same in all frames.
     pub id: Vec<u32>,
     /// Of boundary particles: the number of the solid.
-    pub solid: Vec<f32>,
+    pub solid_index: Vec<f32>,
 }
 
-impl Film {
+impl FrameSequence {
     /// The film of the run in `folder`; none if it has no frames.
     ///
     /// # Errors
@@ -57,7 +57,7 @@ impl Film {
     }
 
     /// The number of the frame nearest to time `t` (s).
-    pub fn nearest(&self, t: f64) -> usize {
+    pub fn nearest_index(&self, t: f64) -> usize {
         let off = |i: &usize| (self.times[*i] - t).abs();
         (0..self.times.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
     }
@@ -72,16 +72,16 @@ impl Film {
     ///
     /// # Errors
     /// `File` if it cannot be read.
-    pub fn water(&self, number: usize) -> Result<Cloud> {
-        cloud(&self.path("water", number))
+    pub fn water(&self, number: usize) -> Result<FramePoints> {
+        read_points(&self.path("water", number))
     }
 
     /// The boundary particles in frame `number`.
     ///
     /// # Errors
     /// `File` if they cannot be read.
-    pub fn solids(&self, number: usize) -> Result<Cloud> {
-        cloud(&self.path("solids", number))
+    pub fn solids(&self, number: usize) -> Result<FramePoints> {
+        read_points(&self.path("solids", number))
     }
 
     fn path(&self, part: &str, number: usize) -> PathBuf {
@@ -89,30 +89,31 @@ impl Film {
     }
 }
 
-fn cloud(path: &Path) -> Result<Cloud> {
+fn read_points(path: &Path) -> Result<FramePoints> {
     let text = std::fs::read(path).map_err(|why| Error::file(path, why))?;
-    read(&text).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
+    parse_points(&text).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
 }
 
 /// The points in the text of a .vtu file.
-fn read(text: &[u8]) -> std::result::Result<Cloud, vtkio::Error> {
+fn parse_points(text: &[u8]) -> std::result::Result<FramePoints, vtkio::Error> {
     let lacking = || vtkio::Error::UnknownFileExtension(None);
     let DataSet::UnstructuredGrid { pieces, .. } = Vtk::parse_xml(text)?.data else { return Err(lacking()) };
     let Some(Piece::Inline(piece)) = pieces.into_iter().next() else { return Err(lacking()) };
-    let mut cloud = Cloud { r: triples(piece.points), ..Cloud::default() };
+    let mut cloud = FramePoints { position: triples(piece.points), ..FramePoints::default() };
     for attribute in piece.data.point {
         let Attribute::DataArray(array) = attribute else { continue };
         match array.name.as_str() {
             "velocity" => cloud.velocity = triples(array.data),
             "density" => cloud.density = numbers(array.data),
             "pressure" => cloud.pressure = numbers(array.data),
-            "solid" => cloud.solid = numbers(array.data),
+            "solid" => cloud.solid_index = numbers(array.data),
             "id" => cloud.id = array.data.into_vec().unwrap_or_default(),
             _ => {}
         }
     }
-    let whole = |count: usize| count == 0 || count == cloud.r.len();
-    let fields = [cloud.density.len(), cloud.pressure.len(), cloud.solid.len(), cloud.id.len(), cloud.velocity.len()];
+    let whole = |count: usize| count == 0 || count == cloud.position.len();
+    let fields =
+        [cloud.density.len(), cloud.pressure.len(), cloud.solid_index.len(), cloud.id.len(), cloud.velocity.len()];
     if fields.into_iter().all(whole) { Ok(cloud) } else { Err(lacking()) }
 }
 

@@ -4,10 +4,10 @@ use std::{collections::BTreeMap, path::Path};
 
 use serde::{Deserialize, Serialize};
 
-use super::write_whole;
+use super::write_atomically;
 use crate::{
     analysis::Verdict,
-    error::{Error, Fault, Kind, Result},
+    error::{Error, ErrorKind, Fault, Result},
     math::simd,
 };
 
@@ -15,7 +15,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// How the run stands.
-    pub status: Status,
+    pub status: RunStatus,
     /// Caption of the scene.
     pub title: String,
     /// Version of this crate.
@@ -28,7 +28,7 @@ pub struct Manifest {
     /// Threads used.
     pub threads: usize,
     /// How many particles of each sort.
-    pub particles: Count,
+    pub particles: ParticleCounts,
     /// Water particles that left the domain and were taken out.
     #[serde(default)]
     pub removed: usize,
@@ -54,7 +54,7 @@ pub struct Manifest {
     pub files: Vec<String>,
     /// Frames that were kept.
     #[serde(default)]
-    pub frames: Pictures,
+    pub frames: FrameTotals,
     /// Why the run failed, in words.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error: Option<String>,
@@ -68,14 +68,14 @@ pub struct Manifest {
     /// Keys of the scene changed for this run.
     pub set: BTreeMap<String, String>,
     /// Every value in force, the defaults too.
-    pub values: Vec<InForce>,
+    pub values: Vec<ValueInForce>,
     /// The scene with those changes, as TOML.
     pub scene: String,
 }
 
 /// A value in force.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct InForce {
+pub struct ValueInForce {
     /// The scene's key.
     pub key: String,
     /// Its value.
@@ -87,7 +87,7 @@ pub struct InForce {
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Status {
+pub enum RunStatus {
     /// It goes on, or was killed.
     Running,
     /// It reached its end.
@@ -100,7 +100,7 @@ pub enum Status {
 
 /// Numbers of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Count {
+pub struct ParticleCounts {
     /// Of the water.
     pub fluid: usize,
     /// Of all skins.
@@ -109,7 +109,7 @@ pub struct Count {
 
 /// Frames on the disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Pictures {
+pub struct FrameTotals {
     /// How many.
     pub count: usize,
     /// What they take, B.
@@ -135,14 +135,14 @@ pub struct Machine {
 
 impl Machine {
     /// This computer.
-    pub fn this() -> Self {
+    pub fn current() -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|m| m.1));
         Self {
             os: std::env::consts::OS.into(),
             arch: std::env::consts::ARCH.into(),
             processor: model.unwrap_or_default().trim().into(),
-            instructions: simd::best_instruction_set().map(simd::name),
+            instructions: simd::best_instruction_set().map(simd::instruction_set_name),
             cpus: std::thread::available_parallelism().map_or(1, |n| n.get()),
         }
     }
@@ -150,13 +150,13 @@ impl Machine {
 
 impl Manifest {
     /// A number in force, by its key in the scene.
-    pub fn told(&self, key: &str) -> Option<f64> {
+    pub fn numeric_value(&self, key: &str) -> Option<f64> {
         self.values.iter().find(|value| value.key == key)?.value.parse().ok()
     }
 
     /// Notes that the run failed with `error`.
-    pub fn fail(&mut self, error: &Error) {
-        self.status = Status::Failed;
+    pub fn record_failure(&mut self, error: &Error) {
+        self.status = RunStatus::Failed;
         self.error = Some(error.to_string());
         self.fault = error.fault.as_deref().and_then(|fault: &Fault| serde_json::to_value(fault).ok());
     }
@@ -168,7 +168,7 @@ impl Manifest {
     pub fn write(&self, folder: &Path) -> Result<()> {
         let path = folder.join("manifest.json");
         let text = serde_json::to_string_pretty(self).map_err(|e| Error::file(&path, e))?;
-        write_whole(&path, (text + "\n").as_bytes())
+        write_atomically(&path, (text + "\n").as_bytes())
     }
 
     /// Reads `manifest.json` in `folder`.
@@ -178,11 +178,11 @@ impl Manifest {
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join("manifest.json");
         let text = std::fs::read_to_string(&path).map_err(|why| {
-            Error::new(Kind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))
+            Error::new(ErrorKind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))
                 .help("name the folder of a run, as in `pontoon resume runs/raft`")
         })?;
         serde_json::from_str(&text).map_err(|why| {
-            Error::new(Kind::Restart, format!("{} is damaged, or of another version: {why}", path.display()))
+            Error::new(ErrorKind::Restart, format!("{} is damaged, or of another version: {why}", path.display()))
                 .help("put a whole one in its place, or start the run afresh with `pontoon run`")
         })
     }

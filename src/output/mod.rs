@@ -5,18 +5,18 @@ pub mod csv;
 pub mod frame;
 pub mod frame_sequence;
 pub mod manifest;
-pub mod mean;
+pub mod interval_mean;
 pub mod npz;
-pub mod removed;
+pub mod removed_particles;
 #[cfg(feature = "surface")]
-pub mod surface;
+pub mod free_surface_mesh;
 
-pub use checkpoint::{Checkpoint, Extent};
-pub use csv::{Readings, Table};
-pub use frame::Frames;
-pub use frame_sequence::{Cloud, Film};
+pub use checkpoint::{Checkpoint, OutputPositions};
+pub use csv::{CsvTable, SeriesTable};
+pub use frame::FrameWriter;
+pub use frame_sequence::{FramePoints, FrameSequence};
+pub use interval_mean::IntervalMean;
 pub use manifest::Manifest;
-pub use mean::Mean;
 
 use std::{
     fs::{self, File},
@@ -30,16 +30,16 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// `File`, naming the file, if the disk is full or the folder cannot be written; the old file stays.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    write_part(path, |file| file.write_all(bytes))?;
-    put_part(path)
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_partial(path, |file| file.write_all(bytes))?;
+    commit_partial(path)
 }
 
 /// That there is a folder for the file at `path`, before work is spent on it.
 ///
 /// # Errors
 /// `File` if there is none.
-pub fn has_folder(path: &Path) -> Result<()> {
+pub fn require_parent_folder(path: &Path) -> Result<()> {
     match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
         Some(folder) => Err(Error::file(path, format!("there is no folder {}", folder.display()))
             .help("make it first, or name a file in another")),
@@ -48,8 +48,8 @@ pub fn has_folder(path: &Path) -> Result<()> {
 }
 
 /// Fills the file that is to become the one at `path`.
-fn write_part(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
-    let part = part_of(path);
+fn write_partial(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+    let part = partial_path(path);
     File::create(&part).and_then(|mut file| fill(&mut file)).map_err(|why| {
         // The part is of no use; that it cannot be removed either would hide the first trouble.
         let _ = fs::remove_file(&part);
@@ -58,22 +58,22 @@ fn write_part(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Re
 }
 
 /// Gives the part that was filled its name.
-fn put_part(path: &Path) -> Result<()> {
-    fs::rename(part_of(path), path).map_err(|why| {
-        let _ = fs::remove_file(part_of(path));
+fn commit_partial(path: &Path) -> Result<()> {
+    fs::rename(partial_path(path), path).map_err(|why| {
+        let _ = fs::remove_file(partial_path(path));
         cannot_write(path, &why)
     })
 }
 
 /// The name that the file at `path` has until it is whole.
-fn part_of(path: &Path) -> PathBuf {
+fn partial_path(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");
     name.into()
 }
 
 /// Waits until the names in `folder` are on the disk. Not every system can; then they will be soon.
-fn settle(folder: &Path) {
+fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 

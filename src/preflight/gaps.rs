@@ -1,9 +1,9 @@
 //! Gaps between solids, narrower than the kernel reaches.
 
 use super::{
-    Finding, Look,
-    faces::Face,
-    format::{down, place, three},
+    Finding, PreflightContext,
+    rounding::{place, three_digits, two_digits_down},
+    surface_samples::SurfaceSample,
 };
 use crate::{math::Vector, scene::world_bounds, solid::Role};
 
@@ -27,7 +27,7 @@ struct Gap<const D: usize> {
     middle: Vector<D>,
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     /// Gaps between every solid and every other, seen from the faces of that which moves, or of both.
     pub(super) fn gaps(&self, findings: &mut Vec<Finding>) -> Gaps {
         let n = self.solids().len();
@@ -37,43 +37,43 @@ impl<const D: usize> Look<'_, D> {
             for j in 0..i {
                 let mut found = [None, None];
                 let mut touch = false;
-                let within = TOUCH * self.dp() + self.skins(i, j);
+                let within = TOUCH * self.dp() + self.skin_distance(i, j);
                 for (gap, (a, b)) in found.iter_mut().zip([(i, j), (j, i)]) {
                     if moves(a) || !moves(b) {
-                        let (nearest, facing) = self.between(a, b);
+                        let (nearest, facing) = self.narrowest_gap(a, b);
                         (*gap, touch) = (facing, touch || nearest < within);
                     }
                 }
                 touching[i] |= touch;
                 touching[j] |= touch;
                 let narrowest = found.into_iter().flatten().min_by(|a, b| a.width.total_cmp(&b.width));
-                findings.extend(narrowest.map(|gap| self.said(gap, j, i)));
+                findings.extend(narrowest.map(|gap| self.gap_finding(gap, j, i)));
             }
         }
         Gaps { touching }
     }
 
     /// How far (m) the contact skins of two solids keep their faces apart.
-    fn skins(&self, a: usize, b: usize) -> f64 {
+    fn skin_distance(&self, a: usize, b: usize) -> f64 {
         self.solids()[a].spec.contact_skin + self.solids()[b].spec.contact_skin
     }
 
     /// The least distance (m) of the faces of solid `a` from solid `b`, and the narrowest gap between faces that look at
     /// one another, if it is narrower than the kernel reaches.
-    fn between(&self, a: usize, b: usize) -> (f64, Option<Gap<D>>) {
+    fn narrowest_gap(&self, a: usize, b: usize) -> (f64, Option<Gap<D>>) {
         // What is as far as the kernel reaches, but for round-off, is far enough.
         let (dp, reach) = (self.dp(), self.system.model().support_radius() * (1.0 - 1e-6));
         let [one, other] = [a, b].map(|i| &self.solids()[i]);
         let around = world_bounds(&other.spec.shape, &other.kinematics.pose).grown(reach);
-        let near = |face: &Face<D>| {
+        let near = |face: &SurfaceSample<D>| {
             let x = one.kinematics.pose.point(&face.x);
             let local = other.kinematics.pose.local(&x);
             let d = around.contains(&x).then(|| other.spec.shape.signed_distance(&local)).filter(|d| *d < reach)?;
             let n = one.kinematics.pose.rotation * face.n;
-            let facing = n.dot(&(other.kinematics.pose.rotation * other.spec.shape.outward(&local, 0.05 * dp)));
+            let facing = n.dot(&(other.kinematics.pose.rotation * other.spec.shape.outward_normal(&local, 0.05 * dp)));
             Some((d, facing, Gap { width: d, middle: x + n * (0.5 * d) }))
         };
-        let near: Vec<_> = self.faces[a].iter().filter_map(near).collect();
+        let near: Vec<_> = self.surface_samples[a].iter().filter_map(near).collect();
         let nearest = near.iter().map(|(d, ..)| *d).fold(f64::INFINITY, f64::min);
         // Faces of solids in touch part slowly beside the contact; what is narrow and even there is a gap all the same.
         let (least, facing) = if nearest < TOUCH * dp { (0.5 * dp, FACING[1]) } else { (0.0, FACING[0]) };
@@ -81,25 +81,29 @@ impl<const D: usize> Look<'_, D> {
         (nearest, gaps.min_by(|a, b| a.width.total_cmp(&b.width)))
     }
 
-    fn said(&self, gap: Gap<D>, a: usize, b: usize) -> Finding {
+    fn gap_finding(&self, gap: Gap<D>, a: usize, b: usize) -> Finding {
         let (dp, reach) = (self.dp(), self.system.model().support_radius());
         let name = |i: usize| &self.solids()[i].spec.name;
         let what = format!(
             "\"{}\" and \"{}\" are {} m apart at {}, {} dp, and the kernel reaches {} dp",
             name(a),
             name(b),
-            three(gap.width),
+            three_digits(gap.width),
             place(&gap.middle),
-            three(gap.width / dp),
-            three(self.reach_dp())
+            three_digits(gap.width / dp),
+            three_digits(self.support_radius_dp())
         );
         let apart = |more: &str| {
-            let further = three(reach - gap.width);
-            format!("{more} move them {further} m further apart, or dp = {}", down(gap.width / self.reach_dp()))
+            let further = three_digits(reach - gap.width);
+            format!(
+                "{more} move them {further} m further apart, or dp = {}",
+                two_digits_down(gap.width / self.support_radius_dp())
+            )
         };
-        if self.wet(&gap.middle) {
+        if self.is_wet(&gap.middle) {
             let what = what + ": the water between them is not resolved";
-            let touch = if self.skins(a, b) > 0.0 { "let them touch without a skin," } else { "let them touch," };
+            let touch =
+                if self.skin_distance(a, b) > 0.0 { "let them touch without a skin," } else { "let them touch," };
             Finding::warning("narrow_gap", what, apart(touch))
         } else {
             Finding::note("narrow_gap", what + "; it is dry at the start", apart("if it floods,"))
@@ -107,10 +111,10 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// Whether there is water within the kernel's support of `x` (m), and `x` not above its level.
-    pub(super) fn wet(&self, x: &Vector<D>) -> bool {
+    pub(super) fn is_wet(&self, x: &Vector<D>) -> bool {
         let mut near = false;
-        if self.g == 0.0 || x[D - 1] <= self.still.level {
-            self.system.water_near(x, &mut |_, _, _| near = true);
+        if self.g == 0.0 || x[D - 1] <= self.still_water.level {
+            self.system.visit_fluid_near(x, &mut |_, _, _| near = true);
         }
         near
     }

@@ -4,41 +4,41 @@
 //! Facts are numbers; a [`Finding`] is a sentence with the number that would mend it. What a run prints at its start
 //! are the findings that are warnings.
 
-mod absorb;
-mod astray;
-mod bodies;
-pub(crate) mod faces;
+mod absorption_limits;
+mod misplaced_bodies;
+mod floating_bodies;
+pub(crate) mod surface_samples;
 mod gaps;
-mod paddles;
-mod places;
-mod size;
-mod sound;
-mod stands;
-mod swings;
+mod wavemaker_checks;
+mod probe_positions;
+mod run_size;
+mod sound_speed;
+mod wavemaker_site;
+mod driven_motion;
 mod thickness;
-mod waves;
-mod format;
+mod generated_waves;
+mod rounding;
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-pub use absorb::Absorber;
-pub use bodies::{Afloat, Body, Tilt};
-pub use format::three;
-pub use size::{Disk, Size};
-pub use sound::{Expected, Sound, Step};
-pub use waves::Wave;
+pub use absorption_limits::AbsorberSummary;
+pub use floating_bodies::{BodySummary, Equilibrium, Tilt};
+pub use generated_waves::GeneratedWave;
+pub use rounding::three_digits;
+pub use run_size::{DiskUse, RunSize};
+pub use sound_speed::{ExpectedSpeed, SoundSpeed, StepSizeLimits};
 
 use crate::{
     error::Error,
     plan::Plan,
-    scene::StillWater,
+    scene::StillWaterLevel,
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
 };
-use faces::Face;
+use surface_samples::SurfaceSample;
 
 /// So many findings of a kind are read one by one: a crowd of bodies has one for each.
 const MOST: usize = 3;
@@ -76,13 +76,13 @@ impl Finding {
     }
 
     /// That the timing stopped with `error` after so many `steps`.
-    pub fn stopped(error: &Error, steps: usize) -> Self {
+    pub fn timing_stopped(error: &Error, steps: usize) -> Self {
         let mend = error.help.clone().unwrap_or_else(|| "see the other findings".into());
-        Self::warning("breaks_down", format!("after {steps} steps: {}", error.what), mend)
+        Self::warning("breaks_down", format!("after {steps} steps: {}", error.message), mend)
     }
 
     /// The finding in one line, for a record.
-    pub fn line(&self) -> String {
+    pub fn one_line(&self) -> String {
         format!("{}: {}", self.what, self.mend)
     }
 }
@@ -91,17 +91,17 @@ impl Finding {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Preflight {
     /// Particles, memory, disk.
-    pub size: Size,
+    pub size: RunSize,
     /// Speed of sound and the speeds that it must outrun.
-    pub sound: Sound,
+    pub sound: SoundSpeed,
     /// How long a step may be, and why.
-    pub step: Step,
+    pub step: StepSizeLimits,
     /// Waves that driven solids make.
-    pub waves: Vec<Wave>,
+    pub waves: Vec<GeneratedWave>,
     /// Paddles that take the waves which come to them.
-    pub absorbers: Vec<Absorber>,
+    pub absorbers: Vec<AbsorberSummary>,
     /// Free bodies.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<BodySummary>,
     /// What may not be as it was meant; warnings first.
     pub findings: Vec<Finding>,
 }
@@ -130,56 +130,56 @@ impl Preflight {
 
     /// The findings that a run tells at its start.
     pub fn warnings(&self) -> Vec<String> {
-        self.brief().iter().filter(|f| f.severity == Severity::Warning).map(Finding::line).collect()
+        self.brief().iter().filter(|f| f.severity == Severity::Warning).map(Finding::one_line).collect()
     }
 }
 
 /// What a look at a simulation's start rests on.
-struct Look<'a, const D: usize> {
+struct PreflightContext<'a, const D: usize> {
     system: &'a System<D>,
     plan: &'a Plan,
-    still: StillWater,
+    still_water: StillWaterLevel,
     /// Gravity down the last axis, m/s²; 0 if it points elsewhere, and then nothing floats.
     g: f64,
     /// The outermost layer of each solid; empty where nobody asks.
-    faces: Vec<Vec<Face<D>>>,
+    surface_samples: Vec<Vec<SurfaceSample<D>>>,
 }
 
 /// Looks at a simulation before its first step. `columns`: how many columns each of the plan's probes writes beside the
 /// time; `overlapped`: places of the water's lattice that solids took.
-pub fn look<const D: usize>(
+pub fn preflight<const D: usize>(
     sim: &Simulation<D>,
     plan: &Plan,
-    still: StillWater,
+    still: StillWaterLevel,
     overlapped: usize,
     columns: &[usize],
 ) -> Preflight {
     let system = sim.system();
     let down = -system.gravity()[D - 1];
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
-    let faces = system.solids().iter().map(|s| faces::of(s, system.model().dp)).collect();
-    let look = Look { system, plan, still, g, faces };
+    let faces = system.solids().iter().map(|s| surface_samples::of_solid(s, system.model().dp)).collect();
+    let look = PreflightContext { system, plan, still_water: still, g, surface_samples: faces };
     let mut findings = Vec::new();
-    let sound = look.sound(&mut findings);
-    let step = look.step(sim.spring_limit(), &mut findings);
+    let sound = look.sound_speed(&mut findings);
+    let step = look.step_size_limits(sim.spring_limit(), &mut findings);
     let size = look.size(&step, columns, overlapped, &mut findings);
     let gaps = look.gaps(&mut findings);
     let bodies = look.bodies(&gaps.touching, &mut findings);
-    look.astray(&gaps.touching, &mut findings);
-    look.walls(&mut findings);
-    look.probes(&sound, &mut findings);
-    let (waves, absorbers) = (look.waves(&mut findings), look.absorbers());
+    look.misplaced_bodies(&gaps.touching, &mut findings);
+    look.check_thickness(&mut findings);
+    look.check_probes(&sound, &mut findings);
+    let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     findings.sort_by_key(|f| f.severity);
     Preflight { size, sound, step, waves, absorbers, bodies, findings }
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     fn dp(&self) -> f64 {
         self.system.model().dp
     }
 
     /// The kernel's support over dp.
-    fn reach_dp(&self) -> f64 {
+    fn support_radius_dp(&self) -> f64 {
         self.system.model().support_radius() / self.dp()
     }
 
@@ -188,13 +188,13 @@ impl<const D: usize> Look<'_, D> {
     }
 
     /// How long (s) a run is.
-    fn until(&self) -> f64 {
+    fn end_time(&self) -> f64 {
         self.plan.until
     }
 }
 
 /// What moves a solid, in a word of the scene.
-pub fn role<const D: usize>(role: &Role<D>) -> &'static str {
+pub fn role_name<const D: usize>(role: &Role<D>) -> &'static str {
     match role {
         Role::Fixed => "fixed",
         Role::Driven(_) => "driven",

@@ -1,9 +1,9 @@
 //! How thick solids are: the way inward from a face to the next one, against the kernel's support.
 
 use super::{
-    Finding, Look,
-    faces::{self, Face},
-    format::{down, place, three, up},
+    Finding, PreflightContext,
+    rounding::{place, three_digits, two_digits_down, two_digits_up},
+    surface_samples::{self, SurfaceSample},
 };
 use crate::{
     geometry::Shape,
@@ -19,7 +19,7 @@ const TIPS: f64 = 0.1;
 
 /// The way (m) from `face` straight into the solid until `distance`, its signed distance, says out again. Where
 /// the way is longer than `most` (m), `most`.
-fn chord<const D: usize>(face: &Face<D>, dp: f64, most: f64, distance: impl Fn(&Vector<D>) -> f64) -> f64 {
+fn chord<const D: usize>(face: &SurfaceSample<D>, dp: f64, most: f64, distance: impl Fn(&Vector<D>) -> f64) -> f64 {
     // No face lies within the distance; the least step leads across joints, where it is zero.
     let mut way = 0.25 * dp;
     while way < most {
@@ -34,64 +34,74 @@ fn chord<const D: usize>(face: &Face<D>, dp: f64, most: f64, distance: impl Fn(&
 
 /// The thinnest part of a shape (m), but for the thinnest tenth of its face, and a place (m, own frame) there; `None`
 /// without a face.
-pub fn thinnest<const D: usize>(shape: &Shape<D>, faces: &[Face<D>], dp: f64) -> Option<f64> {
+pub fn thinnest_part<const D: usize>(shape: &Shape<D>, faces: &[SurfaceSample<D>], dp: f64) -> Option<f64> {
     let most = shape.bounds().size().norm();
     let distance = |x: &Vector<D>| shape.signed_distance(x);
-    least(faces::some(faces, PLACES_SEEN).map(|face| (chord(face, dp, most, distance), face.x)).collect()).map(|x| x.0)
+    shortest_chord(
+        surface_samples::thinned(faces, PLACES_SEEN).map(|face| (chord(face, dp, most, distance), face.x)).collect(),
+    )
+    .map(|x| x.0)
 }
 
 /// The least of these ways, but for the shortest tenth, with its place.
-fn least<const D: usize>(mut ways: Vec<(f64, Vector<D>)>) -> Option<(f64, Vector<D>)> {
+fn shortest_chord<const D: usize>(mut ways: Vec<(f64, Vector<D>)>) -> Option<(f64, Vector<D>)> {
     ways.sort_by(|a, b| a.0.total_cmp(&b.0));
     ways.get((TIPS * ways.len() as f64) as usize).copied()
 }
 
 /// Whether all of the shape has as many layers as are asked for.
-pub fn layered<const D: usize>(shape: &Shape<D>) -> bool {
+pub fn has_full_layers<const D: usize>(shape: &Shape<D>) -> bool {
     match shape {
         Shape::Tank { .. } | Shape::Polyline { .. } => true,
-        Shape::Compound(parts) => parts.iter().all(|(_, part)| layered(part)),
+        Shape::Compound(parts) => parts.iter().all(|(_, part)| has_full_layers(part)),
         _ => false,
     }
 }
 
-impl<const D: usize> Look<'_, D> {
+impl<const D: usize> PreflightContext<'_, D> {
     /// Fixed and driven solids against the kernel's support. Fixed ones that lie against one another are one wall; tanks
     /// and polylines have as many layers as are needed, whatever they say.
-    pub(super) fn walls(&self, findings: &mut Vec<Finding>) {
+    pub(super) fn check_thickness(&self, findings: &mut Vec<Finding>) {
         let (dp, reach) = (self.dp(), self.system.model().support_radius());
-        for (solid, faces) in self.solids().iter().zip(&self.faces) {
+        for (solid, faces) in self.solids().iter().zip(&self.surface_samples) {
             let pose = &solid.kinematics.pose;
             let fixed = matches!(solid.spec.role, Role::Fixed);
-            if matches!(solid.spec.role, Role::Free(_)) || layered(&solid.spec.shape) {
+            if matches!(solid.spec.role, Role::Free(_)) || has_full_layers(&solid.spec.shape) {
                 continue;
             }
             let alone = |x: &Vector<D>| solid.spec.shape.signed_distance(&pose.local(x));
-            let together = |x: &Vector<D>| self.distance(x, |role| matches!(role, Role::Fixed));
-            let way = |face: &Face<D>| {
-                let face = Face { x: pose.point(&face.x), n: pose.rotation * face.n };
+            let together = |x: &Vector<D>| self.signed_distance(x, |role| matches!(role, Role::Fixed));
+            let way = |face: &SurfaceSample<D>| {
+                let face = SurfaceSample { x: pose.point(&face.x), n: pose.rotation * face.n };
                 let way = if fixed { chord(&face, dp, reach, together) } else { chord(&face, dp, reach, alone) };
                 (way, face.x)
             };
-            let Some((thick, at)) = least(faces::some(faces, PLACES_SEEN).map(way).collect()) else { continue };
+            let Some((thick, at)) = shortest_chord(surface_samples::thinned(faces, PLACES_SEEN).map(way).collect())
+            else {
+                continue;
+            };
             if thick < reach * (1.0 - 1e-6) {
                 let what = format!(
                     "\"{}\" is {} m thick at {}, {} dp, and the kernel reaches {} dp: water sees through it, or too \
                      little of it",
                     solid.spec.name,
-                    three(thick),
+                    three_digits(thick),
                     place(&at),
-                    three(thick / dp),
-                    three(self.reach_dp()),
+                    three_digits(thick / dp),
+                    three_digits(self.support_radius_dp()),
                 );
-                let mend = format!("make it {} m thick, or dp = {}", up(reach), down(thick / self.reach_dp()));
+                let mend = format!(
+                    "make it {} m thick, or dp = {}",
+                    two_digits_up(reach),
+                    two_digits_down(thick / self.support_radius_dp())
+                );
                 findings.push(Finding::warning("thin_wall", what, mend));
             }
         }
     }
 
     /// Signed distance (m) of the world point `x` (m) from the solids whose role is `wanted`.
-    pub(super) fn distance(&self, x: &Vector<D>, wanted: impl Fn(&Role<D>) -> bool) -> f64 {
+    pub(super) fn signed_distance(&self, x: &Vector<D>, wanted: impl Fn(&Role<D>) -> bool) -> f64 {
         let of = |pose: &Pose<D>, shape: &Shape<D>| shape.signed_distance(&pose.local(x));
         let solids = self.solids().iter().filter(|s| wanted(&s.spec.role));
         solids.map(|s| of(&s.kinematics.pose, &s.spec.shape)).fold(f64::INFINITY, f64::min)
@@ -103,7 +113,7 @@ mod tests {
     use super::*;
 
     fn thin<const D: usize>(shape: Shape<D>) -> f64 {
-        thinnest(&shape, &faces::of_shape(&shape, 0.01), 0.01).unwrap_or(f64::NAN)
+        thinnest_part(&shape, &surface_samples::of_shape(&shape, 0.01), 0.01).unwrap_or(f64::NAN)
     }
 
     #[test]

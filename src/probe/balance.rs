@@ -12,12 +12,12 @@ use crate::{
 /// Watches the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity, weight, contacts
 /// and ties, each kind that the scene has; their sum; the change of its momentum and angular momentum; and what is between
 /// the two. Nothing but NaN unless loads are kept ([`Simulation::keep_loads`]).
-pub struct Balance {
+pub struct LoadBalanceProbe {
     solid: usize,
     kinds: Vec<&'static str>,
 }
 
-impl Balance {
+impl LoadBalanceProbe {
     /// The probe of the free solid called `solid`.
     ///
     /// # Errors
@@ -46,11 +46,11 @@ impl Balance {
 }
 
 /// The numbers of a load: forces, then torques.
-fn numbers<const D: usize>(load: &Load<D>) -> Vec<f64> {
+fn load_components<const D: usize>(load: &Load<D>) -> Vec<f64> {
     load.force.iter().copied().chain(load.torque.axial()).collect()
 }
 
-impl<const D: usize> Probe<D> for Balance {
+impl<const D: usize> Probe<D> for LoadBalanceProbe {
     fn columns(&self) -> Vec<String> {
         let own: Vec<String> = match D {
             2 => ["fx_N_per_m", "fy_N_per_m", "torque_Nm_per_m"].map(String::from).to_vec(),
@@ -63,11 +63,11 @@ impl<const D: usize> Probe<D> for Balance {
         groups.flat_map(|group| own.iter().map(move |name| format!("{group}_{name}"))).collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let Some(shares) = sim.load_breakdown(self.solid) else {
             return vec![f64::NAN; Probe::<D>::columns(self).len()];
         };
         let kinds = shares.kinds().into_iter().filter(|(kind, _)| self.kinds.contains(kind)).map(|(_, load)| load);
-        kinds.chain([shares.sum(), shares.change, shares.residual()]).flat_map(|load| numbers(&load)).collect()
+        kinds.chain([shares.sum(), shares.change, shares.residual()]).flat_map(|load| load_components(&load)).collect()
     }
 }

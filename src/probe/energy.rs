@@ -11,15 +11,15 @@ use crate::{simulation::Simulation, solid::Solid, system::System};
 ///
 /// The sum changes by what fixed and driven solids do to the water and by what viscosity, diffusion,
 /// friction and impacts dissipate.
-pub struct Energy {
-    water: f64,
-    bodies: f64,
+pub struct EnergyProbe {
+    initial_water_potential: f64,
+    initial_bodies_potential: f64,
 }
 
-impl Energy {
+impl EnergyProbe {
     /// The probe; potential energies count from now.
     pub fn new<const D: usize>(system: &System<D>) -> Self {
-        Self { water: water_potential(system), bodies: bodies_potential(system) }
+        Self { initial_water_potential: water_potential(system), initial_bodies_potential: bodies_potential(system) }
     }
 
     /// Motion, height and compression of the water, motion and height of the bodies.
@@ -27,7 +27,10 @@ impl Energy {
         let (mass, fluid) = (system.particle_mass(), system.fluid());
         let compressed = mass * fluid.rho.iter().map(|&rho| system.compression_energy(rho)).sum::<f64>();
         let moving = system.solids().iter().map(Solid::kinetic_energy).sum::<f64>();
-        let (water, bodies) = (water_potential(system) - self.water, bodies_potential(system) - self.bodies);
+        let (water, bodies) = (
+            water_potential(system) - self.initial_water_potential,
+            bodies_potential(system) - self.initial_bodies_potential,
+        );
         [system.kinetic_energy(), water, compressed, moving, bodies]
     }
 
@@ -37,7 +40,7 @@ impl Energy {
     }
 }
 
-impl<const D: usize> Probe<D> for Energy {
+impl<const D: usize> Probe<D> for EnergyProbe {
     fn columns(&self) -> Vec<String> {
         let unit = if D == 2 { "J_per_m" } else { "J" };
         ["water_kinetic", "water_potential", "water_compression", "bodies_kinetic", "bodies_potential", "total"]
@@ -46,7 +49,7 @@ impl<const D: usize> Probe<D> for Energy {
             .collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let mut row = self.parts(sim.system()).to_vec();
         row.push(row.iter().sum());
         row
@@ -55,7 +58,7 @@ impl<const D: usize> Probe<D> for Energy {
 
 /// −Σ m g·r of the water (J). Along a periodic axis there is no height, and gravity does work.
 fn water_potential<const D: usize>(system: &System<D>) -> f64 {
-    let g = system.height_gravity();
+    let g = system.non_periodic_gravity();
     -system.particle_mass() * system.fluid().r.iter().map(|r| g.dot(r)).sum::<f64>()
 }
 

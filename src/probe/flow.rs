@@ -7,7 +7,7 @@
 
 use super::Probe;
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::Vector,
     simulation::Simulation,
     system::System,
@@ -18,14 +18,14 @@ const HALF: f64 = 2.0;
 
 /// Watches the flow through a section (m³/s; m²/s in 2-D) and the volume (m³; m²) that has gone through since the start,
 /// less what has come back.
-pub struct Flow<const D: usize> {
+pub struct FlowProbe<const D: usize> {
     middle: Vector<D>,
     normal: Vector<D>,
     /// Directions of the section's sides and half their lengths, m.
     sides: Vec<(Vector<D>, f64)>,
 }
 
-impl<const D: usize> Flow<D> {
+impl<const D: usize> FlowProbe<D> {
     /// The flow through the segment between two points (m) in 2-D, positive to the right of who walks from `from` to `to`:
     /// along x if upwards. In 3-D through the rectangle of which they are opposite corners, positive along the axis to
     /// which it is upright.
@@ -51,7 +51,7 @@ impl<const D: usize> Flow<D> {
         } else {
             "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one"
         };
-        Err(Error::new(Kind::Usage, what))
+        Err(Error::new(ErrorKind::Usage, what))
     }
 
     /// The flow now.
@@ -59,7 +59,7 @@ impl<const D: usize> Flow<D> {
         let (fluid, half) = (system.fluid(), HALF * system.model().dp);
         let mut sum = 0.0;
         for ((r, v), rho) in fluid.r.iter().zip(fluid.v).zip(fluid.rho) {
-            let off = nearest(r - self.middle, system);
+            let off = minimum_image(r - self.middle, system);
             let s = off.dot(&self.normal).abs();
             if s < half && self.sides.iter().all(|(along, length)| off.dot(along).abs() <= *length) {
                 sum += system.particle_mass() / rho * v.dot(&self.normal) * (1.0 - s / half) / half;
@@ -70,7 +70,7 @@ impl<const D: usize> Flow<D> {
 }
 
 /// The way `off` (m), the shortest there is across periodic sides.
-fn nearest<const D: usize>(mut off: Vector<D>, system: &System<D>) -> Vector<D> {
+fn minimum_image<const D: usize>(mut off: Vector<D>, system: &System<D>) -> Vector<D> {
     for (x, side) in off.iter_mut().zip(system.periodic()) {
         if let Some([from, to]) = side {
             *x -= (to - from) * (*x / (to - from)).round();
@@ -79,21 +79,21 @@ fn nearest<const D: usize>(mut off: Vector<D>, system: &System<D>) -> Vector<D> 
     off
 }
 
-impl<const D: usize> Probe<D> for Flow<D> {
+impl<const D: usize> Probe<D> for FlowProbe<D> {
     fn columns(&self) -> Vec<String> {
         let names = if D == 2 { ["flow_m2ps", "volume_m2"] } else { ["flow_m3ps", "volume_m3"] };
         names.map(String::from).to_vec()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         vec![self.flow(sim.system()), 0.0]
     }
 
-    fn follow(&self, before: &[f64], now: &mut [f64], dt: f64) {
+    fn continue_from(&self, before: &[f64], now: &mut [f64], dt: f64) {
         now[1] = before[1] + 0.5 * dt * (before[0] + now[0]);
     }
 
-    fn totals(&self) -> usize {
+    fn cumulative_columns(&self) -> usize {
         1
     }
 }

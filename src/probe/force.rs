@@ -5,11 +5,11 @@ use crate::{error::Result, simulation::Simulation, system::System};
 
 /// Watches the force (N) and the torque about the solid's centre (N m) that the water exerts: pressure and
 /// viscosity, no weight, no contacts. In 2-D both are per metre of width, and the columns say so.
-pub struct Force {
+pub struct ForceProbe {
     solid: usize,
 }
 
-impl Force {
+impl ForceProbe {
     /// The probe of the solid called `solid`: fixed, driven or free.
     ///
     /// # Errors
@@ -19,7 +19,7 @@ impl Force {
     }
 }
 
-impl<const D: usize> Probe<D> for Force {
+impl<const D: usize> Probe<D> for ForceProbe {
     fn columns(&self) -> Vec<String> {
         if D == 2 {
             return ["fx_N_per_m", "fy_N_per_m", "torque_Nm_per_m"].map(String::from).to_vec();
@@ -28,7 +28,7 @@ impl<const D: usize> Probe<D> for Force {
         forces.chain(axes::<D>().iter().map(|a| format!("t{a}_Nm"))).collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let load = &sim.system().solids()[self.solid].load;
         load.force.iter().copied().chain(load.torque.axial()).collect()
     }

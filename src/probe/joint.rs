@@ -12,14 +12,14 @@ use crate::{
 /// Watches a joint: force (N) and torque (N m) of its locks and end stops on its second solid; of a hinge or a slider its angle
 /// (deg) or position (m), the rate, the motor's force, power absorbed (W), energy absorbed (J); of a generic joint the positions
 /// (m) and turns (deg) that it leaves free.
-pub struct Joint {
+pub struct JointProbe {
     joint: usize,
     kind: JointKind,
     /// The modes that a generic joint leaves free.
     free: Vec<usize>,
 }
 
-impl Joint {
+impl JointProbe {
     /// The probe of the joint called `joint`.
     ///
     /// # Errors
@@ -33,12 +33,12 @@ impl Joint {
 }
 
 /// Number of the columns of force and torque.
-const fn carried<const D: usize>() -> usize {
+const fn load_columns<const D: usize>() -> usize {
     D + D * (D - 1) / 2
 }
 
 /// The column of a mode's coordinate.
-fn coordinate<const D: usize>(mode: usize) -> String {
+fn coordinate_column<const D: usize>(mode: usize) -> String {
     match mode.checked_sub(D) {
         None => format!("{}_m", axes::<D>()[mode]),
         Some(_) if D == 2 => "turn_deg".into(),
@@ -46,7 +46,7 @@ fn coordinate<const D: usize>(mode: usize) -> String {
     }
 }
 
-impl<const D: usize> Probe<D> for Joint {
+impl<const D: usize> Probe<D> for JointProbe {
     fn columns(&self) -> Vec<String> {
         let wide = if D == 2 { "_per_m" } else { "" };
         let mut columns: Vec<String> = axes::<D>().iter().map(|a| format!("f{a}_N{wide}")).collect();
@@ -58,7 +58,7 @@ impl<const D: usize> Probe<D> for Joint {
             JointKind::Hinge => ["angle_deg", "rate_radps", "motor_Nm"],
             JointKind::Slider => ["position_m", "rate_mps", "motor_N"],
             JointKind::Generic => {
-                columns.extend(self.free.iter().map(|&mode| coordinate::<D>(mode)));
+                columns.extend(self.free.iter().map(|&mode| coordinate_column::<D>(mode)));
                 return columns;
             }
             JointKind::Fixed | JointKind::Ball | JointKind::Tow => return columns,
@@ -69,7 +69,7 @@ impl<const D: usize> Probe<D> for Joint {
         columns
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = sim.joint(self.joint);
         let mut row: Vec<f64> = now.force.iter().copied().chain(now.torque.axial()).collect();
         let position = match self.kind {
@@ -86,15 +86,15 @@ impl<const D: usize> Probe<D> for Joint {
         row
     }
 
-    fn follow(&self, before: &[f64], now: &mut [f64], _: f64) {
+    fn continue_from(&self, before: &[f64], now: &mut [f64], _: f64) {
         let hinge = (self.kind == JointKind::Hinge).then_some(0);
         let turns = (0..self.free.len()).filter(|&i| self.free[i] >= D);
-        for angle in hinge.into_iter().chain(turns).map(|i| carried::<D>() + i) {
+        for angle in hinge.into_iter().chain(turns).map(|i| load_columns::<D>() + i) {
             now[angle] = super::motion::unwrapped(before[angle], now[angle]);
         }
     }
 
-    fn totals(&self) -> usize {
+    fn cumulative_columns(&self) -> usize {
         usize::from(matches!(self.kind, JointKind::Hinge | JointKind::Slider))
     }
 }

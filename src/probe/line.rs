@@ -8,12 +8,12 @@ use crate::{
 };
 
 /// Watches a spring, mooring line or rope: its length (m) and its tension (N; N/m in 2-D), negative where a spring pushes.
-pub struct Line {
+pub struct LineProbe {
     line: usize,
     rope: bool,
 }
 
-impl Line {
+impl LineProbe {
     /// The probe of the spring called `name`.
     ///
     /// # Errors
@@ -33,12 +33,12 @@ impl Line {
     }
 }
 
-impl<const D: usize> Probe<D> for Line {
+impl<const D: usize> Probe<D> for LineProbe {
     fn columns(&self) -> Vec<String> {
         vec!["length_m".into(), if D == 2 { "tension_N_per_m" } else { "tension_N" }.into()]
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = if self.rope { sim.rope(self.line) } else { sim.spring(self.line) };
         vec![now.length, now.tension]
     }

@@ -14,31 +14,31 @@ mod joint;
 mod line;
 mod motion;
 mod patch;
-mod press;
+mod contact_force;
 mod pressure;
-mod row;
+mod probe_row;
 mod runup;
 mod velocity;
 
-pub use balance::Balance;
-pub use budget::{Budget, unaccounted};
-pub use elevation::Elevation;
-pub use energy::Energy;
-pub use flow::Flow;
-pub use force::Force;
-pub use front::Front;
-pub use joint::Joint;
-pub use line::Line;
-pub use motion::Motion;
-pub use patch::Patch;
-pub use press::{Contacts, Press};
-pub use pressure::Pressure;
-pub use row::{Row, named};
-pub use runup::Runup;
-pub use velocity::Velocity;
+pub use balance::LoadBalanceProbe;
+pub use budget::{EnergyBudgetProbe, relative_residual};
+pub use contact_force::{ContactForceProbe, ContactList};
+pub use elevation::ElevationProbe;
+pub use energy::EnergyProbe;
+pub use flow::FlowProbe;
+pub use force::ForceProbe;
+pub use front::FrontProbe;
+pub use joint::JointProbe;
+pub use line::LineProbe;
+pub use motion::MotionProbe;
+pub use patch::PatchProbe;
+pub use pressure::PressureProbe;
+pub use probe_row::{ProbeRow, column_at_place};
+pub use runup::RunupProbe;
+pub use velocity::VelocityProbe;
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::Vector,
     simulation::{Simulation, find},
     system::System,
@@ -50,16 +50,16 @@ pub trait Probe<const D: usize>: Send {
     fn columns(&self) -> Vec<String>;
 
     /// A number for each column, now. NaN where there is nothing to measure, as in a dry place.
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64>;
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64>;
 
     /// Makes the reading `now` continue the reading `before` it, for quantities that wind round, such as
     /// an angle past 180°, or add up, such as a volume; `dt` (s) lies between them. By default leaves it as it is.
-    fn follow(&self, before: &[f64], now: &mut [f64], dt: f64) {
+    fn continue_from(&self, before: &[f64], now: &mut [f64], dt: f64) {
         let _ = (before, now, dt);
     }
 
     /// How many of the last columns are sums since the start, of which no mean over time is taken.
-    fn totals(&self) -> usize {
+    fn cumulative_columns(&self) -> usize {
         0
     }
 }
@@ -87,7 +87,7 @@ pub fn find_solid<const D: usize>(system: &System<D>, name: &str) -> Result<usiz
 fn point<const D: usize>(at: &[f64], count: usize) -> Result<Vector<D>> {
     if at.len() != count || at.iter().any(|x| !x.is_finite()) {
         let what = format!("a probe's place needs {count} finite coordinates (m); got {at:?}");
-        return Err(Error::new(Kind::Usage, what));
+        return Err(Error::new(ErrorKind::Usage, what));
     }
     let mut x = Vector::<D>::zeros();
     for (xi, &a) in x.iter_mut().zip(at) {
@@ -106,7 +106,7 @@ fn interpolate<const D: usize, const C: usize>(
 ) -> Option<[f64; C]> {
     let (mass, rho) = (system.particle_mass(), system.fluid().rho);
     let (mut sum, mut weight) = ([0.0; C], 0.0);
-    system.water_near(x, &mut |b, r, w| {
+    system.visit_fluid_near(x, &mut |b, r, w| {
         let share = mass / rho[b] * w;
         weight += share;
         for (s, q) in sum.iter_mut().zip(quantity(b, r)) {

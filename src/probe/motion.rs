@@ -14,12 +14,12 @@ use crate::{
 
 /// Watches the motion of a solid: position, displacement (m), angles (deg, never jumping by a turn),
 /// velocity (m/s) of its centre, spin (rad/s).
-pub struct Motion<const D: usize> {
+pub struct MotionProbe<const D: usize> {
     solid: usize,
     start: Vector<D>,
 }
 
-impl<const D: usize> Motion<D> {
+impl<const D: usize> MotionProbe<D> {
     /// The probe of the solid called `solid`; where it is now counts as its start.
     ///
     /// # Errors
@@ -40,7 +40,7 @@ const fn angles<const D: usize>() -> usize {
     D * (D - 1) / 2
 }
 
-impl<const D: usize> Probe<D> for Motion<D> {
+impl<const D: usize> Probe<D> for MotionProbe<D> {
     fn columns(&self) -> Vec<String> {
         let words: &[&str] = if D == 2 {
             &["surge_m", "heave_m", "pitch_deg"]
@@ -54,17 +54,17 @@ impl<const D: usize> Probe<D> for Motion<D> {
         positions.chain(named(words)).chain(velocities).chain(named(spins)).collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = &sim.system().solids()[self.solid].kinematics;
         let moved = now.centre - self.start;
         let mut row: Vec<f64> = now.centre.iter().chain(moved.iter()).copied().collect();
-        row.extend(turned(&now.pose.rotation).into_iter().map(f64::to_degrees));
+        row.extend(euler_angles(&now.pose.rotation).into_iter().map(f64::to_degrees));
         row.extend(now.velocity.iter());
         row.extend(now.spin.axial());
         row
     }
 
-    fn follow(&self, before: &[f64], now: &mut [f64], _: f64) {
+    fn continue_from(&self, before: &[f64], now: &mut [f64], _: f64) {
         for i in first_angle::<D>()..first_angle::<D>() + angles::<D>() {
             now[i] = unwrapped(before[i], now[i]);
         }
@@ -77,7 +77,7 @@ pub(super) fn unwrapped(before: f64, now: f64) -> f64 {
 }
 
 /// Angles (rad) of a rotation: one in 2-D; roll, pitch and yaw in 3-D.
-fn turned<const D: usize>(m: &Matrix<D>) -> Vec<f64> {
+fn euler_angles<const D: usize>(m: &Matrix<D>) -> Vec<f64> {
     if D == 2 {
         return vec![m[(1, 0)].atan2(m[(0, 0)])];
     }
@@ -95,12 +95,12 @@ mod tests {
         for (axis, angle) in [(0, 0.3), (1, -0.4), (2, 2.0)] {
             let mut turn = [0.0; 3];
             turn[axis] = angle;
-            let found = turned(&Pose::<3>::rotated(Vector::zeros(), &turn).rotation);
+            let found = euler_angles(&Pose::<3>::rotated(Vector::zeros(), &turn).rotation);
             for i in 0..3 {
                 assert!((found[i] - turn[i]).abs() < 1e-14, "round-off of sin and asin; got {found:?}");
             }
         }
-        assert!((turned(&Pose::<2>::rotated(Vector::zeros(), &[-1.2]).rotation)[0] + 1.2).abs() < 1e-14);
+        assert!((euler_angles(&Pose::<2>::rotated(Vector::zeros(), &[-1.2]).rotation)[0] + 1.2).abs() < 1e-14);
     }
 
     #[test]

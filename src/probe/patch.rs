@@ -13,7 +13,7 @@ use crate::{
 
 /// Watches the force (N; N/m in 2-D) of the water on a part of a solid's face, and the mean and the largest pressure
 /// there (Pa, above the air's).
-pub struct Patch<const D: usize> {
+pub struct PatchProbe<const D: usize> {
     solid: usize,
     /// Which of the solid's boundary particles lie behind it.
     behind: Vec<bool>,
@@ -21,7 +21,7 @@ pub struct Patch<const D: usize> {
     places: Vec<Vector<D>>,
 }
 
-impl<const D: usize> Patch<D> {
+impl<const D: usize> PatchProbe<D> {
     /// The part of the face of the solid called `solid` that lies between the corners `min` and `max` (m) now.
     ///
     /// # Errors
@@ -38,7 +38,7 @@ impl<const D: usize> Patch<D> {
         for r in &system.boundary().r[of.boundary.clone()] {
             let local = pose.local(r);
             let depth = -shape.signed_distance(&local);
-            let foot = local + shape.outward(&local, 0.05 * dp) * depth;
+            let foot = local + shape.outward_normal(&local, 0.05 * dp) * depth;
             let chosen = near.contains(r) && inside.contains(&pose.point(&foot));
             behind.push(chosen);
             if chosen && depth < 0.75 * dp {
@@ -53,18 +53,18 @@ impl<const D: usize> Patch<D> {
     }
 }
 
-impl<const D: usize> Probe<D> for Patch<D> {
+impl<const D: usize> Probe<D> for PatchProbe<D> {
     fn columns(&self) -> Vec<String> {
         let wide = if D == 2 { "_per_m" } else { "" };
         let forces = axes::<D>().iter().map(|a| format!("f{a}_N{wide}"));
         forces.chain(["p_mean_Pa", "p_max_Pa"].map(String::from)).collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let system = sim.system();
         let solid = &system.solids()[self.solid];
         let mut force = Vector::<D>::zeros();
-        system.forces_on(self.solid, &mut |i, f| {
+        system.visit_boundary_forces(self.solid, &mut |i, f| {
             if self.behind[i - solid.boundary.start] {
                 force += f;
             }

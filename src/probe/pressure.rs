@@ -6,11 +6,11 @@ use super::{Probe, interpolate, point};
 use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
 /// Watches the pressure (Pa, above the air's) at a fixed point; 0 while the point is dry.
-pub struct Pressure<const D: usize> {
+pub struct PressureProbe<const D: usize> {
     at: Vector<D>,
 }
 
-impl<const D: usize> Pressure<D> {
+impl<const D: usize> PressureProbe<D> {
     /// The probe at the point `at` (m; `D` coordinates).
     ///
     /// # Errors
@@ -20,12 +20,12 @@ impl<const D: usize> Pressure<D> {
     }
 }
 
-impl<const D: usize> Probe<D> for Pressure<D> {
+impl<const D: usize> Probe<D> for PressureProbe<D> {
     fn columns(&self) -> Vec<String> {
         vec!["p_Pa".into()]
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         vec![pressure(sim.system(), &self.at)]
     }
 }

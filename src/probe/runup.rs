@@ -10,36 +10,36 @@ const ON: f64 = 1.0;
 const MORE_THAN_A_DROP: f64 = 0.25;
 
 /// Watches where the waterline on a solid is highest (m), and its height above that at the start; NaN while it is dry.
-pub struct Runup<const D: usize> {
+pub struct RunupProbe<const D: usize> {
     solid: usize,
     start: f64,
 }
 
-impl<const D: usize> Runup<D> {
+impl<const D: usize> RunupProbe<D> {
     /// The run-up on the solid called `solid`; the waterline now counts as 0.
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
     pub fn new(system: &System<D>, solid: &str) -> Result<Self> {
         let solid = find_solid(system, solid)?;
-        Ok(Self { solid, start: tip(system, solid)[D - 1] })
+        Ok(Self { solid, start: highest_waterline(system, solid)[D - 1] })
     }
 }
 
-impl<const D: usize> Probe<D> for Runup<D> {
+impl<const D: usize> Probe<D> for RunupProbe<D> {
     fn columns(&self) -> Vec<String> {
         let places = super::axes::<D>().iter().map(|a| format!("{a}_m"));
         places.chain(["runup_m".into()]).collect()
     }
 
-    fn look(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let tip = tip(sim.system(), self.solid);
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        let tip = highest_waterline(sim.system(), self.solid);
         tip.iter().copied().chain([tip[D - 1] - self.start]).collect()
     }
 }
 
 /// The foot (m) on solid `solid` of the highest water that lies on its face.
-fn tip<const D: usize>(system: &System<D>, solid: usize) -> Vector<D> {
+fn highest_waterline<const D: usize>(system: &System<D>, solid: usize) -> Vector<D> {
     let (solid, dp) = (&system.solids()[solid], system.model().dp);
     let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
     let mut highest = Vector::from_element(f64::NAN);
@@ -49,7 +49,7 @@ fn tip<const D: usize>(system: &System<D>, solid: usize) -> Vector<D> {
         }
         let local = pose.local(r);
         let distance = shape.signed_distance(&local);
-        if distance < ON * dp && !lone(system, r) {
+        if distance < ON * dp && !is_isolated_drop(system, r) {
             highest = *r;
         }
     }
@@ -57,13 +57,13 @@ fn tip<const D: usize>(system: &System<D>, solid: usize) -> Vector<D> {
         return highest;
     }
     let local = pose.local(&highest);
-    pose.point(&(local - shape.outward(&local, 0.05 * dp) * shape.signed_distance(&local)))
+    pose.point(&(local - shape.outward_normal(&local, 0.05 * dp) * shape.signed_distance(&local)))
 }
 
 /// Whether the water at `x` (m) is no more than a drop.
-fn lone<const D: usize>(system: &System<D>, x: &Vector<D>) -> bool {
+fn is_isolated_drop<const D: usize>(system: &System<D>, x: &Vector<D>) -> bool {
     let (mass, rho) = (system.particle_mass(), system.fluid().rho);
     let mut filled = 0.0;
-    system.water_near(x, &mut |b, _, w| filled += mass / rho[b] * w);
+    system.visit_fluid_near(x, &mut |b, _, w| filled += mass / rho[b] * w);
     filled < MORE_THAN_A_DROP
 }

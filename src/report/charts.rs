@@ -3,19 +3,19 @@
 use serde::Serialize;
 
 use super::{
-    blob::Blob,
-    figures::series,
-    format::{name_without_unit, unit},
-    kept::{Kept, Table},
+    encoding::BinaryData,
+    html::{column_label, unit},
+    run_data::{ProbeTable, RunData},
+    summary_tables::column_series,
 };
-use crate::{analysis, analysis::Verdict, math::time_series::Series, run::Answer};
+use crate::{analysis, analysis::Verdict, math::time_series::TimeSeries, run::RaoResult};
 
 /// Rows of a table above which it is thinned.
 const MOST_ROWS: usize = 6000;
 
 /// What the page says of a table; numbers are places in the blob.
 #[derive(Clone, Debug, Serialize)]
-pub struct Plotted {
+pub struct TablePlots {
     /// Name of the probe.
     pub name: String,
     /// What it watches, in a word.
@@ -25,18 +25,18 @@ pub struct Plotted {
     /// Where the times begin.
     pub t: usize,
     /// Its columns.
-    pub columns: Vec<Column>,
+    pub columns: Vec<PlotColumn>,
     /// Which columns stand in one chart.
     pub charts: Vec<Chart>,
     /// Of a budget or a balance the kinds that are 0 throughout: they are not drawn.
     pub idle: Vec<String>,
     /// Spectra of what swings of the columns that are shown.
-    pub spectra: Vec<Spectral>,
+    pub spectra: Vec<ColumnSpectrum>,
 }
 
 /// A column.
 #[derive(Clone, Debug, Serialize)]
-pub struct Column {
+pub struct PlotColumn {
     /// Its name as in the table.
     pub name: String,
     /// Its name in words.
@@ -60,7 +60,7 @@ pub struct Chart {
 
 /// The spectrum of a column.
 #[derive(Clone, Debug, Serialize)]
-pub struct Spectral {
+pub struct ColumnSpectrum {
     /// Number of the column.
     pub column: usize,
     /// Number of frequencies.
@@ -73,7 +73,7 @@ pub struct Spectral {
 
 /// How a motion answers irregular waves.
 #[derive(Clone, Debug, Serialize)]
-pub struct Answered<'a> {
+pub struct RaoPlot<'a> {
     /// Name of the statistic.
     pub name: &'a str,
     /// The motion, in words.
@@ -94,7 +94,7 @@ pub struct Answered<'a> {
 
 /// A check and its curves.
 #[derive(Clone, Debug, Serialize)]
-pub struct Held {
+pub struct CheckPlot {
     /// The series, as `probe.column`, with when it was set to zero.
     pub series: String,
     /// Its name in words.
@@ -102,11 +102,11 @@ pub struct Held {
     /// Its unit.
     pub unit: &'static str,
     /// The run as it is.
-    pub sim: Line,
+    pub sim: CurveData,
     /// The run as its instrument shows it.
-    pub meaned: Option<Line>,
+    pub meaned: Option<CurveData>,
     /// What it is held against.
-    pub reference: Line,
+    pub reference: CurveData,
     /// Whether that is a formula.
     pub exact: bool,
     /// The figures in words.
@@ -115,7 +115,7 @@ pub struct Held {
 
 /// A curve in the blob.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Line {
+pub struct CurveData {
     /// Number of samples.
     pub rows: usize,
     /// Where the times begin.
@@ -145,75 +145,75 @@ const FAMILIES: [(&[&str], bool); 16] = [
 ];
 
 /// Adds `table` to `blob`.
-pub fn plotted(table: &Table, blob: &mut Blob) -> Plotted {
-    let rows = thinned(table);
-    let t = blob.floats(rows.iter().map(|&i| table.t[i] as f32));
-    let columns = table.columns.iter().zip(&table.x).map(|(name, x)| Column {
+pub fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePlots {
+    let rows = thinned_rows(table);
+    let t = blob.push_floats(rows.iter().map(|&i| table.times[i] as f32));
+    let columns = table.columns.iter().zip(&table.values).map(|(name, x)| PlotColumn {
         name: name.clone(),
-        label: name_without_unit(name),
+        label: column_label(name),
         unit: unit(name),
-        x: blob.floats(rows.iter().map(|&i| x[i] as f32)),
+        x: blob.push_floats(rows.iter().map(|&i| x[i] as f32)),
     });
     let columns = columns.collect();
-    let (charts, idle) = match table.books() {
-        true => books(table),
-        false => (charts(&table.columns), vec![]),
+    let (charts, idle) = match table.is_breakdown() {
+        true => breakdown_charts(table),
+        false => (group_columns(&table.columns), vec![]),
     };
-    let charts = seen(charts, &table.x);
-    Plotted {
+    let charts = fold_empty_charts(charts, &table.values);
+    TablePlots {
         name: table.name.clone(),
         what: table.what,
-        rows: [rows.len(), table.t.len()],
+        rows: [rows.len(), table.times.len()],
         t,
         columns,
         idle,
-        spectra: spectra(table, &charts, blob),
+        spectra: encode_spectra(table, &charts, blob),
         charts,
     }
 }
 
 /// The spectra of the columns of `table` that are shown and have waves enough, added to `blob`.
-fn spectra(table: &Table, charts: &[Chart], blob: &mut Blob) -> Vec<Spectral> {
+fn encode_spectra(table: &ProbeTable, charts: &[Chart], blob: &mut BinaryData) -> Vec<ColumnSpectrum> {
     let shown = charts.iter().filter(|chart| !chart.folded).flat_map(|chart| chart.columns.iter().copied());
     let of = |column: usize| {
-        let spectrum = analysis::swing(&series(&table.t, &table.x[column])?)?;
-        let f = blob.floats(spectrum.frequencies().map(|f| f as f32));
-        let s = blob.floats(spectrum.density.iter().map(|s| *s as f32));
-        Some(Spectral { column, rows: spectrum.density.len(), f, s })
+        let spectrum = analysis::displayed_spectrum(&column_series(&table.times, &table.values[column])?)?;
+        let f = blob.push_floats(spectrum.frequencies().map(|f| f as f32));
+        let s = blob.push_floats(spectrum.density.iter().map(|s| *s as f32));
+        Some(ColumnSpectrum { column, rows: spectrum.density.len(), f, s })
     };
     shown.filter_map(of).collect()
 }
 
 /// The answers of motions over frequency, added to `blob`.
-pub fn answered<'a>(answers: &'a [Answer], blob: &mut Blob) -> Vec<Answered<'a>> {
-    let of = |rows: &'a [Answer]| {
+pub fn encode_raos<'a>(answers: &'a [RaoResult], blob: &mut BinaryData) -> Vec<RaoPlot<'a>> {
+    let of = |rows: &'a [RaoResult]| {
         let (probe, column) = rows[0].series.split_once('.').unwrap_or(("", &rows[0].series));
-        let mut put = |x: fn(&Answer) -> f64| blob.floats(rows.iter().map(|row| x(row) as f32));
-        Answered {
+        let mut put = |x: fn(&RaoResult) -> f64| blob.push_floats(rows.iter().map(|row| x(row) as f32));
+        RaoPlot {
             name: &rows[0].name,
-            label: format!("{probe} {}", name_without_unit(column)),
+            label: format!("{probe} {}", column_label(column)),
             unit: &rows[0].unit,
             rows: rows.len(),
-            f: put(|row| row.band.frequency),
-            rao: put(|row| row.band.ratio),
-            phase: put(Answer::degrees),
-            coherence: put(|row| row.band.coherence),
+            f: put(|row| row.point.frequency),
+            rao: put(|row| row.point.ratio),
+            phase: put(RaoResult::phase_degrees),
+            coherence: put(|row| row.point.coherence),
         }
     };
     answers.chunk_by(|a, b| (&a.name, &a.series) == (&b.name, &b.series)).map(of).collect()
 }
 
 /// The rows of a table that its plots need: of each of many equal stretches the least and the largest of every column.
-fn thinned(table: &Table) -> Vec<usize> {
-    let all = table.t.len();
+fn thinned_rows(table: &ProbeTable) -> Vec<usize> {
+    let all = table.times.len();
     if all <= MOST_ROWS {
         return (0..all).collect();
     }
-    let stretch = all.div_ceil(MOST_ROWS / (2 * table.x.len()).clamp(1, 8));
+    let stretch = all.div_ceil(MOST_ROWS / (2 * table.values.len()).clamp(1, 8));
     let mut rows = vec![0, all - 1];
     for from in (0..all).step_by(stretch) {
         let here = from..(from + stretch).min(all);
-        for x in &table.x {
+        for x in &table.values {
             let ends = [
                 here.clone().min_by(|a, b| x[*a].total_cmp(&x[*b])),
                 here.clone().max_by(|a, b| x[*a].total_cmp(&x[*b])),
@@ -227,10 +227,10 @@ fn thinned(table: &Table) -> Vec<usize> {
 }
 
 /// The columns as charts: those that belong together, then every other one by itself.
-fn charts(columns: &[String]) -> Vec<Chart> {
+fn group_columns(columns: &[String]) -> Vec<Chart> {
     // A row of gauges is one chart, wherever they stand.
     let names: Vec<String> =
-        columns.iter().map(|name| name_without_unit(name.split("_at_").next().unwrap_or(name))).collect();
+        columns.iter().map(|name| column_label(name.split("_at_").next().unwrap_or(name))).collect();
     let mut left: Vec<usize> = (0..columns.len()).collect();
     let mut charts = Vec::new();
     for (family, folded) in FAMILIES {
@@ -251,11 +251,11 @@ fn charts(columns: &[String]) -> Vec<Chart> {
 
 /// The charts of a budget or a balance, one for each direction with all kinds that are not 0 throughout, and those that are. What
 /// is left over is too small to be seen beside the others, and waits behind a fold.
-fn books(table: &Table) -> (Vec<Chart>, Vec<String>) {
+fn breakdown_charts(table: &ProbeTable) -> (Vec<Chart>, Vec<String>) {
     let mut charts: Vec<Chart> = Vec::new();
     let mut kinds: Vec<(String, bool)> = Vec::new();
     for (i, name) in table.columns.iter().enumerate() {
-        let (label, idle) = (name_without_unit(name), table.idle(i));
+        let (label, idle) = (column_label(name), table.is_zero(i));
         let (kind, way) = label.rsplit_once(' ').unwrap_or((&label, ""));
         match kinds.iter_mut().find(|known| known.0 == kind) {
             Some(known) => known.1 &= idle,
@@ -279,7 +279,7 @@ fn books(table: &Table) -> (Vec<Chart>, Vec<String>) {
 }
 
 /// Folds away the charts of columns `x` that have no numbers, as at a gauge that was dry; something stays to be seen.
-fn seen(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
+fn fold_empty_charts(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
     let empty = |chart: &Chart| chart.columns.iter().all(|&i| x[i].iter().all(|x| x.is_nan()));
     charts.iter_mut().for_each(|chart| chart.folded |= empty(chart));
     if charts.iter().all(|chart| chart.folded) {
@@ -289,23 +289,23 @@ fn seen(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
 }
 
 /// The checks of `run` that have curves, added to `blob`; `caption` says the figures of a verdict.
-pub fn held(run: &Kept, caption: impl Fn(&Verdict) -> String, blob: &mut Blob) -> Vec<Held> {
+pub fn encode_checks(run: &RunData, caption: impl Fn(&Verdict) -> String, blob: &mut BinaryData) -> Vec<CheckPlot> {
     let verdicts = &run.manifest.checks;
-    let mut line = |series: &Series| Line {
+    let mut line = |series: &TimeSeries| CurveData {
         rows: series.times().len(),
-        t: blob.floats(series.times().iter().map(|t| *t as f32)),
-        x: blob.floats(series.values().iter().map(|x| *x as f32)),
+        t: blob.push_floats(series.times().iter().map(|t| *t as f32)),
+        x: blob.push_floats(series.values().iter().map(|x| *x as f32)),
     };
     let mut held = Vec::new();
     for (i, (check, curves)) in run.checks.iter().enumerate() {
         let Some(curves) = curves else { continue };
-        let series = check.words().label();
+        let series = check.plan().label();
         let column = series.split_once('.').map_or(series.as_str(), |(_, column)| column);
-        held.push(Held {
-            label: name_without_unit(column.split(',').next().unwrap_or(column)),
+        held.push(CheckPlot {
+            label: column_label(column.split(',').next().unwrap_or(column)),
             unit: unit(column),
             sim: line(&curves.sim),
-            meaned: curves.meaned.as_ref().map(&mut line),
+            meaned: curves.running_mean.as_ref().map(&mut line),
             reference: line(&curves.reference),
             exact: curves.exact,
             caption: verdicts.get(i).map(&caption).unwrap_or_default(),
@@ -319,20 +319,20 @@ pub fn held(run: &Kept, caption: impl Fn(&Verdict) -> String, blob: &mut Blob) -
 mod tests {
     use super::*;
 
-    fn table(rows: usize) -> Table {
+    fn table(rows: usize) -> ProbeTable {
         let t: Vec<f64> = (0..rows).map(|i| i as f64).collect();
         let mut x = vec![0.0; rows];
         x[rows / 2 + 1] = 5.0;
-        Table { name: "p".into(), what: "pressure", columns: vec!["p_Pa".into()], t, x: vec![x] }
+        ProbeTable { name: "p".into(), what: "pressure", columns: vec!["p_Pa".into()], times: t, values: vec![x] }
     }
 
     #[test]
     fn a_long_table_is_thinned_without_losing_its_peak() {
         let long = table(1_000_000);
-        let rows = thinned(&long);
+        let rows = thinned_rows(&long);
         assert!(rows.len() <= MOST_ROWS + 2 && rows.contains(&500_001), "{} rows", rows.len());
         assert!(rows.contains(&0) && rows.contains(&999_999), "the ends stay");
-        assert_eq!(thinned(&table(MOST_ROWS)).len(), MOST_ROWS);
+        assert_eq!(thinned_rows(&table(MOST_ROWS)).len(), MOST_ROWS);
     }
 
     #[test]
@@ -341,9 +341,10 @@ mod tests {
         let wave = t.iter().map(|t| 0.05 * (std::f64::consts::TAU * 1.25 * t).sin()).collect();
         let (rising, name) = (t.clone(), |name: &str| name.to_string());
         let columns = vec![name("eta_m"), name("front_m")];
-        let table = Table { name: "gauge".into(), what: "elevation", columns, t, x: vec![wave, rising] };
-        let mut blob = Blob::default();
-        let found = plotted(&table, &mut blob).spectra;
+        let table =
+            ProbeTable { name: "gauge".into(), what: "elevation", columns, times: t, values: vec![wave, rising] };
+        let mut blob = BinaryData::default();
+        let found = encode_table(&table, &mut blob).spectra;
         assert_eq!((found.len(), found[0].column), (1, 0), "what only rises has none");
         // Lines of 20 s are 0.05 Hz apart, and a Hann window spreads 1.25 Hz over two on either side.
         assert!((25..30).contains(&found[0].rows), "drawn as far as there is something: {} lines", found[0].rows);
@@ -352,12 +353,12 @@ mod tests {
     #[test]
     fn every_column_is_in_one_chart() {
         let names = ["x_m", "y_m", "surge_m", "heave_m", "pitch_deg", "vx_mps", "odd_kg"].map(String::from);
-        let charts = charts(&names);
+        let charts = group_columns(&names);
         let mut all: Vec<usize> = charts.iter().flat_map(|chart| chart.columns.clone()).collect();
         all.sort_unstable();
         assert_eq!(all, [0, 1, 2, 3, 4, 5, 6]);
         assert_eq!(charts[0], Chart { columns: vec![2, 3], folded: false, title: None });
-        assert!(!super::charts(&["x_m".into()])[0].folded, "what stands alone is shown");
+        assert!(!super::group_columns(&["x_m".into()])[0].folded, "what stands alone is shown");
     }
 
     #[test]
@@ -368,8 +369,8 @@ mod tests {
         // Nothing is viscous, weight acts downwards alone.
         let x = [1.0, 2.0, 0.0, 0.0, 0.0, -2.0, 1e-9, 1e-9].map(|x| vec![0.0, x]).to_vec();
         let t = vec![0.0, 1.0];
-        let table = Table { name: "box_balance".into(), what: "loads by kind", columns, t, x };
-        let (charts, idle) = books(&table);
+        let table = ProbeTable { name: "box_balance".into(), what: "loads by kind", columns, times: t, values: x };
+        let (charts, idle) = breakdown_charts(&table);
         let said: Vec<_> = charts.iter().map(|c| (c.title.as_deref(), &c.columns[..], c.folded)).collect();
         let expected: [(_, &[usize], _); 4] = [
             (Some("fx by kind"), &[0], false),

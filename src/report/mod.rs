@@ -7,24 +7,24 @@
 //! # Ok::<(), pontoon::Error>(())
 //! ```
 
-mod blob;
+mod encoding;
 mod charts;
 mod colour;
-mod easel;
-mod figures;
-mod film;
-mod ink;
-mod kept;
+mod canvas;
+mod summary_tables;
+mod animation;
+mod text;
+mod run_data;
 mod outline;
 mod page;
 mod picture;
-mod pose;
-mod rim;
+mod placement;
+mod contact_skin;
 mod sections;
-mod wire;
-pub(crate) mod format;
+mod mesh_edges;
+pub(crate) mod html;
 
-pub use picture::{Field, Shot, picture};
+pub use picture::{ColourField, PictureOptions, write_picture};
 
 use std::{
     path::{Path, PathBuf},
@@ -32,17 +32,17 @@ use std::{
 };
 
 use crate::{
-    error::{Error, Kind, Result},
-    output::{has_folder, write_whole},
+    error::{Error, ErrorKind, Result},
+    output::{require_parent_folder, write_atomically},
 };
 
-use kept::Kept;
+use run_data::RunData;
 
 /// Most bytes of a page.
-pub const MOST_BYTES: usize = 15_000_000;
+pub const MAX_PAGE_BYTES: usize = 15_000_000;
 
 /// Name of the page in a run's folder.
-pub const FILE: &str = "report.html";
+pub const REPORT_FILE: &str = "report.html";
 
 /// A page that was written.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ pub struct Page {
 /// # Errors
 /// `Restart` if there is no run in `folder`; `File` if a frame cannot be read or the page cannot be written.
 pub fn write(folder: &Path) -> Result<Page> {
-    laid(&[folder.to_owned()], &folder.join(FILE))
+    write_page(&[folder.to_owned()], &folder.join(REPORT_FILE))
 }
 
 /// Writes a page of the runs in `folders`, laid over one another, to `out`.
@@ -71,19 +71,20 @@ pub fn write(folder: &Path) -> Result<Page> {
 /// `Usage` if there are fewer than two; else as [`write`].
 pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
     if folders.len() < 2 {
-        return Err(Error::new(Kind::Usage, "a comparison needs two runs or more")
+        return Err(Error::new(ErrorKind::Usage, "a comparison needs two runs or more")
             .help("name their folders, as in `pontoon compare runs/raft runs/raft-2`"));
     }
-    has_folder(out)?;
-    laid(folders, out)
+    require_parent_folder(out)?;
+    write_page(folders, out)
 }
 
-fn laid(folders: &[PathBuf], out: &Path) -> Result<Page> {
+fn write_page(folders: &[PathBuf], out: &Path) -> Result<Page> {
     let begun = Instant::now();
-    let runs = Kept::all(folders)?;
-    let text = page::page(&runs)?;
-    write_whole(out, text.as_bytes())?;
-    let apart = sections::strangers(&runs).then(|| "the runs have no series in common: each is drawn by itself".into());
+    let runs = RunData::read_all(folders)?;
+    let text = page::page_html(&runs)?;
+    write_atomically(out, text.as_bytes())?;
+    let apart =
+        sections::no_common_series(&runs).then(|| "the runs have no series in common: each is drawn by itself".into());
     let remarks = runs.into_iter().flat_map(|run| run.remarks).chain(apart).collect();
     Ok(Page { path: out.to_owned(), bytes: text.len(), seconds: begun.elapsed().as_secs_f64(), remarks })
 }

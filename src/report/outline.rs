@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
-use super::wire::wires;
+use super::mesh_edges::mesh_lines;
 use crate::{
     geometry::Shape,
     math::{Pose, Vector},
@@ -27,28 +27,28 @@ pub struct Outline {
 pub fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
     match shape {
         Shape::Box { size } => box_lines(&(size * -0.5), &(size * 0.5)),
-        Shape::Ball { radius } => rounds(&[0.0; 3], *radius, D),
+        Shape::Ball { radius } => ball_outlines(&[0.0; 3], *radius, D),
         Shape::Capsule { length, radius, axis } => capsule::<D>(*length, *radius, *axis),
         Shape::Cylinder { length, radius, axis } if D == 3 => cylinder(*length, *radius, *axis),
-        Shape::Polygon { points } => vec![closed(points.iter().map(spread))],
-        Shape::Polyline { points, thickness } => vec![closed(wall(points, *thickness).iter().map(spread))],
+        Shape::Polygon { points } => vec![closed(points.iter().map(to_3d))],
+        Shape::Polyline { points, thickness } => vec![closed(wall(points, *thickness).iter().map(to_3d))],
         Shape::Tank { size, thickness } if D == 2 => vec![tank(size[0], size[1], *thickness)],
         Shape::Tank { size, .. } => box_lines(&Vector::zeros(), size),
-        Shape::Mesh { mesh, .. } => wires(mesh),
-        Shape::Compound(parts) => parts.iter().flat_map(|(pose, part)| placed(pose, outlines(part))).collect(),
+        Shape::Mesh { mesh, .. } => mesh_lines(mesh),
+        Shape::Compound(parts) => parts.iter().flat_map(|(pose, part)| transformed(pose, outlines(part))).collect(),
         _ => Vec::new(),
     }
 }
 
 /// A vector with a third coordinate.
-pub fn spread<const D: usize>(x: &Vector<D>) -> [f64; 3] {
+pub fn to_3d<const D: usize>(x: &Vector<D>) -> [f64; 3] {
     std::array::from_fn(|i| if i < D { x[i] } else { 0.0 })
 }
 
 /// The lines of a part that is placed so in its solid.
-pub fn placed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
+pub fn transformed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
     for x in lines.iter_mut().flat_map(|line| &mut line.points) {
-        *x = spread(&pose.point(&Vector::from_fn(|i, _| x[i])));
+        *x = to_3d(&pose.point(&Vector::from_fn(|i, _| x[i])));
     }
     lines
 }
@@ -59,7 +59,7 @@ fn closed(points: impl IntoIterator<Item = [f64; 3]>) -> Outline {
 
 /// The edges of a box from `low` to `high`.
 fn box_lines<const D: usize>(low: &Vector<D>, high: &Vector<D>) -> Vec<Outline> {
-    let (a, b) = (spread(low), spread(high));
+    let (a, b) = (to_3d(low), to_3d(high));
     let ring = |z: f64| closed([[a[0], a[1], z], [b[0], a[1], z], [b[0], b[1], z], [a[0], b[1], z]]);
     if D == 2 {
         return vec![ring(0.0)];
@@ -93,7 +93,7 @@ fn arc(
     Outline { closed, points: (0..if closed { parts } else { parts + 1 }).map(point).collect() }
 }
 
-fn rounds(centre: &[f64; 3], radius: f64, dimension: usize) -> Vec<Outline> {
+fn ball_outlines(centre: &[f64; 3], radius: f64, dimension: usize) -> Vec<Outline> {
     let planes: &[(usize, usize)] = if dimension == 2 { &[(0, 1)] } else { &[(0, 1), (0, 2), (1, 2)] };
     planes.iter().map(|&(u, v)| circle(centre, radius, u, v)).collect()
 }

@@ -3,17 +3,16 @@
 use serde::Serialize;
 
 use super::{
-    MOST_BYTES,
-    blob::Blob,
-    charts::{self, Answered, Held, Plotted},
-    colour::{MAPS, Maps},
-    figures,
-    film::{Reel, reel},
-    format::escape,
-    kept::{Kept, Set},
+    MAX_PAGE_BYTES,
+    animation::{Animation, encode_animation},
+    charts::{self, CheckPlot, RaoPlot, TablePlots},
+    colour::{FIELD_COLOUR_MAPS, FieldColourMaps},
+    contact_skin::ContactSkinOutline,
+    encoding::BinaryData,
+    html::escape,
     outline::Outline,
-    rim::Rim,
-    sections,
+    run_data::{RunData, SceneGeometry},
+    sections, summary_tables,
 };
 use crate::error::Result;
 
@@ -29,60 +28,63 @@ const SCRIPT: [&str; 6] = [
 ];
 
 /// Samples (a particle in a frame) that a page has room for: five bytes each, where four were the most that was seen.
-const SAMPLES: f64 = (MOST_BYTES - 2_000_000) as f64 / 5.0;
+const SAMPLES: f64 = (MAX_PAGE_BYTES - 2_000_000) as f64 / 5.0;
 
 /// What the scripts are told.
 #[derive(Serialize)]
-struct Told<'a> {
-    maps: Maps,
-    runs: Vec<Run<'a>>,
+struct PageData<'a> {
+    maps: FieldColourMaps,
+    runs: Vec<PageRun<'a>>,
 }
 
 /// A run as the scripts take it.
 #[derive(Serialize)]
-struct Run<'a> {
+struct PageRun<'a> {
     name: &'a str,
     title: &'a str,
     until: f64,
-    stage: Option<Stage<'a>>,
-    reel: Option<Reel>,
-    tables: Vec<Plotted>,
-    checks: Vec<Held>,
-    answers: Vec<Answered<'a>>,
+    stage: Option<PageScene<'a>>,
+    reel: Option<Animation>,
+    tables: Vec<TablePlots>,
+    checks: Vec<CheckPlot>,
+    answers: Vec<RaoPlot<'a>>,
 }
 
 /// What stands around the water.
 #[derive(Serialize)]
-struct Stage<'a> {
+struct PageScene<'a> {
     dimension: usize,
     dp: f64,
     level: f64,
     rho0: f64,
     g: f64,
-    solids: Vec<Solid<'a>>,
-    gauges: Vec<Gauge<'a>>,
+    solids: Vec<PageSolid<'a>>,
+    gauges: Vec<PageGauge<'a>>,
 }
 
 #[derive(Serialize)]
-struct Solid<'a> {
+struct PageSolid<'a> {
     name: &'a str,
     role: &'a str,
     lines: &'a [Outline],
-    rim: &'a Rim,
+    rim: &'a ContactSkinOutline,
 }
 
 #[derive(Serialize)]
-struct Gauge<'a> {
+struct PageGauge<'a> {
     name: &'a str,
     what: &'a str,
     at: &'a [f64],
 }
 
-impl<'a> From<&'a Set> for Stage<'a> {
-    fn from(set: &'a Set) -> Self {
-        let solids =
-            set.solids.iter().map(|s| Solid { name: &s.name, role: s.role, lines: &s.lines, rim: &s.rim }).collect();
-        let gauges = set.gauges().map(|(name, what, at)| Gauge { name, what, at }).collect();
+impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
+    fn from(set: &'a SceneGeometry) -> Self {
+        let solids = set
+            .solids
+            .iter()
+            .map(|s| PageSolid { name: &s.name, role: s.role, lines: &s.lines, rim: &s.contact_skin })
+            .collect();
+        let gauges = set.gauges().map(|(name, what, at)| PageGauge { name, what, at }).collect();
         Self { dimension: set.dimension, dp: set.dp, level: set.level, rho0: set.rho0, g: set.g, solids, gauges }
     }
 }
@@ -91,38 +93,38 @@ impl<'a> From<&'a Set> for Stage<'a> {
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
-pub fn page(runs: &[Kept]) -> Result<String> {
+pub fn page_html(runs: &[RunData]) -> Result<String> {
     let mut samples = SAMPLES;
     loop {
-        let text = attempt(runs, (samples / runs.len() as f64) as usize)?;
-        if text.len() <= MOST_BYTES || samples < 1e4 {
+        let text = page_with_samples(runs, (samples / runs.len() as f64) as usize)?;
+        if text.len() <= MAX_PAGE_BYTES || samples < 1e4 {
             return Ok(text);
         }
-        samples *= 0.9 * MOST_BYTES as f64 / text.len() as f64;
+        samples *= 0.9 * MAX_PAGE_BYTES as f64 / text.len() as f64;
     }
 }
 
 /// The page with about so many `samples` a run.
-fn attempt(runs: &[Kept], samples: usize) -> Result<String> {
-    let mut blob = Blob::default();
-    let mut told = Told { maps: MAPS, runs: Vec::new() };
+fn page_with_samples(runs: &[RunData], samples: usize) -> Result<String> {
+    let mut blob = BinaryData::default();
+    let mut told = PageData { maps: FIELD_COLOUR_MAPS, runs: Vec::new() };
     for run in runs {
-        let reel = run.film.as_ref().map(|film| reel(run, film, samples, &mut blob)).transpose()?;
-        told.runs.push(Run {
+        let reel = run.frames.as_ref().map(|film| encode_animation(run, film, samples, &mut blob)).transpose()?;
+        told.runs.push(PageRun {
             name: &run.name,
             title: &run.manifest.title,
             until: run.manifest.until_s,
-            stage: run.set.as_ref().map(Stage::from),
+            stage: run.geometry.as_ref().map(PageScene::from),
             reel,
-            tables: run.tables.iter().map(|table| charts::plotted(table, &mut blob)).collect(),
-            checks: charts::held(run, sections::caption, &mut blob),
-            answers: charts::answered(&run.told.answers, &mut blob),
+            tables: run.tables.iter().map(|table| charts::encode_table(table, &mut blob)).collect(),
+            checks: charts::encode_checks(run, sections::caption, &mut blob),
+            answers: charts::encode_raos(&run.statistics.raos, &mut blob),
         });
     }
     let data = serde_json::to_string(&told).unwrap_or_default().replace('<', "\\u003c");
     let (title, body) = match runs {
-        [run] => (run.manifest.title.clone(), single(run, &told.runs[0])),
-        _ => (format!("{} runs compared", runs.len()), several(runs, &told.runs)),
+        [run] => (run.manifest.title.clone(), single_run(run, &told.runs[0])),
+        _ => (format!("{} runs compared", runs.len()), comparison(runs, &told.runs)),
     };
     let parts = [
         ("{{title}}", escape(&title)),
@@ -131,7 +133,7 @@ fn attempt(runs: &[Kept], samples: usize) -> Result<String> {
         ("{{version}}", env!("CARGO_PKG_VERSION").to_string()),
         ("{{script}}", SCRIPT.join("\n")),
         ("{{data}}", data),
-        ("{{blob}}", blob.text()),
+        ("{{blob}}", blob.to_base64()),
     ];
     // One after the other from the front: what a user wrote is never searched for the next sign.
     let (mut text, mut rest) = (String::new(), FRAME);
@@ -154,8 +156,8 @@ fn section(id: &str, title: &str, body: &str) -> String {
 }
 
 /// The place of the players.
-fn player(told: &[Run]) -> String {
-    let reels: Vec<(&str, &Reel)> = told.iter().filter_map(|run| Some((run.name, run.reel.as_ref()?))).collect();
+fn player_html(told: &[PageRun]) -> String {
+    let reels: Vec<(&str, &Animation)> = told.iter().filter_map(|run| Some((run.name, run.reel.as_ref()?))).collect();
     if reels.is_empty() {
         return "<p>No frames were kept of this run (<code>[frames]</code> in the scene), so there is nothing to play.</p>\n".into();
     }
@@ -163,19 +165,19 @@ fn player(told: &[Run]) -> String {
         .iter()
         .map(|(name, reel)| {
             let name = if told.len() > 1 { format!("{}: ", escape(name)) } else { String::new() };
-            format!("<p class=\"quiet\">{name}{}</p>\n", sections::shown(reel))
+            format!("<p class=\"quiet\">{name}{}</p>\n", sections::animation_note(reel))
         })
         .collect();
     format!("<div id=\"deck\"></div>\n{notes}")
 }
 
-fn single(run: &Kept, told: &Run) -> String {
-    let figures = figures::rows(&run.tables);
+fn single_run(run: &RunData, told: &PageRun) -> String {
+    let figures = summary_tables::summary_rows(&run.tables);
     let held = sections::verdicts(std::slice::from_ref(run));
     let charts = |id: &str, any: bool| if any { format!("<div id=\"{id}\"></div>\n") } else { String::new() };
-    sections::head(run)
+    sections::page_head(run)
         + &sections::warnings(std::slice::from_ref(run))
-        + &section("player", "Player", &player(std::slice::from_ref(told)))
+        + &section("player", "Player", &player_html(std::slice::from_ref(told)))
         + &section("checks", "Against references", &(held + &charts("held", !told.checks.is_empty())))
         + &section("series", "Series", &charts("charts", !told.tables.is_empty()))
         + &section(
@@ -187,22 +189,22 @@ fn single(run: &Kept, told: &Run) -> String {
         + &section(
             "figures",
             "Figures of the series",
-            &if figures.len() > 1 { sections::wide(&figures) + WAVES } else { String::new() },
+            &if figures.len() > 1 { sections::scrolling_table(&figures) + WAVES } else { String::new() },
         )
-        + &section("what", "What was run", &sections::what(run))
+        + &section("what", "What was run", &sections::scene_and_values(run))
         + &section("files", "Files", &sections::files(run))
 }
 
 const WAVES: &str = "<p class=\"quiet\">Waves are counted between crossings of the mean upwards; one counts if it goes a tenth of the \
     standard deviation to both sides. Means are over time. Entries of a budget or a balance that are 0 throughout are left out.</p>\n";
 
-fn several(runs: &[Kept], told: &[Run]) -> String {
+fn comparison(runs: &[RunData], told: &[PageRun]) -> String {
     let names: Vec<String> = runs.iter().map(|run| escape(&run.name)).collect();
     let any = |id: &str, any: bool| if any { format!("<div id=\"{id}\"></div>\n") } else { String::new() };
     format!("<p class=\"over\">pontoon · comparison</p>\n<h1>{}</h1>\n", names.join(" · "))
-        + &section("runs", "The runs", &sections::beside(runs))
+        + &section("runs", "The runs", &sections::facts_table(runs))
         + &sections::warnings(runs)
-        + &section("player", "Players, at equal times and colours", &player(told))
+        + &section("player", "Players, at equal times and colours", &player_html(told))
         + &section("differences", "What differs", &sections::differences(runs))
         + &section(
             "checks",
@@ -212,6 +214,6 @@ fn several(runs: &[Kept], told: &[Run]) -> String {
         + &section(
             "series",
             "Series",
-            &(sections::alone(runs) + &any("charts", told.iter().any(|run| !run.tables.is_empty()))),
+            &(sections::missing_series(runs) + &any("charts", told.iter().any(|run| !run.tables.is_empty()))),
         )
 }

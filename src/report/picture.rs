@@ -5,72 +5,72 @@ use std::path::{Path, PathBuf};
 use tiny_skia::{Color, Pixmap};
 
 use super::{
-    colour::{MAPS, Map},
-    easel::{INK, View, legend},
-    film::{members, placed},
-    ink::{Anchor, Ink},
-    kept::{Kept, Set, Solid},
+    animation::{points_of_solid, solid_placement},
+    canvas::{PanelView, TITLE_COLOUR, draw_colour_bar},
+    colour::{ColourMap, FIELD_COLOUR_MAPS},
     outline::Outline,
+    run_data::{DrawnSolid, RunData, SceneGeometry},
+    text::{Anchor, TextRenderer},
 };
 use crate::{
-    error::{Error, Kind, Result},
-    output::{Cloud, Film, has_folder, write_whole},
+    error::{Error, ErrorKind, Result},
+    output::{FramePoints, FrameSequence, require_parent_folder, write_atomically},
 };
 
 /// What the particles of a picture are coloured by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Field {
+pub enum ColourField {
     /// The pressure, Pa.
     #[default]
     Pressure,
     /// The pressure beyond that of still water at the place, Pa.
-    Excess,
+    ExcessPressure,
     /// The speed, m/s.
     Speed,
 }
 
 /// What a picture is to show.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shot {
+pub struct PictureOptions {
     /// Times, s: of each the nearest frame. The last frame if there is none.
     pub times: Vec<f64>,
     /// What colours the particles.
-    pub field: Field,
+    pub field: ColourField,
     /// Values of the two ends of the colours; by default the usual range of all that is shown.
     pub range: Option<[f64; 2]>,
     /// Width of the picture, pixels.
     pub width: u32,
     /// What stands over the columns, one for each run; the names of the runs' folders if there is none.
-    pub heads: Vec<String>,
+    pub column_titles: Vec<String>,
 }
 
 /// How near a point is to who looks, its place on the sheet (m), and its value.
-type Deep = (f64, [f64; 2], Option<f64>);
+type DepthPoint = (f64, [f64; 2], Option<f64>);
 
 /// A line on the sheet (m), whether it is closed, and whether its solid moves.
-type Drawn = (Vec<[f64; 2]>, bool, bool);
+type DrawnLine = (Vec<[f64; 2]>, bool, bool);
 
 /// A frame of a run as it is drawn.
 pub struct Panel<'a> {
     /// Its scene.
-    pub set: &'a Set,
+    pub geometry: &'a SceneGeometry,
     /// Its time, s.
     pub t: f64,
     /// Points on the sheet (m), from the back to the front, and their values; those of bodies have none.
     pub points: Vec<([f64; 2], Option<f64>)>,
     /// Lines of solids on the sheet: whether they are closed, and whether their solid moves.
-    pub lines: Vec<Drawn>,
+    pub lines: Vec<DrawnLine>,
     /// Those of contact skins.
-    pub rims: Vec<Drawn>,
+    pub contact_skins: Vec<DrawnLine>,
 }
 
-impl Field {
+impl ColourField {
     /// Its colours.
-    pub fn map(self) -> Map {
+    pub fn colour_map(self) -> ColourMap {
         match self {
-            Self::Pressure => MAPS.pressure,
-            Self::Excess => MAPS.excess,
-            Self::Speed => MAPS.speed,
+            Self::Pressure => FIELD_COLOUR_MAPS.pressure,
+            Self::ExcessPressure => FIELD_COLOUR_MAPS.excess,
+            Self::Speed => FIELD_COLOUR_MAPS.speed,
         }
     }
 
@@ -78,28 +78,28 @@ impl Field {
     pub fn title(self) -> &'static str {
         match self {
             Self::Pressure => "pressure, Pa",
-            Self::Excess => "pressure − that of still water, Pa",
+            Self::ExcessPressure => "pressure − that of still water, Pa",
             Self::Speed => "speed, m/s",
         }
     }
 
     /// The value of particle `i` of `water`.
-    fn value(self, water: &Cloud, i: usize, set: &Set) -> f64 {
+    fn value(self, water: &FramePoints, i: usize, set: &SceneGeometry) -> f64 {
         let pressure = || f64::from(water.pressure[i]);
         match self {
             Self::Pressure => pressure(),
-            Self::Excess => {
-                let depth = set.level - f64::from(water.r[i][set.dimension - 1]);
+            Self::ExcessPressure => {
+                let depth = set.level - f64::from(water.position[i][set.dimension - 1]);
                 pressure() - set.rho0 * set.g * depth.max(0.0)
             }
             Self::Speed => water.velocity[i].iter().map(|v| f64::from(*v).powi(2)).sum::<f64>().sqrt(),
         }
     }
 
-    fn known(self, water: &Cloud) -> bool {
+    fn is_available(self, water: &FramePoints) -> bool {
         match self {
             Self::Speed => !water.velocity.is_empty(),
-            Self::Pressure | Self::Excess => !water.pressure.is_empty(),
+            Self::Pressure | Self::ExcessPressure => !water.pressure.is_empty(),
         }
     }
 }
@@ -110,81 +110,88 @@ impl Field {
 /// # Errors
 /// `Restart` if a folder holds no run; `Usage` if it has no frames, its frames lack the field, or the picture would be
 /// too large; `File` if a frame cannot be read or `out` not be written.
-pub fn picture(folders: &[PathBuf], shot: &Shot, out: &Path) -> Result<(u32, u32)> {
-    has_folder(out)?;
-    let runs = Kept::all(folders)?;
+pub fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<(u32, u32)> {
+    require_parent_folder(out)?;
+    let runs = RunData::read_all(folders)?;
     let mut rows: Vec<Vec<Panel>> = Vec::new();
     let last = [f64::INFINITY];
     let times = if shot.times.is_empty() { &last[..] } else { &shot.times };
     for &t in times {
-        rows.push(runs.iter().map(|run| panel(run, t, shot.field)).collect::<Result<_>>()?);
+        rows.push(runs.iter().map(|run| read_panel(run, t, shot.field)).collect::<Result<_>>()?);
     }
     let range = shot.range.unwrap_or_else(|| range(&rows, shot.field));
-    let own = shot.heads.len() == runs.len();
+    let own = shot.column_titles.len() == runs.len();
     let names: Vec<&str> =
-        runs.iter().enumerate().map(|(i, run)| if own { &shot.heads[i] } else { &run.name }.as_str()).collect();
-    let sheet = draw(&names, &rows, shot, range)?;
+        runs.iter().enumerate().map(|(i, run)| if own { &shot.column_titles[i] } else { &run.name }.as_str()).collect();
+    let sheet = render(&names, &rows, shot, range)?;
     let png = sheet.encode_png().map_err(|why| Error::file(out, why))?;
-    write_whole(out, &png)?;
+    write_atomically(out, &png)?;
     Ok((sheet.width(), sheet.height()))
 }
 
 /// The frame of `run` nearest to time `t` (s).
-fn panel(run: &Kept, t: f64, field: Field) -> Result<Panel<'_>> {
-    let refused = |what: &str| Error::new(Kind::Usage, format!("{}: {what}", run.folder.display()));
-    let film = run.film.as_ref().ok_or_else(|| {
+fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
+    let refused = |what: &str| Error::new(ErrorKind::Usage, format!("{}: {what}", run.folder.display()));
+    let film = run.frames.as_ref().ok_or_else(|| {
         refused("the run has no frames")
             .help("write [frames] in its scene, with every = … in seconds, and run it again")
     })?;
-    let set = run.set.as_ref().ok_or_else(|| refused(run.remarks.first().map_or("its scene is lost", |x| x)))?;
-    let number = if t.is_finite() { film.nearest(t) } else { film.times().len() - 1 };
+    let set = run.geometry.as_ref().ok_or_else(|| refused(run.remarks.first().map_or("its scene is lost", |x| x)))?;
+    let number = if t.is_finite() { film.nearest_index(t) } else { film.times().len() - 1 };
     let water = film.water(number)?;
-    if !field.known(&water) {
+    if !field.is_available(&water) {
         return Err(refused("its frames lack what the picture is coloured by")
             .help("name pressure and velocity under fields of [frames] in its scene"));
     }
     let flat = set.dimension == 2;
-    let mut points: Vec<Deep> = (0..water.r.len())
+    let mut points: Vec<DepthPoint> = (0..water.position.len())
         .map(|i| {
-            let (on, depth) = sheet(&water.r[i].map(f64::from), flat);
+            let (on, depth) = project(&water.position[i].map(f64::from), flat);
             (depth, on, Some(field.value(&water, i, set)))
         })
         .collect();
     if !flat {
-        points.extend(bodies(film, number, set)?);
+        points.extend(solid_points(film, number, set)?);
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let points = points.into_iter().map(|(_, on, value)| (on, value)).collect();
-    let drawn = |which: fn(&Solid) -> &[Outline]| lines(film, number, set, flat, which);
-    let (lines, rims) = (drawn(|solid| &solid.lines)?, drawn(|solid| &solid.rim.lines)?);
-    Ok(Panel { set, t: film.times()[number], points, lines, rims })
+    let drawn = |which: fn(&DrawnSolid) -> &[Outline]| solid_lines(film, number, set, flat, which);
+    let (lines, rims) = (drawn(|solid| &solid.lines)?, drawn(|solid| &solid.contact_skin.lines)?);
+    Ok(Panel { geometry: set, t: film.times()[number], points, lines, contact_skins: rims })
 }
 
 /// The boundary particles of moving solids in frame `number` of a 3-D film: depth and place on the sheet.
-fn bodies(film: &Film, number: usize, set: &Set) -> Result<Vec<Deep>> {
+fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Result<Vec<DepthPoint>> {
     let cloud = film.solids(number)?;
-    let moves = |k: usize| set.solids.get(cloud.solid[k] as usize).is_some_and(|solid| solid.role != "fixed");
-    let own = (0..cloud.solid.len()).filter(|&k| moves(k)).map(|k| sheet(&cloud.r[k].map(f64::from), false));
+    let moves = |k: usize| set.solids.get(cloud.solid_index[k] as usize).is_some_and(|solid| solid.role != "fixed");
+    let own =
+        (0..cloud.solid_index.len()).filter(|&k| moves(k)).map(|k| project(&cloud.position[k].map(f64::from), false));
     Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
 /// The lines of all solids in frame `number`, of each `which` ones.
-fn lines(film: &Film, number: usize, set: &Set, flat: bool, which: fn(&Solid) -> &[Outline]) -> Result<Vec<Drawn>> {
+fn solid_lines(
+    film: &FrameSequence,
+    number: usize,
+    set: &SceneGeometry,
+    flat: bool,
+    which: fn(&DrawnSolid) -> &[Outline],
+) -> Result<Vec<DrawnLine>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let mut lines = Vec::new();
     for (i, solid) in set.solids.iter().enumerate() {
-        let own = members(&first, i);
+        let own = points_of_solid(&first, i);
         let fixed = solid.role == "fixed";
-        let pose = placed(fixed, &solid.start, &own, &first, &now);
+        let pose = solid_placement(fixed, &solid.start, &own, &first, &now);
         for line in which(solid) {
-            lines.push((line.points.iter().map(|x| sheet(&pose.point(x), flat).0).collect(), line.closed, !fixed));
+            lines.push((line.points.iter().map(|x| project(&pose.to_world(x), flat).0).collect(), line.closed, !fixed));
         }
     }
     Ok(lines)
 }
 
 /// Where a point lies on the sheet (m), and how near it is to who looks: 3-D from the front, turned and from above.
-fn sheet(x: &[f64; 3], flat: bool) -> ([f64; 2], f64) {
+fn project(x: &[f64; 3], flat: bool) -> ([f64; 2], f64) {
     if flat {
         return ([x[0], x[1]], 0.0);
     }
@@ -194,7 +201,7 @@ fn sheet(x: &[f64; 3], flat: bool) -> ([f64; 2], f64) {
 }
 
 /// The usual range of the values in `rows`, round, from 0 or to both sides of it.
-fn range(rows: &[Vec<Panel>], field: Field) -> [f64; 2] {
+fn range(rows: &[Vec<Panel>], field: ColourField) -> [f64; 2] {
     let all = rows.iter().flatten().flat_map(|panel| panel.points.iter().filter_map(|(_, x)| Some(x.as_ref()?.abs())));
     let mut all: Vec<f64> = all.filter(|x| x.is_finite()).collect();
     if all.is_empty() {
@@ -204,7 +211,7 @@ fn range(rows: &[Vec<Panel>], field: Field) -> [f64; 2] {
     let high = *all.select_nth_unstable_by(place, f64::total_cmp).1;
     let unit = 10f64.powf(high.max(1e-12).log10().floor() - 1.0);
     let high = (high.max(1e-12) / unit).ceil() * unit;
-    if field == Field::Excess { [-high, high] } else { [0.0, high] }
+    if field == ColourField::ExcessPressure { [-high, high] } else { [0.0, high] }
 }
 
 /// The part of the sheet that every panel shows: low and high corner, m.
@@ -218,9 +225,9 @@ fn bounds(rows: &[Vec<Panel>]) -> [[f64; 2]; 2] {
         }
     };
     for panel in rows.iter().flatten() {
-        dp = dp.max(panel.set.dp);
+        dp = dp.max(panel.geometry.dp);
         panel.points.iter().for_each(|(x, _)| take(x));
-        let moving = panel.lines.iter().filter(|(_, _, moves)| *moves || panel.set.dimension == 3);
+        let moving = panel.lines.iter().filter(|(_, _, moves)| *moves || panel.geometry.dimension == 3);
         moving.flat_map(|(points, ..)| points).for_each(&mut take);
     }
     if around[0][0] > around[1][0] {
@@ -229,8 +236,8 @@ fn bounds(rows: &[Vec<Panel>]) -> [[f64; 2]; 2] {
     [around[0].map(|x| x - 4.0 * dp), around[1].map(|x| x + 4.0 * dp)]
 }
 
-fn draw(names: &[&str], rows: &[Vec<Panel>], shot: &Shot, range: [f64; 2]) -> Result<Pixmap> {
-    let ink = Ink::new()?;
+fn render(names: &[&str], rows: &[Vec<Panel>], shot: &PictureOptions, range: [f64; 2]) -> Result<Pixmap> {
+    let ink = TextRenderer::new()?;
     let [low, high] = bounds(rows);
     let columns = names.len() as f32;
     let width = shot.width.clamp(200, 16_000) as f32;
@@ -244,27 +251,27 @@ fn draw(names: &[&str], rows: &[Vec<Panel>], shot: &Shot, range: [f64; 2]) -> Re
     let height = head + step * rows.len() as f32 + foot;
     let sheet = (height.is_finite() && height < 32_000.0).then(|| Pixmap::new(width as u32, height.ceil() as u32));
     let Some(mut on) = sheet.flatten() else {
-        return Err(Error::new(Kind::Usage, format!("a picture {width} pixels wide would be {height} high"))
+        return Err(Error::new(ErrorKind::Usage, format!("a picture {width} pixels wide would be {height} high"))
             .help("ask for fewer times, or a smaller --width"));
     };
     on.fill(Color::WHITE);
     for (r, row) in rows.iter().enumerate() {
         for (c, panel) in row.iter().enumerate() {
             let corner = ((left + (wide + gap) * c as f32).floor(), (head + step * r as f32).floor());
-            let place = View { low, high, scale, corner, size: (wide, tall), em };
-            place.panel(&mut on, panel, shot.field.map(), range);
-            if panel.set.dimension == 2 {
-                place.ticks(&mut on, &ink, c == 0);
+            let place = PanelView { low, high, scale, corner, size: (wide, tall), em };
+            place.draw_panel(&mut on, panel, shot.field.colour_map(), range);
+            if panel.geometry.dimension == 2 {
+                place.draw_ticks(&mut on, &ink, c == 0);
             }
             let title = format!(
                 "{}t = {:.3} s",
                 if names.len() > 1 { format!("{}, ", names[c]) } else { String::new() },
                 panel.t
             );
-            ink.write(&mut on, &title, (corner.0, corner.1 - 0.5 * em), em, Anchor::Start, INK);
+            ink.write(&mut on, &title, (corner.0, corner.1 - 0.5 * em), em, Anchor::Start, TITLE_COLOUR);
         }
     }
     let bar = (left.floor(), (height - foot + 0.6 * em).floor(), width - left - 2.0 * gap, 0.9 * em);
-    legend(&mut on, &ink, bar, em, shot.field, range);
+    draw_colour_bar(&mut on, &ink, bar, em, shot.field, range);
     Ok(on)
 }

@@ -3,26 +3,26 @@
 use std::{fs, time::SystemTime};
 
 use super::{
-    figures,
-    film::Reel,
-    format::{self, bytes, digits, duration, escape, table, thousands},
-    kept::{Kept, Table},
+    animation::Animation,
+    html::{self, bytes, duration, escape, four_digits, table, thousands},
+    run_data::{ProbeTable, RunData},
+    summary_tables,
 };
 use crate::{
     analysis::{Verdict, format_verdicts},
-    output::{Manifest, manifest::Status},
+    output::{Manifest, manifest::RunStatus},
 };
 
 /// How a run stands, in a word, and the class of its badge.
-pub fn status(manifest: &Manifest) -> (&'static str, &'static str) {
+pub fn status_badge(manifest: &Manifest) -> (&'static str, &'static str) {
     match manifest.status {
-        Status::Finished if manifest.checks.iter().any(|check| check.passed == Some(false)) => {
+        RunStatus::Finished if manifest.checks.iter().any(|check| check.passed == Some(false)) => {
             ("finished, a check is missed", "bad")
         }
-        Status::Finished => ("finished", "good"),
-        Status::Interrupted => ("interrupted", "odd"),
-        Status::Failed => ("failed", "bad"),
-        Status::Running => ("unfinished", "odd"),
+        RunStatus::Finished => ("finished", "good"),
+        RunStatus::Interrupted => ("interrupted", "odd"),
+        RunStatus::Failed => ("failed", "bad"),
+        RunStatus::Running => ("unfinished", "odd"),
     }
 }
 
@@ -33,10 +33,10 @@ fn date(time: SystemTime) -> String {
 }
 
 /// The facts under the title: each a word and a value.
-pub fn facts(run: &Kept) -> Vec<(&'static str, String)> {
+pub fn facts(run: &RunData) -> Vec<(&'static str, String)> {
     let m = &run.manifest;
     let mut facts = Vec::new();
-    if let Some(set) = &run.set {
+    if let Some(set) = &run.geometry {
         facts.push(("Spacing", format!("dp = {} m, {}-D", set.dp, set.dimension)));
     }
     let count = m.particles;
@@ -44,19 +44,19 @@ pub fn facts(run: &Kept) -> Vec<(&'static str, String)> {
         "Particles",
         format!("{} water, {} boundary", thousands(count.fluid as u64), thousands(count.boundary as u64)),
     ));
-    let reached = if m.simulated_s < m.until_s { format!("{} of ", digits(m.simulated_s)) } else { String::new() };
+    let reached = if m.simulated_s < m.until_s { format!("{} of ", four_digits(m.simulated_s)) } else { String::new() };
     facts.push(("Simulated", format!("{reached}{} s in {} steps", m.until_s, thousands(m.steps))));
     facts.push((
         "Wall time",
         format!("{}, {} thread{}", duration(m.wall_s), m.threads, if m.threads == 1 { "" } else { "s" }),
     ));
     facts.extend(run.written.map(|time| ("Written", date(time))));
-    facts.push(("Program", program(m)));
+    facts.push(("Program", program_version(m)));
     facts
 }
 
 /// Version and commit.
-fn program(m: &Manifest) -> String {
+fn program_version(m: &Manifest) -> String {
     match &m.commit {
         Some(commit) => format!("pontoon {}, commit {commit}", m.version),
         None => format!("pontoon {}", m.version),
@@ -64,8 +64,8 @@ fn program(m: &Manifest) -> String {
 }
 
 /// The head of a page of one run.
-pub fn head(run: &Kept) -> String {
-    let (word, class) = status(&run.manifest);
+pub fn page_head(run: &RunData) -> String {
+    let (word, class) = status_badge(&run.manifest);
     let facts =
         facts(run).iter().map(|(k, x)| format!("<div><dt>{k}</dt><dd>{}</dd></div>", escape(x))).collect::<String>();
     format!(
@@ -73,22 +73,22 @@ pub fn head(run: &Kept) -> String {
          <dl class=\"facts\">{facts}</dl>\n{}",
         escape(&run.name),
         escape(&run.manifest.title),
-        trouble(&run.manifest)
+        failure(&run.manifest)
     )
 }
 
 /// Why a run did not come to its end, with the report of the particle or body.
-fn trouble(m: &Manifest) -> String {
-    let reached = format!("It reached t = {} s of {} s.", digits(m.simulated_s), m.until_s);
+fn failure(m: &Manifest) -> String {
+    let reached = format!("It reached t = {} s of {} s.", four_digits(m.simulated_s), m.until_s);
     let said = match m.status {
-        Status::Finished => return String::new(),
-        Status::Running => {
+        RunStatus::Finished => return String::new(),
+        RunStatus::Running => {
             format!("<strong>This run has not finished: it still goes on, or was killed.</strong> {reached}")
         }
-        Status::Interrupted => {
+        RunStatus::Interrupted => {
             format!("<strong>This run was interrupted.</strong> {reached} <code>pontoon resume</code> goes on with it.")
         }
-        Status::Failed => {
+        RunStatus::Failed => {
             let why = escape(m.error.as_deref().unwrap_or("no reason is kept"));
             format!("<strong>This run could not go on.</strong> {reached}<pre>{why}</pre>")
         }
@@ -104,7 +104,7 @@ fn trouble(m: &Manifest) -> String {
 }
 
 /// Warnings of the run and remarks of the page.
-pub fn warnings(runs: &[Kept]) -> String {
+pub fn warnings(runs: &[RunData]) -> String {
     let all: Vec<String> = runs
         .iter()
         .flat_map(|run| {
@@ -121,19 +121,19 @@ pub fn warnings(runs: &[Kept]) -> String {
 
 /// The figures of a verdict in words.
 pub fn caption(verdict: &Verdict) -> String {
-    let rows = format_verdicts::rows(&[(&[], verdict)], &[]);
+    let rows = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
     let said: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect();
-    format::minus(&said.join("; "))
+    html::with_minus_sign(&said.join("; "))
 }
 
 /// A table that scrolls where the page is narrow.
-pub fn wide(rows: &[Vec<String>]) -> String {
+pub fn scrolling_table(rows: &[Vec<String>]) -> String {
     format!("<div class=\"wide\" tabindex=\"0\">{}</div>\n", table(rows))
 }
 
 /// The verdicts of all runs.
-pub fn verdicts(runs: &[Kept]) -> String {
+pub fn verdicts(runs: &[RunData]) -> String {
     let names: Vec<[String; 1]> = runs.iter().map(|run| [run.name.clone()]).collect();
     let several = runs.len() > 1;
     let pairs: Vec<(&[String], &Verdict)> = runs
@@ -149,37 +149,42 @@ pub fn verdicts(runs: &[Kept]) -> String {
         return if waiting { "<p>Checks are judged when a run has finished.</p>\n".into() } else { String::new() };
     }
     let said = "<p class=\"quiet\">N is the relative deviation (0 is perfect), M the ratio of the amplitudes (1 is perfect).</p>\n";
-    wide(&format_verdicts::rows(&pairs, if several { &["run"] } else { &[] })) + said
+    scrolling_table(&format_verdicts::verdict_rows(&pairs, if several { &["run"] } else { &[] })) + said
 }
 
 /// What the scene asks for of its series; empty if it asks for nothing.
-pub fn statistics(run: &Kept) -> String {
+pub fn statistics(run: &RunData) -> String {
     let mut rows =
         vec![["statistic", "series", "figure", "value", "unit", "from, s", "until, s"].map(String::from).to_vec()];
-    rows.extend(run.told.rows.iter().filter(|row| !row.name.is_empty()).map(|row| {
+    rows.extend(run.statistics.rows.iter().filter(|row| !row.name.is_empty()).map(|row| {
         let [from, until] = [row.from_s, row.until_s].map(|t| format!("{t:.3}"));
         let [name, series, unit] = [&row.name, &row.series, &row.unit].map(String::clone);
-        vec![name, series, row.quantity.into(), digits(row.value), unit, from, until]
+        vec![name, series, row.quantity.into(), four_digits(row.value), unit, from, until]
     }));
-    let remarks = run.told.remarks.iter().map(|remark| format!("<p class=\"quiet\">{}</p>\n", escape(remark)));
-    let table = if rows.len() > 1 { wide(&rows) } else { String::new() };
+    let remarks = run.statistics.remarks.iter().map(|remark| format!("<p class=\"quiet\">{}</p>\n", escape(remark)));
+    let table = if rows.len() > 1 { scrolling_table(&rows) } else { String::new() };
     table + &remarks.collect::<String>()
 }
 
 /// Energies and where they went; empty without a table of them.
-pub fn energy(run: &Kept) -> String {
-    let budgets = run.tables.iter().filter_map(|table| figures::energy(table).or_else(|| figures::budget(table)));
-    budgets.map(|(rows, said)| format!("{}<p>{}</p>\n", wide(&rows), escape(&said))).collect()
+pub fn energy(run: &RunData) -> String {
+    let budgets = run
+        .tables
+        .iter()
+        .filter_map(|table| summary_tables::energy_summary(table).or_else(|| summary_tables::budget_summary(table)));
+    budgets
+        .map(|(verdict_rows, one_line)| format!("{}<p>{}</p>\n", scrolling_table(&verdict_rows), escape(&one_line)))
+        .collect()
 }
 
 /// What was run: the scene's words, every value in force, the machine.
-pub fn what(run: &Kept) -> String {
+pub fn scene_and_values(run: &RunData) -> String {
     let m = &run.manifest;
     let machine = &m.machine;
     let rows = [
         ("scene", run.manifest.title.clone()),
         ("changed on the command line", m.set.iter().map(|(k, v)| format!("{k} = {v}")).collect::<Vec<_>>().join(", ")),
-        ("program", program(m)),
+        ("program", program_version(m)),
         ("bodies moved by", m.engine.clone()),
         ("processor", format!("{}, {} processors", machine.processor, machine.cpus)),
         ("instructions", machine.instructions.clone().unwrap_or_else(|| "no lanes".into())),
@@ -200,14 +205,14 @@ pub fn what(run: &Kept) -> String {
     format!(
         "<div class=\"wide\"><table>{rows}</table></div>\n<details><summary>The scene as written</summary><pre tabindex=\"0\">{}</pre></details>\n\
          <details><summary>All {} values in force, and who said them</summary>{}</details>\n",
-        escape(&run.words),
+        escape(&run.scene_text),
         m.values.len(),
-        wide(&values)
+        scrolling_table(&values)
     )
 }
 
 /// Where the files are.
-pub fn files(run: &Kept) -> String {
+pub fn files(run: &RunData) -> String {
     let folder = run.folder.canonicalize().unwrap_or_else(|_| run.folder.clone());
     let mut rows = vec![["file", "size"].map(String::from).to_vec()];
     for file in &run.manifest.files {
@@ -215,18 +220,18 @@ pub fn files(run: &Kept) -> String {
             .map_or("–".into(), |f| if f.is_dir() { String::new() } else { bytes(f.len() as f64) });
         rows.push(vec![file.clone(), size]);
     }
-    if let Some(film) = &run.film {
+    if let Some(film) = &run.frames {
         let count = film.times().len();
         rows.push(vec![
             format!("frames/ ({count} frames)"),
             format!("about {}", bytes((film.bytes(count / 2) * count as u64) as f64)),
         ]);
     }
-    format!("<p>In <code>{}</code>:</p>\n{}", escape(&folder.display().to_string()), wide(&rows))
+    format!("<p>In <code>{}</code>:</p>\n{}", escape(&folder.display().to_string()), scrolling_table(&rows))
 }
 
 /// What of a film the page shows, and what it leaves out.
-pub fn shown(reel: &Reel) -> String {
+pub fn animation_note(reel: &Animation) -> String {
     let [frames, particles] = reel.of;
     let kept = (reel.times.len(), reel.counts.first().copied().unwrap_or(0));
     let mut said = if kept.0 == frames {
@@ -249,14 +254,14 @@ pub fn shown(reel: &Reel) -> String {
 }
 
 /// What differs between the values in force of several runs: a row for each key.
-pub fn differences(runs: &[Kept]) -> String {
+pub fn differences(runs: &[RunData]) -> String {
     let mut keys: Vec<&str> = Vec::new();
     for value in runs.iter().flat_map(|run| &run.manifest.values) {
         if !keys.contains(&value.key.as_str()) {
             keys.push(&value.key);
         }
     }
-    let value = |run: &Kept, key: &str| {
+    let value = |run: &RunData, key: &str| {
         run.manifest.values.iter().find(|v| v.key == key).map_or("–".to_string(), |v| v.value.clone())
     };
     let mut rows =
@@ -270,27 +275,31 @@ pub fn differences(runs: &[Kept]) -> String {
     if rows.len() == 1 {
         return "<p>All values in force are the same.</p>\n".into();
     }
-    wide(&rows)
+    scrolling_table(&rows)
 }
 
 /// The names of the runs that have the table called `table` and, if one is named, a column of it.
-fn who_has<'a>(runs: &'a [Kept], table: &str, column: Option<&str>) -> Vec<&'a str> {
-    let holds = |t: &Table| t.name == table && column.is_none_or(|column| t.columns.iter().any(|own| own == column));
+fn runs_with_series<'a>(runs: &'a [RunData], table: &str, column: Option<&str>) -> Vec<&'a str> {
+    let holds =
+        |t: &ProbeTable| t.name == table && column.is_none_or(|column| t.columns.iter().any(|own| own == column));
     runs.iter().filter(|run| run.tables.iter().any(holds)).map(|run| run.name.as_str()).collect()
 }
 
 /// Whether several runs have no series in common.
-pub fn strangers(runs: &[Kept]) -> bool {
-    let common = |t: &Table| t.columns.iter().any(|column| who_has(runs, &t.name, Some(column)).len() == runs.len());
+pub fn no_common_series(runs: &[RunData]) -> bool {
+    let common = |t: &ProbeTable| {
+        t.columns.iter().any(|column| runs_with_series(runs, &t.name, Some(column)).len() == runs.len())
+    };
     runs.len() > 1 && !runs[0].tables.iter().any(common)
 }
 
 /// Which series not all of several runs have, and who has them; empty if all have all.
-pub fn alone(runs: &[Kept]) -> String {
+pub fn missing_series(runs: &[RunData]) -> String {
     let mut groups: Vec<(Vec<&str>, Vec<String>)> = Vec::new();
     for table in runs.iter().flat_map(|run| &run.tables) {
-        let whole = (table.name.clone(), who_has(runs, &table.name, None));
-        let column = |name: &String| (format!("{}.{name}", table.name), who_has(runs, &table.name, Some(name)));
+        let whole = (table.name.clone(), runs_with_series(runs, &table.name, None));
+        let column =
+            |name: &String| (format!("{}.{name}", table.name), runs_with_series(runs, &table.name, Some(name)));
         let all =
             if whole.1.len() < runs.len() { vec![whole] } else { table.columns.iter().map(column).collect::<Vec<_>>() };
         for (name, who) in all.into_iter().filter(|(_, who)| who.len() < runs.len()) {
@@ -310,11 +319,12 @@ pub fn alone(runs: &[Kept]) -> String {
 }
 
 /// The facts of several runs side by side.
-pub fn beside(runs: &[Kept]) -> String {
+pub fn facts_table(runs: &[RunData]) -> String {
     let all: Vec<Vec<(&str, String)>> = runs
         .iter()
         .map(|run| {
-            let mut facts = vec![("Title", run.manifest.title.clone()), ("State", status(&run.manifest).0.to_string())];
+            let mut facts =
+                vec![("Title", run.manifest.title.clone()), ("State", status_badge(&run.manifest).0.to_string())];
             facts.extend(self::facts(run));
             facts.push(("Folder", run.folder.display().to_string()));
             facts
@@ -328,5 +338,5 @@ pub fn beside(runs: &[Kept]) -> String {
         };
         rows.push(std::iter::once(key.to_string()).chain(all.iter().map(cell)).collect());
     }
-    wide(&rows)
+    scrolling_table(&rows)
 }

@@ -4,16 +4,16 @@ use std::{path::Path, time::Instant};
 
 use serde::Serialize;
 
-use super::{folder, looks, not_built, with_threads};
+use super::{missing_dimension, probe_factory, run_folder, with_threads};
 use crate::{
     error::Result,
     geometry::Shape,
     math::Vector,
     model::Dimension,
-    output::manifest::InForce,
+    output::manifest::ValueInForce,
     preflight::{self, Finding, Preflight},
     probe,
-    scene::{Built, Scene},
+    scene::{BuiltScene, Scene},
     simulation::Simulation,
     solid::Dim,
 };
@@ -23,9 +23,9 @@ const LASTS: f64 = 1.0;
 
 /// What an inspection is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Inspection {
+pub struct InspectOptions {
     /// Keys of the scene and the values that replace the scene's own.
-    pub sets: Vec<(String, String)>,
+    pub overrides: Vec<(String, String)>,
     /// Threads; by default one for each processor.
     pub threads: Option<usize>,
     /// Whether to step for up to a second, to tell how long a run will take on this machine.
@@ -34,7 +34,7 @@ pub struct Inspection {
 
 /// What a scene would run.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct InspectReport {
     /// Its caption.
     pub title: String,
     /// Simulated time at the end, s.
@@ -43,20 +43,20 @@ pub struct Report {
     #[serde(flatten)]
     pub preflight: Preflight,
     /// Where the speed of sound comes from: key, value and who said it.
-    pub sound_from: Option<InForce>,
+    pub sound_from: Option<ValueInForce>,
     /// How fast this machine is, if it was asked for.
-    pub timing: Option<Timing>,
+    pub timing: Option<StepTiming>,
     /// The solids.
-    pub solids: Vec<SolidCount>,
+    pub solids: Vec<SolidSummary>,
     /// Files of the probes, lists last.
     pub series: Vec<SeriesColumns>,
     /// Every value in force and where it comes from.
-    pub values: Vec<InForce>,
+    pub values: Vec<ValueInForce>,
 }
 
 /// A solid and its boundary particles.
 #[derive(Clone, Debug, Serialize)]
-pub struct SolidCount {
+pub struct SolidSummary {
     /// Its name.
     pub name: String,
     /// `fixed`, `driven` or `free`.
@@ -65,12 +65,12 @@ pub struct SolidCount {
     pub particles: usize,
     /// What it is as a mesh, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<MeshFacts>,
+    pub mesh: Option<MeshSummary>,
 }
 
 /// A solid from a mesh, measured.
 #[derive(Clone, Debug, Serialize)]
-pub struct MeshFacts {
+pub struct MeshSummary {
     /// Number of its facets.
     pub facets: usize,
     /// Its volume, m³.
@@ -83,13 +83,13 @@ pub struct MeshFacts {
     pub size_m: Vec<f64>,
 }
 
-impl MeshFacts {
+impl MeshSummary {
     fn of<const D: usize>(shape: &Shape<D>) -> Option<Self> {
         let Shape::Mesh { mesh, .. } = shape else { return None };
-        let (facets, volume) = (mesh.facets().len(), mesh.volume());
+        let (facets, volume) = (mesh.facets().len(), mesh.volume_properties());
         let list = |x: &Vector<3>| x.iter().copied().collect();
         let (centroid_m, size_m) = (list(&volume.centroid), list(&mesh.bounds().size()));
-        Some(Self { facets, volume_m3: volume.volume, surface_m2: mesh.surface(), centroid_m, size_m })
+        Some(Self { facets, volume_m3: volume.volume, surface_m2: mesh.surface_area(), centroid_m, size_m })
     }
 }
 
@@ -104,7 +104,7 @@ pub struct SeriesColumns {
 
 /// Some steps of the scene, timed. Nothing was written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Timing {
+pub struct StepTiming {
     /// Threads.
     pub threads: usize,
     /// Steps timed.
@@ -119,54 +119,54 @@ pub struct Timing {
 ///
 /// # Errors
 /// Those that [`run`](super::run) would meet before its first step.
-pub fn inspect(path: &Path, asked: &Inspection) -> Result<Report> {
-    let scene = Scene::read(&folder::scene_file(path), &asked.sets)?;
+pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> {
+    let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]
-        2 => report::<2>(&scene, asked.timing),
+        2 => build_report::<2>(&scene, asked.timing),
         #[cfg(feature = "dim3")]
-        3 => report::<3>(&scene, asked.timing),
-        other => Err(not_built(other)),
+        3 => build_report::<3>(&scene, asked.timing),
+        other => Err(missing_dimension(other)),
     })
 }
 
-fn report<const D: usize>(scene: &Scene, timed: bool) -> Result<Report>
+fn build_report<const D: usize>(scene: &Scene, timed: bool) -> Result<InspectReport>
 where
     Dim<D>: Dimension<D>,
 {
-    let values: Vec<InForce> = scene.resolve()?.into_iter().map(InForce::from).collect();
-    let Built { setup, plan, overlapped, still, .. } = scene.build::<D>()?;
+    let values: Vec<ValueInForce> = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
+    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
     // The timing tells the first alarm, which a run would answer by going back.
-    let mut sim = Simulation::new(setup).map_err(|e| scene.place(e))?.without_rollback();
-    let probes = looks::probes(&plan, &mut sim)?;
-    looks::checks(&plan, &probes)?;
+    let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?.without_rollback();
+    let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
+    probe_factory::checks_from_plan(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
-    let mut preflight = preflight::look(&sim, &plan, still, overlapped, &columns);
-    let solids = sim.system().solids().iter().map(|s| SolidCount {
+    let mut preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+    let solids = sim.system().solids().iter().map(|s| SolidSummary {
         name: s.spec.name.clone(),
-        role: preflight::role(&s.spec.role),
+        role: preflight::role_name(&s.spec.role),
         particles: s.boundary.len(),
-        mesh: MeshFacts::of(&s.spec.shape),
+        mesh: MeshSummary::of(&s.spec.shape),
     });
     let solids = solids.collect();
     let series = plan.probes.iter().zip(&probes).map(|(words, p)| (&words.name, p.columns()));
-    let lists = plan.contacts.iter().map(|words| (&words.name, probe::Contacts::columns::<D>()));
+    let lists = plan.contacts.iter().map(|words| (&words.name, probe::ContactList::columns::<D>()));
     let series = series.chain(lists).map(|(name, columns)| SeriesColumns { name: name.clone(), columns }).collect();
-    let timing = if timed { time(&mut sim, &mut preflight) } else { None };
+    let timing = if timed { time_steps(&mut sim, &mut preflight) } else { None };
     // What was said wins over what follows from it.
     let of_sound = values.iter().filter(|v| v.key == "model.c0" || v.key == "model.c0_factor");
     let sound_from = of_sound.min_by_key(|v| v.source.starts_with("default")).cloned();
-    Ok(Report { title: plan.title, until_s: plan.until, preflight, sound_from, timing, solids, series, values })
+    Ok(InspectReport { title: plan.title, until_s: plan.until, preflight, sound_from, timing, solids, series, values })
 }
 
 /// Steps for up to a second, the first step left out unless it takes all the time: it begins with cold caches.
-fn time<const D: usize>(sim: &mut Simulation<D>, preflight: &mut Preflight) -> Option<Timing> {
+fn time_steps<const D: usize>(sim: &mut Simulation<D>, preflight: &mut Preflight) -> Option<StepTiming> {
     let begun = Instant::now();
     let mut times = Vec::new();
     while begun.elapsed().as_secs_f64() < LASTS {
         let start = Instant::now();
         if let Err(error) = sim.step() {
-            preflight.findings.insert(0, Finding::stopped(&error, times.len()));
+            preflight.findings.insert(0, Finding::timing_stopped(&error, times.len()));
             break;
         }
         times.push(start.elapsed().as_secs_f64());
@@ -174,5 +174,5 @@ fn time<const D: usize>(sim: &mut Simulation<D>, preflight: &mut Preflight) -> O
     let warm = if times.len() > 1 { &times[1..] } else { &times[..] };
     let step_s = warm.iter().sum::<f64>() / warm.len() as f64;
     let run_s = step_s * preflight.step.steps;
-    (!warm.is_empty()).then(|| Timing { threads: rayon::current_num_threads(), steps: warm.len(), step_s, run_s })
+    (!warm.is_empty()).then(|| StepTiming { threads: rayon::current_num_threads(), steps: warm.len(), step_s, run_s })
 }

@@ -7,13 +7,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// The file.
 const LOCK: &str = "run.lock";
 
 /// The process that writes in the run's `folder`, or was killed there, if one has left its number.
-pub fn owner(folder: &Path) -> Option<u32> {
+pub fn lock_owner(folder: &Path) -> Option<u32> {
     fs::read_to_string(folder.join(LOCK)).ok()?.trim().parse().ok()
 }
 
@@ -28,7 +28,7 @@ impl Lock {
     ///
     /// # Errors
     /// `Restart` if a run goes on there: names its process; `File` if the lock cannot be made.
-    pub fn take(folder: &Path) -> Result<Self> {
+    pub fn acquire(folder: &Path) -> Result<Self> {
         let path = folder.join(LOCK);
         let refused = |why: std::io::Error| Error::file(&path, format!("cannot be written: {why}"));
         let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(refused)?;
@@ -36,7 +36,7 @@ impl Lock {
             let process = fs::read_to_string(&path).unwrap_or_default();
             let what = format!("the run in {} still goes on: process {}", folder.display(), process.trim());
             let help = "wait for its end, or stop it with Ctrl-C and resume it then";
-            return Err(Error::new(Kind::Restart, what).help(help));
+            return Err(Error::new(ErrorKind::Restart, what).help(help));
         }
         // A file system that knows no locks is no reason to refuse a run there.
         file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(refused)?;
@@ -60,13 +60,14 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("pontoon-lock-{}", std::process::id()));
         fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
         fs::write(folder.join("run.lock"), "1234567 left over").map_err(|e| Error::file(&folder, e))?;
-        let lock = Lock::take(&folder)?;
-        let second = Lock::take(&folder).err().map(|e| (e.kind, e.what)).unwrap_or((Kind::File, String::new()));
-        assert_eq!(second.0, Kind::Restart);
+        let lock = Lock::acquire(&folder)?;
+        let second =
+            Lock::acquire(&folder).err().map(|e| (e.kind, e.message)).unwrap_or((ErrorKind::File, String::new()));
+        assert_eq!(second.0, ErrorKind::Restart);
         assert!(second.1.ends_with(&format!("process {}", std::process::id())), "names the process: {}", second.1);
         drop(lock);
         assert!(!folder.join("run.lock").exists());
-        Lock::take(&folder)?;
+        Lock::acquire(&folder)?;
         fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
     }
 }

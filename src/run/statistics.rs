@@ -1,7 +1,7 @@
 //! What is said of a run's series at its end: `statistics.csv`, a row for each figure.
 
-mod answers;
-mod spectra;
+mod rao_table;
+mod spectra_table;
 
 use std::{collections::BTreeMap, f64::consts::PI, path::Path};
 
@@ -9,20 +9,20 @@ use serde::Serialize;
 
 use super::{outputs::series_folder, scene_file};
 use crate::{
-    analysis::{self, Band, moments, reflection, response, spectrum, transfer},
-    error::{Error, Kind, Result},
+    analysis::{self, RaoPoint, moments, rao, rao_over_frequency, reflection, spectrum},
+    error::{Error, ErrorKind, Result},
     math::format::unit,
-    math::time_series::Series,
-    output::{Manifest, Readings, write_whole},
-    plan::{Plan, StatisticKind, StatisticWords},
+    math::time_series::TimeSeries,
+    output::{Manifest, SeriesTable, write_atomically},
+    plan::{Plan, StatisticKind, StatisticPlan},
     scene::Scene,
 };
 
-pub use answers::{Answer, RAO};
-pub use spectra::SPECTRA;
+pub use rao_table::{RAO_FILE, RaoResult};
+pub use spectra_table::SPECTRA_FILE;
 
 /// The file, in the run's folder.
-pub const STATISTICS: &str = "statistics.csv";
+pub const STATISTICS_FILE: &str = "statistics.csv";
 
 /// A figure of a series, or of several.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,7 +45,7 @@ pub struct Statistic {
 
 /// What is asked of a run's series beside what its scene asks.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Asked {
+pub struct StatisticsFilter {
     /// Only of this probe, or of this series.
     pub series: Option<String>,
     /// First time that counts, s.
@@ -56,11 +56,11 @@ pub struct Asked {
 
 /// Figures of a run, and why some are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Told {
+pub struct RunStatistics {
     /// The figures.
     pub rows: Vec<Statistic>,
     /// How motions answer irregular waves over frequency.
-    pub answers: Vec<Answer>,
+    pub raos: Vec<RaoResult>,
     /// What could not be formed, in words.
     pub remarks: Vec<String>,
 }
@@ -69,28 +69,28 @@ pub struct Told {
 ///
 /// # Errors
 /// `Restart` if there is no run in `folder`; `Usage` if it has no such series; else as [`Scene::read`].
-pub fn statistics(folder: &Path, asked: &Asked) -> Result<Told> {
+pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> {
     let manifest = Manifest::read(folder)?;
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
     let plan = Scene::read(&scene_file(&folder.join("scene")), &sets)?.plan()?;
-    let told = told(folder, &plan, asked);
+    let told = run_statistics(folder, &plan, asked);
     if told.rows.is_empty() {
-        apart(folder, &plan, asked)?;
+        check_time_range(folder, &plan, asked)?;
     }
     match &asked.series {
         Some(series) if told.rows.is_empty() => {
             let names: Vec<&str> = plan.probes.iter().map(|probe| probe.name.as_str()).collect();
             let what = format!("there is nothing to tell of {series:?} in {}", folder.display());
-            Err(Error::new(Kind::Usage, what).help(format!("the probes are: {}", names.join(", "))))
+            Err(Error::new(ErrorKind::Usage, what).help(format!("the probes are: {}", names.join(", "))))
         }
         _ => Ok(told),
     }
 }
 
 /// That the time asked for is not apart from that of the run in `folder`.
-fn apart(folder: &Path, plan: &Plan, asked: &Asked) -> Result<()> {
-    let tables = tables(folder, plan);
-    let times = || tables.values().flat_map(|table| table.t.first().into_iter().chain(table.t.last()));
+fn check_time_range(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> Result<()> {
+    let tables = read_tables(folder, plan);
+    let times = || tables.values().flat_map(|table| table.times.first().into_iter().chain(table.times.last()));
     let [first, last] = [times().copied().fold(f64::INFINITY, f64::min), times().copied().fold(0.0, f64::max)];
     let (run, from, until) = (folder.display(), asked.from.unwrap_or(first), asked.until.unwrap_or(last));
     let what = match () {
@@ -101,7 +101,7 @@ fn apart(folder: &Path, plan: &Plan, asked: &Asked) -> Result<()> {
         () => format!("no series in {run} has two readings from {from} s until {until} s"),
     };
     let help = format!("choose --from and --until between {first} and {last} s");
-    if tables.is_empty() { Ok(()) } else { Err(Error::new(Kind::Usage, what).help(help)) }
+    if tables.is_empty() { Ok(()) } else { Err(Error::new(ErrorKind::Usage, what).help(help)) }
 }
 
 /// Writes the figures and the spectra of the run in `folder`; what is missing, in words.
@@ -109,65 +109,69 @@ fn apart(folder: &Path, plan: &Plan, asked: &Asked) -> Result<()> {
 /// # Errors
 /// `File` if they cannot be written.
 pub(super) fn write(folder: &Path, plan: &Plan) -> Result<Vec<String>> {
-    let tables = tables(folder, plan);
-    let Told { rows, answers, remarks } = of(&tables, plan, &Asked::default());
+    let tables = read_tables(folder, plan);
+    let RunStatistics { rows, raos, remarks } = from_tables(&tables, plan, &StatisticsFilter::default());
     let mut text = String::from("name,series,quantity,value,unit,from_s,until_s\n");
     for Statistic { name, series, quantity, value, unit, from_s, until_s } in rows {
         text += &format!("{name},{series},{quantity},{value:?},{unit},{from_s:?},{until_s:?}\n");
     }
-    write_whole(&folder.join(STATISTICS), text.as_bytes())?;
-    answers::write(folder, &answers)?;
-    spectra::write(folder, &tables)?;
+    write_atomically(&folder.join(STATISTICS_FILE), text.as_bytes())?;
+    rao_table::write(folder, &raos)?;
+    spectra_table::write(folder, &tables)?;
     Ok(remarks)
 }
 
 /// The tables of a run by the names of their probes; those that cannot be read are left out.
-type Tables = BTreeMap<String, Readings>;
+type ProbeTables = BTreeMap<String, SeriesTable>;
 
 /// Reads them.
-fn tables(folder: &Path, plan: &Plan) -> Tables {
+fn read_tables(folder: &Path, plan: &Plan) -> ProbeTables {
     let series = series_folder(folder);
-    let read = |name: &String| Some((name.clone(), Readings::read(&series.join(format!("{name}.csv"))).ok()?));
+    let read = |name: &String| Some((name.clone(), SeriesTable::read(&series.join(format!("{name}.csv"))).ok()?));
     plan.probes.iter().filter_map(|probe| read(&probe.name)).collect()
 }
 
-pub(crate) fn told(folder: &Path, plan: &Plan, asked: &Asked) -> Told {
-    of(&tables(folder, plan), plan, asked)
+pub(crate) fn run_statistics(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> RunStatistics {
+    from_tables(&read_tables(folder, plan), plan, asked)
 }
 
 /// The figures of these tables.
-fn of(tables: &Tables, plan: &Plan, asked: &Asked) -> Told {
+fn from_tables(tables: &ProbeTables, plan: &Plan, asked: &StatisticsFilter) -> RunStatistics {
     let window = (asked.from.unwrap_or(f64::NEG_INFINITY), asked.until.unwrap_or(f64::INFINITY));
     let meant = |name: &str| {
         asked.series.as_deref().is_none_or(|of| of == name || name.split_once('.').is_some_and(|n| n.0 == of))
     };
-    let mut told = Told::default();
+    let mut told = RunStatistics::default();
     for probe in &plan.probes {
         for column in tables.get(&probe.name).iter().flat_map(|table| &table.columns) {
             let name = format!("{}.{column}", probe.name);
             if meant(&name)
-                && let Some(series) = find(tables, &name, window)
+                && let Some(series) = series_in_window(tables, &name, window)
             {
-                told.all_of("", &name, &series);
+                told.push_series("", &name, &series);
             }
         }
     }
     for words in &plan.statistics {
         if words.what.series().into_iter().any(meant) {
             let window = (asked.from.or(words.from), asked.until.or(words.until));
-            told.declared(tables, words, (window.0.unwrap_or(f64::NEG_INFINITY), window.1.unwrap_or(f64::INFINITY)));
+            told.push_declared(
+                tables,
+                words,
+                (window.0.unwrap_or(f64::NEG_INFINITY), window.1.unwrap_or(f64::INFINITY)),
+            );
         }
     }
     told
 }
 
 /// The part of a series in the window (s).
-fn find(tables: &Tables, name: &str, (from, until): (f64, f64)) -> Option<Series> {
+fn series_in_window(tables: &ProbeTables, name: &str, (from, until): (f64, f64)) -> Option<TimeSeries> {
     let (probe, column) = name.split_once('.')?;
     tables.get(probe)?.series(column, from, until)
 }
 
-impl Told {
+impl RunStatistics {
     fn push(&mut self, name: &str, series: &str, span: (f64, f64), figures: &[(&'static str, f64, &str)]) {
         self.rows.extend(figures.iter().filter(|figure| figure.1.is_finite()).map(|&(quantity, value, unit)| {
             Statistic {
@@ -183,50 +187,53 @@ impl Told {
     }
 
     /// Everything that is said of one series.
-    fn all_of(&mut self, name: &str, of: &str, series: &Series) {
+    fn push_series(&mut self, name: &str, of: &str, series: &TimeSeries) {
         let (own, m) = (unit(of), moments(series));
         let plain =
-            [("mean", m.mean, own), ("std", m.deviation, own), ("min", m.least.0, own), ("max", m.largest.0, own)];
+            [("mean", m.mean, own), ("std", m.standard_deviation, own), ("min", m.min.0, own), ("max", m.max.0, own)];
         self.push(name, of, series.span(), &plain);
-        let Some(w) = analysis::waves(series) else { return };
+        let Some(w) = analysis::zero_crossing_waves(series) else { return };
         let count = w.count as f64;
         let waves = [
             ("waves", count, "–"),
-            ("H_mean", w.mean, own),
-            ("H_third", w.third, own),
-            ("H_max", w.largest, own),
-            ("T_z", w.period, "s"),
-            ("T_third", w.third_period, "s"),
+            ("H_mean", w.mean_height, own),
+            ("H_third", w.significant_height, own),
+            ("H_max", w.max_height, own),
+            ("T_z", w.mean_period, "s"),
+            ("T_third", w.significant_period, "s"),
         ];
         self.push(name, of, series.span(), &waves);
         if let Some(s) = spectrum(series) {
-            let spectral = [("H_m0", s.height(), own), ("T_p", s.peak_period(), "s"), ("T_m02", s.mean_period(), "s")];
+            let spectral =
+                [("H_m0", s.significant_height(), own), ("T_p", s.peak_period(), "s"), ("T_m02", s.mean_period(), "s")];
             self.push(name, of, series.span(), &spectral);
         }
     }
 
     /// How a motion answers irregular waves over frequency.
-    fn answer(&mut self, name: &str, series: &str, unit: &str, bands: Vec<Band>) {
-        let answer = |band| Answer { name: name.into(), series: series.into(), unit: unit.into(), band };
-        self.answers.extend(bands.into_iter().map(answer));
+    fn push_rao(&mut self, name: &str, series: &str, unit: &str, bands: Vec<RaoPoint>) {
+        let answer = |band| RaoResult { name: name.into(), series: series.into(), unit: unit.into(), point: band };
+        self.raos.extend(bands.into_iter().map(answer));
     }
 
     /// Says of waves too few for an answer over frequency how many are needed.
-    fn too_few(&mut self, name: &str, wave: &Series) {
-        if let Some(waves) = analysis::waves(wave).filter(|waves| waves.count < analysis::ENOUGH) {
+    fn remark_too_few_waves(&mut self, name: &str, wave: &TimeSeries) {
+        if let Some(waves) =
+            analysis::zero_crossing_waves(wave).filter(|waves| waves.count < analysis::MIN_WAVES_FOR_RAO)
+        {
             self.remarks.push(format!(
                 "statistic {name}: nothing is told over frequency: its time has {} waves, and {} are needed; of regular waves \
                  name the `period`",
                 waves.count,
-                analysis::ENOUGH
+                analysis::MIN_WAVES_FOR_RAO
             ));
         }
     }
 
     /// What the scene asks for.
-    fn declared(&mut self, tables: &Tables, words: &StatisticWords, window: (f64, f64)) {
-        let found: Option<Vec<Series>> =
-            words.what.series().into_iter().map(|name| find(tables, name, window)).collect();
+    fn push_declared(&mut self, tables: &ProbeTables, words: &StatisticPlan, window: (f64, f64)) {
+        let found: Option<Vec<TimeSeries>> =
+            words.what.series().into_iter().map(|name| series_in_window(tables, name, window)).collect();
         let Some(found) = found else {
             self.remarks.push(format!("statistic {}: a series has no two readings in its time", words.name));
             return;
@@ -234,10 +241,10 @@ impl Told {
         let all = || words.what.series().into_iter().zip(&found);
         let before = self.rows.len();
         match &words.what {
-            StatisticKind::Waves { .. } => all().for_each(|(of, series)| self.all_of(&words.name, of, series)),
+            StatisticKind::Waves { .. } => all().for_each(|(of, series)| self.push_series(&words.name, of, series)),
             StatisticKind::Reflection { gauges, depth, g, period } => {
                 let (of, own) = (&gauges[0].0, unit(&gauges[0].0));
-                let placed: Vec<(f64, &Series)> = gauges.iter().map(|(_, x)| *x).zip(&found).collect();
+                let placed: Vec<(f64, &TimeSeries)> = gauges.iter().map(|(_, x)| *x).zip(&found).collect();
                 if let Some(r) = reflection(&placed, *depth, *g, *period) {
                     let figures = [
                         ("reflection", r.coefficient(), "–"),
@@ -250,14 +257,14 @@ impl Told {
             StatisticKind::Rao { motions, wave, period } => {
                 let (motion, last) = found.split_at(motions.len());
                 if period.is_none() {
-                    self.too_few(&words.name, &last[0]);
+                    self.remark_too_few_waves(&words.name, &last[0]);
                 }
                 for (of, series) in motions.iter().zip(motion) {
                     let own = format!("{}/{}", unit(of), unit(wave));
                     if period.is_none() {
-                        self.answer(&words.name, of, &own, transfer(series, &last[0]));
+                        self.push_rao(&words.name, of, &own, rao_over_frequency(series, &last[0]));
                     }
-                    let Some(r) = response(series, &last[0], *period) else { continue };
+                    let Some(r) = rao(series, &last[0], *period) else { continue };
                     let figures = [
                         ("rao", r.ratio, own.as_str()),
                         ("phase", r.phase * 180.0 / PI, "°"),

@@ -4,21 +4,21 @@ use super::{
     Scene,
     context::Context,
     section::{
-        analysis::Series,
-        model::verify_depth,
+        analysis::ProbeSeries,
+        model::require_depth,
         shape::{vector, world_bounds},
         solid::SolidConfig,
-        water::{Body, StillWater, WaterExtent, verify_near_origin},
+        water::{StillWater, StillWaterLevel, WaterBody, require_near_origin},
     },
 };
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     geometry::{
         Shape,
-        fill::{Region, fill},
+        fill::{WaterRegion, fill},
     },
     math::{Bounds, Pose, Vector},
-    model::{Model, Scheme},
+    model::{Model, TimeScheme},
     plan::Plan,
     simulation::Setup,
     solid::{
@@ -32,32 +32,32 @@ use crate::{
 const MOST_PARTICLES: f64 = 2e8;
 
 /// A scene that was built.
-pub struct Built<const D: usize> {
+pub struct BuiltScene<const D: usize> {
     /// The start of a simulation.
     pub setup: Setup<D>,
     /// The probes, files, checks and statistics of a run.
     pub plan: Plan,
     /// Lattice points left empty because a solid is there.
-    pub overlapped: usize,
+    pub removed_by_solids: usize,
     /// Lattice points left empty because an earlier body of water is there.
-    pub doubled: usize,
+    pub removed_by_water: usize,
     /// The water at rest.
-    pub still: StillWater,
+    pub still_water: StillWaterLevel,
 }
 
 /// The solids around the water: enough to draw a scene.
-pub(crate) struct Layout<const D: usize> {
+pub(crate) struct SceneLayout<const D: usize> {
     /// The solids, where they start.
     pub(crate) solids: Vec<SolidSpec<D>>,
     /// The laws and constants.
     pub(crate) model: Model,
     /// The water at rest.
-    pub(crate) still: StillWater,
+    pub(crate) still_water: StillWaterLevel,
 }
 
 /// Estimated size of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Size {
+pub struct SizeEstimate {
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of water.
@@ -72,9 +72,9 @@ pub struct Size {
     pub passes: f64,
 }
 
-impl Size {
+impl SizeEstimate {
     /// Water particles × force evaluations: about proportional to the time of a run.
-    pub fn work(&self) -> f64 {
+    pub fn particle_passes(&self) -> f64 {
         self.fluid * self.steps * self.passes
     }
 }
@@ -86,40 +86,40 @@ impl Scene {
     /// # Errors
     /// `Usage` if `D` is not the scene's dimension; `Scene` if the scene is wrong, a shape is not valid,
     /// a body sinks that should float, or the particles are too many; `File` if a table cannot be read.
-    pub fn build<const D: usize>(&self) -> Result<Built<D>> {
+    pub fn build<const D: usize>(&self) -> Result<BuiltScene<D>> {
         if self.dimension != D {
-            return Err(Error::new(Kind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
+            return Err(Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
         }
-        let (scene, _) = self.filled()?;
+        let (scene, _) = self.with_defaults()?;
         let ctx = &scene.context();
-        let water = scene.bodies_of_water::<D>()?;
-        let still = StillWater::of(&water);
+        let water = scene.water_bodies::<D>()?;
+        let still = StillWaterLevel::of(&water);
         let model = scene.model.build(ctx, &scene.time, &still)?;
-        scene.model.verify_lattice::<D>(ctx, &model)?;
-        verify_depth(ctx, &still, &model)?;
-        let solids = scene.solids::<D>(&WaterExtent::of(&water))?;
+        scene.model.require_stable_lattice::<D>(ctx, &model)?;
+        require_depth(ctx, &still, &model)?;
+        let solids = scene.solids::<D>(&StillWater::of(&water))?;
         let constraints = scene.constraints(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
-            verify_inside(ctx, domain, &water, &solids)?;
+            require_inside_domain(ctx, domain, &water, &solids)?;
         }
         let periodic = scene.periodic.clone().unwrap_or_default().build();
-        periodic::check(&periodic, &model, &solids).map_err(|e| ctx.place(e, "periodic"))?;
-        verify_size(ctx, &water, &solids)?;
-        let regions: Vec<Region<D>> =
-            water.iter().map(|b| Region { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
+        periodic::check(&periodic, &model, &solids).map_err(|e| ctx.with_location(e, "periodic"))?;
+        require_affordable(ctx, &water, &solids)?;
+        let regions: Vec<WaterRegion<D>> =
+            water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // A driven solid starts where its motion puts it.
         let starts: Vec<Pose<D>> = solids.iter().map(|s| s.start().pose).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
-        let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| ctx.place(e, "water"))?;
+        let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
             filled.r.retain(|x| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level));
         }
         if filled.r.is_empty() {
-            return Err(no_water(ctx, &water, &solids));
+            return Err(no_water_error(ctx, &water, &solids));
         }
-        let plan = scene.planned(&still)?;
+        let plan = scene.resolved_plan(&still)?;
         // Packing may have moved a particle a little way out of its water.
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
         let level = |x: &Vector<D>| nearest(x).map_or(still.level, |body| body.level);
@@ -135,7 +135,7 @@ impl Scene {
         let setup = Setup {
             model,
             water: filled.r,
-            levels,
+            surface_levels: levels,
             velocity,
             pressure,
             solids,
@@ -145,19 +145,25 @@ impl Scene {
             limits,
             sponge_layers,
         };
-        Ok(Built { setup, plan, overlapped: filled.overlapped, doubled: filled.doubled, still })
+        Ok(BuiltScene {
+            setup,
+            plan,
+            removed_by_solids: filled.removed_in_solids,
+            removed_by_water: filled.removed_in_regions,
+            still_water: still,
+        })
     }
 
     /// The solids and the water at rest; makes no particles.
     ///
     /// # Errors
     /// As [`Scene::build`].
-    pub(crate) fn stage<const D: usize>(&self) -> Result<Layout<D>> {
-        let (scene, _) = self.filled()?;
-        let water = scene.bodies_of_water::<D>()?;
-        let still = StillWater::of(&water);
+    pub(crate) fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
+        let (scene, _) = self.with_defaults()?;
+        let water = scene.water_bodies::<D>()?;
+        let still = StillWaterLevel::of(&water);
         let model = scene.model.build(&scene.context(), &scene.time, &still)?;
-        Ok(Layout { solids: scene.solids::<D>(&WaterExtent::of(&water))?, model, still })
+        Ok(SceneLayout { solids: scene.solids::<D>(&StillWater::of(&water))?, model, still_water: still })
     }
 
     /// The probes, files, checks and statistics of a run; makes no particles.
@@ -165,58 +171,58 @@ impl Scene {
     /// # Errors
     /// `Scene` if the scene is wrong, or a table that a check names is missing or wrong.
     pub fn plan(&self) -> Result<Plan> {
-        let (scene, _) = self.filled()?;
-        scene.planned(&scene.still_water()?)
+        let (scene, _) = self.with_defaults()?;
+        scene.resolved_plan(&scene.still_water()?)
     }
 
     /// Estimated size of a run of this scene.
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, a shape is not valid, or the particles are too many.
-    pub fn size(&self) -> Result<Size> {
-        let (scene, _) = self.filled()?;
+    pub fn estimate_size(&self) -> Result<SizeEstimate> {
+        let (scene, _) = self.with_defaults()?;
         match scene.dimension {
             2 => scene.estimate::<2>(),
             _ => scene.estimate::<3>(),
         }
     }
 
-    fn estimate<const D: usize>(&self) -> Result<Size> {
+    fn estimate<const D: usize>(&self) -> Result<SizeEstimate> {
         let ctx = &self.context();
-        let water = self.bodies_of_water::<D>()?;
-        let model = self.model.build(ctx, &self.time, &StillWater::of(&water))?;
-        let solids = self.solids::<D>(&WaterExtent::of(&water))?;
-        verify_size(ctx, &water, &solids)?;
-        let (fluid, boundary) = counts(ctx, &water, &solids);
+        let water = self.water_bodies::<D>()?;
+        let model = self.model.build(ctx, &self.time, &StillWaterLevel::of(&water))?;
+        let solids = self.solids::<D>(&StillWater::of(&water))?;
+        require_affordable(ctx, &water, &solids)?;
+        let (fluid, boundary) = estimated_counts(ctx, &water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
-        let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1.0 } else { 2.0 };
-        Ok(Size { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
+        let passes = if matches!(model.scheme, TimeScheme::Verlet { .. }) { 1.0 } else { 2.0 };
+        Ok(SizeEstimate { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
     }
 
     /// About how many particles of water there are, without the space of the solids; 0 if the water cannot be built.
     pub(super) fn water_particles(&self) -> f64 {
         fn count<const D: usize>(scene: &Scene) -> Result<f64> {
-            Ok(counts::<D>(&scene.context(), &scene.bodies_of_water()?, &[]).0)
+            Ok(estimated_counts::<D>(&scene.context(), &scene.water_bodies()?, &[]).0)
         }
         let counted = if self.dimension == 2 { count::<2>(self) } else { count::<3>(self) };
         counted.unwrap_or(0.0)
     }
 
     /// The water at rest.
-    pub(super) fn still_water(&self) -> Result<StillWater> {
+    pub(super) fn still_water(&self) -> Result<StillWaterLevel> {
         Ok(match self.dimension {
-            2 => StillWater::of(&self.bodies_of_water::<2>()?),
-            _ => StillWater::of(&self.bodies_of_water::<3>()?),
+            2 => StillWaterLevel::of(&self.water_bodies::<2>()?),
+            _ => StillWaterLevel::of(&self.water_bodies::<3>()?),
         })
     }
 
-    fn bodies_of_water<const D: usize>(&self) -> Result<Vec<Body<D>>> {
+    fn water_bodies<const D: usize>(&self) -> Result<Vec<WaterBody<D>>> {
         let ctx = &self.context();
         self.water.iter().enumerate().map(|(i, water)| water.build(ctx, &format!("water.{i}"))).collect()
     }
 
     /// The solids in the water `pool`, from whose level drafts are measured.
-    fn solids<const D: usize>(&self, pool: &WaterExtent<D>) -> Result<Vec<SolidSpec<D>>> {
+    fn solids<const D: usize>(&self, pool: &StillWater<D>) -> Result<Vec<SolidSpec<D>>> {
         let ctx = &self.context();
         self.solid.iter().enumerate().map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), pool)).collect()
     }
@@ -234,22 +240,22 @@ impl Scene {
                 two => [0, 1].map(|k| two.get(k).and_then(number)),
             };
             constraints.joints.push(joint.build(ctx, &key, between)?);
-            constraints.check_joint(i, solids).map_err(|e| ctx.place(e, &key))?;
+            constraints.check_joint(i, solids).map_err(|e| ctx.with_location(e, &key))?;
         }
         for (i, spring) in self.spring.iter().enumerate() {
             let spring = spring.build(&self.solid);
-            check_spring(&spring, solids).map_err(|e| ctx.place(e, &format!("spring.{i}")))?;
+            check_spring(&spring, solids).map_err(|e| ctx.with_location(e, &format!("spring.{i}")))?;
             constraints.springs.push(spring);
         }
         for (i, rope) in self.rope.iter().enumerate() {
             let rope = rope.build(&self.solid);
-            check_rope(&rope, solids).map_err(|e| ctx.place(e, &format!("rope.{i}")))?;
+            check_rope(&rope, solids).map_err(|e| ctx.with_location(e, &format!("rope.{i}")))?;
             constraints.ropes.push(rope);
         }
         for (i, force) in self.force.iter().enumerate() {
             let key = format!("force.{i}");
             let force = force.build(ctx, &key, number(&force.on).unwrap_or_default())?;
-            check_force(&force, solids).map_err(|e| ctx.place(e, &key))?;
+            check_force(&force, solids).map_err(|e| ctx.with_location(e, &key))?;
             constraints.forces.push(force);
         }
         constraints.contacts = self.contact.iter().flat_map(|contact| contact.build(&self.solid)).collect();
@@ -259,16 +265,16 @@ impl Scene {
     }
 
     /// The plan of a run, from a scene with its defaults filled in.
-    fn planned(&self, still: &StillWater) -> Result<Plan> {
+    fn resolved_plan(&self, still: &StillWaterLevel) -> Result<Plan> {
         let ctx = &self.context();
-        let series = Series { probes: &self.probe, names: &self.probe_names() };
+        let series = ProbeSeries { probes: &self.probe, names: &self.probe_names() };
         let statistics = self.statistic.iter().enumerate();
         let checkpoint = self.checkpoint.clone().unwrap_or_default();
         Ok(Plan {
             title: self.title.clone().unwrap_or_default(),
             until: self.until,
-            probes: self.probe.iter().filter_map(|probe| probe.planned(self.until)).collect(),
-            contacts: self.probe.iter().filter_map(|probe| probe.listed(self.until)).collect(),
+            probes: self.probe.iter().filter_map(|probe| probe.to_plan(self.until)).collect(),
+            contacts: self.probe.iter().filter_map(|probe| probe.to_contact_list(self.until)).collect(),
             frames: self.frames.as_ref().and_then(|frames| frames.build(ctx)),
             checkpoint_every: checkpoint.every,
             checkpoint_wall: checkpoint.wall_time(),
@@ -284,10 +290,10 @@ impl Scene {
 }
 
 /// Refuses water and moving solids that start outside the domain.
-fn verify_inside<const D: usize>(
+fn require_inside_domain<const D: usize>(
     ctx: &Context,
     domain: &Bounds<D>,
-    water: &[Body<D>],
+    water: &[WaterBody<D>],
     solids: &[SolidSpec<D>],
 ) -> Result<()> {
     let out = |shape: &Shape<D>, pose: &Pose<D>| {
@@ -296,50 +302,50 @@ fn verify_inside<const D: usize>(
     };
     let help = "enlarge the domain: what leaves it stops the run. Leave [domain] out for one with room on all sides";
     if let Some(i) = water.iter().position(|body| out(&body.region.shape, &body.region.pose)) {
-        return Err(ctx.wrong_with(&format!("water.{i}"), "this water is not wholly inside the domain", help));
+        return Err(ctx.error_with_help(&format!("water.{i}"), "this water is not wholly inside the domain", help));
     }
     let still = |solid: &SolidSpec<D>| matches!(solid.role, Role::Fixed);
     match solids.iter().position(|solid| !still(solid) && out(&solid.shape, &solid.pose)) {
         Some(i) => {
             let what = format!("solid \"{}\" starts outside the domain", solids[i].name);
-            Err(ctx.wrong_with(&format!("solid.{i}.at"), what, help))
+            Err(ctx.error_with_help(&format!("solid.{i}.at"), what, help))
         }
         None => Ok(()),
     }
 }
 
 /// The error that no water is left: names the first free body that has no room in it.
-fn no_water<const D: usize>(ctx: &Context, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Error {
+fn no_water_error<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Error {
     let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
     let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size();
     let free = solids.iter().enumerate().filter(|(_, solid)| matches!(solid.role, Role::Free(_)));
     let mut sizes = free.map(|(i, solid)| (i, world_bounds(&solid.shape, &solid.pose).size()));
     let larger = |(i, size): (usize, Vector<D>)| Some((i, size, (0..D).find(|&axis| size[axis] >= room[axis])?));
     let Some((i, size, axis)) = sizes.find_map(larger) else {
-        return ctx.wrong("water", "no water is left: it is thinner than dp, or solids fill it");
+        return ctx.error_at("water", "no water is left: it is thinner than dp, or solids fill it");
     };
     let way = if axis == D - 1 { "high" } else { ["long along x", "long along y"][axis] };
     let (name, size, room) = (&solids[i].name, size[axis], room[axis]);
     let what = format!("no water is left: \"{name}\" is {size:.4} m {way} and the water {room:.4} m");
-    ctx.wrong_with(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
+    ctx.error_with_help(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
 }
 
 /// About how many particles of water and of skins there will be.
-fn counts<const D: usize>(ctx: &Context, water: &[Body<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
-    let (volume, surface) = measures(water, solids);
+fn estimated_counts<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
+    let (volume, surface) = volume_and_surface(water, solids);
     let dimension = D as i32;
     (volume / ctx.dp.powi(dimension), surface * ctx.layers() as f64 / ctx.dp.powi(dimension - 1))
 }
 
 /// Refuses a scene that asks for more particles than a machine holds, before any is made.
-fn verify_size<const D: usize>(ctx: &Context, water: &[Body<D>], solids: &[SolidSpec<D>]) -> Result<()> {
-    verify_near_origin(ctx, water)?;
-    let (fluid, boundary) = counts(ctx, water, solids);
+fn require_affordable<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+    require_near_origin(ctx, water)?;
+    let (fluid, boundary) = estimated_counts(ctx, water, solids);
     let all = fluid + boundary;
     if all.is_finite() && all <= MOST_PARTICLES {
         return Ok(());
     }
-    let (volume, surface) = measures(water, solids);
+    let (volume, surface) = volume_and_surface(water, solids);
     // Six digits say it: 0.3, not 0.30000000000000004.
     let volume = format!("{volume:.5e}").parse().unwrap_or(volume);
     let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
@@ -352,13 +358,13 @@ fn verify_size<const D: usize>(ctx: &Context, water: &[Body<D>], solids: &[Solid
     );
     let dp = 1.05 * ctx.dp * (all / MOST_PARTICLES).powf(1.0 / D as f64);
     let help = format!("the most is {MOST_PARTICLES:.0e}: write  dp = {dp:.1e}  or more");
-    Err(ctx.wrong_with("dp", what, help))
+    Err(ctx.error_with_help("dp", what, help))
 }
 
 /// Volume of the water (m³; m² in 2-D) and surface of the solids (m²; m).
-fn measures<const D: usize>(water: &[Body<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
-    let volume = water.iter().map(|body| body.region.shape.volume().volume).sum();
-    (volume, solids.iter().map(|solid| solid.shape.surface()).sum())
+fn volume_and_surface<const D: usize>(water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
+    let volume = water.iter().map(|body| body.region.shape.volume_properties().volume).sum();
+    (volume, solids.iter().map(|solid| solid.shape.surface_area()).sum())
 }
 
 /// Moves every point by up to `by` (m) in each direction, always to the same place: by its number.

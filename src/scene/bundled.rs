@@ -22,7 +22,7 @@ macro_rules! scene {
 }
 
 /// All of them.
-pub fn bundled() -> &'static [BundledScene] {
+pub fn bundled_scenes() -> &'static [BundledScene] {
     &[
         scene!("raft"),
         scene!("hinged-raft"),

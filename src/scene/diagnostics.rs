@@ -1,6 +1,6 @@
 //! Errors of the parser in the words of a user: the fault, the nearest valid name, an example.
 
-use crate::error::{Error, nearest};
+use crate::error::{Error, nearest_name};
 
 /// What to write, by key: the longest entry that the key ends with is shown.
 const EXAMPLES: &[(&str, &str)] = &[
@@ -169,10 +169,10 @@ pub(super) fn example(key: &str) -> Option<String> {
     let tail = |from: usize| parts[from..].join(".");
     let own = parts.len().checked_sub(2).map(tail).into_iter().chain(parts.len().checked_sub(1).map(tail));
     let mut found = own.filter_map(|tail| EXAMPLES.iter().find(|(key, _)| *key == tail));
-    found.next().map(|(_, example)| write(example))
+    found.next().map(|(_, example)| example_help(example))
 }
 
-fn write(example: &str) -> String {
+fn example_help(example: &str) -> String {
     format!("write  {}", example.replace('\n', "\n       "))
 }
 
@@ -186,7 +186,7 @@ fn list(words: &[&str]) -> String {
 }
 
 /// The kind of thing that `key` holds, for a sentence: its last part that is not a number.
-fn noun(key: &str) -> &str {
+fn key_noun(key: &str) -> &str {
     key.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(key)
 }
 
@@ -194,7 +194,7 @@ fn noun(key: &str) -> &str {
 pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     let words = quoted(message);
     let did_you_mean = |word: &str, known: &[&str]| {
-        nearest(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
+        nearest_name(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
     };
     let with = |error: Error, lines: Vec<String>| match lines.is_empty() {
         true => error,
@@ -207,14 +207,14 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // Of the same parent: a water's velocity is not a probe's.
-        let near = nearest(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
+        let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
         let guess = near.or_else(|| example(parent));
         let known = format!("known here: {}", list(known));
         return (with(error, [known].into_iter().chain(guess).collect()), shown);
     }
     if let (true, [word, known @ ..]) = (message.starts_with("unknown variant"), &words[..]) {
         let key = key.strip_suffix(&format!(".{word}")).unwrap_or(key);
-        let error = Error::scene(format!("unknown {} \"{word}\"{}", noun(key), did_you_mean(word, known)));
+        let error = Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), did_you_mean(word, known)));
         let known = format!("known: {}", list(known));
         return (with(error, [known].into_iter().chain(example(key)).collect()), key.to_string());
     }
@@ -228,20 +228,20 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         .or_else(|| message.strip_prefix("invalid value: "))
         .and_then(|rest| rest.split_once(", expected "))
     {
-        let found = named(found);
-        let error = Error::scene(format!("{} must be {}, not {found}", noun(key), plain(wanted)));
+        let found = translated_found(found);
+        let error = Error::scene(format!("{} must be {}, not {found}", key_noun(key), translated_type(wanted)));
         return (with(error, example(key).into_iter().collect()), key.to_string());
     }
     if message.contains("exactly 1 element") {
-        let error = Error::scene(format!("{} takes one choice: a word, or a table with one key", noun(key)));
+        let error = Error::scene(format!("{} takes one choice: a word, or a table with one key", key_noun(key)));
         return (with(error, example(key).into_iter().collect()), key.to_string());
     }
-    let error = Error::scene(format!("{}: {message}", noun(key)).trim_start_matches(": ").to_string());
+    let error = Error::scene(format!("{}: {message}", key_noun(key)).trim_start_matches(": ").to_string());
     (with(error, example(key).into_iter().collect()), key.to_string())
 }
 
 /// What the parser found, in our words.
-fn named(found: &str) -> String {
+fn translated_found(found: &str) -> String {
     let (kind, rest) = found.split_once(' ').unwrap_or((found, ""));
     let rest = rest.trim_start_matches("point ").replace('`', "");
     match kind {
@@ -254,7 +254,7 @@ fn named(found: &str) -> String {
 }
 
 /// The parser's word for a type, in ours.
-fn plain(wanted: &str) -> &str {
+fn translated_type(wanted: &str) -> &str {
     match wanted {
         "f64" => "a number",
         "usize" | "u32" | "u64" => "a whole number, not negative",

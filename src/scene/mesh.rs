@@ -8,7 +8,7 @@ use std::{
 
 use crate::{
     error::{Error, Result},
-    geometry::{Mesh, mesh::MOST_FACETS},
+    geometry::{Mesh, mesh::MAX_FACETS},
     math::Vector,
 };
 
@@ -41,7 +41,7 @@ pub fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> {
     if flip {
         facets.iter_mut().for_each(|f| f.swap(0, 1));
     }
-    Mesh::new(&points, &facets).map_err(|e| Error { what: format!("{}: {}", path.display(), e.what), ..e })
+    Mesh::new(&points, &facets).map_err(|e| Error { message: format!("{}: {}", path.display(), e.message), ..e })
 }
 
 /// The bytes of the file at `path`, if they are not too many.
@@ -65,7 +65,7 @@ fn damaged(path: &Path, why: impl std::fmt::Display) -> Error {
 
 /// Facets that are too many are not even counted.
 fn too_many(path: &Path) -> Error {
-    Error::scene(format!("{} has more than {MOST_FACETS} facets", path.display()))
+    Error::scene(format!("{} has more than {MAX_FACETS} facets", path.display()))
         .help("thin it out (\"decimate\"): what is finer than dp cannot be seen")
 }
 
@@ -97,7 +97,7 @@ fn stl(path: &Path, mut bytes: Vec<u8>) -> Result<Facets> {
     let mut bytes = Cursor::new(bytes);
     let (mut points, mut facets) = (Vec::new(), Vec::new());
     for facet in stl_io::create_stl_reader(&mut bytes).map_err(|why| damaged(path, why))? {
-        if facets.len() == MOST_FACETS {
+        if facets.len() == MAX_FACETS {
             return Err(too_many(path));
         }
         let first = points.len() as u32;
@@ -122,7 +122,7 @@ fn obj(path: &Path, bytes: Vec<u8>) -> Result<Facets> {
         let first = points.len() as u32;
         points.extend(mesh.positions.chunks_exact(3).map(Vector::from_column_slice));
         facets.extend(mesh.indices.chunks_exact(3).map(|f| [first + f[0], first + f[1], first + f[2]]));
-        if facets.len() > MOST_FACETS {
+        if facets.len() > MAX_FACETS {
             return Err(too_many(path));
         }
     }

@@ -50,17 +50,17 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use toml_source::Origin;
+use toml_source::SceneSource;
 
 pub use crate::plan::{
-    Align, CheckWords, FrameWords, Plan, ProbeKind, ProbeWords, Reference, Score, StatisticKind, StatisticWords,
-    Surface,
+    Align, CheckPlan, FramesPlan, GaugeSurface, Plan, ProbeKind, ProbePlan, Reference, Score, StatisticKind,
+    StatisticPlan,
 };
-pub(crate) use build::Layout;
-pub use build::{Built, Size};
-pub use bundled::{BundledScene, bundled};
-pub use probes::{GaugeWords, PatchWords, PointWords, ProbeEntry, RowWords, SectionWords};
-pub use resolve::Resolved;
+pub(crate) use build::SceneLayout;
+pub use build::{BuiltScene, SizeEstimate};
+pub use bundled::{BundledScene, bundled_scenes};
+pub use probes::{GaugeConfig, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, SectionConfig};
+pub use resolve::ResolvedValue;
 pub use schema::schema;
 pub(crate) use section::shape::world_bounds;
 pub use section::{
@@ -69,21 +69,21 @@ pub use section::{
     domain::{BoxConfig, GuardConfig, PeriodicConfig},
     force_element::{ForceConfig, ForceFrame, RopeConfig, SpringConfig},
     joint::{JointConfig, JointKindConfig, LimitsConfig, MotorConfig},
-    model::{ModelConfig, TimeConfig},
+    model::{ModelConfig, TimeSteppingConfig},
     motion::DrivenConfig,
-    output::{CheckpointConfig, FrameOutputConfig, FramesConfig},
-    shape::{Axis, MeshConfig, PartConfig, PlacementConfig, ShapeConfig},
-    solid::{FreeConfig, MotionAxis, SolidConfig},
+    output::{CheckpointConfig, FramesChoice, FramesConfig},
+    shape::{AxisName, CompoundPartConfig, MeshConfig, PlacementConfig, ShapeConfig},
+    solid::{FreeBodyConfig, MotionMode, SolidConfig},
     sponge_layer::SpongeLayerConfig,
-    value::{TimeLawConfig, TimeValueConfig, TimeVectorConfig},
-    water::{FillConfig, StillWater, WaterConfig},
+    value::{TimeFunctionConfig, TimeValueConfig, TimeVectorConfig},
+    water::{FillConfig, StillWaterLevel, WaterConfig},
     wave::{
-        AbsorberConfig, AbsorptionConfig, FocusedWaveConfig, IrregularWaveConfig, MeasuredWaveConfig,
+        AbsorbChoice, AbsorptionConfig, FocusedWaveConfig, IrregularWaveConfig, MeasuredElevationConfig,
         RegularWaveConfig, SolitaryWaveConfig, WaveComponentsConfig, WaveConfig,
     },
 };
-pub use toml_source::{Renamed, Source, current_key};
-pub use untagged::{Draft, FieldConfig, LengthUnit, LineConfig, Numbers};
+pub use toml_source::{Renamed, ValueSource, current_key};
+pub use untagged::{DraftChoice, FieldFormulaConfig, LengthUnit, NumberOrArray, PolylineConfig};
 
 /// Most bytes of a scene's text; the longest bundled one has 3,000.
 const MOST_TEXT: u64 = 1 << 20;
@@ -145,13 +145,13 @@ pub struct Scene {
     pub model: ModelConfig,
     /// The time scheme.
     #[serde(default)]
-    pub time: TimeConfig,
+    pub time: TimeSteppingConfig,
     /// Probes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub probe: Vec<ProbeEntry>,
-    /// FramesConfig for ParaView.
+    pub probe: Vec<ProbeConfig>,
+    /// FramesChoice for ParaView.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub frames: Option<FramesConfig>,
+    pub frames: Option<FramesChoice>,
     /// Checkpoints.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<CheckpointConfig>,
@@ -163,7 +163,7 @@ pub struct Scene {
     pub statistic: Vec<StatisticConfig>,
     /// Where each key was written.
     #[serde(skip)]
-    origin: Origin,
+    origin: SceneSource,
 }
 
 impl Scene {
@@ -188,13 +188,13 @@ impl Scene {
             force: Vec::new(),
             contact: Vec::new(),
             model: ModelConfig::default(),
-            time: TimeConfig::default(),
+            time: TimeSteppingConfig::default(),
             probe: Vec::new(),
             frames: None,
             checkpoint: None,
             check: Vec::new(),
             statistic: Vec::new(),
-            origin: Origin::default(),
+            origin: SceneSource::default(),
         }
     }
 
@@ -225,19 +225,19 @@ impl Scene {
     }
 
     /// The same scene with a probe more.
-    pub fn probe(mut self, probe: ProbeEntry) -> Self {
+    pub fn probe(mut self, probe: ProbeConfig) -> Self {
         self.probe.push(probe);
         self
     }
 
     /// The same scene without frames.
     pub fn without_frames(mut self) -> Self {
-        self.frames = Some(FramesConfig::Off);
+        self.frames = Some(FramesChoice::Off);
         self
     }
 
     /// The same scene with a damping zone more.
-    pub fn damped(mut self, zone: SpongeLayerConfig) -> Self {
+    pub fn with_damping(mut self, zone: SpongeLayerConfig) -> Self {
         self.damping.push(zone);
         self
     }
@@ -286,7 +286,7 @@ impl Scene {
 
     /// Reads a scene from `text`; messages call it `file`.
     fn from_toml(text: &str, file: &str, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
-        let (mut scene, origin): (Self, Origin) = toml_source::read(text, file, folder, sets)?;
+        let (mut scene, origin): (Self, SceneSource) = toml_source::read(text, file, folder, sets)?;
         scene.origin = origin;
         Ok(scene)
     }
@@ -298,10 +298,10 @@ impl Scene {
 
     /// An error of a simulation that this scene was built into, with the file and the line of the key that it names, if it
     /// names one.
-    pub fn place(&self, mut error: Error) -> Error {
-        match error.place.take() {
-            Some(place) if place.file.is_empty() => self.origin.place(error, &place.key),
-            place => Error { place, ..error },
+    pub fn with_location(&self, mut error: Error) -> Error {
+        match error.location.take() {
+            Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
+            place => Error { location: place, ..error },
         }
     }
 

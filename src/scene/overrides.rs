@@ -7,15 +7,20 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use super::toml_source::{CHOICES, Marks, under};
-use crate::error::{Error, Result, nearest};
+use super::toml_source::{CHOICES, OverrideLocations, subkey};
+use crate::error::{Error, Result, nearest_name};
 
 /// Puts the value written as `text` at `key`, every word of it at a place of `marks`; what is no TOML value is a word.
 /// Returns the key with numbers in place of names.
 ///
 /// # Errors
 /// `Scene` if `key` is no key, or names an entry of a list that is not there.
-pub(super) fn set<'i>(root: &mut DeTable<'i>, key: &'i str, text: &'i str, marks: &mut Marks) -> Result<String> {
+pub(super) fn apply_override<'i>(
+    root: &mut DeTable<'i>,
+    key: &'i str,
+    text: &'i str,
+    marks: &mut OverrideLocations,
+) -> Result<String> {
     let parts: Vec<&str> = key.split('.').collect();
     if parts.iter().any(|part| part.is_empty()) {
         return Err(Error::scene(format!("\"{key}\" is not a key")).help("write  --set model.h_over_dp=1.5"));
@@ -33,31 +38,31 @@ fn put_in<'i>(
     parts: &[&'i str],
     path: &str,
     value: DeValue<'i>,
-    marks: &mut Marks,
+    marks: &mut OverrideLocations,
 ) -> Result<String> {
-    let path = under(path, parts[0]);
+    let path = subkey(path, parts[0]);
     let place = marks.place(&path);
     let nothing = Spanned::new(place.clone(), DeValue::Table(DeTable::new()));
     let here = table.entry(Spanned::new(place, Cow::Borrowed(parts[0]))).or_insert_with(|| nothing);
-    put(here, &parts[1..], path, value, marks)
+    insert_value(here, &parts[1..], path, value, marks)
 }
 
-fn put<'i>(
+fn insert_value<'i>(
     here: &mut Spanned<DeValue<'i>>,
     parts: &[&'i str],
     path: String,
     value: DeValue<'i>,
-    marks: &mut Marks,
+    marks: &mut OverrideLocations,
 ) -> Result<String> {
     let Some(part) = parts.first() else {
-        *here = placed(value, &path, marks);
+        *here = with_locations(value, &path, marks);
         return Ok(path);
     };
     let choice = CHOICES.contains(&path.as_str());
     match here.get_mut() {
         DeValue::Array(items) => {
-            let number = pick(&path, items, part)?;
-            put(&mut items.as_mut()[number], &parts[1..], under(&path, number), value, marks)
+            let number = entry_index(&path, items, part)?;
+            insert_value(&mut items.as_mut()[number], &parts[1..], subkey(&path, number), value, marks)
         }
         DeValue::Table(inner) if !choice || inner.contains_key(*part) => put_in(inner, parts, &path, value, marks),
         _ => {
@@ -70,33 +75,33 @@ fn put<'i>(
 }
 
 /// The number of the entry of a list that `word` names, by its `name` or by its number.
-fn pick(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usize> {
+fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usize> {
     let name = |item: &Spanned<DeValue>| {
         item.get_ref().as_table().and_then(|t| t.get("name")).and_then(|n| n.get_ref().as_str()).map(String::from)
     };
     let names: Vec<String> = items.iter().enumerate().map(|(i, item)| name(item).unwrap_or(i.to_string())).collect();
     let by_number = || word.parse::<usize>().ok().filter(|i| *i < items.len());
     names.iter().position(|n| n == word).or_else(by_number).ok_or_else(|| {
-        let guess = nearest(word, names.iter().map(String::as_str));
+        let guess = nearest_name(word, names.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
         Error::scene(format!("no {path} is called \"{word}\"{guess}")).help(format!("known: {}", names.join(", ")))
     })
 }
 
 /// The value of `key` with every word of it at a place of its own.
-fn placed<'i>(value: DeValue<'i>, key: &str, marks: &mut Marks) -> Spanned<DeValue<'i>> {
+fn with_locations<'i>(value: DeValue<'i>, key: &str, marks: &mut OverrideLocations) -> Spanned<DeValue<'i>> {
     let place = marks.place(key);
     let value = match value {
         DeValue::Array(items) => {
             let each = items.into_iter().enumerate();
-            DeValue::Array(each.map(|(i, item)| placed(item.into_inner(), &under(key, i), marks)).collect())
+            DeValue::Array(each.map(|(i, item)| with_locations(item.into_inner(), &subkey(key, i), marks)).collect())
         }
         DeValue::Table(table) => {
             let mut inner = DeTable::new();
             for (word, value) in table {
-                let key = under(key, word.get_ref());
+                let key = subkey(key, word.get_ref());
                 let word = Spanned::new(marks.place(&key), word.into_inner());
-                inner.insert(word, placed(value.into_inner(), &key, marks));
+                inner.insert(word, with_locations(value.into_inner(), &key, marks));
             }
             DeValue::Table(inner)
         }

@@ -8,13 +8,13 @@ use serde::{
     de::{MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
 };
 
-use super::{BoxConfig, Numbers, ProbeKind, ProbeWords};
-use crate::plan::{ListWords, Surface};
+use super::{BoxConfig, NumberOrArray, ProbeKind, ProbePlan};
+use crate::plan::{ContactListPlan, GaugeSurface};
 
 /// One `[[probe]]`: exactly one of the words that say what it looks at.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct ProbeEntry {
+pub struct ProbeConfig {
     /// Stem of the file it writes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -41,22 +41,22 @@ pub struct ProbeEntry {
     pub rope: Option<String>,
     /// Surface elevation at a place, or at a row of them.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub elevation: Option<GaugeWords>,
+    pub elevation: Option<GaugeConfig>,
     /// Velocity at a point or a row of points, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<PointWords>,
+    pub velocity: Option<PointsConfig>,
     /// Pressure at a point or a row of points, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub pressure: Option<PointWords>,
+    pub pressure: Option<PointsConfig>,
     /// Flow through a section.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub flow: Option<SectionWords>,
+    pub flow: Option<SectionConfig>,
     /// How far water runs up the solid of this name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub runup: Option<String>,
     /// Force and pressure on a part of a solid's face.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub patch: Option<PatchWords>,
+    pub patch: Option<PatchConfig>,
     /// The leading edge of the water along x.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("const" = true))]
@@ -84,7 +84,7 @@ pub struct ProbeEntry {
 /// Where elevation gauges stand: x in 2-D, x and y in 3-D, or a row of them; and which surface they tell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct GaugeWords {
+pub struct GaugeConfig {
     /// m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
@@ -93,10 +93,10 @@ pub struct GaugeWords {
     pub y: Option<f64>,
     /// Where a row begins, m: a number in 2-D, two in 3-D.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<Numbers>,
+    pub from: Option<NumberOrArray>,
     /// Where it ends, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub to: Option<Numbers>,
+    pub to: Option<NumberOrArray>,
     /// How many gauges it has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<usize>,
@@ -105,23 +105,23 @@ pub struct GaugeWords {
     pub spacing: Option<f64>,
     /// Which surface, where there are several above one another.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub surface: Option<Surface>,
+    pub surface: Option<GaugeSurface>,
 }
 
 /// A point, or a row of them.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(untagged)]
-pub enum PointWords {
+pub enum PointsConfig {
     /// One, m.
     At(Vec<f64>),
     /// Several.
-    Row(RowWords),
+    Row(PointRowConfig),
 }
 
 /// Points in a row, evenly spaced: `count` of them, or as many as there are `spacing` apart.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RowWords {
+pub struct PointRowConfig {
     /// The first, m.
     pub from: Vec<f64>,
     /// The last, m; with `spacing` none lies beyond.
@@ -137,7 +137,7 @@ pub struct RowWords {
 /// A section that water flows through: a segment in 2-D, a rectangle upright to an axis in 3-D.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SectionWords {
+pub struct SectionConfig {
     /// One end or corner, m.
     pub from: Vec<f64>,
     /// The opposite one, m.
@@ -147,7 +147,7 @@ pub struct SectionWords {
 /// A part of a solid's face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PatchWords {
+pub struct PatchConfig {
     /// The solid.
     pub solid: String,
     /// The box in which that part lies at the start.
@@ -155,7 +155,7 @@ pub struct PatchWords {
     pub corners: BoxConfig,
 }
 
-impl Serialize for PointWords {
+impl Serialize for PointsConfig {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::At(at) => at.serialize(serializer),
@@ -164,35 +164,40 @@ impl Serialize for PointWords {
     }
 }
 
-impl<'de> Deserialize<'de> for PointWords {
+impl<'de> Deserialize<'de> for PointsConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Words;
         impl<'de> Visitor<'de> for Words {
-            type Value = PointWords;
+            type Value = PointsConfig;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a point, or a row of points as in {{ from = [..], to = [..], count = 5 }}")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PointWords, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(PointWords::At)
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PointsConfig, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(PointsConfig::At)
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PointWords, A::Error> {
-                RowWords::deserialize(MapAccessDeserializer::new(map)).map(PointWords::Row)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PointsConfig, A::Error> {
+                PointRowConfig::deserialize(MapAccessDeserializer::new(map)).map(PointsConfig::Row)
             }
         }
         deserializer.deserialize_any(Words)
     }
 }
 
-impl GaugeWords {
+impl GaugeConfig {
     /// The row that these words mean; none if they name a single place.
-    pub(super) fn row(&self) -> Option<RowWords> {
-        let list = |numbers: &Option<Numbers>| match numbers {
-            Some(Numbers::One(x)) => vec![*x],
-            Some(Numbers::List(list)) => list.clone(),
+    pub(super) fn row(&self) -> Option<PointRowConfig> {
+        let list = |numbers: &Option<NumberOrArray>| match numbers {
+            Some(NumberOrArray::One(x)) => vec![*x],
+            Some(NumberOrArray::List(list)) => list.clone(),
             _ => Vec::new(),
         };
         let said = self.from.is_some() || self.to.is_some() || self.count.is_some() || self.spacing.is_some();
-        said.then(|| RowWords { from: list(&self.from), to: list(&self.to), count: self.count, spacing: self.spacing })
+        said.then(|| PointRowConfig {
+            from: list(&self.from),
+            to: list(&self.to),
+            count: self.count,
+            spacing: self.spacing,
+        })
     }
 
     fn places(&self) -> Vec<Vec<f64>> {
@@ -203,7 +208,7 @@ impl GaugeWords {
     }
 }
 
-impl PointWords {
+impl PointsConfig {
     fn places(&self) -> Vec<Vec<f64>> {
         match self {
             Self::At(at) => vec![at.clone()],
@@ -212,14 +217,14 @@ impl PointWords {
     }
 }
 
-impl RowWords {
+impl PointRowConfig {
     /// How far the last is from the first, m.
     pub(super) fn length(&self) -> f64 {
         self.from.iter().zip(&self.to).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt()
     }
 
     /// How many there are.
-    pub(super) fn number(&self) -> usize {
+    pub(super) fn point_count(&self) -> usize {
         match (self.count, self.spacing) {
             (Some(count), _) => count,
             // A length that should be a multiple may lie a few last bits below it.
@@ -235,11 +240,11 @@ impl RowWords {
             (None, spacing) => spacing.unwrap_or_default() / self.length(),
         };
         let at = |i: usize| self.from.iter().zip(&self.to).map(|(a, b)| a + (b - a) * (i as f64 * step)).collect();
-        (0..self.number()).map(at).collect()
+        (0..self.point_count()).map(at).collect()
     }
 }
 
-impl ProbeEntry {
+impl ProbeConfig {
     /// The motion of the solid of this name.
     pub fn motion(solid: impl Into<String>) -> Self {
         Self { motion: Some(solid.into()), ..Self::default() }
@@ -261,8 +266,8 @@ impl ProbeEntry {
     }
 
     /// The probe of a scene with its defaults filled in, for the plan of a run that ends at `until` (s); none of a list.
-    pub(super) fn planned(&self, until: f64) -> Option<ProbeWords> {
-        self.contacts.is_none().then(|| ProbeWords {
+    pub(super) fn to_plan(&self, until: f64) -> Option<ProbePlan> {
+        self.contacts.is_none().then(|| ProbePlan {
             name: self.name.clone().unwrap_or_default(),
             what: self.kind(),
             every: self.every.unwrap_or(until),
@@ -271,9 +276,9 @@ impl ProbeEntry {
     }
 
     /// The list of contacts that it is, with its defaults filled in; none of a probe that writes a series.
-    pub(super) fn listed(&self, until: f64) -> Option<ListWords> {
+    pub(super) fn to_contact_list(&self, until: f64) -> Option<ContactListPlan> {
         let name = self.name.clone().unwrap_or_default();
-        self.contacts.map(|_| ListWords { name, every: self.every.unwrap_or(until) })
+        self.contacts.map(|_| ContactListPlan { name, every: self.every.unwrap_or(until) })
     }
 
     fn kind(&self) -> ProbeKind {
@@ -288,9 +293,9 @@ impl ProbeEntry {
             }
             Self { velocity: Some(at), .. } => ProbeKind::Velocity { places: at.places() },
             Self { pressure: Some(at), .. } => ProbeKind::Pressure { places: at.places() },
-            Self { flow: Some(SectionWords { from, to }), .. } => ProbeKind::Flow { from, to },
+            Self { flow: Some(SectionConfig { from, to }), .. } => ProbeKind::Flow { from, to },
             Self { runup: Some(solid), .. } => ProbeKind::Runup { solid },
-            Self { patch: Some(PatchWords { solid, corners }), .. } => {
+            Self { patch: Some(PatchConfig { solid, corners }), .. } => {
                 ProbeKind::Patch { solid, min: corners.min, max: corners.max }
             }
             Self { front: Some(_), .. } => ProbeKind::Front,
@@ -302,7 +307,7 @@ impl ProbeEntry {
     }
 
     /// The words that say what it looks at.
-    pub(super) fn kinds(&self) -> Vec<&'static str> {
+    pub(super) fn named_kinds(&self) -> Vec<&'static str> {
         let given = [
             ("motion", self.motion.is_some()),
             ("force", self.force.is_some()),
@@ -332,7 +337,7 @@ mod tests {
 
     #[test]
     fn a_row_goes_from_its_first_place_to_its_last_and_never_beyond() {
-        let row = |count, spacing| RowWords { from: vec![0.0], to: vec![1.0], count, spacing };
+        let row = |count, spacing| PointRowConfig { from: vec![0.0], to: vec![1.0], count, spacing };
         assert_eq!(row(Some(3), None).places(), [[0.0], [0.5], [1.0]]);
         assert_eq!(row(None, Some(0.1)).places().len(), 11, "a multiple that round-off would miss");
         assert_eq!(row(None, Some(0.4)).places(), [[0.0], [0.4], [0.8]]);

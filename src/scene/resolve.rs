@@ -3,30 +3,30 @@
 use std::fmt;
 
 use super::{
-    FramesConfig, Scene,
+    FramesChoice, Scene,
     context::{Context, Defaults},
     section::{
-        analysis::{self, Series},
+        analysis::{self, ProbeSeries},
         contact,
         joint::verify_names,
         solid,
     },
-    toml_source::Source,
+    toml_source::ValueSource,
 };
-use crate::{error::Result, model::Model, plan::Surface};
+use crate::{error::Result, model::Model, plan::GaugeSurface};
 
 /// A value in force and its source.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resolved {
+pub struct ResolvedValue {
     /// The key, as in `solid.box.free.density`.
     pub key: String,
     /// The value, as TOML.
     pub value: String,
     /// Its source.
-    pub source: Source,
+    pub source: ValueSource,
 }
 
-impl fmt::Display for Resolved {
+impl fmt::Display for ResolvedValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} = {}  ({})", self.key, self.value, self.source)
     }
@@ -57,21 +57,21 @@ impl Scene {
     fn verify(&self) -> Result<()> {
         let ctx = &self.context();
         if !(2..=3).contains(&self.dimension) {
-            return Err(ctx.wrong("dimension", format!("dimension is 2 or 3, not {}", self.dimension)));
+            return Err(ctx.error_at("dimension", format!("dimension is 2 or 3, not {}", self.dimension)));
         }
-        ctx.positive("dp", Some(self.dp))?;
-        ctx.positive("until", Some(self.until))?;
+        ctx.require_positive("dp", Some(self.dp))?;
+        ctx.require_positive("until", Some(self.until))?;
         if let Some(gravity) = &self.gravity {
-            ctx.vector("gravity", gravity)?;
+            ctx.require_dimension("gravity", gravity)?;
         }
         if let Some(jitter) = self.jitter.filter(|s| !(0.0..=0.1).contains(s)) {
-            return Err(ctx.wrong("jitter", format!("particles start 0 to 0.1 dp off their places, not {jitter}")));
+            return Err(ctx.error_at("jitter", format!("particles start 0 to 0.1 dp off their places, not {jitter}")));
         }
         self.domain.iter().try_for_each(|domain| domain.verify(ctx, "domain"))?;
         self.periodic.iter().try_for_each(|periodic| periodic.verify(ctx))?;
         self.guard.iter().try_for_each(|guard| guard.verify(ctx))?;
         if self.water.is_empty() {
-            return Err(ctx.wrong("water", "the scene has no water"));
+            return Err(ctx.error_at("water", "the scene has no water"));
         }
         each(&self.water, "water", |water, key| water.verify(ctx, key))?;
         each(&self.damping, "damping", |layer, key| layer.verify(ctx, key, self.periodic.as_ref()))?;
@@ -91,7 +91,7 @@ impl Scene {
         self.verify_probes()?;
         self.frames.iter().try_for_each(|frames| frames.verify(ctx))?;
         self.checkpoint.iter().try_for_each(|checkpoint| checkpoint.verify(ctx))?;
-        let series = Series { probes: &self.probe, names: &self.probe_names() };
+        let series = ProbeSeries { probes: &self.probe, names: &self.probe_names() };
         each(&self.check, "check", |check, key| check.verify(ctx, key, &series))?;
         each(&self.statistic, "statistic", |statistic, key| statistic.verify(ctx, key, &series))
     }
@@ -100,7 +100,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the scene is wrong.
-    pub(super) fn filled(&self) -> Result<(Self, Defaults)> {
+    pub(super) fn with_defaults(&self) -> Result<(Self, Defaults)> {
         self.verify()?;
         let (mut scene, mut defaults) = (self.clone(), Defaults::default());
         let (ctx, fills) = (&self.context(), &mut defaults);
@@ -139,11 +139,11 @@ impl Scene {
             fills.fill(format!("{key}.every"), &mut probe.every, self.until / 1000.0, "1000 readings a run");
             if let Some(gauge) = &mut probe.elevation {
                 let why = "a jet counts, spray does not";
-                fills.fill(format!("{key}.elevation.surface"), &mut gauge.surface, Surface::Highest, why);
+                fills.fill(format!("{key}.elevation.surface"), &mut gauge.surface, GaugeSurface::Highest, why);
             }
         }
         let particles = scene.water_particles();
-        scene.frames.get_or_insert(FramesConfig::On(Default::default())).fill(ctx, fills, particles);
+        scene.frames.get_or_insert(FramesChoice::On(Default::default())).fill(ctx, fills, particles);
         scene.checkpoint.get_or_insert_default().fill(fills);
         for (i, check) in scene.check.iter_mut().enumerate() {
             check.fill(fills, &format!("check.{i}"));
@@ -158,8 +158,8 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, or a file that gives a shape is missing or wrong.
-    pub fn resolve(&self) -> Result<Vec<Resolved>> {
-        let (scene, defaults) = self.filled()?;
+    pub fn resolve(&self) -> Result<Vec<ResolvedValue>> {
+        let (scene, defaults) = self.with_defaults()?;
         let values = toml::Table::try_from(&scene).unwrap_or_default();
         let mut lines = Vec::new();
         for section in ORDER {
@@ -167,10 +167,10 @@ impl Scene {
                 self.flatten(section.into(), value, &defaults, &mut lines);
             }
         }
-        let derived = |key: &str, value: f64, why: &str| Resolved {
+        let derived = |key: &str, value: f64, why: &str| ResolvedValue {
             key: key.into(),
             value: format!("{value}"),
-            source: Source::Default(why.into()),
+            source: ValueSource::Default(why.into()),
         };
         let still = scene.still_water()?;
         let ctx = &scene.context();
@@ -194,7 +194,7 @@ impl Scene {
         Ok(lines)
     }
 
-    fn flatten(&self, key: String, value: &toml::Value, defaults: &Defaults, lines: &mut Vec<Resolved>) {
+    fn flatten(&self, key: String, value: &toml::Value, defaults: &Defaults, lines: &mut Vec<ResolvedValue>) {
         match value {
             toml::Value::Table(table) if !table.is_empty() => {
                 table.iter().for_each(|(part, value)| self.flatten(format!("{key}.{part}"), value, defaults, lines));
@@ -207,13 +207,13 @@ impl Scene {
             }
             leaf => {
                 let source = self.source(&key, defaults);
-                lines.push(Resolved { key: self.origin.shown(&key), value: leaf.to_string(), source });
+                lines.push(ResolvedValue { key: self.origin.key_with_names(&key), value: leaf.to_string(), source });
             }
         }
     }
 
     /// The source of `key`: the default above it, its line, or else the default of the law or shape.
-    fn source(&self, key: &str, defaults: &Defaults) -> Source {
+    fn source(&self, key: &str, defaults: &Defaults) -> ValueSource {
         let above = |key: &str| key.rsplit_once('.').map(|(parent, _)| parent.to_string());
         let mut place = Some(key.to_string());
         while let Some(at) = place {
@@ -227,18 +227,18 @@ impl Scene {
             }
             place = above(&at);
         }
-        if self.origin.file.is_empty() { Source::Program } else { self.inherited(key) }
+        if self.origin.file.is_empty() { ValueSource::Program } else { self.inherited(key) }
     }
 
     /// The source of a value that was not written itself, but whose table may have been.
-    fn inherited(&self, key: &str) -> Source {
+    fn inherited(&self, key: &str) -> ValueSource {
         let written = |parent: &str| self.origin.source(parent);
         match key.rsplit_once('.') {
-            Some((parent, "points")) => written(parent).unwrap_or(Source::Program),
+            Some((parent, "points")) => written(parent).unwrap_or(ValueSource::Program),
             Some((parent, _)) if written(parent).is_some() => {
-                Source::Default("of this choice, see docs/scene.md".into())
+                ValueSource::Default("of this choice, see docs/scene.md".into())
             }
-            _ => Source::Default("see docs/scene.md".into()),
+            _ => ValueSource::Default("see docs/scene.md".into()),
         }
     }
 }

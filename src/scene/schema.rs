@@ -9,8 +9,17 @@ use serde_json::{Map, Value, json};
 use super::Scene;
 
 /// Types whose choices may be written as bare words, as `viscosity = "artificial"`.
-const CHOICES: [&str; 9] =
-    ["Kernel", "Gradient", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "PairLoopKind", "Scheme"];
+const CHOICES: [&str; 9] = [
+    "KernelKind",
+    "PressureGradient",
+    "Viscosity",
+    "Diffusion",
+    "Shifting",
+    "Walls",
+    "Slip",
+    "PairLoopKind",
+    "TimeScheme",
+];
 
 /// A type, and which of its keys are those of which exactly one is said.
 type Kinds = (&'static str, fn(&str) -> bool);
@@ -18,9 +27,9 @@ type Kinds = (&'static str, fn(&str) -> bool);
 /// What a solid, a body's weight, a water's room, a probe and a statistic are.
 const KINDS: [Kinds; 5] = [
     ("SolidConfig", |key| matches!(key, "fixed" | "driven" | "free")),
-    ("FreeConfig", |key| matches!(key, "density" | "mass")),
+    ("FreeBodyConfig", |key| matches!(key, "density" | "mass")),
     ("FillConfig", |key| matches!(key, "box" | "shape")),
-    ("ProbeEntry", |key| !matches!(key, "name" | "every" | "average")),
+    ("ProbeConfig", |key| !matches!(key, "name" | "every" | "average")),
     ("StatisticConfig", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
 ];
 
@@ -30,21 +39,21 @@ pub fn schema() -> Value {
     let mut schema = settings.into_generator().into_root_schema_for::<Scene>().to_value();
     schema["title"] = json!("A scene of pontoon");
     required_only(&mut schema);
-    second_names(&mut schema);
+    expand_aliases(&mut schema);
     if let Some(types) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
         types
             .iter_mut()
             .filter(|(name, _)| CHOICES.contains(&name.as_str()))
-            .for_each(|(_, choice)| bare_words(choice));
+            .for_each(|(_, choice)| allow_bare_words(choice));
         for (name, is_kind) in KINDS {
-            types.get_mut(name).into_iter().for_each(|words| one_of(words, is_kind));
+            types.get_mut(name).into_iter().for_each(|words| require_one_of(words, is_kind));
         }
     }
     schema
 }
 
 /// Says of a type that exactly one of the keys that are its kinds is there.
-fn one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
+fn require_one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
     let keys = words["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
     let kinds: Value = keys.filter(|key| is_kind(key)).map(|key| json!({ "required": [key] })).collect();
     words["oneOf"] = kinds;
@@ -80,7 +89,7 @@ fn required_only(schema: &mut Value) {
 }
 
 /// Takes a word's second name, which its type has noted as `also` beside its alias, for as good as its first.
-fn second_names(schema: &mut Value) {
+fn expand_aliases(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
             if let Some(also) = map.remove("also")
@@ -88,15 +97,15 @@ fn second_names(schema: &mut Value) {
             {
                 map.insert("enum".into(), json!([word, also]));
             }
-            map.values_mut().for_each(second_names);
+            map.values_mut().for_each(expand_aliases);
         }
-        Value::Array(items) => items.iter_mut().for_each(second_names),
+        Value::Array(items) => items.iter_mut().for_each(expand_aliases),
         _ => {}
     }
 }
 
 /// Adds to a choice of several that each of them may be written as a bare word, or as a table of nothing.
-fn bare_words(choice: &mut Value) {
+fn allow_bare_words(choice: &mut Value) {
     let mut tables = Map::new();
     let kinds = choice.get("oneOf").and_then(Value::as_array).into_iter().flatten().chain([&*choice]);
     for kind in kinds {

@@ -42,14 +42,14 @@ pub fn outline(path: &Path, id: Option<&str>, unit: f64, tolerance: f64) -> Resu
     let bad = |why: String| {
         refuse(format!("the path cannot be read: {why}"), "draw one closed path, and export it as plain SVG")
     };
-    let turn = placed(&node).map_err(bad)?;
-    let path = turn * elements(&node).map_err(bad)?;
+    let turn = full_transform(&node).map_err(bad)?;
+    let path = turn * element_path(&node).map_err(bad)?;
     let size = path.control_box();
     let finest = tolerance / unit;
     if !path.is_finite() || size.width().max(size.height()) > LARGEST * finest {
         return Err(bad("its coordinates are not finite, or far too large for dp".into()));
     }
-    let mut points = flat(&path, finest).map_err(bad)?;
+    let mut points = flattened(&path, finest).map_err(bad)?;
     points.iter_mut().for_each(|p| *p = [p[0] * unit, -p[1] * unit]);
     let n = points.len();
     let twice: f64 = (0..n).map(|i| (points[i], points[(i + 1) % n])).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
@@ -60,7 +60,7 @@ pub fn outline(path: &Path, id: Option<&str>, unit: f64, tolerance: f64) -> Resu
 }
 
 /// The transforms of the element and all above it, as one.
-fn placed(node: &roxmltree::Node) -> std::result::Result<Affine, String> {
+fn full_transform(node: &roxmltree::Node) -> std::result::Result<Affine, String> {
     let mut all = Affine::IDENTITY;
     for transform in node.ancestors().filter_map(|above| above.attribute("transform")) {
         let t: svgtypes::Transform = transform.parse().map_err(|why: svgtypes::Error| why.to_string())?;
@@ -70,7 +70,7 @@ fn placed(node: &roxmltree::Node) -> std::result::Result<Affine, String> {
 }
 
 /// What the element draws.
-fn elements(node: &roxmltree::Node) -> std::result::Result<BezPath, String> {
+fn element_path(node: &roxmltree::Node) -> std::result::Result<BezPath, String> {
     if let Some(points) = node.attribute("points") {
         let mut path = BezPath::new();
         for (i, (x, y)) in svgtypes::PointsParser::from(points).enumerate() {
@@ -83,7 +83,7 @@ fn elements(node: &roxmltree::Node) -> std::result::Result<BezPath, String> {
 }
 
 /// The corners of the closed path within `tolerance`, no two neighbours the same.
-fn flat(path: &BezPath, tolerance: f64) -> std::result::Result<Vec<[f64; 2]>, String> {
+fn flattened(path: &BezPath, tolerance: f64) -> std::result::Result<Vec<[f64; 2]>, String> {
     let (mut points, mut starts, mut closed) = (Vec::new(), 0, false);
     kurbo::flatten(path, tolerance, |element| match element {
         PathEl::MoveTo(p) => {

@@ -3,8 +3,8 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::{
-    error::{Error, Result, nearest},
-    math::time_series::Series,
+    error::{Error, Result, nearest_name},
+    math::time_series::TimeSeries,
 };
 
 /// Largest table, B.
@@ -14,7 +14,7 @@ const MOST_BYTES: u64 = 256 << 20;
 ///
 /// # Errors
 /// `Scene` if the name, or a link, leads out of the folder, or no file is there.
-pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
+pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     let path = Path::new(name);
     if name.is_empty() || name.contains('\\') || !path.components().all(inside) {
@@ -22,7 +22,7 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
             .help("put the file beside scene.toml and give its name alone"));
     }
     let full = folder.join(path);
-    if !within(folder, &full) {
+    if !is_within(folder, &full) {
         return Err(Error::scene(format!("\"{name}\" is a link that leads out of the scene's folder"))
             .help("copy the file itself there"));
     }
@@ -31,7 +31,7 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
     }
     if !full.is_file() {
         let others = neighbours(folder, path);
-        let guess = nearest(name, others.iter().map(String::as_str));
+        let guess = nearest_name(name, others.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
         return Err(Error::scene(format!("there is no file \"{name}\" beside the scene{guess}"))
             .help("files that a scene names are looked for in the folder of the scene"));
@@ -40,7 +40,7 @@ pub fn beside(folder: &Path, name: &str) -> Result<PathBuf> {
 }
 
 /// Whether what is at `full`, links followed, lies in `folder`; of what is not there, nothing leads out.
-pub fn within(folder: &Path, full: &Path) -> bool {
+pub fn is_within(folder: &Path, full: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     match (folder.canonicalize(), full.canonicalize()) {
         (Ok(folder), Ok(full)) => full.starts_with(folder),
@@ -62,7 +62,7 @@ fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is too large.
-pub fn header(path: &Path) -> Result<Vec<String>> {
+pub fn read_header(path: &Path) -> Result<Vec<String>> {
     let mut reader = reader(path)?;
     let header = reader.headers().map_err(|e| Error::file(path, e))?;
     Ok(header.iter().map(String::from).collect())
@@ -82,13 +82,13 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number: says which.
-pub fn columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
+pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let mut reader = reader(path)?;
     let file = path.display().to_string();
     let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
     let number = |name: &&str| {
         header.iter().position(|column| column == *name).ok_or_else(|| {
-            let guess = nearest(name, header.iter());
+            let guess = nearest_name(name, header.iter());
             let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
             let known: Vec<&str> = header.iter().collect();
             Error::scene(format!("{file} has no column \"{name}\"{guess}"))
@@ -118,9 +118,9 @@ pub fn columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
 ///
 /// # Errors
 /// As [`columns`], and as [`Series::new`].
-pub fn series(path: &Path, time: &str, column: &str) -> Result<Series> {
-    let mut both = columns(path, &[time, column])?;
+pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> {
+    let mut both = read_columns(path, &[time, column])?;
     let x = both.pop().unwrap_or_default();
     let t = both.pop().unwrap_or_default();
-    Series::new(t, x).map_err(|e| Error::scene(format!("{}, {column}: {}", path.display(), e.what)))
+    TimeSeries::new(t, x).map_err(|e| Error::scene(format!("{}, {column}: {}", path.display(), e.message)))
 }

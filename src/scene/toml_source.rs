@@ -36,7 +36,7 @@ pub(super) const CHOICES: [&str; 9] = [
 
 /// Where the keys of a scene were written. Scenes of equal content are equal wherever they were written.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Origin {
+pub(super) struct SceneSource {
     /// The file as the user named it; empty if a program built the scene.
     pub file: String,
     /// Where the files that the scene names are looked for.
@@ -65,7 +65,7 @@ pub struct Renamed {
     /// The name that replaces it.
     pub new: &'static str,
     /// Where it is written.
-    pub source: Source,
+    pub source: ValueSource,
 }
 
 impl fmt::Display for Renamed {
@@ -81,7 +81,7 @@ const RENAMED_KEYS: [(&str, &str, &str); 2] = [("", "scatter", "jitter"), ("soli
 /// Old names of values: the key, the old value, the new one.
 const RENAMED_VALUES: [(&str, &str, &str); 1] = [("model.walls", "settling", "relaxed_adami")];
 
-impl PartialEq for Origin {
+impl PartialEq for SceneSource {
     fn eq(&self, _: &Self) -> bool {
         true
     }
@@ -89,7 +89,7 @@ impl PartialEq for Origin {
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum ValueSource {
     /// The default, with its reason.
     Default(String),
     /// This line of the scene.
@@ -100,7 +100,7 @@ pub enum Source {
     Program,
 }
 
-impl fmt::Display for Source {
+impl fmt::Display for ValueSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Default(reason) => write!(f, "default: {reason}"),
@@ -111,39 +111,39 @@ impl fmt::Display for Source {
     }
 }
 
-impl Origin {
+impl SceneSource {
     /// The place of `key`, or of the nearest key above it that was written, put on `error`.
-    pub fn place(&self, error: Error, key: &str) -> Error {
+    pub fn with_location(&self, error: Error, key: &str) -> Error {
         if self.is_set(key) {
-            return error.at("--set", None, self.shown(key));
+            return error.at("--set", None, self.key_with_names(key));
         }
         if self.file.is_empty() {
-            return error.at("a scene built by a program", None, self.shown(key));
+            return error.at("a scene built by a program", None, self.key_with_names(key));
         }
         let mut above = key;
         while !self.places.contains_key(above) && above.contains('.') {
             above = above.rsplit_once('.').map_or("", |(parent, _)| parent);
         }
         let at = self.places.get(above).map(|&start| line_column(&self.text, start));
-        error.at(self.file.clone(), at, self.shown(key))
+        error.at(self.file.clone(), at, self.key_with_names(key))
     }
 
     /// The source of `key`; `None` if it is not written.
-    pub fn source(&self, key: &str) -> Option<Source> {
+    pub fn source(&self, key: &str) -> Option<ValueSource> {
         if self.is_set(key) {
-            return Some(Source::Set);
+            return Some(ValueSource::Set);
         }
         if self.file.is_empty() {
             return None;
         }
-        self.places.get(key).map(|start| Source::Line(self.lines.partition_point(|line| line <= start)))
+        self.places.get(key).map(|start| ValueSource::Line(self.lines.partition_point(|line| line <= start)))
     }
 
     /// Notes that `old` stands at the byte `start` of the text, or in an override, in place of `new`.
     fn note(&mut self, key: &str, old: &'static str, new: &'static str, start: usize) {
         let source = match start < self.text.len() {
-            true => Source::Line(line_column(&self.text, start).0),
-            false => Source::Set,
+            true => ValueSource::Line(line_column(&self.text, start).0),
+            false => ValueSource::Set,
         };
         self.renamed.push(Renamed { key: key.into(), old, new, source });
     }
@@ -154,7 +154,7 @@ impl Origin {
     }
 
     /// `key` with the names of solids in place of their numbers.
-    pub fn shown(&self, key: &str) -> String {
+    pub fn key_with_names(&self, key: &str) -> String {
         let mut parts: Vec<&str> = key.split('.').collect();
         if let ["solid", number, ..] = parts[..]
             && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.names.get(i))
@@ -173,8 +173,8 @@ pub(super) fn read<T: DeserializeOwned>(
     file: &str,
     folder: &Path,
     sets: &[(String, String)],
-) -> Result<(T, Origin)> {
-    let mut origin = Origin { file: file.into(), folder: folder.into(), ..Origin::default() };
+) -> Result<(T, SceneSource)> {
+    let mut origin = SceneSource { file: file.into(), folder: folder.into(), ..SceneSource::default() };
     let sets = current_names(sets, &mut origin);
     let mut root = DeTable::parse(text).map_err(|e| {
         let at = e.span().map(|span| line_column(text, span.start));
@@ -188,25 +188,25 @@ pub(super) fn read<T: DeserializeOwned>(
     let mut entries = Vec::new();
     walk(root.get_ref(), "", &mut entries);
     origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
-    spell_out(root.get_mut());
-    let mut marks = Marks { first: text.len() + 1, keys: Vec::new() };
+    expand_bare_choices(root.get_mut());
+    let mut marks = OverrideLocations { first: text.len() + 1, keys: Vec::new() };
     for (key, value) in &sets {
-        let key =
-            overrides::set(root.get_mut(), key, value, &mut marks).map_err(|e| e.at("--set", None, key.clone()))?;
+        let key = overrides::apply_override(root.get_mut(), key, value, &mut marks)
+            .map_err(|e| e.at("--set", None, key.clone()))?;
         origin.sets.push(key);
     }
     rename(root.get_mut(), &mut origin)?;
-    spell_out(root.get_mut());
-    origin.names = names(root.get_ref());
+    expand_bare_choices(root.get_mut());
+    origin.names = solid_names(root.get_ref());
     for i in 0..origin.renamed.len() {
-        origin.renamed[i].key = origin.shown(&origin.renamed[i].key);
+        origin.renamed[i].key = origin.key_with_names(&origin.renamed[i].key);
     }
-    finite(root.get_ref(), "", &origin)?;
+    require_finite(root.get_ref(), "", &origin)?;
     let scene = T::deserialize(toml::Deserializer::from(root)).map_err(|e| {
         let start = e.span().map_or(0, |span| span.start);
         let key = marks.key(start).unwrap_or_else(|| key_at(&entries, &e.span().unwrap_or(0..0)));
         let (error, key) = diagnostics::explain(e.message(), &key);
-        let shown = origin.shown(&key);
+        let shown = origin.key_with_names(&key);
         match start > text.len() {
             true => error.at("--set", None, shown),
             false => error.at(file, Some(line_column(text, start)), shown),
@@ -216,14 +216,14 @@ pub(super) fn read<T: DeserializeOwned>(
 }
 
 /// Where the words of `--set` stand: beyond the text, each key at a place of its own.
-pub(super) struct Marks {
+pub(super) struct OverrideLocations {
     /// The first such place.
     first: usize,
     /// The keys, from there on.
     keys: Vec<String>,
 }
 
-impl Marks {
+impl OverrideLocations {
     /// A place for `key`.
     pub fn place(&mut self, key: &str) -> Range<usize> {
         let place = self.first + self.keys.len();
@@ -249,32 +249,32 @@ fn line_column(text: &str, at: usize) -> (usize, usize) {
 }
 
 /// A key that was written.
-struct Entry {
+struct WrittenKey {
     path: String,
     key: Range<usize>,
     value: Range<usize>,
 }
 
 /// The key `part` inside the key `path`.
-pub(super) fn under(path: &str, part: impl std::fmt::Display) -> String {
+pub(super) fn subkey(path: &str, part: impl std::fmt::Display) -> String {
     if path.is_empty() { part.to_string() } else { format!("{path}.{part}") }
 }
 
-fn walk(table: &DeTable, path: &str, entries: &mut Vec<Entry>) {
+fn walk(table: &DeTable, path: &str, entries: &mut Vec<WrittenKey>) {
     for (key, value) in table {
-        let path = under(path, key.get_ref());
-        entries.push(Entry { path: path.clone(), key: key.span(), value: value.span() });
+        let path = subkey(path, key.get_ref());
+        entries.push(WrittenKey { path: path.clone(), key: key.span(), value: value.span() });
         walk_value(value, &path, entries);
     }
 }
 
-fn walk_value(value: &Spanned<DeValue>, path: &str, entries: &mut Vec<Entry>) {
+fn walk_value(value: &Spanned<DeValue>, path: &str, entries: &mut Vec<WrittenKey>) {
     match value.get_ref() {
         DeValue::Table(inner) => walk(inner, path, entries),
         DeValue::Array(items) => {
             for (i, item) in items.iter().enumerate() {
-                let path = under(path, i);
-                entries.push(Entry { path: path.clone(), key: item.span(), value: item.span() });
+                let path = subkey(path, i);
+                entries.push(WrittenKey { path: path.clone(), key: item.span(), value: item.span() });
                 walk_value(item, &path, entries);
             }
         }
@@ -283,16 +283,16 @@ fn walk_value(value: &Spanned<DeValue>, path: &str, entries: &mut Vec<Entry>) {
 }
 
 /// The key that was written at `span`, or whose value encloses it most closely.
-fn key_at(entries: &[Entry], span: &Range<usize>) -> String {
+fn key_at(entries: &[WrittenKey], span: &Range<usize>) -> String {
     let exact = entries.iter().find(|e| e.key == *span);
     let enclosing = || {
-        let holds = |e: &&Entry| e.value.start <= span.start && span.end <= e.value.end;
+        let holds = |e: &&WrittenKey| e.value.start <= span.start && span.end <= e.value.end;
         entries.iter().filter(holds).min_by_key(|e| e.value.end - e.value.start)
     };
     exact.or_else(enclosing).map(|e| e.path.clone()).unwrap_or_default()
 }
 
-fn names(root: &DeTable) -> Vec<String> {
+fn solid_names(root: &DeTable) -> Vec<String> {
     let solids = root.get("solid").and_then(|s| s.get_ref().as_array());
     let name = |solid: &Spanned<DeValue>| {
         let name = solid.get_ref().as_table()?.get("name")?.get_ref().as_str()?;
@@ -302,7 +302,7 @@ fn names(root: &DeTable) -> Vec<String> {
 }
 
 /// Writes out every choice given as a bare word.
-fn spell_out(root: &mut DeTable) {
+fn expand_bare_choices(root: &mut DeTable) {
     for choice in CHOICES {
         let Some((section, key)) = choice.split_once('.') else { continue };
         let Some(DeValue::Table(section)) = root.get_mut(section).map(Spanned::get_mut) else { continue };
@@ -317,10 +317,10 @@ fn spell_out(root: &mut DeTable) {
 }
 
 /// The overrides with the current names of their keys and values.
-fn current_names(sets: &[(String, String)], origin: &mut Origin) -> Vec<(String, String)> {
+fn current_names(sets: &[(String, String)], origin: &mut SceneSource) -> Vec<(String, String)> {
     let current = |(key, value): &(String, String)| {
         let mut note = |key: &str, old, new| {
-            origin.renamed.push(Renamed { key: key.into(), old, new, source: Source::Set });
+            origin.renamed.push(Renamed { key: key.into(), old, new, source: ValueSource::Set });
         };
         if let Some((old, new)) = renamed_key(key) {
             note(key, old, new);
@@ -357,14 +357,14 @@ pub fn current_key(key: &str) -> String {
 }
 
 /// Puts the current names of keys and values in place of old ones, and notes each.
-fn rename(root: &mut DeTable, origin: &mut Origin) -> Result<()> {
+fn rename(root: &mut DeTable, origin: &mut SceneSource) -> Result<()> {
     for (section, old, new) in RENAMED_KEYS {
         if section.is_empty() {
             rename_key(root, section, old, new, origin)?;
         } else if let Some(DeValue::Array(items)) = root.get_mut(section).map(Spanned::get_mut) {
             for (i, item) in items.as_mut().iter_mut().enumerate() {
                 if let DeValue::Table(table) = item.get_mut() {
-                    rename_key(table, &under(section, i), old, new, origin)?;
+                    rename_key(table, &subkey(section, i), old, new, origin)?;
                 }
             }
         }
@@ -392,7 +392,7 @@ fn rename_key(
     path: &str,
     old: &'static str,
     new: &'static str,
-    origin: &mut Origin,
+    origin: &mut SceneSource,
 ) -> Result<()> {
     let Some(span) = table.keys().find(|key| key.get_ref() == old).map(Spanned::span) else { return Ok(()) };
     let start = span.start;
@@ -400,30 +400,30 @@ fn rename_key(
         let what = format!("{old} and {new} say the same thing twice");
         let help = format!("{old} is the old name of {new}: remove it");
         let at = (start < origin.text.len()).then(|| line_column(&origin.text, start));
-        return Err(Error::scene(what).help(help).at(origin.file.clone(), at, under(path, old)));
+        return Err(Error::scene(what).help(help).at(origin.file.clone(), at, subkey(path, old)));
     }
     if let Some(value) = table.remove(old) {
         table.insert(Spanned::new(span, Cow::Borrowed(new)), value);
-        origin.note(&under(path, old), old, new, start);
+        origin.note(&subkey(path, old), old, new, start);
     }
     Ok(())
 }
 
 /// Refuses numbers that are not numbers.
-fn finite(table: &DeTable, path: &str, origin: &Origin) -> Result<()> {
-    table.iter().try_for_each(|(key, value)| finite_value(value, &under(path, key.get_ref()), origin))
+fn require_finite(table: &DeTable, path: &str, origin: &SceneSource) -> Result<()> {
+    table.iter().try_for_each(|(key, value)| require_finite_value(value, &subkey(path, key.get_ref()), origin))
 }
 
-fn finite_value(value: &Spanned<DeValue>, path: &str, origin: &Origin) -> Result<()> {
+fn require_finite_value(value: &Spanned<DeValue>, path: &str, origin: &SceneSource) -> Result<()> {
     match value.get_ref() {
         DeValue::Float(x) if !x.as_str().replace('_', "").parse::<f64>().is_ok_and(f64::is_finite) => {
             let error = Error::scene(format!("{} is not a finite number", x.as_str()))
                 .help("write a number; where you mean \"no limit\", leave the line out");
-            Err(origin.place(error, path))
+            Err(origin.with_location(error, path))
         }
-        DeValue::Table(inner) => finite(inner, path, origin),
+        DeValue::Table(inner) => require_finite(inner, path, origin),
         DeValue::Array(items) => {
-            items.iter().enumerate().try_for_each(|(i, item)| finite_value(item, &under(path, i), origin))
+            items.iter().enumerate().try_for_each(|(i, item)| require_finite_value(item, &subkey(path, i), origin))
         }
         _ => Ok(()),
     }

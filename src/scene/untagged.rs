@@ -11,7 +11,7 @@ use serde::{
 /// A number, a list of numbers, or a list of rows.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Numbers {
+pub enum NumberOrArray {
     /// One.
     One(f64),
     /// A list.
@@ -20,32 +20,32 @@ pub enum Numbers {
     Rows(Vec<Vec<f64>>),
 }
 
-impl<'de> Deserialize<'de> for Numbers {
+impl<'de> Deserialize<'de> for NumberOrArray {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Form;
         impl<'de> Visitor<'de> for Form {
-            type Value = Numbers;
+            type Value = NumberOrArray;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a number, a list of numbers, or a list of rows")
             }
-            fn visit_f64<E: de::Error>(self, x: f64) -> Result<Numbers, E> {
-                Ok(Numbers::One(x))
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<NumberOrArray, E> {
+                Ok(NumberOrArray::One(x))
             }
-            fn visit_i64<E: de::Error>(self, x: i64) -> Result<Numbers, E> {
-                Ok(Numbers::One(x as f64))
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<NumberOrArray, E> {
+                Ok(NumberOrArray::One(x as f64))
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Numbers, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<NumberOrArray, A::Error> {
                 let (mut list, mut rows) = (Vec::new(), Vec::new());
-                while let Some(entry) = seq.next_element::<Numbers>()? {
+                while let Some(entry) = seq.next_element::<NumberOrArray>()? {
                     match entry {
-                        Numbers::One(x) => list.push(x),
-                        Numbers::List(row) => rows.push(row),
-                        Numbers::Rows(_) => return Err(de::Error::custom("a list nested too deep")),
+                        NumberOrArray::One(x) => list.push(x),
+                        NumberOrArray::List(row) => rows.push(row),
+                        NumberOrArray::Rows(_) => return Err(de::Error::custom("a list nested too deep")),
                     }
                 }
                 match (list.is_empty(), rows.is_empty()) {
-                    (_, true) => Ok(Numbers::List(list)),
-                    (true, false) => Ok(Numbers::Rows(rows)),
+                    (_, true) => Ok(NumberOrArray::List(list)),
+                    (true, false) => Ok(NumberOrArray::Rows(rows)),
                     (false, false) => Err(de::Error::custom("a list that mixes numbers and lists")),
                 }
             }
@@ -56,35 +56,35 @@ impl<'de> Deserialize<'de> for Numbers {
 
 /// A formula in the place, or a number.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct FieldConfig(#[schemars(with = "NumberOrText")] pub String);
+pub struct FieldFormulaConfig(#[schemars(with = "NumberOrFormula")] pub String);
 
 /// How a formula may be written, for the schema.
 #[derive(JsonSchema)]
 #[schemars(untagged)]
 #[allow(dead_code, reason = "only its shape counts")]
-enum NumberOrText {
+enum NumberOrFormula {
     /// A number.
     Number(f64),
     /// A formula.
     Text(String),
 }
 
-impl<'de> Deserialize<'de> for FieldConfig {
+impl<'de> Deserialize<'de> for FieldFormulaConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Form;
         impl Visitor<'_> for Form {
-            type Value = FieldConfig;
+            type Value = FieldFormulaConfig;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a number, or a formula such as \"0.1*sin(2*pi*x)\"")
             }
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<FieldConfig, E> {
-                Ok(FieldConfig(text.into()))
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<FieldFormulaConfig, E> {
+                Ok(FieldFormulaConfig(text.into()))
             }
-            fn visit_f64<E: de::Error>(self, x: f64) -> Result<FieldConfig, E> {
-                Ok(FieldConfig(format!("{x:?}")))
+            fn visit_f64<E: de::Error>(self, x: f64) -> Result<FieldFormulaConfig, E> {
+                Ok(FieldFormulaConfig(format!("{x:?}")))
             }
-            fn visit_i64<E: de::Error>(self, x: i64) -> Result<FieldConfig, E> {
-                Ok(FieldConfig(x.to_string()))
+            fn visit_i64<E: de::Error>(self, x: i64) -> Result<FieldFormulaConfig, E> {
+                Ok(FieldFormulaConfig(x.to_string()))
             }
         }
         deserializer.deserialize_any(Form)
@@ -94,7 +94,7 @@ impl<'de> Deserialize<'de> for FieldConfig {
 /// A draft: in metres, or the one at which the body floats at rest.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
 #[schemars(rename_all = "snake_case")]
-pub enum Draft {
+pub enum DraftChoice {
     /// Where weight and buoyancy balance.
     Equilibrium,
     /// Depth of the lowest point below the still level, m.
@@ -102,7 +102,7 @@ pub enum Draft {
     Metres(f64),
 }
 
-impl Serialize for Draft {
+impl Serialize for DraftChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Equilibrium => serializer.serialize_str("equilibrium"),
@@ -111,25 +111,25 @@ impl Serialize for Draft {
     }
 }
 
-impl<'de> Deserialize<'de> for Draft {
+impl<'de> Deserialize<'de> for DraftChoice {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Form;
         impl Visitor<'_> for Form {
-            type Value = Draft;
+            type Value = DraftChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "\"equilibrium\" or a number of metres")
             }
-            fn visit_str<E: de::Error>(self, word: &str) -> Result<Draft, E> {
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<DraftChoice, E> {
                 match word {
-                    "equilibrium" => Ok(Draft::Equilibrium),
+                    "equilibrium" => Ok(DraftChoice::Equilibrium),
                     _ => Err(E::invalid_value(de::Unexpected::Str(word), &self)),
                 }
             }
-            fn visit_f64<E: de::Error>(self, metres: f64) -> Result<Draft, E> {
-                Ok(Draft::Metres(metres))
+            fn visit_f64<E: de::Error>(self, metres: f64) -> Result<DraftChoice, E> {
+                Ok(DraftChoice::Metres(metres))
             }
-            fn visit_i64<E: de::Error>(self, metres: i64) -> Result<Draft, E> {
-                Ok(Draft::Metres(metres as f64))
+            fn visit_i64<E: de::Error>(self, metres: i64) -> Result<DraftChoice, E> {
+                Ok(DraftChoice::Metres(metres as f64))
             }
         }
         deserializer.deserialize_any(Form)
@@ -169,7 +169,7 @@ impl LengthUnit {
 /// A line: its points, a table with the columns `x_m` and `y_m`, or a drawing; as a wall it may have a thickness.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 #[schemars(with = "PointsOrTable")]
-pub struct LineConfig {
+pub struct PolylineConfig {
     /// Points, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<Vec<Vec<f64>>>,
@@ -190,7 +190,7 @@ pub struct LineConfig {
     pub thickness: Option<f64>,
 }
 
-impl LineConfig {
+impl PolylineConfig {
     /// The line through `points` (m).
     pub fn through<const N: usize>(points: [[f64; 2]; N]) -> Self {
         Self { points: Some(points.iter().map(|p| p.to_vec()).collect()), ..Self::default() }
@@ -205,7 +205,7 @@ impl LineConfig {
 /// A line as a table.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-struct LineTable {
+struct PolylineTable {
     /// Points, m.
     points: Option<Vec<Vec<f64>>>,
     /// A table of points, or a drawing (.svg), beside the scene.
@@ -228,25 +228,25 @@ enum PointsOrTable {
     /// Points, m.
     Points(Vec<Vec<f64>>),
     /// A table.
-    Table(LineTable),
+    Table(PolylineTable),
 }
 
-impl<'de> Deserialize<'de> for LineConfig {
+impl<'de> Deserialize<'de> for PolylineConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         struct Form;
         impl<'de> Visitor<'de> for Form {
-            type Value = LineConfig;
+            type Value = PolylineConfig;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a list of points, or a table with `points` or `file`")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<LineConfig, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PolylineConfig, A::Error> {
                 let points = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
-                Ok(LineConfig { points: Some(points), ..LineConfig::default() })
+                Ok(PolylineConfig { points: Some(points), ..PolylineConfig::default() })
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LineConfig, A::Error> {
-                let LineTable { points, file, id, scale, unit, thickness } =
-                    LineTable::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(LineConfig { points, file, id, scale, unit, thickness })
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PolylineConfig, A::Error> {
+                let PolylineTable { points, file, id, scale, unit, thickness } =
+                    PolylineTable::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(PolylineConfig { points, file, id, scale, unit, thickness })
             }
         }
         deserializer.deserialize_any(Form)

@@ -3,9 +3,10 @@
 use std::collections::{HashMap, HashSet};
 
 use super::{
-    ContactConfig, GaugeWords, JointConfig, PatchWords, PointWords, ProbeEntry, RowWords, Scene, SectionWords,
-    context::{joined, suggestion},
-    section::solid::known_solid,
+    ContactConfig, GaugeConfig, JointConfig, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, Scene,
+    SectionConfig,
+    context::{quoted_list, suggestion},
+    section::solid::require_solid,
 };
 use crate::error::Result;
 
@@ -19,15 +20,15 @@ impl Scene {
     pub(super) fn verify_probes(&self) -> Result<()> {
         for (i, probe) in self.probe.iter().enumerate() {
             let key = format!("probe.{i}");
-            self.context().positive(&format!("{key}.every"), probe.every)?;
-            if probe.kinds().len() != 1 {
-                let what = format!("a probe looks at one thing; this one at {}", joined(&probe.kinds()));
+            self.context().require_positive(&format!("{key}.every"), probe.every)?;
+            if probe.named_kinds().len() != 1 {
+                let what = format!("a probe looks at one thing; this one at {}", quoted_list(&probe.named_kinds()));
                 let help = "one of motion, force, balance, contact, contacts, joint, spring, rope, elevation, velocity, pressure, \
                      flow, runup, patch, front, energy, budget; a [[probe]] section for each";
-                return Err(self.context().wrong_with(&key, what, help));
+                return Err(self.context().error_with_help(&key, what, help));
             }
-            self.known_solids(&key, probe)?;
-            self.known_ties(&key, probe)?;
+            self.require_probe_solids(&key, probe)?;
+            self.require_constraint(&key, probe)?;
             if let Some(between) = &probe.contact {
                 self.may_touch(&format!("{key}.contact"), between)?;
             }
@@ -41,25 +42,25 @@ impl Scene {
             for (word, given) in whole {
                 if given == Some(false) {
                     let what = format!("{word} = false watches nothing");
-                    return Err(self.context().wrong_with(&format!("{key}.{word}"), what, "remove it"));
+                    return Err(self.context().error_with_help(&format!("{key}.{word}"), what, "remove it"));
                 }
             }
             if probe.contacts.is_some() && probe.average.is_some() {
                 let help = "remove it; the mean of one pair is that of  contact = [\"crate\", \"raft\"]";
-                return Err(self.context().wrong_with(
+                return Err(self.context().error_with_help(
                     &format!("{key}.average"),
                     "a list of contacts takes no means",
                     help,
                 ));
             }
             if let Some(name) = &probe.name {
-                self.context().good_name(&format!("{key}.name"), name)?;
+                self.context().require_file_name(&format!("{key}.name"), name)?;
             }
         }
         let names: Vec<String> = self.probe_names();
         let mut seen = HashSet::new();
         match names.iter().position(|name| !seen.insert(name)) {
-            Some(i) => Err(self.context().wrong_with(
+            Some(i) => Err(self.context().error_with_help(
                 &format!("probe.{i}"),
                 format!("two probes are called \"{}\"", names[i]),
                 "give each its own:  name = \"...\"",
@@ -69,7 +70,7 @@ impl Scene {
     }
 
     /// Refuses a probe of a joint, spring or rope that there is not.
-    fn known_ties(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+    fn require_constraint(&self, key: &str, probe: &ProbeConfig) -> Result<()> {
         let joints = self.joint.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>();
         let springs = self.spring.iter().map(|spring| spring.name.as_str()).collect();
         let ropes = self.rope.iter().map(|rope| rope.name.as_str()).collect();
@@ -81,12 +82,12 @@ impl Scene {
                 true => format!("the scene has no {word}"),
                 false => format!("known: {}", known.join(", ")),
             };
-            return Err(self.context().wrong_with(&format!("{key}.{word}"), what, help));
+            return Err(self.context().error_with_help(&format!("{key}.{word}"), what, help));
         }
         Ok(())
     }
 
-    fn known_solids(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+    fn require_probe_solids(&self, key: &str, probe: &ProbeConfig) -> Result<()> {
         let patched = probe.patch.as_ref().map(|patch| &patch.solid);
         let named = [
             ("motion", probe.motion.as_ref()),
@@ -98,7 +99,7 @@ impl Scene {
         let touching = probe.contact.iter().flatten().map(|name| ("contact", Some(name)));
         for (word, name) in named.into_iter().chain(touching) {
             if let Some(name) = name {
-                known_solid(&self.context(), &self.solid, &format!("{key}.{word}"), name)?;
+                require_solid(&self.context(), &self.solid, &format!("{key}.{word}"), name)?;
             }
         }
         let free = |name: &String| self.solid.iter().any(|solid| solid.name == *name && solid.free.is_some());
@@ -106,7 +107,7 @@ impl Scene {
             Some(name) => {
                 let what = format!("\"{name}\" is not free: what it weighs and carries is not known");
                 let help = format!("the water's load on any solid is  force = \"{name}\"");
-                Err(self.context().wrong_with(&format!("{key}.balance"), what, help))
+                Err(self.context().error_with_help(&format!("{key}.balance"), what, help))
             }
             None => Ok(()),
         }
@@ -115,7 +116,7 @@ impl Scene {
     /// Refuses two solids that never touch.
     fn may_touch(&self, key: &str, [a, b]: &[String; 2]) -> Result<()> {
         let refuse = |why: String, help: &str| {
-            Err(self.context().wrong_with(key, format!("\"{a}\" and \"{b}\" never touch: {why}"), help))
+            Err(self.context().error_with_help(key, format!("\"{a}\" and \"{b}\" never touch: {why}"), help))
         };
         if a == b {
             return refuse("they are one solid".into(), "name two");
@@ -140,11 +141,11 @@ impl Scene {
         }
     }
 
-    fn verify_places(&self, key: &str, probe: &ProbeEntry) -> Result<()> {
+    fn verify_places(&self, key: &str, probe: &ProbeConfig) -> Result<()> {
         for (word, at) in [("velocity", &probe.velocity), ("pressure", &probe.pressure)] {
             match at {
-                Some(PointWords::At(at)) => self.context().vector(&format!("{key}.{word}"), at)?,
-                Some(PointWords::Row(row)) => self.verify_row(&format!("{key}.{word}"), row, self.dimension)?,
+                Some(PointsConfig::At(at)) => self.context().require_dimension(&format!("{key}.{word}"), at)?,
+                Some(PointsConfig::Row(row)) => self.verify_row(&format!("{key}.{word}"), row, self.dimension)?,
                 None => {}
             }
         }
@@ -155,34 +156,38 @@ impl Scene {
             self.verify_section(&format!("{key}.flow"), section)?;
         }
         match &probe.patch {
-            Some(PatchWords { corners, .. }) => corners.verify(&self.context(), &format!("{key}.patch.box")),
+            Some(PatchConfig { corners, .. }) => corners.verify(&self.context(), &format!("{key}.patch.box")),
             None => Ok(()),
         }
     }
 
-    fn verify_gauge(&self, key: &str, gauge: &GaugeWords) -> Result<()> {
+    fn verify_gauge(&self, key: &str, gauge: &GaugeConfig) -> Result<()> {
         let single = gauge.x.is_some() || gauge.y.is_some();
         match gauge.row() {
             Some(_) if single => {
                 let help = "write  elevation = { x = 1.16 }  or  elevation = { from = 1.0, to = 3.0, count = 5 }";
-                Err(self.context().wrong_with(key, "a gauge stands at one place or is a row of them, not both", help))
+                Err(self.context().error_with_help(
+                    key,
+                    "a gauge stands at one place or is a row of them, not both",
+                    help,
+                ))
             }
             Some(row) => self.verify_row(key, &row, self.dimension - 1),
             None if gauge.x.is_none() || gauge.y.is_some() != (self.dimension == 3) => {
                 let help = "write  elevation = { x = 1.16 } in 2-D, elevation = { x = 1.16, y = 0.3 } in 3-D";
-                Err(self.context().wrong_with(key, "a gauge stands at x in 2-D, at x and y in 3-D", help))
+                Err(self.context().error_with_help(key, "a gauge stands at x in 2-D, at x and y in 3-D", help))
             }
             None => Ok(()),
         }
     }
 
     /// A row of places that have so many coordinates.
-    fn verify_row(&self, key: &str, row: &RowWords, coordinates: usize) -> Result<()> {
+    fn verify_row(&self, key: &str, row: &PointRowConfig, coordinates: usize) -> Result<()> {
         for (word, at) in [("from", &row.from), ("to", &row.to)] {
             if at.len() != coordinates || at.iter().any(|x| !x.is_finite()) {
                 let what = format!("{word} has {} numbers: a place here has {coordinates}", at.len());
                 let example = vec!["0.0"; coordinates].join(", ");
-                return Err(self.context().wrong_with(
+                return Err(self.context().error_with_help(
                     &format!("{key}.{word}"),
                     what,
                     format!("write  {word} = [{example}]"),
@@ -191,30 +196,30 @@ impl Scene {
         }
         let help = "write  count = 5  or  spacing = 0.1";
         if row.count.is_some() == row.spacing.is_some() {
-            return Err(self.context().wrong_with(key, "a row has either a count or a spacing", help));
+            return Err(self.context().error_with_help(key, "a row has either a count or a spacing", help));
         }
-        self.context().positive(&format!("{key}.spacing"), row.spacing)?;
-        let (count, length) = (row.number(), row.length());
+        self.context().require_positive(&format!("{key}.spacing"), row.spacing)?;
+        let (count, length) = (row.point_count(), row.length());
         if !(2..=MOST_PLACES).contains(&count) {
             let what = format!("a row has 2 to {MOST_PLACES} places, this one has {count}");
-            return Err(self.context().wrong_with(key, what, help));
+            return Err(self.context().error_with_help(key, what, help));
         }
         if length < LEAST_SPACING * (count - 1) as f64 {
-            return Err(self.context().wrong_with(key, format!("{count} places do not fit on {length} m"), help));
+            return Err(self.context().error_with_help(key, format!("{count} places do not fit on {length} m"), help));
         }
         Ok(())
     }
 
-    fn verify_section(&self, key: &str, SectionWords { from, to }: &SectionWords) -> Result<()> {
-        self.context().vector(&format!("{key}.from"), from)?;
-        self.context().vector(&format!("{key}.to"), to)?;
+    fn verify_section(&self, key: &str, SectionConfig { from, to }: &SectionConfig) -> Result<()> {
+        self.context().require_dimension(&format!("{key}.from"), from)?;
+        self.context().require_dimension(&format!("{key}.to"), to)?;
         let flat = from.iter().zip(to).filter(|(a, b)| a == b).count();
         match self.dimension {
-            2 if flat == 2 => Err(self.context().wrong(key, "a section from a point to itself has no length")),
+            2 if flat == 2 => Err(self.context().error_at(key, "a section from a point to itself has no length")),
             3 if flat != 1 => {
                 let what = "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one";
                 let help = "write  flow = { from = [1.0, 0.0, 0.3], to = [1.0, 0.5, 0.6] }";
-                Err(self.context().wrong_with(key, what, help))
+                Err(self.context().error_with_help(key, what, help))
             }
             _ => Ok(()),
         }
@@ -227,7 +232,7 @@ impl Scene {
         // How many of each kind before have no name of their own.
         let mut nameless: HashMap<&str, usize> = HashMap::new();
         for probe in &self.probe {
-            let kind = probe.kinds().first().copied().unwrap_or("probe");
+            let kind = probe.named_kinds().first().copied().unwrap_or("probe");
             let before = nameless.entry(kind).or_default();
             let alike = *before;
             *before += usize::from(probe.name.is_none());

@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::{
     coupling::AcousticAddedMass,
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     solid::{Constraints, Dim, HasEngine as _, Kinematics, Role, Solid, SolidSpec, containment::depth_inside_mesh},
     system::Reordering,
@@ -68,12 +68,12 @@ where
     pub fn remove_solid(&mut self, solid: usize) -> Result<()> {
         let Some(there) = self.system.solids().get(solid) else {
             let last = self.system.solids().len();
-            return Err(Error::new(Kind::Usage, format!("there is no solid number {solid}")).help(format!(
+            return Err(Error::new(ErrorKind::Usage, format!("there is no solid number {solid}")).help(format!(
                 "they are numbered from 0, and there are {last}; find_solid tells the number of a name"
             )));
         };
         if let Some(tie) = self.system.constraints().of(solid) {
-            return Err(Error::new(Kind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
+            return Err(Error::new(ErrorKind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
                 .help("only what nothing is tied to can be removed"));
         }
         if there.boundary.is_empty() {
@@ -103,8 +103,11 @@ where
         }
         for solid in Self::read(bytes)?.removed_solids {
             if solid as usize >= self.system.solids().len() {
-                return Err(Error::new(Kind::Restart, format!("the state says that solid number {solid} was removed"))
-                    .help("give all solids that had been added, in their order"));
+                return Err(Error::new(
+                    ErrorKind::Restart,
+                    format!("the state says that solid number {solid} was removed"),
+                )
+                .help("give all solids that had been added, in their order"));
             }
             self.delete_solid(solid as usize);
         }
@@ -173,10 +176,11 @@ where
     fn finish_change(&mut self, reordering: Option<Reordering<D>>) {
         self.stepper.reset();
         if let (Some(accounting), Some(reordering)) = (&mut self.bodies.accounting, &reordering) {
-            accounting.add_removed(&self.system, &reordering.lost);
+            accounting.add_removed(&self.system, &reordering.removed);
         }
-        self.removed
-            .extend(reordering.into_iter().flat_map(|reordering| reordering.lost).map(|lost| (self.clock.time, lost)));
+        self.removed.extend(
+            reordering.into_iter().flat_map(|reordering| reordering.removed).map(|lost| (self.clock.time, lost)),
+        );
         let log = std::mem::take(&mut self.rollback.log);
         self.rollback.restart(log);
         self.system.update_rates();

@@ -27,7 +27,8 @@ impl<const D: usize> Simulation<D> {
             )
             .help("put them into the world that moves the bodies, and leave setup.links as Links::default()"));
         }
-        Ok(Self::with_bodies(setup, true)?.without_rollback())
+        let pair_loop = Dim::<D>::pair_loop(&setup.model);
+        Ok(Self::with_bodies(setup, pair_loop, true)?.without_rollback())
     }
 
     /// Goes one step on, and not past time `end` (s), and calls `hook` once, when the water has moved and the bodies have

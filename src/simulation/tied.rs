@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::{
-    error::{Error, Result, nearest},
+    error::{Error, Result, nearest_name},
     solid::{Drive, Elastic, JointReading, JointSpec, LineReading},
 };
 
@@ -81,7 +81,7 @@ impl<const D: usize> Simulation<D> {
 /// The number of `name` among `names` of a `kind` of things.
 pub(crate) fn find<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Result<usize> {
     names.clone().position(|known| known == name).ok_or_else(|| {
-        let help = match nearest(name, names.clone()) {
+        let help = match nearest_name(name, names.clone()) {
             Some(near) => format!("did you mean {near:?}?"),
             None => format!("the {kind}s are: {}", names.collect::<Vec<_>>().join(", ")),
         };

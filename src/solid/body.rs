@@ -38,7 +38,7 @@ impl<const D: usize> SolidSpec<D> {
     pub fn check(&self) -> Result<()> {
         self.shape.check().map_err(|e| self.named(e))?;
         if let Role::Free(_) = self.role {
-            self.shape.check_apart().map_err(|e| self.named(e))?;
+            self.shape.check_no_overlap().map_err(|e| self.named(e))?;
         }
         self.check_role()
     }
@@ -76,7 +76,7 @@ impl<const D: usize> SolidSpec<D> {
     }
 
     fn named(&self, mut error: Error) -> Error {
-        error.what = format!("solid \"{}\": {}", self.name, error.what);
+        error.message = format!("solid \"{}\": {}", self.name, error.message);
         error
     }
 }
@@ -86,7 +86,7 @@ impl<const D: usize> FreeBody<D> {
     ///
     ///   m = ρ V,   I = ρ (tr J · 1 − J) in 3-D, ρ tr J in 2-D
     pub fn from_density(shape: &Shape<D>, density: f64) -> Self {
-        let volume = shape.volume();
+        let volume = shape.volume_properties();
         let trace = volume.second_moment.trace();
         let inertia = if D == 2 {
             Matrix::from_fn(|i, j| if (i, j) == (0, 0) { trace } else { 0.0 })
@@ -106,7 +106,7 @@ impl<const D: usize> FreeBody<D> {
 
     /// The homogeneous body of `mass` (kg; kg/m in 2-D) that fills `shape`, at rest.
     pub fn from_mass(shape: &Shape<D>, mass: f64) -> Self {
-        Self::from_density(shape, mass / shape.volume().volume)
+        Self::from_density(shape, mass / shape.volume_properties().volume)
     }
 
     /// Whether this body can exist.

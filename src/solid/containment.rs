@@ -1,7 +1,7 @@
 //! Who lies within whom where no contact would tell.
 
 use crate::{
-    geometry::{Shape, Touchable, overlap::shared},
+    geometry::{ContactGeometry, Shape, overlap::find_overlap},
     math::Pose,
     solid::{Role, SolidSpec},
 };
@@ -13,7 +13,7 @@ pub(crate) type Placed<'a, const D: usize> = (&'a SolidSpec<D>, &'a Pose<D>);
 fn touchable<'a, const D: usize>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut Vec<(&'a Shape<D>, Pose<D>)>) {
     match shape {
         Shape::Compound(parts) => parts.iter().for_each(|(inner, part)| touchable(part, pose.then(inner), found)),
-        Shape::Mesh { contact: Touchable::None, .. } => {}
+        Shape::Mesh { contact: ContactGeometry::None, .. } => {}
         _ => found.push((shape, pose)),
     }
 }
@@ -30,11 +30,13 @@ pub(crate) fn depth_inside_mesh<const D: usize>(
     touchable(&other.shape, *there, &mut outer);
     let fixed = matches!(other.role, Role::Fixed);
     let surface = |shape: &Shape<D>| match shape {
-        Shape::Mesh { contact, .. } => *contact == Touchable::Surface || fixed && *contact == Touchable::Fitting,
+        Shape::Mesh { contact, .. } => {
+            *contact == ContactGeometry::Surface || fixed && *contact == ContactGeometry::Fitting
+        }
         _ => false,
     };
     let deep = |(mesh, there): &(&Shape<D>, Pose<D>)| {
-        let places = inner.iter().filter_map(|(shape, here)| shared((shape, here), (mesh, there), allowed));
+        let places = inner.iter().filter_map(|(shape, here)| find_overlap((shape, here), (mesh, there), allowed));
         places.map(|(x, _)| -mesh.signed_distance(&there.local(&x))).reduce(f64::max)
     };
     outer.iter().filter(|(shape, _)| surface(shape)).filter_map(deep).reduce(f64::max)

@@ -31,7 +31,7 @@ pub fn equilibrium_height<const D: usize>(
     };
     // From just submerged to just out of the water.
     let (mut under, mut over) = (level - high, level - low);
-    let whole = shape.submerged(&lifted(under), level).0;
+    let whole = shape.submerged_volume(&lifted(under), level).0;
     if !(mass > 0.0 && mass < rho0 * whole) {
         return Err(Error::scene(format!(
             "the body sinks: its mass {mass} is {:.3} of the {} of water that it can displace",
@@ -45,7 +45,7 @@ pub fn equilibrium_height<const D: usize>(
         if middle <= under || middle >= over {
             break;
         }
-        if rho0 * shape.submerged(&lifted(middle), level).0 > mass {
+        if rho0 * shape.submerged_volume(&lifted(middle), level).0 > mass {
             under = middle;
         } else {
             over = middle;
@@ -77,7 +77,7 @@ pub fn metacentric_height<const D: usize>(
         let mut tilted = *pose;
         tilted.rotation = (Bivector::from_axial(axis) * angle).exp() * pose.rotation;
         tilted.position[D - 1] += equilibrium_height(shape, &tilted, body.mass, rho0, level)?;
-        let buoyancy = shape.submerged(&tilted, level).1;
+        let buoyancy = shape.submerged_volume(&tilted, level).1;
         let mut up = Vector::zeros();
         up[D - 1] = 1.0;
         let lever = Bivector::torque(&(buoyancy - tilted.point(&body.centre)), &up);

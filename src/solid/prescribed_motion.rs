@@ -8,7 +8,7 @@
 use crate::{
     error::{Error, Result},
     math::{Bivector, Pose, Vector},
-    math::{expression::Formula, time_series::Series},
+    math::{expression::Formula, time_series::TimeSeries},
     solid::Kinematics,
     wavemaker::{Absorber, AbsorptionState, Wave},
 };
@@ -17,7 +17,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub enum Law {
     /// The smooth curve through measured samples; at rest before the first and after the last.
-    Table(Series),
+    Table(TimeSeries),
     /// A formula.
     Formula(Formula),
     /// A paddle's, that makes a wave of theory.
@@ -34,7 +34,7 @@ impl Law {
     pub fn at(&self, t: f64) -> (f64, f64) {
         match self {
             Self::Table(series) => series.value_and_rate(t),
-            Self::Formula(formula) => formula.at(t),
+            Self::Formula(formula) => formula.value_and_rate(t),
             Self::Wave(wave) => wave.at(t),
         }
     }
@@ -203,7 +203,7 @@ impl<const D: usize> Motion<D> {
         }
         self.stages.iter().enumerate().try_for_each(|(i, stage)| {
             stage.check().map_err(|e| match several {
-                true => Error { what: format!("motion {}: {}", i + 1, e.what), ..e },
+                true => Error { message: format!("motion {}: {}", i + 1, e.message), ..e },
                 false => e,
             })
         })
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn a_slide_starts_where_its_law_says_and_moves_at_its_rate() {
-        let table = Series::new([0.0, 0.5, 1.0, 2.0], [0.1, 0.2, 0.15, 0.3]).unwrap();
+        let table = TimeSeries::new([0.0, 0.5, 1.0, 2.0], [0.1, 0.2, 0.15, 0.3]).unwrap();
         let motion = Motion::slide(Vector::from([2.0, 0.0]), Law::Table(table));
         let start = Pose::at(Vector::from([1.0, 1.0]));
         assert_eq!(motion.kinematics(&start, 0.0).pose.position, Vector::from([1.1, 1.0]));

@@ -43,7 +43,7 @@ impl EquationOfState {
     }
 
     /// Energy of compression per unit of mass (J/kg) from ρ₀ to x: ∫ P/ρ² dρ.
-    pub fn energy(&self, x: f64) -> f64 {
+    pub fn compression_energy(&self, x: f64) -> f64 {
         let (g, s) = (self.gamma, 1.0 / (1.0 + x));
         if x.abs() < 1e-3 {
             // P ≈ c₀² x ρ₀ (1 + (γ−1) x/2): the series to third order, free of cancellation.
@@ -92,7 +92,11 @@ mod tests {
                 })
                 .sum();
             // Third order in x: the next term of the series is 1e-6 of the first at |x| = 1e-3.
-            assert!((state.energy(x) / sum - 1.0).abs() < 1e-5, "{x}: {} {sum}", state.energy(x));
+            assert!(
+                (state.compression_energy(x) / sum - 1.0).abs() < 1e-5,
+                "{x}: {} {sum}",
+                state.compression_energy(x)
+            );
         }
     }
 }

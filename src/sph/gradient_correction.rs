@@ -45,18 +45,18 @@ pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
 
 /// The moments between water and solids.
 #[derive(Clone, Copy, Debug)]
-pub struct RenormalizationMatrix;
+pub struct RenormalizationTerm;
 
-impl<const D: usize> Term<D> for RenormalizationMatrix {
-    const MOMENT: bool = true;
+impl<const D: usize> Term<D> for RenormalizationTerm {
+    const RENORMALIZATION: bool = true;
 
     #[inline(always)]
     fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
         for i in 0..D {
             for j in 0..=i {
                 let share = -factor * ab.r_ab[i] * ab.r_ab[j];
-                a.moment[i][j] = a.moment[i][j] + share;
-                b.moment[i][j] = b.moment[i][j] + share;
+                a.renormalization[i][j] = a.renormalization[i][j] + share;
+                b.renormalization[i][j] = b.renormalization[i][j] + share;
             }
         }
     }
@@ -64,11 +64,11 @@ impl<const D: usize> Term<D> for RenormalizationMatrix {
 
 /// What the correction adds to the pressure among water, and the moments for the next pass.
 #[derive(Clone, Copy, Debug)]
-pub struct CorrectedGradient;
+pub struct CorrectedGradientTerm;
 
-impl<const D: usize> Term<D> for CorrectedGradient {
-    const FORM: bool = true;
-    const MOMENT: bool = true;
+impl<const D: usize> Term<D> for CorrectedGradientTerm {
+    const GRADIENT_CORRECTION: bool = true;
+    const RENORMALIZATION: bool = true;
 
     #[inline(always)]
     fn vector<N: Num>(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
@@ -87,7 +87,7 @@ impl<const D: usize> Term<D> for CorrectedGradient {
 
     #[inline(always)]
     fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
-        RenormalizationMatrix.auxiliary(ab, factor, a, b);
+        RenormalizationTerm.auxiliary(ab, factor, a, b);
     }
 }
 

@@ -89,7 +89,7 @@ pub struct Pair<N, const D: usize> {
     /// 1/(r² + η²), 1/m².
     pub inv_r2: N,
     /// ρ₀/(ρ̄_ab (r² + η²)) with ρ̄ the mean of both densities, 1/m².
-    pub drag: N,
+    pub viscous_factor: N,
     /// Kernel, weighed with a particle's volume at ρ₀: V₀ W_ab, –.
     pub w: N,
     /// Particle a.
@@ -117,7 +117,7 @@ impl<N: Num, const D: usize> Pair<N, D> {
             velocity_along_r: vr,
             compression_difference: x_ba,
             inv_r2: both * twice_rho,
-            drag: both + both,
+            viscous_factor: both + both,
             w,
             a,
             b,
@@ -143,19 +143,19 @@ pub struct AuxiliarySums<N, const D: usize> {
     /// Strain rate S_ij, symmetric, of which `[i][j]` with j ≤ i is kept, 1/s ([`Term::STRESS`]).
     pub strain: [[N; D]; D],
     /// Moment M_ij of the neighbours, symmetric, of which `[i][j]` with j ≤ i is kept, – ([`Term::MOMENT`]).
-    pub moment: [[N; D]; D],
+    pub renormalization: [[N; D]; D],
 }
 
 impl<N: Num, const D: usize> AuxiliarySums<N, D> {
     /// All sums `zero`.
     #[inline(always)]
-    pub fn all(zero: N) -> Self {
+    pub fn filled_with(zero: N) -> Self {
         Self {
             concentration_gradient: [zero; D],
             position_divergence: zero,
             shifting_suppressed: zero,
             strain: [[zero; D]; D],
-            moment: [[zero; D]; D],
+            renormalization: [[zero; D]; D],
         }
     }
 }
@@ -167,23 +167,23 @@ impl<N: Num, const D: usize> AuxiliarySums<N, D> {
 /// x_a is V₀ ∂W times the first of `rate`, with ∂W = (dW/dr)/r, so that ∇_a W = ∂W r_ab.
 pub trait Term<const D: usize>: Copy + Send + Sync {
     /// Whether `along_v` is used.
-    const DRAG: bool = false;
+    const ALONG_V: bool = false;
     /// Whether the sides' `repulsion` is read.
     const REPULSION: bool = false;
     /// Whether the sides' `stress` is read, in `vector`, and the strain summed.
     const STRESS: bool = false;
     /// Whether the sides' `form` is read, in `vector`.
-    const FORM: bool = false;
+    const GRADIENT_CORRECTION: bool = false;
     /// Whether the moment of the neighbours is summed.
-    const MOMENT: bool = false;
+    const RENORMALIZATION: bool = false;
     /// Whether the sums of shifting are made.
     const SHIFT: bool = false;
     /// Whether the sides' `mark` is read and `held` summed.
-    const MARK: bool = false;
+    const SHIFTING_SUPPRESSION: bool = false;
     /// Whether `extra` is used.
-    const EXTRA: bool = Self::STRESS || Self::MOMENT || Self::SHIFT || Self::MARK;
+    const AUXILIARY: bool = Self::STRESS || Self::RENORMALIZATION || Self::SHIFT || Self::SHIFTING_SUPPRESSION;
     /// Whether `vector` is used.
-    const VECTOR: bool = Self::STRESS || Self::FORM;
+    const VECTOR: bool = Self::STRESS || Self::GRADIENT_CORRECTION;
 
     /// Share along r_ab, m²/s²; symmetric under the swap of a and b.
     #[inline(always)]
@@ -223,13 +223,13 @@ impl<const D: usize> Term<D> for () {}
 macro_rules! tuple_of_terms {
     ($($name:ident $index:tt),+) => {
         impl<const D: usize, $($name: Term<D>),+> Term<D> for ($($name,)+) {
-            const DRAG: bool = $($name::DRAG)|+;
+            const ALONG_V: bool = $($name::ALONG_V)|+;
             const REPULSION: bool = $($name::REPULSION)|+;
             const STRESS: bool = $($name::STRESS)|+;
-            const FORM: bool = $($name::FORM)|+;
-            const MOMENT: bool = $($name::MOMENT)|+;
+            const GRADIENT_CORRECTION: bool = $($name::GRADIENT_CORRECTION)|+;
+            const RENORMALIZATION: bool = $($name::RENORMALIZATION)|+;
             const SHIFT: bool = $($name::SHIFT)|+;
-            const MARK: bool = $($name::MARK)|+;
+            const SHIFTING_SUPPRESSION: bool = $($name::SHIFTING_SUPPRESSION)|+;
             #[inline(always)]
             fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
                 $(let sum = self.$index.along_r(ab, sum);)+

@@ -66,7 +66,7 @@ impl<const D: usize> Term<D> for ShiftTerm {
 pub struct ShiftingSuppressionTerm;
 
 impl<const D: usize> Term<D> for ShiftingSuppressionTerm {
-    const MARK: bool = true;
+    const SHIFTING_SUPPRESSION: bool = true;
 
     #[inline(always)]
     fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {

@@ -6,21 +6,21 @@ use std::{
 };
 
 use crate::{
-    analysis::{Check, Curves, Verdict},
-    error::{Error, Kind, Result},
-    output::{Manifest, manifest::Status},
-    run::{self, Options, Watch},
-    scene::{FrameOutputConfig, FramesConfig, Scene, Size, current_key},
+    analysis::{CheckCurves, ReferenceCheck, Verdict},
+    error::{Error, ErrorKind, Result},
+    output::{Manifest, manifest::RunStatus},
+    run::{self, RunObserver, RunOptions},
+    scene::{FramesChoice, FramesConfig, Scene, SizeEstimate, current_key},
 };
 
 /// How far further off its place the water of each repeat starts than that of the one before, dp.
-const APART: f64 = 1e-6;
+const REPEAT_OFFSET: f64 = 1e-6;
 
 /// The key that tells repeats apart.
 const JITTER: &str = "jitter";
 
 /// Keys of a scene that change what is kept or judged of a run, never the run.
-const BESIDE: [&str; 4] = ["title", "frames", "checkpoint", "check"];
+const OUTPUT_KEYS: [&str; 4] = ["title", "frames", "checkpoint", "check"];
 
 /// One run of a list.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct Job {
     /// The scene, a folder or a file.
     pub scene: PathBuf,
     /// Keys of the scene that are changed, and their values.
-    pub sets: Vec<(String, String)>,
+    pub overrides: Vec<(String, String)>,
     /// The run's folder.
     pub folder: PathBuf,
     /// Jobs of one group have about the same speed.
@@ -45,7 +45,7 @@ pub struct Job {
 
 /// How a job stands.
 #[derive(Clone, Debug, PartialEq)]
-pub enum State {
+pub enum JobState {
     /// Nothing has been run.
     Planned,
     /// It was asked to stop, and goes on when it is run again.
@@ -58,17 +58,17 @@ pub enum State {
 
 /// A job and what came out of it.
 #[derive(Clone, Debug)]
-pub struct Ran {
+pub struct JobResult {
     /// How it stands.
-    pub state: State,
+    pub state: JobState,
     /// The run's manifest, if there is one.
     pub manifest: Option<Manifest>,
     /// The run against the references of the scene as it is now.
     pub verdicts: Vec<Verdict>,
 }
 
-impl Ran {
-    fn nothing(state: State) -> Self {
+impl JobResult {
+    fn without_run(state: JobState) -> Self {
         Self { state, manifest: None, verdicts: vec![] }
     }
 }
@@ -81,17 +81,17 @@ impl Job {
     /// `Usage` for no time, or if the job varies `jitter` itself; those of the scene's words.
     pub fn repeated(self, times: usize) -> Result<Vec<Self>> {
         if times == 0 {
-            return Err(Error::new(Kind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
+            return Err(Error::new(ErrorKind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
         }
         if times > 1 && self.varied.iter().any(|(key, _)| current_key(key) == JITTER) {
-            return Err(Error::new(Kind::Usage, "jitter tells repeats apart: it cannot be varied too")
+            return Err(Error::new(ErrorKind::Usage, "jitter tells repeats apart: it cannot be varied too")
                 .help("leave out  --vary jitter  or  --repeat"));
         }
-        let own = if times > 1 { self.read()?.jitter.unwrap_or(0.0) } else { 0.0 };
+        let own = if times > 1 { self.read_scene()?.jitter.unwrap_or(0.0) } else { 0.0 };
         let nth = |repeat: usize| {
             let mut job = Self { repeat, ..self.clone() };
             if repeat > 1 {
-                job.sets.push((JITTER.into(), format!("{:?}", own + APART * (repeat - 1) as f64)));
+                job.overrides.push((JITTER.into(), format!("{:?}", own + REPEAT_OFFSET * (repeat - 1) as f64)));
                 job.folder.as_mut_os_string().push(format!("_repeat-{repeat}"));
             }
             job
@@ -100,7 +100,7 @@ impl Job {
     }
 
     /// Its name, with the number of the repeat from the second on.
-    pub fn said(&self) -> String {
+    pub fn display_name(&self) -> String {
         match self.repeat {
             1 => self.name.clone(),
             n => format!("{}, repeat {n}", self.name),
@@ -111,34 +111,34 @@ impl Job {
     ///
     /// # Errors
     /// As [`Scene::read`].
-    pub fn read(&self) -> Result<Scene> {
-        Scene::read(&self.scene, &self.sets)
+    pub fn read_scene(&self) -> Result<Scene> {
+        Scene::read(&self.scene, &self.overrides)
     }
 
     /// About how large the run is.
     ///
     /// # Errors
     /// Those of the scene's words.
-    pub fn size(&self) -> Result<Size> {
-        let scene = self.read()?;
+    pub fn estimated_size(&self) -> Result<SizeEstimate> {
+        let scene = self.read_scene()?;
         scene.plan()?;
-        scene.size()
+        scene.estimate_size()
     }
 
     /// The checks of the scene as it is now, whatever it was when the run was made.
     ///
     /// # Errors
     /// Those of the scene's words and tables.
-    pub fn checks(&self) -> Result<Vec<Check>> {
-        let plan = self.read()?.plan()?;
-        plan.checks.iter().map(|words| Check::new(words, &plan.folder)).collect()
+    pub fn checks(&self) -> Result<Vec<ReferenceCheck>> {
+        let plan = self.read_scene()?.plan()?;
+        plan.checks.iter().map(|words| ReferenceCheck::new(words, &plan.folder)).collect()
     }
 
     /// The lines of the checks of a run that has finished, none where there is nothing to draw.
     ///
     /// # Errors
     /// As [`Job::checks`].
-    pub fn curves(&self) -> Result<Vec<Option<Curves>>> {
+    pub fn curves(&self) -> Result<Vec<Option<CheckCurves>>> {
         let series = run::series_folder(&self.folder);
         Ok(self.checks()?.iter().map(|check| check.curves(&series).ok()).collect())
     }
@@ -147,10 +147,10 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables.
-    pub fn look(&self) -> Result<Ran> {
+    pub fn existing_result(&self) -> Result<JobResult> {
         match Manifest::read(&self.folder) {
-            Ok(manifest) if self.is_of(&manifest)? => self.judged(manifest),
-            _ => Ok(Ran::nothing(State::Planned)),
+            Ok(manifest) if self.matches(&manifest)? => self.with_verdicts(manifest),
+            _ => Ok(JobResult::without_run(JobState::Planned)),
         }
     }
 
@@ -159,75 +159,76 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables. That the run itself fails is no error: the result says so.
-    pub fn attempt(&self, threads: Option<usize>, watch: &mut dyn Watch) -> Result<Ran> {
-        let before = self.look()?;
+    pub fn run_or_resume(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<JobResult> {
+        let before = self.existing_result()?;
         let broke_down = before.manifest.as_ref().is_some_and(|m| m.fault.is_some());
         let outcome = match before.state {
-            State::Finished => return Ok(before),
+            JobState::Finished => return Ok(before),
             // The same start breaks down at the same step.
-            State::Failed(_) if broke_down => return Ok(before),
-            State::Interrupted => run::resume(&self.folder, &[], threads, watch),
-            State::Planned | State::Failed(_) => self.fresh(threads, watch),
+            JobState::Failed(_) if broke_down => return Ok(before),
+            JobState::Interrupted => run::resume(&self.folder, &[], threads, watch),
+            JobState::Planned | JobState::Failed(_) => self.run_fresh(threads, watch),
         };
         match outcome {
-            Ok(outcome) => self.judged(outcome.manifest),
+            Ok(outcome) => self.with_verdicts(outcome.manifest),
             Err(error) => {
-                let ran = self.look()?;
-                Ok(Ran { state: State::Failed(error.to_string()), ..ran })
+                let ran = self.existing_result()?;
+                Ok(JobResult { state: JobState::Failed(error.to_string()), ..ran })
             }
         }
     }
 
-    fn fresh(&self, threads: Option<usize>, watch: &mut dyn Watch) -> Result<run::Outcome> {
+    fn run_fresh(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<run::RunOutcome> {
         if fs::read_dir(&self.folder).is_ok_and(|mut entries| entries.next().is_some()) {
             // Whoever still runs there keeps the folder.
-            drop(run::Lock::take(&self.folder)?);
+            drop(run::Lock::acquire(&self.folder)?);
             set_aside(&self.folder)?;
         }
-        let options = Options { out: Some(self.folder.clone()), sets: self.sets.clone(), threads };
+        let options = RunOptions { out: Some(self.folder.clone()), overrides: self.overrides.clone(), threads };
         run::run(&self.scene, &options, watch)
     }
 
     /// Whether `manifest` is of a run of this scene by this program.
-    fn is_of(&self, manifest: &Manifest) -> Result<bool> {
-        let scene = self.read()?;
+    fn matches(&self, manifest: &Manifest) -> Result<bool> {
+        let scene = self.read_scene()?;
         let words = scene.to_toml()?;
-        let own = bare(&words);
+        let own = computed_keys(&words);
         // References are read anew whenever they are needed.
         let references: Vec<&str> = scene.check.iter().filter_map(|check| check.reference.as_deref()).collect();
         Ok(manifest.version == env!("CARGO_PKG_VERSION")
             && has_frames(&scene, manifest)
             && own.is_some()
-            && own == bare(&manifest.scene)
-            && run::same_tables(&run::scene_file(&self.scene), &words, &self.folder, &references))
+            && own == computed_keys(&manifest.scene)
+            && run::tables_unchanged(&run::scene_file(&self.scene), &words, &self.folder, &references))
     }
 
-    fn judged(&self, manifest: Manifest) -> Result<Ran> {
+    fn with_verdicts(&self, manifest: Manifest) -> Result<JobResult> {
         let state = match manifest.status {
-            Status::Finished => State::Finished,
-            Status::Failed => State::Failed(manifest.error.clone().unwrap_or_default()),
-            _ if run::has_checkpoint(&self.folder) => State::Interrupted,
-            _ => State::Planned,
+            RunStatus::Finished => JobState::Finished,
+            RunStatus::Failed => JobState::Failed(manifest.error.clone().unwrap_or_default()),
+            _ if run::has_checkpoint(&self.folder) => JobState::Interrupted,
+            _ => JobState::Planned,
         };
         let series = run::series_folder(&self.folder);
-        let judge = |check: Check| check.judge(&series);
-        let verdicts = if state == State::Finished { self.checks()?.into_iter().map(judge).collect() } else { vec![] };
-        Ok(Ran { state, manifest: Some(manifest), verdicts })
+        let judge = |check: ReferenceCheck| check.verdict(&series);
+        let verdicts =
+            if state == JobState::Finished { self.checks()?.into_iter().map(judge).collect() } else { vec![] };
+        Ok(JobResult { state, manifest: Some(manifest), verdicts })
     }
 }
 
 /// Whether a run kept the frames that its scene now asks for, if it names their times; there may be others between them.
 fn has_frames(scene: &Scene, manifest: &Manifest) -> bool {
-    let Some(FramesConfig::On(FrameOutputConfig { every: Some(every), .. })) = &scene.frames else { return true };
+    let Some(FramesChoice::On(FramesConfig { every: Some(every), .. })) = &scene.frames else { return true };
     let words = manifest.scene.parse::<toml::Table>().ok();
     let kept = words.and_then(|words| words.get("frames")?.get("every")?.as_float());
     kept.map(|kept| every / kept).is_some_and(|each| each > 0.5 && (each - each.round()).abs() < 1e-6)
 }
 
 /// The words of a scene that decide what a run computes.
-fn bare(scene: &str) -> Option<toml::Table> {
+fn computed_keys(scene: &str) -> Option<toml::Table> {
     let mut words = scene.parse::<toml::Table>().ok()?;
-    BESIDE.iter().for_each(|key| {
+    OUTPUT_KEYS.iter().for_each(|key| {
         words.remove(*key);
     });
     Some(words)

@@ -4,27 +4,27 @@
 //! interrupted. [`Grid`] makes the jobs of `pontoon study`, [`Case`] those of `pontoon validate`; rows, orders
 //! and pages say what came out. [`stress`] makes and judges many short runs in memory.
 
-mod cases;
-mod cost;
-mod estimate;
-mod grid;
+mod validation_cases;
+mod cost_plot;
+mod time_estimate;
+mod parameter_grid;
 mod job;
-mod order;
-mod page;
-mod plot;
-mod rows;
-mod sheet;
-mod spread;
+mod convergence;
+mod html_page;
+mod svg_plot;
+mod result_rows;
+mod results;
+mod repeat_spread;
 pub mod stress;
 mod validation;
 
-pub use cases::{Case, Extent, cases, find};
-pub use estimate::{Planned, USUAL, plan};
-pub use grid::{Grid, Vary, heads, interval, split};
-pub use job::{Job, Ran, State};
-pub use order::{Convergence, convergence, least_squares};
-pub use plot::{Line, Style, curves, log_log};
-pub use rows::{Row, csv, rows};
-pub use sheet::Sheet;
-pub use spread::{CHANCE, Spread, spreads};
+pub use convergence::{Convergence, convergence, least_squares};
+pub use job::{Job, JobResult, JobState};
+pub use parameter_grid::{ParameterGrid, VariedKey, distinguishing_labels, frame_interval, split_values};
+pub use repeat_spread::{REPEATS_NOTE, Spread, spread_table};
+pub use result_rows::{ResultRow, result_rows, rows_to_csv};
+pub use results::StudyResults;
+pub use svg_plot::{LineStyle, PlotLine, line_plot, log_log_plot};
+pub use time_estimate::{DEFAULT_SPEED, TimeEstimate, estimate_times};
 pub use validation::Validation;
+pub use validation_cases::{CaseResolution, ValidationCase, select_cases, validation_cases};

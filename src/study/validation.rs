@@ -6,22 +6,24 @@ use std::{
 };
 
 use super::{
-    Case, Job, Line, Ran, Row, State, Style, cost, csv, curves,
-    page::{self, unit},
-    rows::{labels, rows},
+    Job, JobResult, JobState, LineStyle, PlotLine, ResultRow, ValidationCase, cost_plot,
+    html_page::{self, unit},
+    line_plot,
+    result_rows::{check_labels, result_rows},
+    rows_to_csv,
 };
 use crate::{
-    analysis::{Curves, Verdict, format_verdicts},
+    analysis::{CheckCurves, Verdict, format_verdicts},
     error::{Error, Result},
-    math::time_series::Series,
-    output::{manifest::Machine, write_whole},
+    math::time_series::TimeSeries,
+    output::{manifest::Machine, write_atomically},
 };
 
 /// Cases that are run, quick or full.
 pub struct Validation {
     command: String,
     out: PathBuf,
-    cases: Vec<Case>,
+    cases: Vec<ValidationCase>,
     repeat: usize,
     /// The runs: the repeats of each case, one case after the other.
     pub jobs: Vec<Job>,
@@ -32,7 +34,13 @@ impl Validation {
     ///
     /// # Errors
     /// Those of the scenes' words and of [`Job::repeated`].
-    pub fn new(cases: Vec<(Case, &Path)>, full: bool, repeat: usize, out: PathBuf, command: String) -> Result<Self> {
+    pub fn new(
+        cases: Vec<(ValidationCase, &Path)>,
+        full: bool,
+        repeat: usize,
+        out: PathBuf,
+        command: String,
+    ) -> Result<Self> {
         let jobs = cases.iter().map(|(case, scene)| case.job(full, scene, &out)?.repeated(repeat));
         let jobs = jobs.collect::<Result<Vec<_>>>()?.concat();
         Ok(Self { command, out, cases: cases.into_iter().map(|(case, _)| case).collect(), repeat, jobs })
@@ -44,17 +52,17 @@ impl Validation {
     }
 
     /// The table of the first runs, of which `ran` is known; its first row is its head.
-    pub fn table(&self, ran: &[Ran]) -> Vec<Vec<String>> {
-        let names: Vec<[String; 1]> = self.jobs.iter().map(|job| [job.said()]).collect();
-        let named: Vec<Vec<Verdict>> = ran.iter().map(named).collect();
+    pub fn table(&self, ran: &[JobResult]) -> Vec<Vec<String>> {
+        let names: Vec<[String; 1]> = self.jobs.iter().map(|job| [job.display_name()]).collect();
+        let named: Vec<Vec<Verdict>> = ran.iter().map(labelled_verdicts).collect();
         let pairs: Vec<(&[String], &Verdict)> =
             names.iter().zip(&named).flat_map(|(name, all)| all.iter().map(move |v| (&name[..], v))).collect();
-        let mut table = format_verdicts::rows(&pairs, &["case"]);
-        let costs = ran.iter().flat_map(|ran| ran.verdicts.iter().map(|_| costs(ran)));
+        let mut table = format_verdicts::verdict_rows(&pairs, &["case"]);
+        let costs = ran.iter().flat_map(|ran| ran.verdicts.iter().map(|_| cost_cells(ran)));
         let heads = ["wall, s", "processors, s", "particle-steps"].map(String::from);
         table.iter_mut().zip(std::iter::once(heads).chain(costs)).for_each(|(row, costs)| row.extend(costs));
         for (name, ran) in names.iter().zip(ran) {
-            if let State::Failed(why) = &ran.state {
+            if let JobState::Failed(why) = &ran.state {
                 table.push(vec![name[0].clone(), format!("failed: {}", why.lines().next().unwrap_or(""))]);
             }
         }
@@ -62,40 +70,40 @@ impl Validation {
     }
 
     /// A row for each check of the first runs, of which `ran` is known.
-    pub fn rows(&self, ran: &[Ran]) -> Vec<Row> {
-        rows(&self.jobs[..ran.len()], ran, &[])
+    pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> {
+        result_rows(&self.jobs[..ran.len()], ran, &[])
     }
 
     /// Writes page and table; `ran` are the first runs.
     ///
     /// # Errors
     /// `File` if one cannot be written; each is replaced as a whole.
-    pub fn write(&self, ran: &[Ran]) -> Result<()> {
+    pub fn write(&self, ran: &[JobResult]) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         let first = ran.iter().find_map(|r| r.manifest.as_ref());
-        let (machine, threads) = (first.map_or_else(Machine::this, |m| m.machine.clone()), first.map(|m| m.threads));
-        let mut body = page::origin(&self.command, &machine, threads);
-        body += &page::table(&self.table(ran));
+        let (machine, threads) = (first.map_or_else(Machine::current, |m| m.machine.clone()), first.map(|m| m.threads));
+        let mut body = html_page::provenance_table(&self.command, &machine, threads);
+        body += &html_page::table(&self.table(ran));
         let rows = self.rows(ran);
-        body += &page::repeats(&rows);
-        body += &cost::figures(&self.jobs, &rows)?;
+        body += &html_page::repeats_section(&rows);
+        body += &cost_plot::cost_figures(&self.jobs, &rows)?;
         for ((case, jobs), ran) in self.cases.iter().zip(self.jobs.chunks(self.repeat)).zip(ran.chunks(self.repeat)) {
             body += &section(case, jobs, ran)?;
         }
         let [html, table] = self.files();
-        write_whole(&html, &page::page("Validation", &body))?;
-        write_whole(&table, &csv(&rows, &[])?)
+        write_atomically(&html, &html_page::html_page("Validation", &body))?;
+        write_atomically(&table, &rows_to_csv(&rows, &[])?)
     }
 }
 
 /// The verdicts of a run, those of one series told apart.
-fn named(ran: &Ran) -> Vec<Verdict> {
-    let labels = labels(ran.verdicts.iter().map(|v| v.series.as_str()));
+fn labelled_verdicts(ran: &JobResult) -> Vec<Verdict> {
+    let labels = check_labels(ran.verdicts.iter().map(|v| v.series.as_str()));
     labels.into_iter().zip(&ran.verdicts).map(|(series, verdict)| Verdict { series, ..verdict.clone() }).collect()
 }
 
 /// Wall time, processor time and particle-steps of a run.
-fn costs(ran: &Ran) -> [String; 3] {
+fn cost_cells(ran: &JobResult) -> [String; 3] {
     ran.manifest.as_ref().map_or_else(
         || ["–"; 3].map(String::from),
         |m| [format!("{:.1}", m.wall_s), format!("{:.1}", m.cpu_s), format!("{:.3e}", m.particle_steps as f64)],
@@ -103,26 +111,26 @@ fn costs(ran: &Ran) -> [String; 3] {
 }
 
 /// What a case is, and the curves of its checks, of all of its repeats that have been run.
-fn section(case: &Case, jobs: &[Job], ran: &[Ran]) -> Result<String> {
-    let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", page::escape(&case.name), page::escape(&case.about));
+fn section(case: &ValidationCase, jobs: &[Job], ran: &[JobResult]) -> Result<String> {
+    let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", html_page::escape(&case.name), html_page::escape(&case.about));
     if !case.note.is_empty() {
-        text += &format!("<p>{}</p>\n", page::escape(&case.note));
+        text += &format!("<p>{}</p>\n", html_page::escape(&case.note));
     }
     let water = ran[0].manifest.as_ref().map_or(String::new(), |m| format!(", {} water particles", m.particles.fluid));
-    text += &format!("<p>Scene <code>{}</code>, dp = {} m{water}.</p>\n", page::escape(&case.scene), jobs[0].dp);
-    let finished = || jobs.iter().zip(ran).filter(|(_, ran)| ran.state == State::Finished);
+    text += &format!("<p>Scene <code>{}</code>, dp = {} m{water}.</p>\n", html_page::escape(&case.scene), jobs[0].dp);
+    let finished = || jobs.iter().zip(ran).filter(|(_, ran)| ran.state == JobState::Finished);
     let curves = finished().map(|(job, _)| job.curves()).collect::<Result<Vec<_>>>()?;
-    let verdicts: Vec<Vec<Verdict>> = finished().map(|(_, ran)| named(ran)).collect();
+    let verdicts: Vec<Vec<Verdict>> = finished().map(|(_, ran)| labelled_verdicts(ran)).collect();
     for check in 0..verdicts.first().map_or(0, Vec::len) {
-        let known: Vec<&Curves> = curves.iter().filter_map(|all| all.get(check)?.as_ref()).collect();
+        let known: Vec<&CheckCurves> = curves.iter().filter_map(|all| all.get(check)?.as_ref()).collect();
         let verdicts: Vec<&Verdict> = verdicts.iter().filter_map(|all| all.get(check)).collect();
         text += &match known.is_empty() {
             false => plot(&known, &verdicts)?,
             true => {
                 format!(
                     "<p>{}: {}</p>\n",
-                    page::escape(&verdicts[0].series),
-                    page::escape(&format_verdicts::remark(verdicts[0]))
+                    html_page::escape(&verdicts[0].series),
+                    html_page::escape(&format_verdicts::format_outcome(verdicts[0]))
                 )
             }
         };
@@ -131,33 +139,33 @@ fn section(case: &Case, jobs: &[Job], ran: &[Ran]) -> Result<String> {
 }
 
 /// The runs `known`, the repeats of one case, over their reference; the figures below are of `verdicts`.
-fn plot(known: &[&Curves], verdicts: &[&Verdict]) -> Result<String> {
+fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> Result<String> {
     let (reference, verdict) = (&known[0].reference, verdicts[0]);
     let (first, last) = reference.span();
     let room = 0.1 * (last - first);
-    let points = |series: &Series| -> Vec<(f64, f64)> {
+    let points = |series: &TimeSeries| -> Vec<(f64, f64)> {
         let all = series.times().iter().copied().zip(series.values().iter().copied());
         all.filter(|(t, _)| (first - room..=last + room).contains(t)).collect()
     };
     // A formula is a line, a measurement its samples.
-    let style = if known[0].exact { Style::Plain } else { Style::Dots };
-    let mut lines: Vec<Line> = known.iter().map(|of| Line::new(0, Style::Plain, points(&of.sim))).collect();
+    let style = if known[0].exact { LineStyle::Plain } else { LineStyle::Dots };
+    let mut lines: Vec<PlotLine> = known.iter().map(|of| PlotLine::new(0, LineStyle::Plain, points(&of.sim))).collect();
     let mut keys = vec![(0, if known.len() > 1 { format!("{} runs", known.len()) } else { "run".into() })];
     if let Some(meaned) = verdict.meaned {
-        let means = known.iter().filter_map(|of| of.meaned.as_ref());
-        lines.extend(means.map(|series| Line::new(2, Style::Plain, points(series))));
+        let means = known.iter().filter_map(|of| of.running_mean.as_ref());
+        lines.extend(means.map(|series| PlotLine::new(2, LineStyle::Plain, points(series))));
         keys.push((2, format!("the same, mean over {} ms", 1e3 * meaned.seconds)));
     }
-    lines.push(Line::new(1, style, points(reference)));
+    lines.push(PlotLine::new(1, style, points(reference)));
     keys.push((1, "reference".to_string()));
-    let svg = curves(["time, s", &format!("{}, {}", verdict.series, unit(&verdict.series))], &lines)?;
-    let figures: Vec<String> = verdicts.iter().map(|verdict| figures(verdict)).collect();
-    Ok(page::figure(&svg, &keys, &figures.join(". ")))
+    let svg = line_plot(["time, s", &format!("{}, {}", verdict.series, unit(&verdict.series))], &lines)?;
+    let figures: Vec<String> = verdicts.iter().map(|verdict| metrics_line(verdict)).collect();
+    Ok(html_page::plot_figure(&svg, &keys, &figures.join(". ")))
 }
 
 /// The figures of a check in a line.
-fn figures(verdict: &Verdict) -> String {
-    let head_and_row = format_verdicts::rows(&[(&[], verdict)], &[]);
+fn metrics_line(verdict: &Verdict) -> String {
+    let head_and_row = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let pairs = head_and_row[0].iter().zip(&head_and_row[1]).skip(1).filter(|(_, figure)| !figure.is_empty());
     pairs.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect::<Vec<_>>().join("; ")
 }

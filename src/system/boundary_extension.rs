@@ -26,7 +26,11 @@ pub(super) struct ExtensionParticle<const D: usize> {
 }
 
 /// The extension of solid number `i` of `specs`; most have none.
-pub(super) fn of_solid<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: &Model) -> Vec<ExtensionParticle<D>> {
+pub(super) fn extension_particles<const D: usize>(
+    i: usize,
+    specs: &[SolidSpec<D>],
+    model: &Model,
+) -> Vec<ExtensionParticle<D>> {
     let (spec, pose) = (&specs[i], specs[i].start().pose);
     let Role::Driven(motion) = &spec.role else { return Vec::new() };
     let fixed: Vec<&SolidSpec<D>> = specs.iter().filter(|other| matches!(other.role, Role::Fixed)).collect();
@@ -35,7 +39,7 @@ pub(super) fn of_solid<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: 
     if fixed.is_empty() {
         return extension;
     }
-    for point in spec.shape.skin(dp, model.boundary_layers()) {
+    for point in spec.shape.boundary_points(dp, model.boundary_layers()) {
         let x = pose.point(&point.r);
         for other in &fixed {
             let at = other.start().pose;
@@ -44,7 +48,7 @@ pub(super) fn of_solid<const D: usize>(i: usize, specs: &[SolidSpec<D>], model: 
             if (apart - 0.5 * dp).abs() > 0.25 * dp || (apart + outside(&point.r)).abs() > TOUCH * dp {
                 continue;
             }
-            let out = at.rotation * other.shape.outward(&at.local(&x), 0.05 * dp);
+            let out = at.rotation * other.shape.outward_normal(&at.local(&x), 0.05 * dp);
             if motion.headings(&x).iter().any(|way| way.dot(&out).abs() > ALONG) {
                 continue;
             }
@@ -83,8 +87,8 @@ mod tests {
             solid("paddle", [0.4, 2.0], foot + 1.0, Role::Driven(motion)),
         ];
         let model = Model::water(2, 0.1, 1.0);
-        assert!(of_solid(0, &specs, &model).is_empty(), "a bed has none");
-        of_solid(1, &specs, &model)
+        assert!(extension_particles(0, &specs, &model).is_empty(), "a bed has none");
+        extension_particles(1, &specs, &model)
     }
 
     fn along(direction: [f64; 2]) -> Motion<2> {

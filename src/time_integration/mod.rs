@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     coupling::{Accounting, Interval},
     math::Vector,
-    model::{Model, Scheme},
+    model::{Model, TimeScheme},
     particles::PARTICLES_PER_TASK,
     sph::boundary::relaxation,
     system::{MomentumTransfer, Reordering, System},
@@ -33,8 +33,8 @@ impl<const D: usize> Stepper<D> {
     /// The stepper of a model's scheme, at the start of a run.
     pub fn new(model: &Model) -> Self {
         match model.scheme {
-            Scheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
-            Scheme::Symplectic => Self::Symplectic,
+            TimeScheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
+            TimeScheme::Symplectic => Self::Symplectic,
         }
     }
 

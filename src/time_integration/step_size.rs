@@ -4,25 +4,11 @@
 //! f is the whole acceleration, gravity included; √(h/|f|) is what eq. (14) of the paper means by h/√|f|. Free bodies do not
 //! shorten the step: see `coupling/acoustic_added_mass.rs`.
 
-use crate::{
-    model::{Model, Viscosity},
-    sph::FluidProperties,
-    system::StepLimits,
-};
+use crate::{sph::FluidProperties, system::StepLimits};
 
 /// The longest step (s) that the water allows; eq. (14) of [@pirkhalili2023], [@monaghan1992].
 pub fn water<const D: usize>(peaks: &StepLimits, medium: &FluidProperties<D>, cfl: f64) -> f64 {
     let by_force = (medium.h / peaks.acceleration).sqrt();
     let by_sound = medium.h / (medium.c0 + medium.h * peaks.approach_rate);
     cfl * by_force.min(by_sound)
-}
-
-/// The longest step (s) that the model's viscosity allows; [@morris1997].
-pub fn viscous(model: &Model) -> f64 {
-    let nu0 = match model.viscosity {
-        Viscosity::Laminar(v) => v.nu0,
-        Viscosity::Sps(v) => v.nu0,
-        Viscosity::None | Viscosity::Artificial(_) => 0.0,
-    };
-    model.h * model.h / (8.0 * nu0)
 }

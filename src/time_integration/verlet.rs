@@ -19,7 +19,7 @@ use super::{apply_shifts, shifts, step_boundary_density};
 use crate::{
     coupling::{Accounting, Interval},
     math::Vector,
-    model::{Diffusion, Model, Viscosity},
+    model::Model,
     particles::PARTICLES_PER_TASK,
     system::{Reordering, StepCheck, System, permute},
 };
@@ -46,15 +46,9 @@ pub struct Verlet<const D: usize> {
 impl<const D: usize> Verlet<D> {
     /// At the start of a run with this model; the first step is Euler's.
     pub fn new(euler_every: u32, model: &Model) -> Self {
-        let delta = match model.diffusion {
-            Diffusion::None => 0.0,
-            Diffusion::Molteni(d) => d.delta,
-            Diffusion::Fourtakas(d) => d.delta,
-        };
-        let alpha = if let Viscosity::Artificial(v) = model.viscosity { v.alpha } else { 0.0 };
         Self {
             euler_every: euler_every.max(1),
-            growth: (7.0 * delta + 3.5 * alpha) * model.c0 / model.h,
+            growth: (model.diffusion.damping() + model.viscosity.damping()) * model.c0 / model.h,
             steps: 0,
             foldings: 0.0,
             dt_before: 0.0,
@@ -107,11 +101,11 @@ impl<const D: usize> Verlet<D> {
         accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
         let shifts = shifts(system, dt);
 
-        let guard = system.guard();
+        let guard = system.valid_range();
         let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
         let before = self.v_before.par_iter_mut().zip(&mut self.rho_before);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
-        system.status.check = now
+        system.status.step_check = now
             .zip(before)
             .zip(system.neighbours.positions_at_build())
             .with_min_len(PARTICLES_PER_TASK)
@@ -121,7 +115,7 @@ impl<const D: usize> Verlet<D> {
                 (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.compression_rate * span);
                 guard.check(then, r, v, *rho)
             })
-            .reduce(|| StepCheck::NOTHING, StepCheck::and);
+            .reduce(|| StepCheck::INITIAL, StepCheck::combine);
         if let Some(shifts) = shifts {
             apply_shifts(system, &shifts, &mut accounting);
         }

@@ -29,7 +29,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::{
     error::{Error, Result},
-    math::time_series::Series,
+    math::time_series::TimeSeries,
 };
 
 /// Most components of one wave: their sum is formed at every step.
@@ -282,7 +282,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if it is too short or still, or as [`Maker::components`].
-    pub fn recorded(&self, elevation: &Series, distance: f64, delay: f64) -> Result<Wave> {
+    pub fn recorded(&self, elevation: &TimeSeries, distance: f64, delay: f64) -> Result<Wave> {
         let found = record::components(elevation)?;
         let early = |c: &Component| Component {
             phase: c.phase + wave_number(c.omega, self.depth, self.g) * distance - c.omega * delay,

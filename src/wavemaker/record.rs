@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::{Component, MOST_COMPONENTS};
 use crate::{
     error::{Error, Result},
-    math::time_series::Series,
+    math::time_series::TimeSeries,
 };
 
 /// Share of the energy, at either end of the spectrum, that is left out: drift and noise.
@@ -15,14 +15,14 @@ const LEFT_OUT: f64 = 0.005;
 ///
 /// # Errors
 /// `Scene` if it has fewer than eight samples or is still.
-pub(super) fn components(series: &Series) -> Result<Vec<Component>> {
+pub(super) fn components(series: &TimeSeries) -> Result<Vec<Component>> {
     let count = series.times().len();
     if count < 8 {
         return Err(Error::scene(format!("the record has {count} samples; waves need eight and more")));
     }
     let (first, last) = series.span();
     let (span, step) = (last - first, (last - first) / (count - 1) as f64);
-    let samples: Vec<f64> = (0..count - 1).map(|i| series.at(first + step * i as f64)).collect();
+    let samples: Vec<f64> = (0..count - 1).map(|i| series.value_at(first + step * i as f64)).collect();
     let mean = samples.iter().sum::<f64>() / samples.len() as f64;
     let many = samples.len();
     let circle: Vec<(f64, f64)> = (0..many).map(|i| (TAU * i as f64 / many as f64).sin_cos()).collect();

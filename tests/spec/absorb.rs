@@ -6,7 +6,7 @@ use pontoon::{
     Error,
     math::Vector,
     preflight,
-    scene::{Built, Scene},
+    scene::{BuiltScene, Scene},
     simulation::Simulation,
 };
 
@@ -40,7 +40,7 @@ const PERIOD: f64 = 1.175;
 
 const TAKER: &str = "driven = { along = [1.0, 0.0], wave = { absorb = { period = 1.175 } } }";
 
-fn built(end: &str) -> Result<Built<2>, Error> {
+fn built(end: &str) -> Result<BuiltScene<2>, Error> {
     Scene::parse(&BASIN.replace("END", end), Path::new(""), &[])?.build()
 }
 
@@ -78,7 +78,7 @@ fn a_basin_in_tune_with_its_paddle_holds_twice_the_wave_and_no_more() {
     while sim.time() < 6.0 * PERIOD {
         sim.step().unwrap();
         if sim.time() > 5.0 * PERIOD {
-            let level = sim.system().surfaces(&Vector::from([0.565, 0.0])).next().unwrap();
+            let level = sim.system().surface_heights(&Vector::from([0.565, 0.0])).next().unwrap();
             (low, high) = (low.min(level), high.max(level));
         }
     }
@@ -141,8 +141,8 @@ fn words_of_absorption_that_cannot_be_meant_are_named_with_what_can() {
 #[test]
 fn what_a_paddle_absorbs_is_told_before_a_run() {
     let told = |end: &str| {
-        let Built { setup, plan, overlapped, still, .. } = built(end).unwrap();
-        preflight::look(&Simulation::new(setup).unwrap(), &plan, still, overlapped, &[]).absorbers
+        let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built(end).unwrap();
+        preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[]).absorbers
     };
     assert!(told("fixed = true").is_empty());
     let own = &told(TAKER)[0];

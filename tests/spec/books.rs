@@ -6,7 +6,7 @@ use pontoon::{
     geometry::Shape,
     math::{Bivector, Vector},
     model::Dimension,
-    probe::{Budget, Probe},
+    probe::{EnergyBudgetProbe, Probe},
     scene::Scene,
     simulation::Simulation,
     solid::{Dim, Load, Role},
@@ -157,11 +157,11 @@ where
     Dim<D>: Dimension<D>,
 {
     sim.enable_energy_budget();
-    let probe = Budget::new(sim.system());
+    let probe = EnergyBudgetProbe::new(sim.system());
     for _ in 0..steps {
         sim.step().unwrap();
     }
-    let row = probe.look(&sim);
+    let row = probe.sample(&sim);
     let turned = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
     (row[row.len() - 1].abs(), turned)
 }
@@ -180,8 +180,8 @@ fn the_energy_budget_closes() {
 fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
     let mut sim = crowd("");
     sim.enable_energy_budget();
-    let probe = Budget::new(sim.system());
-    let missing = |sim: &Simulation<2>| probe.look(sim).last().copied().unwrap_or(f64::NAN);
+    let probe = EnergyBudgetProbe::new(sim.system());
+    let missing = |sim: &Simulation<2>| probe.sample(sim).last().copied().unwrap_or(f64::NAN);
     for _ in 0..300 {
         sim.step().unwrap();
     }

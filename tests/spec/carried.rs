@@ -6,7 +6,7 @@ use pontoon::{
     Result,
     geometry::Shape,
     math::{Bivector, Bounds, Matrix, Pose, Vector, expression::Formula},
-    model::{Model, PairLoopKind, Scheme, Walls},
+    model::{Model, PairLoopKind, TimeScheme, Walls},
     scene::Scene,
     simulation::{Setup, Simulation},
     solid::{Constraints, Law, Load, Motion, Role, SolidSpec},
@@ -96,7 +96,7 @@ fn water_and_bodies_that_collide_in_free_space_keep_their_momentum() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.gravity, model.pair_loop, model.c0, model.scheme) =
-        (vec![0.0, 0.0], PairLoopKind::Reference, 34.0, Scheme::Symplectic);
+        (vec![0.0, 0.0], PairLoopKind::Reference, 34.0, TimeScheme::Symplectic);
     let mut water = rig::lattice([-0.3, -0.2], [0.6, 0.4], dp);
     // A dry gap of one dp between them.
     let sizes = [[-0.06, 0.0], [0.06, 0.02]];

@@ -6,10 +6,13 @@ use std::{
 };
 
 use pontoon::{
-    analysis::{Align, Check, CheckWords, Reference, Score, Verdict, amplitude, deviation, format_verdicts, off, peak},
-    error::{Kind, Result},
-    math::time_series::Series,
-    run::{self, Options, Progress},
+    analysis::{
+        Align, CheckPlan, Reference, ReferenceCheck, Score, Verdict, amplitude_ratio, first_peak_error,
+        format_verdicts, max_abs, relative_l2,
+    },
+    error::{ErrorKind, Result},
+    math::time_series::TimeSeries,
+    run::{self, Progress, RunOptions},
     scene::Scene,
 };
 
@@ -26,19 +29,19 @@ fn folder(name: &str, sim: &str, reference: &str) -> std::io::Result<PathBuf> {
 
 /// Largest N that passes.
 fn bound(n: f64) -> Option<Score> {
-    Some(Score { n: Some(n), ..Score::default() })
+    Some(Score { relative_l2: Some(n), ..Score::default() })
 }
 
 /// A check of `series` against `column` over `time` of `reference.csv`.
-fn by_table(series: &str, [time, column]: [&str; 2], delay: f64, bound: Option<Score>) -> CheckWords {
+fn by_table(series: &str, [time, column]: [&str; 2], delay: f64, bound: Option<Score>) -> CheckPlan {
     let (time, column) = (time.to_string(), column.to_string());
     let words = by_formula(series, "", bound);
-    CheckWords { reference: Reference::Table { file: "reference.csv".into(), time, column, delay }, ..words }
+    CheckPlan { reference: Reference::Table { file: "reference.csv".into(), time, column, delay }, ..words }
 }
 
 /// A check of `series` against a formula.
-fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckWords {
-    CheckWords {
+fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckPlan {
+    CheckPlan {
         series: series.into(),
         reference: Reference::Formula(formula.into()),
         from: None,
@@ -51,8 +54,8 @@ fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckWords {
     }
 }
 
-fn judge(words: &CheckWords, folder: &Path) -> Verdict {
-    Check::new(words, folder).unwrap_or_else(|e| panic!("{e}")).judge(folder)
+fn judge(words: &CheckPlan, folder: &Path) -> Verdict {
+    ReferenceCheck::new(words, folder).unwrap_or_else(|e| panic!("{e}")).verdict(folder)
 }
 
 /// A table of x(t) at every hundredth of a second for 3 s.
@@ -65,22 +68,22 @@ const SIM: &str = "t_s,heave_m,gap_m\n0.0,0.0,\n1.0,2.0,5.0\n2.0,4.0,\n3.0,6.0,7
 
 #[test]
 fn a_perfect_run_has_no_deviation_and_a_run_twice_too_large_has_n_1_and_m_2() -> Result<()> {
-    let reference = Series::new([0.0, 1.0, 2.5], [1.0, -3.0, 0.5])?;
-    let twice = Series::new([0.0, 1.0, 2.5], [2.0, -6.0, 1.0])?;
-    assert_eq!([deviation(&reference, &reference)?, amplitude(&reference, &reference)?], [0.0, 1.0]);
-    assert_eq!([deviation(&twice, &reference)?, amplitude(&twice, &reference)?], [1.0, 2.0]);
-    assert_eq!(peak(&twice, &reference)?, 1.0);
+    let reference = TimeSeries::new([0.0, 1.0, 2.5], [1.0, -3.0, 0.5])?;
+    let twice = TimeSeries::new([0.0, 1.0, 2.5], [2.0, -6.0, 1.0])?;
+    assert_eq!([relative_l2(&reference, &reference)?, amplitude_ratio(&reference, &reference)?], [0.0, 1.0]);
+    assert_eq!([relative_l2(&twice, &reference)?, amplitude_ratio(&twice, &reference)?], [1.0, 2.0]);
+    assert_eq!(first_peak_error(&twice, &reference)?, 1.0);
     Ok(())
 }
 
 #[test]
 fn a_reference_outside_the_run_or_zero_is_refused() -> Result<()> {
-    let sim = Series::new([0.0, 1.0], [1.0, 1.0])?;
-    let late = Series::new([0.5, 1.5], [1.0, 1.0])?;
-    let zero = Series::new([0.0, 1.0], [0.0, 0.0])?;
-    assert!(deviation(&sim, &late).is_err_and(|e| e.what.contains("0.5 to 1.5 s")));
-    assert!(amplitude(&sim, &zero).is_err() && peak(&sim, &zero).is_err());
-    assert_eq!(off(&sim, &zero)?, 1.0);
+    let sim = TimeSeries::new([0.0, 1.0], [1.0, 1.0])?;
+    let late = TimeSeries::new([0.5, 1.5], [1.0, 1.0])?;
+    let zero = TimeSeries::new([0.0, 1.0], [0.0, 0.0])?;
+    assert!(relative_l2(&sim, &late).is_err_and(|e| e.message.contains("0.5 to 1.5 s")));
+    assert!(amplitude_ratio(&sim, &zero).is_err() && first_peak_error(&sim, &zero).is_err());
+    assert_eq!(max_abs(&sim, &zero)?, 1.0);
     Ok(())
 }
 
@@ -92,7 +95,7 @@ fn a_verdict_fails_when_the_bound_is_missed_and_only_then() -> std::io::Result<(
     let (kept, missed) = (verdict(0.186), verdict(0.185));
     assert_eq!((kept.passed, missed.passed), (Some(true), Some(false)));
     let by_hand = (0.5_f64 / 14.5).sqrt();
-    let n = kept.figures.n;
+    let n = kept.metrics.relative_l2;
     assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-15), "round-off; got {n:?}");
     fs::remove_dir_all(folder)
 }
@@ -101,7 +104,10 @@ fn a_verdict_fails_when_the_bound_is_missed_and_only_then() -> std::io::Result<(
 fn several_readings_at_an_instant_count_as_their_mean_and_delay_moves_them() -> std::io::Result<()> {
     let folder = folder("mean", SIM, "t,z\n1.5,4.5\n0.5,2.0\n1.5,3.5\n0.5,2.0\n")?;
     let verdict = judge(&by_table("box.heave_m", ["t", "z"], 0.5, bound(0.0)), &folder);
-    assert_eq!((verdict.figures.n, verdict.figures.m, verdict.passed), (Some(0.0), Some(1.0), Some(true)));
+    assert_eq!(
+        (verdict.metrics.relative_l2, verdict.metrics.amplitude_ratio, verdict.passed),
+        (Some(0.0), Some(1.0), Some(true))
+    );
     fs::remove_dir_all(folder)
 }
 
@@ -110,7 +116,7 @@ fn a_run_shorter_than_its_reference_is_compared_where_it_can_be_but_not_judged()
     let folder = folder("short", SIM, "t,z\n0,1\n1,2\n5,0\n6,0\n7,0\n")?;
     let verdict = judge(&by_table("box.heave_m", ["t", "z"], 0.0, bound(9.0)), &folder);
     assert_eq!((verdict.covered, verdict.passed), (0.4, None));
-    assert!(verdict.figures.n.is_some() && verdict.note.is_some());
+    assert!(verdict.metrics.relative_l2.is_some() && verdict.note.is_some());
     let far = judge(&by_table("box.heave_m", ["t", "z"], 100.0, bound(9.0)), &folder);
     assert_eq!(far.passed, None);
     assert!(far.note.is_some_and(|note| note.contains("the run at 0 and 3 s")));
@@ -123,13 +129,13 @@ fn empty_fields_are_gaps_and_wrong_tables_say_what_is_wrong() -> std::io::Result
     let reference = folder.join("reference.csv");
     let words = |names: [&str; 2]| by_table("box.gap_m", names, 0.0, bound(0.0));
     assert_eq!(judge(&words(["t", "z"]), &folder).passed, Some(true));
-    let missing = Check::new(&words(["t_s", "z"]), &folder).err();
-    assert_eq!(missing.map(|e| e.kind), Some(Kind::Scene));
+    let missing = ReferenceCheck::new(&words(["t_s", "z"]), &folder).err();
+    assert_eq!(missing.map(|e| e.kind), Some(ErrorKind::Scene));
     fs::write(&reference, "t,z\n1,5\n2,six\n")?;
-    let word = Check::new(&words(["t", "z"]), &folder).err();
-    assert_eq!(word.and_then(|e| e.place).and_then(|p| p.line_column), Some((3, 1)));
-    let absent = Check::new(&words(["t", "z"]), &folder.join("nowhere")).err();
-    assert_eq!(absent.map(|e| e.kind), Some(Kind::File));
+    let word = ReferenceCheck::new(&words(["t", "z"]), &folder).err();
+    assert_eq!(word.and_then(|e| e.location).and_then(|p| p.line_column), Some((3, 1)));
+    let absent = ReferenceCheck::new(&words(["t", "z"]), &folder.join("nowhere")).err();
+    assert_eq!(absent.map(|e| e.kind), Some(ErrorKind::File));
     fs::remove_dir_all(folder)
 }
 
@@ -139,19 +145,19 @@ fn a_formula_is_a_reference_at_the_runs_own_times_and_only_the_window_counts() -
     let folder = folder("formula", &table(|t| 2.0 * t + if t < 0.995 { 0.1 } else { 0.0 }), "")?;
     let limit = |off: f64| Some(Score { off: Some(off), ..Score::default() });
     let whole = judge(&by_formula("box.heave_m", "2*t", limit(0.05)), &folder);
-    assert!(whole.figures.off.is_some_and(|off| (off - 0.1).abs() < 1e-12) && whole.passed == Some(false));
-    let late = CheckWords { from: Some(1.0), ..by_formula("box.heave_m", "2*t", limit(0.05)) };
+    assert!(whole.metrics.off.is_some_and(|off| (off - 0.1).abs() < 1e-12) && whole.passed == Some(false));
+    let late = CheckPlan { from: Some(1.0), ..by_formula("box.heave_m", "2*t", limit(0.05)) };
     let late = judge(&late, &folder);
-    assert!(late.figures.n.is_some_and(|n| n < 1e-12) && late.passed == Some(true) && late.covered == 1.0);
-    let early = CheckWords { until: Some(0.9), ..by_formula("box.heave_m", "2*t", None) };
-    let n = judge(&early, &folder).figures.n;
+    assert!(late.metrics.relative_l2.is_some_and(|n| n < 1e-12) && late.passed == Some(true) && late.covered == 1.0);
+    let early = CheckPlan { until: Some(0.9), ..by_formula("box.heave_m", "2*t", None) };
+    let n = judge(&early, &folder).metrics.relative_l2;
     let by_hand = {
         let t: Vec<f64> = (0..=90).map(|i| 0.01 * i as f64).collect();
         (0.01 * t.len() as f64 / t.iter().map(|t| 4.0 * t * t).sum::<f64>()).sqrt()
     };
     assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-12), "{n:?} against {by_hand}");
     // The run of 3 s covers a third of this window.
-    let beyond = CheckWords { from: Some(2.0), until: Some(5.0), ..by_formula("box.heave_m", "2*t", limit(1.0)) };
+    let beyond = CheckPlan { from: Some(2.0), until: Some(5.0), ..by_formula("box.heave_m", "2*t", limit(1.0)) };
     let beyond = judge(&beyond, &folder);
     assert!((beyond.covered - 1.0 / 3.0).abs() < 1e-12 && beyond.passed.is_none());
     fs::remove_dir_all(folder)
@@ -160,9 +166,11 @@ fn a_formula_is_a_reference_at_the_runs_own_times_and_only_the_window_counts() -
 #[test]
 fn a_reference_of_zero_has_a_largest_distance_but_no_n() -> std::io::Result<()> {
     let folder = folder("zero", &table(|t| 0.002 * (9.0 * t).sin()), "")?;
-    let both = Score { n: Some(0.5), off: Some(0.003), ..Score::default() };
-    let kept = judge(&by_formula("box.heave_m", "0", Some(Score { n: None, ..both })), &folder);
-    assert!(kept.passed == Some(true) && kept.figures.n.is_none() && kept.figures.off.is_some_and(|x| x > 0.0019));
+    let both = Score { relative_l2: Some(0.5), off: Some(0.003), ..Score::default() };
+    let kept = judge(&by_formula("box.heave_m", "0", Some(Score { relative_l2: None, ..both })), &folder);
+    assert!(
+        kept.passed == Some(true) && kept.metrics.relative_l2.is_none() && kept.metrics.off.is_some_and(|x| x > 0.0019)
+    );
     assert!(kept.note.is_some_and(|note| note.contains("zero throughout")));
     let missed = judge(&by_formula("box.heave_m", "0", Some(both)), &folder);
     assert_eq!(missed.passed, Some(false), "a bound on N fails where there is no N");
@@ -176,13 +184,13 @@ fn a_reference_of_zero_has_a_largest_distance_but_no_n() -> std::io::Result<()> 
 #[test]
 fn the_running_mean_of_a_line_is_the_line_and_of_a_spike_its_share() -> Result<()> {
     let t: Vec<f64> = (0..=10).map(|i| 0.1 * i as f64).collect();
-    let line = Series::new(t.clone(), t.clone())?.running_mean(0.3);
+    let line = TimeSeries::new(t.clone(), t.clone())?.running_mean(0.3);
     // Away from the ends, where the window is cut.
     assert!((2..=8).all(|i| (line.values()[i] - t[i]).abs() < 1e-12));
     assert!((line.values()[0] - 0.075).abs() < 1e-12, "half the window is left at the end");
     // A triangle of height 1 and width 0.2 has the area 0.1: over 0.4 s it is 0.25.
     let spike: Vec<f64> = (0..=10).map(|i| f64::from(i == 5)).collect();
-    let spike = Series::new(t, spike)?.running_mean(0.4);
+    let spike = TimeSeries::new(t, spike)?.running_mean(0.4);
     assert!((spike.values()[5] - 0.25).abs() < 1e-12 && spike.values()[1] == 0.0);
     Ok(())
 }
@@ -192,10 +200,10 @@ fn a_running_mean_has_figures_of_its_own_beside_the_raw_ones() -> std::io::Resul
     // Noise of one sample's period, which any mean over some samples takes out.
     let noisy = |t: f64| t + if (t * 100.0).round() as i64 % 2 == 0 { 0.1 } else { -0.1 };
     let folder = folder("noise", &table(noisy), "")?;
-    let words = CheckWords { mean: Some(0.2), ..by_formula("box.heave_m", "t", bound(0.01)) };
+    let words = CheckPlan { mean: Some(0.2), ..by_formula("box.heave_m", "t", bound(0.01)) };
     let verdict = judge(&words, &folder);
-    let meaned = verdict.meaned.and_then(|m| m.figures.n);
-    assert!(verdict.figures.n.is_some_and(|n| n > 0.05) && meaned.is_some_and(|n| n < 0.01));
+    let meaned = verdict.meaned.and_then(|m| m.metrics.relative_l2);
+    assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.05) && meaned.is_some_and(|n| n < 0.01));
     assert_eq!(verdict.passed, Some(false), "the bound is on the raw run");
     fs::remove_dir_all(folder)
 }
@@ -205,10 +213,10 @@ fn an_instrument_set_to_zero_on_the_way_counts_from_there() -> std::io::Result<(
     // The run stands 0.3 too high before the record begins, and the record knows nothing of it.
     let folder = folder("zero", &table(|t| t * t + 0.3), "")?;
     let raw = by_formula("box.heave_m", "t^2 - 0.25", bound(1e-9));
-    let set = CheckWords { zero: Some(0.5), ..raw.clone() };
+    let set = CheckPlan { zero: Some(0.5), ..raw.clone() };
     assert_eq!([judge(&raw, &folder).passed, judge(&set, &folder).passed], [Some(false), Some(true)]);
     assert_eq!(judge(&set, &folder).series, "box.heave_m, 0 at 0.5 s");
-    let late = judge(&CheckWords { zero: Some(1e3), ..set }, &folder);
+    let late = judge(&CheckPlan { zero: Some(1e3), ..set }, &folder);
     assert!(late.passed.is_none() && late.note.is_some_and(|note| note.contains("before it is set to zero")));
     fs::remove_dir_all(folder)
 }
@@ -219,24 +227,24 @@ fn a_late_run_is_told_by_how_much_by_its_crossing_and_by_the_best_delay() -> std
     let folder = folder("late", &table(|t| pulse(t - 0.05)), &table(pulse))?;
     let words = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None);
     for align in [Align::Crossing(5.0), Align::Best] {
-        let limits = Score { aligned_n: Some(0.01), delay: Some(0.06), ..Score::default() };
-        let words = CheckWords { align: Some(align), bound: Some(limits), ..words.clone() };
+        let limits = Score { aligned_relative_l2: Some(0.01), delay: Some(0.06), ..Score::default() };
+        let words = CheckPlan { align: Some(align), bound: Some(limits), ..words.clone() };
         let verdict = judge(&words, &folder);
         // Crossings are linear between samples, where the pulse bends by 8e-4 of its height.
         let aligned = verdict.aligned.unwrap_or_else(|| panic!("{align:?} is formed"));
-        assert!((aligned.delay - 0.05).abs() < 2e-4 && aligned.n < 0.003, "{align:?}: {aligned:?}");
-        assert!(verdict.figures.n.is_some_and(|n| n > 0.3), "the raw figure is left as it is");
+        assert!((aligned.delay - 0.05).abs() < 2e-4 && aligned.relative_l2 < 0.003, "{align:?}: {aligned:?}");
+        assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.3), "the raw figure is left as it is");
         assert_eq!(verdict.passed, Some(true));
         assert_eq!(verdict.arrival.is_some(), align != Align::Best);
-        let strict = CheckWords { bound: Some(Score { delay: Some(0.04), ..Score::default() }), ..words.clone() };
+        let strict = CheckPlan { bound: Some(Score { delay: Some(0.04), ..Score::default() }), ..words.clone() };
         assert_eq!(judge(&strict, &folder).passed, Some(false));
     }
-    let high = CheckWords { align: Some(Align::Crossing(50.0)), bound: bound(9.0), ..words.clone() };
+    let high = CheckPlan { align: Some(Align::Crossing(50.0)), bound: bound(9.0), ..words.clone() };
     let never = judge(&high, &folder);
     assert!(never.aligned.is_none() && never.arrival.is_some_and(|a| a.run.is_none()));
     assert_eq!(never.passed, Some(true), "nothing aligned is asked for");
-    let limit = Some(Score { aligned_n: Some(9.0), ..Score::default() });
-    assert_eq!(judge(&CheckWords { bound: limit, ..high }, &folder).passed, Some(false));
+    let limit = Some(Score { aligned_relative_l2: Some(9.0), ..Score::default() });
+    assert_eq!(judge(&CheckPlan { bound: limit, ..high }, &folder).passed, Some(false));
     fs::remove_dir_all(folder)
 }
 
@@ -244,7 +252,7 @@ fn a_late_run_is_told_by_how_much_by_its_crossing_and_by_the_best_delay() -> std
 fn a_reference_with_a_clock_of_its_own_starts_when_the_run_says() -> std::io::Result<()> {
     // The run is at rest for a second, then rises with 2 m/s; the record begins as it passes 1 m.
     let folder = folder("clock", &table(|t| (2.0 * (t - 1.0)).max(0.0)), &table(|t| 1.0 + 2.0 * t))?;
-    let words = CheckWords {
+    let words = CheckPlan {
         align: Some(Align::Start(1.0)),
         until: Some(0.8),
         bound: bound(0.01),
@@ -252,18 +260,18 @@ fn a_reference_with_a_clock_of_its_own_starts_when_the_run_says() -> std::io::Re
     };
     let verdict = judge(&words, &folder);
     // All is linear: round-off.
-    assert!(verdict.figures.n.is_some_and(|n| n < 1e-12), "{verdict:?}");
+    assert!(verdict.metrics.relative_l2.is_some_and(|n| n < 1e-12), "{verdict:?}");
     let arrival = verdict.arrival.expect("it passes 1 m");
     assert!(arrival.run.is_some_and(|t| (t - 1.5).abs() < 1e-12) && arrival.reference == Some(0.0), "{arrival:?}");
     assert!(verdict.aligned.is_none() && verdict.covered == 1.0);
 
-    let formula = CheckWords {
+    let formula = CheckPlan {
         align: Some(Align::Start(1.0)),
         from: Some(0.1),
         ..by_formula("box.heave_m", "1 + 2*t", bound(1e-9))
     };
-    assert_eq!(judge(&CheckWords { until: Some(0.8), ..formula }, &folder).passed, Some(true));
-    let never = judge(&CheckWords { align: Some(Align::Start(9.0)), ..words }, &folder);
+    assert_eq!(judge(&CheckPlan { until: Some(0.8), ..formula }, &folder).passed, Some(true));
+    let never = judge(&CheckPlan { align: Some(Align::Start(9.0)), ..words }, &folder);
     assert!(never.passed.is_none() && never.note.is_some_and(|note| note.contains("never passes 9")));
     fs::remove_dir_all(folder)
 }
@@ -274,11 +282,11 @@ fn the_table_of_checks_has_only_columns_that_one_of_them_uses() -> std::io::Resu
     let plain = judge(&by_formula("box.heave_m", "t", bound(0.1)), &folder);
     let heads = |verdicts: &[&Verdict]| {
         let all: Vec<(&[String], &Verdict)> = verdicts.iter().map(|v| (&[][..], *v)).collect();
-        format_verdicts::rows(&all, &[])[0].join("|")
+        format_verdicts::verdict_rows(&all, &[])[0].join("|")
     };
     assert_eq!(heads(&[&plain]), "check|N|M|bound|");
     let limit = Some(Score { off: Some(0.1), ..Score::default() });
-    let rich = CheckWords { align: Some(Align::Best), mean: Some(0.1), ..by_formula("box.heave_m", "t", limit) };
+    let rich = CheckPlan { align: Some(Align::Best), mean: Some(0.1), ..by_formula("box.heave_m", "t", limit) };
     let rich = judge(&rich, &folder);
     assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean over|mean N|mean M|aligned N|aligned M|delay|off|bound|");
     // A load as an instrument takes it strikes: its first peak is told.
@@ -339,10 +347,10 @@ fn a_run_that_was_interrupted_tells_the_figures_of_its_part_and_only_its_end_is_
         probe = [{ name = \"tank\", force = \"tank\", every = 0.001 }]\n[[check]]\nseries = \"tank.fy_N_per_m\"\n\
         formula = \"-4905\"\nbound = { N = 0.1 }\n";
     fs::write(&scene, text).unwrap();
-    let options = Options { out: Some(out.clone()), threads: Some(1), ..Options::default() };
+    let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
     let part = run::run(&scene, &options, &mut |now: &Progress| now.time < 0.1)?;
     let verdict = &part.manifest.checks[0];
-    assert!(verdict.figures.n.is_some_and(|n| n < 0.1) && verdict.passed.is_none(), "{verdict:?}");
+    assert!(verdict.metrics.relative_l2.is_some_and(|n| n < 0.1) && verdict.passed.is_none(), "{verdict:?}");
     assert!(verdict.note.as_ref().is_some_and(|note| note.contains("has not finished")), "{verdict:?}");
     let whole = run::resume(&out, &[], Some(1), &mut |_: &Progress| true)?;
     assert_eq!((whole.manifest.checks[0].passed, &whole.manifest.checks[0].note), (Some(true), &None));

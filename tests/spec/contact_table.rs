@@ -7,7 +7,7 @@ use std::{
 
 use pontoon::{
     Result, report,
-    run::{self, Options, Progress},
+    run::{self, Progress, RunOptions},
     scene::Scene,
 };
 
@@ -67,7 +67,7 @@ const G: f64 = 9.81;
 impl Home {
     /// Runs the scene until time `until` (s) into the folder `name`.
     fn ran(&self, name: &str, until: f64) -> Result<PathBuf> {
-        let options = Options { out: Some(self.0.join(name)), threads: Some(1), ..Options::default() };
+        let options = RunOptions { out: Some(self.0.join(name)), threads: Some(1), ..RunOptions::default() };
         Ok(run::run(&self.0.join("scene.toml"), &options, &mut |now: &Progress| now.time < until)?.folder)
     }
 }

@@ -63,7 +63,7 @@ fn list(sim: &Simulation<2>, solid: usize) -> Result<f64> {
     let lever = |tilt: f64| -> Result<f64> {
         let mut pose = Pose::rotated(Vector::zeros(), &[tilt]);
         pose.position[1] += equilibrium_height(&spec.shape, &pose, body.mass, 1000.0, 0.0)?;
-        Ok(spec.shape.submerged(&pose, 0.0).1[0] - pose.point(&body.centre)[0])
+        Ok(spec.shape.submerged_volume(&pose, 0.0).1[0] - pose.point(&body.centre)[0])
     };
     let (mut low, mut high) = (-0.5, 0.5);
     for _ in 0..50 {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use pontoon::{
     Error,
     model::Dimension,
-    scene::{FramesConfig, Scene},
+    scene::{FramesChoice, Scene},
     simulation::Simulation,
     solid::Dim,
 };
@@ -73,7 +73,7 @@ fn begin<const D: usize>(scene: &Scene) -> Result<(), Error>
 where
     Dim<D>: Dimension<D>,
 {
-    Simulation::new(scene.build::<D>()?.setup).map(|_| ()).map_err(|error| scene.place(error))
+    Simulation::new(scene.build::<D>()?.setup).map(|_| ()).map_err(|error| scene.with_location(error))
 }
 
 /// What the user reads of the good scene with `from` replaced by `to`.
@@ -200,7 +200,7 @@ fn settings_win_over_the_scene() {
     let scene = Scene::parse(GOOD, folder(), &sets).unwrap();
     assert_eq!(scene.solid[1].free.as_ref().unwrap().density, Some(600.0));
     assert_eq!(scene.probe[0].every, Some(0.5));
-    assert_eq!(scene.frames, Some(FramesConfig::Off));
+    assert_eq!(scene.frames, Some(FramesChoice::Off));
     let lines: Vec<String> = scene.resolve().unwrap().iter().map(ToString::to_string).collect();
     for line in [
         "dp = 0.05  (scene line 3)",
@@ -222,7 +222,7 @@ fn a_bare_word_is_the_choice_with_its_defaults() {
 
 #[test]
 fn a_scene_that_is_written_reads_the_same() {
-    for (name, text, _) in pontoon::scene::bundled() {
+    for (name, text, _) in pontoon::scene::bundled_scenes() {
         let folder = Path::new("scenes").join(name);
         let scene = Scene::parse(text, &folder, &[]).unwrap();
         let again = Scene::parse(&scene.to_toml().unwrap(), &folder, &[]).unwrap();
@@ -233,7 +233,7 @@ fn a_scene_that_is_written_reads_the_same() {
 
 #[test]
 fn every_shipped_scene_is_built() {
-    for (name, _, files) in pontoon::scene::bundled() {
+    for (name, _, files) in pontoon::scene::bundled_scenes() {
         assert!(files.iter().any(|(file, _)| *file == "README.md"), "{name} has a README");
         let scene = Scene::read(&Path::new("scenes").join(name), &[]).unwrap();
         let water = match scene.dimension {

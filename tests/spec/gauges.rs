@@ -6,10 +6,10 @@ use pontoon::{
     Result,
     math::Vector,
     model::Model,
-    output::Readings,
-    plan::Surface,
-    probe::{Elevation, Flow, Force, Patch, Probe, Row, Runup},
-    run::{self, Options, Progress},
+    output::SeriesTable,
+    plan::GaugeSurface,
+    probe::{ElevationProbe, FlowProbe, ForceProbe, PatchProbe, Probe, ProbeRow, RunupProbe},
+    run::{self, Progress, RunOptions},
     scene::Scene,
     simulation::Simulation,
 };
@@ -39,12 +39,12 @@ impl Home {
         file
     }
 
-    fn readings(&self, run: &str, probe: &str) -> Result<Readings> {
-        Readings::read(&self.0.join(run).join(format!("series/{probe}.csv")))
+    fn readings(&self, run: &str, probe: &str) -> Result<SeriesTable> {
+        SeriesTable::read(&self.0.join(run).join(format!("series/{probe}.csv")))
     }
 
-    fn options(&self, run: &str) -> Options {
-        Options { out: Some(self.0.join(run)), threads: Some(1), ..Options::default() }
+    fn options(&self, run: &str) -> RunOptions {
+        RunOptions { out: Some(self.0.join(run)), threads: Some(1), ..RunOptions::default() }
     }
 }
 
@@ -55,22 +55,23 @@ fn go_on(_: &Progress) -> bool {
 #[test]
 fn a_row_of_gauges_reads_what_each_reads_and_says_where() -> Result<()> {
     let sim = pool();
-    let gauge = |x: f64| -> Result<Box<dyn Probe<2>>> { Ok(Box::new(Elevation::new(sim.system(), &[x])?)) };
-    let row = Row::new(vec![(vec![0.1], gauge(0.1)?), (vec![0.3], gauge(0.3)?)]);
+    let gauge = |x: f64| -> Result<Box<dyn Probe<2>>> { Ok(Box::new(ElevationProbe::new(sim.system(), &[x])?)) };
+    let row = ProbeRow::new(vec![(vec![0.1], gauge(0.1)?), (vec![0.3], gauge(0.3)?)]);
     assert_eq!(row.columns(), ["level_at_0.1_m", "eta_at_0.1_m", "level_at_0.3_m", "eta_at_0.3_m"]);
-    assert_eq!(row.look(&sim), [gauge(0.1)?.look(&sim), gauge(0.3)?.look(&sim)].concat());
+    assert_eq!(row.sample(&sim), [gauge(0.1)?.sample(&sim), gauge(0.3)?.sample(&sim)].concat());
     Ok(())
 }
 
 #[test]
 fn of_two_layers_of_water_a_gauge_tells_the_highest_the_lowest_or_all() -> Result<()> {
     let sim = tank(&[([0.0, 0.0], [0.4, 0.2]), ([0.0, 0.4], [0.4, 0.5])]);
-    let look = |surface| -> Result<Vec<f64>> { Ok(Elevation::of(sim.system(), &[0.2], surface)?.look(&sim)) };
+    let look =
+        |surface| -> Result<Vec<f64>> { Ok(ElevationProbe::with_surface(sim.system(), &[0.2], surface)?.sample(&sim)) };
     let near = |x: f64, level: f64| (x - level).abs() < 0.1 * DP;
-    assert!(near(look(Surface::Highest)?[0], 0.5) && near(look(Surface::Lowest)?[0], 0.2));
-    let all = look(Surface::All)?;
+    assert!(near(look(GaugeSurface::Highest)?[0], 0.5) && near(look(GaugeSurface::Lowest)?[0], 0.2));
+    let all = look(GaugeSurface::All)?;
     assert!(near(all[0], 0.5) && near(all[2], 0.2) && all[3].is_nan(), "within a tenth of dp, as one layer: {all:?}");
-    assert_eq!(look(Surface::Highest)?, Elevation::new(sim.system(), &[0.2])?.look(&sim));
+    assert_eq!(look(GaugeSurface::Highest)?, ElevationProbe::new(sim.system(), &[0.2])?.sample(&sim));
     Ok(())
 }
 
@@ -80,15 +81,17 @@ fn what_flows_through_a_section_is_speed_times_depth_wherever_it_stands() -> Res
     sim.set_water_density(|_| 1000.0);
     sim.set_water_velocity(|_| Vector::from([0.5, -0.25]));
     for x in [0.2, 0.207, 0.21] {
-        let flow = Flow::<2>::new(&[x, 0.0], &[x, 0.5])?.look(&sim)[0];
+        let flow = FlowProbe::<2>::new(&[x, 0.0], &[x, 0.5])?.sample(&sim)[0];
         assert!((flow - 0.5 * 0.2).abs() < 1e-12, "rows dp apart weigh 1 in all, wherever they lie; got {flow} at {x}");
     }
-    let down = Flow::<2>::new(&[0.3, 0.1], &[0.1, 0.1])?.look(&sim)[0];
+    let down = FlowProbe::<2>::new(&[0.3, 0.1], &[0.1, 0.1])?.sample(&sim)[0];
     assert!(
         (down + 0.25 * 0.2).abs() < 1e-12,
         "walking back, up is on the right: what falls counts against; got {down}"
     );
-    assert!(Flow::<3>::new(&[0.0; 3], &[1.0, 1.0, 1.0]).is_err() && Flow::<2>::new(&[0.0; 2], &[0.0; 2]).is_err());
+    assert!(
+        FlowProbe::<3>::new(&[0.0; 3], &[1.0, 1.0, 1.0]).is_err() && FlowProbe::<2>::new(&[0.0; 2], &[0.0; 2]).is_err()
+    );
     Ok(())
 }
 
@@ -98,10 +101,10 @@ fn the_volume_that_flowed_is_what_is_missing_before_the_section() -> Result<()> 
     // A column that falls, and a section through which all of its foot goes.
     let file = home
         .scene("[[probe]]\nflow = { from = [0.2, 0.0], to = [0.2, 0.3] }\nevery = 0.001\n[[probe]]\nfront = true\n");
-    run::run(&file, &Options { sets: vec![("until".into(), "0.2".into())], ..home.options("a") }, &mut go_on)?;
+    run::run(&file, &RunOptions { overrides: vec![("until".into(), "0.2".into())], ..home.options("a") }, &mut go_on)?;
     let table = home.readings("a", "flow")?;
     let (volume, front) =
-        (table.x[1].last().copied().unwrap_or(0.0), home.readings("a", "front")?.x[0].last().copied());
+        (table.values[1].last().copied().unwrap_or(0.0), home.readings("a", "front")?.values[0].last().copied());
     // The toe is a wedge from the section to the front, lower than the column was.
     let toe = front.unwrap_or(0.0) - 0.2;
     assert!(toe > 0.05, "it has flowed: {toe}");
@@ -115,11 +118,11 @@ fn the_waterline_is_the_highest_water_on_the_face_and_drops_do_not_count() -> Re
     let drop = ([0.38, 0.4], [0.4, 0.42]);
     let middle = ([0.18, 0.2], [0.22, 0.4]);
     let sim = tank(&[([0.0, 0.0], [0.4, 0.2]), tongue, middle, drop]);
-    let now = Runup::new(sim.system(), "tank")?.look(&sim);
+    let now = RunupProbe::new(sim.system(), "tank")?.sample(&sim);
     // The last particle of the tongue lies half a dp below its end and half a dp from the wall.
     assert!((now[0] - 0.4).abs() < 1e-9 && (now[1] - 0.29).abs() < 1e-9, "{now:?}");
     assert_eq!(now[2], 0.0, "it counts from the start");
-    assert!(Runup::new(sim.system(), "slope").is_err());
+    assert!(RunupProbe::new(sim.system(), "slope").is_err());
     Ok(())
 }
 
@@ -127,7 +130,7 @@ fn the_waterline_is_the_highest_water_on_the_face_and_drops_do_not_count() -> Re
 fn patches_of_a_wall_carry_the_weight_of_the_water_and_together_all_of_it() -> Result<()> {
     let sim = pool();
     let patch = |min: [f64; 2], max: [f64; 2]| -> Result<Vec<f64>> {
-        Ok(Patch::new(sim.system(), "tank", &min, &max)?.look(&sim))
+        Ok(PatchProbe::new(sim.system(), "tank", &min, &max)?.sample(&sim))
     };
     let bed = patch([0.095, -0.01], [0.295, 0.01])?;
     let weight = 1000.0 * 9.81 * 0.2 * 0.2;
@@ -137,10 +140,10 @@ fn patches_of_a_wall_carry_the_weight_of_the_water_and_together_all_of_it() -> R
     let wall = patch([0.39, 0.0], [0.41, 0.6])?;
     assert!((wall[0] / (0.5 * 1000.0 * 9.81 * 0.04) - 1.0).abs() < 0.1, "½ ρ g d²; {wall:?}");
     let whole = patch([-0.1, -0.1], [0.5, 0.7])?;
-    let force = Force::new(sim.system(), "tank")?.look(&sim);
+    let force = ForceProbe::new(sim.system(), "tank")?.sample(&sim);
     let error = (whole[0] - force[0]).abs().max((whole[1] - force[1]).abs());
     assert!(error < 1e-9 * weight, "the same forces in another order; off by {error:e}");
-    let nothing = patch([0.1, 0.1], [0.2, 0.2]).err().map(|e| e.what).unwrap_or_default();
+    let nothing = patch([0.1, 0.1], [0.2, 0.2]).err().map(|e| e.message).unwrap_or_default();
     assert!(nothing.contains("no face of solid \"tank\""), "{nothing}");
     Ok(())
 }
@@ -153,14 +156,18 @@ fn an_average_is_the_mean_of_every_step_since_the_reading_before() -> Result<()>
     let home = Home::new("gauges-mean");
     run::run(&home.scene(MEANED), &home.options("a"), &mut go_on)?;
     let (mean, all) = (home.readings("a", "mean")?, home.readings("a", "all")?);
-    assert_eq!(mean.x[0][0], all.x[0][0], "the first is the reading itself");
-    for (i, w) in mean.t.windows(2).enumerate() {
-        let inside: Vec<usize> = (1..all.t.len()).filter(|&k| all.t[k - 1] >= w[0] && all.t[k] <= w[1]).collect();
-        let sum: f64 = inside.iter().map(|&k| 0.5 * (all.t[k] - all.t[k - 1]) * (all.x[0][k] + all.x[0][k - 1])).sum();
-        let (expected, found) = (sum / (w[1] - w[0]), mean.x[0][i + 1]);
+    assert_eq!(mean.values[0][0], all.values[0][0], "the first is the reading itself");
+    for (i, w) in mean.times.windows(2).enumerate() {
+        let inside: Vec<usize> =
+            (1..all.times.len()).filter(|&k| all.times[k - 1] >= w[0] && all.times[k] <= w[1]).collect();
+        let sum: f64 = inside
+            .iter()
+            .map(|&k| 0.5 * (all.times[k] - all.times[k - 1]) * (all.values[0][k] + all.values[0][k - 1]))
+            .sum();
+        let (expected, found) = (sum / (w[1] - w[0]), mean.values[0][i + 1]);
         assert!((found / expected - 1.0).abs() < 1e-12, "round-off of the sum; {found} and {expected}");
     }
-    assert!(mean.t.len() > 5);
+    assert!(mean.times.len() > 5);
     Ok(())
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     Error,
-    scene::{Scene, bundled},
+    scene::{Scene, bundled_scenes},
 };
 use proptest::prelude::*;
 
@@ -87,7 +87,7 @@ const SMALL: f64 = 4000.0;
 fn try_out(text: &str, folder: &Path) -> Result<(), Error> {
     let scene = Scene::parse(text, folder, &[])?;
     scene.resolve()?;
-    let size = scene.size()?;
+    let size = scene.estimate_size()?;
     if size.fluid + size.boundary > SMALL {
         return Ok(());
     }
@@ -193,7 +193,8 @@ fn a_link_beside_the_scene_does_not_lead_out_of_its_folder() {
         try_out(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &bay)
     };
     assert!(
-        with("out.csv").is_err_and(|e| e.what.contains("\"out.csv\" is a link that leads out of the scene's folder"))
+        with("out.csv")
+            .is_err_and(|e| e.message.contains("\"out.csv\" is a link that leads out of the scene's folder"))
     );
     assert_eq!(with("within.csv"), Ok(()), "a link within the folder is as good as the file");
     std::fs::remove_dir_all(home).unwrap();
@@ -242,7 +243,7 @@ proptest! {
         which in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0usize..5, 0usize..PIECES.len()), 1..5)
     ) {
-        let all = bundled();
+        let all = bundled_scenes();
         let (name, text, _) = &all[which.index(all.len())];
         let mut text: Vec<char> = text.chars().collect();
         for (at, length, piece) in changes {
@@ -258,7 +259,7 @@ proptest! {
         let folder = desk("table");
         let path = folder.join("table.csv");
         std::fs::write(&path, format!("t_s,x_m\n{text}")).unwrap();
-        if let Ok(series) = pontoon::scene::table::series(&path, "t_s", "x_m") {
+        if let Ok(series) = pontoon::scene::table::read_series(&path, "t_s", "x_m") {
             prop_assert!(series.values().iter().all(|x| x.is_finite()));
         }
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pontoon::{
     Error, Result,
-    probe::{Joint, Line, Probe},
+    probe::{JointProbe, LineProbe, Probe},
     scene::Scene,
     simulation::Simulation,
 };
@@ -102,16 +102,16 @@ fn a_moored_and_hinged_run_resumed_goes_on_to_the_same_bits() -> Result<()> {
 fn probes_of_ties_name_their_units_and_read_what_the_simulation_tells() -> Result<()> {
     let mut sim = moored()?;
     sim.step()?;
-    let (foot, line) = (Joint::new(sim.system(), "foot")?, Line::spring(sim.system(), "line")?);
+    let (foot, line) = (JointProbe::new(sim.system(), "foot")?, LineProbe::spring(sim.system(), "line")?);
     let expected =
         "fx_N_per_m fy_N_per_m torque_Nm_per_m angle_deg rate_radps motor_Nm_per_m power_W_per_m absorbed_J_per_m";
     assert_eq!(Probe::<2>::columns(&foot).join(" "), expected);
     assert_eq!(Probe::<3>::columns(&foot)[..7].join(" "), "fx_N fy_N fz_N tx_Nm ty_Nm tz_Nm angle_deg");
     assert_eq!(Probe::<2>::columns(&line), ["length_m", "tension_N_per_m"]);
     let now = sim.joint(0);
-    assert_eq!(foot.look(&sim)[3..], [now.position.to_degrees(), now.rate, now.motor, now.power(), now.absorbed]);
-    assert_eq!(line.look(&sim), [sim.spring(0).length, sim.spring(0).tension]);
-    let unknown = Joint::new(sim.system(), "food").err().and_then(|e| e.help);
+    assert_eq!(foot.sample(&sim)[3..], [now.position.to_degrees(), now.rate, now.motor, now.power(), now.absorbed]);
+    assert_eq!(line.sample(&sim), [sim.spring(0).length, sim.spring(0).tension]);
+    let unknown = JointProbe::new(sim.system(), "food").err().and_then(|e| e.help);
     assert_eq!(unknown, Some("did you mean \"foot\"?".into()));
     Ok(())
 }
@@ -146,7 +146,7 @@ limits_deg = { turn = [-2.0, 2.0] }
 #[test]
 fn a_guide_with_play_carries_the_moment_that_the_water_does_not() -> Result<()> {
     let mut sim = Simulation::new(pool(0.0125, GUIDED)?.build::<2>()?.setup)?;
-    let guide = Joint::new(sim.system(), "guide")?;
+    let guide = JointProbe::new(sim.system(), "guide")?;
     assert_eq!(Probe::<2>::columns(&guide)[3..], ["y_m", "turn_deg"]);
     let mut carried = 0.0;
     while sim.time() < 4.0 {
@@ -155,7 +155,7 @@ fn a_guide_with_play_carries_the_moment_that_the_water_does_not() -> Result<()> 
             carried += sim.joint(0).torque.axial()[0] * sim.dt();
         }
     }
-    let [y, turn]: [f64; 2] = guide.look(&sim)[3..].try_into().unwrap();
+    let [y, turn]: [f64; 2] = guide.sample(&sim)[3..].try_into().unwrap();
     // Its ballast would have it list by 13°; heave is free, and 0.2 dp is what a draft is known to.
     assert!((turn + 2.0).abs() < 1e-3 && y.abs() < 0.2 * 0.0125, "{turn}° and {y} m");
     assert!(sim.system().solids()[1].kinematics.pose.position[0] - 0.6 < 1e-6, "and it does not drift");

@@ -5,9 +5,9 @@ use std::{f64::consts::PI, path::Path};
 
 use pontoon::{
     model::Dimension,
-    preflight::{self, Body, Preflight, Severity},
-    run::{self, Options, Progress},
-    scene::{Built, Scene, bundled},
+    preflight::{self, BodySummary, Preflight, Severity},
+    run::{self, Progress, RunOptions},
+    scene::{BuiltScene, Scene, bundled_scenes},
     simulation::Simulation,
     solid::Dim,
 };
@@ -60,9 +60,9 @@ fn look<const D: usize>(scene: &Scene) -> Preflight
 where
     Dim<D>: Dimension<D>,
 {
-    let Built { setup, plan, overlapped, still, .. } = scene.build::<D>().unwrap();
+    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>().unwrap();
     let sim = Simulation::new(setup).unwrap();
-    preflight::look(&sim, &plan, still, overlapped, &[1, 2])
+    preflight::preflight(&sim, &plan, still_water, removed_by_solids, &[1, 2])
 }
 
 fn with(sets: &[(&str, &str)]) -> Preflight {
@@ -75,7 +75,7 @@ fn topics(of: &Preflight) -> Vec<&'static str> {
 }
 
 /// The body afloat of a tank of one cubic metre of water 0.5 m deep that holds this solid only.
-fn afloat(solid: &str) -> Body {
+fn afloat(solid: &str) -> BodySummary {
     let text = format!(
         "dimension = 3\ndp = 0.05\nuntil = 1.0\nframes = \"off\"\n\
          [[water]]\nfill = {{ box = {{ min = [0.0, 0.0, 0.0], max = [1.4, 1.4, 0.5] }} }}\n\
@@ -315,7 +315,7 @@ fn solids_in_touch_have_no_gap_and_a_gate_that_is_lifted_pushes_no_water() {
 fn the_shipped_scenes_give_no_false_alarm() {
     // Waves of two dp: as coarse as its README says.
     const KNOWN: [(&str, &str); 1] = [("ren-box", "low_waves")];
-    for (name, ..) in bundled() {
+    for (name, ..) in bundled_scenes() {
         let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), &[]).unwrap();
         let found = if scene.dimension == 2 { look::<2>(&scene) } else { look::<3>(&scene) };
         let warnings = found.findings.iter().filter(|f| f.severity == Severity::Warning);
@@ -332,9 +332,9 @@ fn a_run_writes_as_much_as_was_told() {
     let sets = [("until", "0.05"), ("frames.every", "0.01"), ("checkpoint.every", "0.04")];
     let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/raft");
-    let report = run::inspect(&scene, &run::Inspection { sets: sets.clone(), ..Default::default() }).unwrap();
+    let report = run::inspect(&scene, &run::InspectOptions { overrides: sets.clone(), ..Default::default() }).unwrap();
     assert_eq!(report.timing, None, "nothing is timed unless asked for");
-    let options = Options { out: Some(out.clone()), sets, threads: None };
+    let options = RunOptions { out: Some(out.clone()), overrides: sets, threads: None };
     run::run(&scene, &options, &mut |_: &Progress| true).unwrap();
     let bytes = |folder: &str| -> f64 {
         let entries = std::fs::read_dir(out.join(folder)).unwrap().flatten();

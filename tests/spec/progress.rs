@@ -4,8 +4,8 @@ use std::path::Path;
 
 use pontoon::{
     Result,
-    output::Readings,
-    run::{self, Drift, Options, Progress},
+    output::SeriesTable,
+    run::{self, EnergyDrift, Progress, RunOptions},
 };
 
 use crate::rig::Home;
@@ -35,9 +35,9 @@ fn home(name: &str, more: &str) -> Home {
 }
 
 /// Runs the scene in `home`; what was told of the energy at each step.
-fn told(home: &Path) -> Result<Vec<Option<Drift>>> {
+fn told(home: &Path) -> Result<Vec<Option<EnergyDrift>>> {
     let mut told = Vec::new();
-    let options = Options { out: Some(home.join("run")), threads: Some(1), ..Options::default() };
+    let options = RunOptions { out: Some(home.join("run")), threads: Some(1), ..RunOptions::default() };
     run::run(&home.join("scene.toml"), &options, &mut |now: &Progress| {
         told.push(now.energy);
         true
@@ -45,13 +45,13 @@ fn told(home: &Path) -> Result<Vec<Option<Drift>>> {
     Ok(told)
 }
 
-fn table(home: &Path, name: &str) -> Readings {
-    Readings::read(&home.join(format!("run/series/{name}.csv"))).unwrap()
+fn table(home: &Path, name: &str) -> SeriesTable {
+    SeriesTable::read(&home.join(format!("run/series/{name}.csv"))).unwrap()
 }
 
 /// The numbers of row `i`.
-fn row(table: &Readings, i: usize) -> Vec<f64> {
-    table.x.iter().map(|x| x[i]).collect()
+fn row(table: &SeriesTable, i: usize) -> Vec<f64> {
+    table.values.iter().map(|x| x[i]).collect()
 }
 
 #[test]
@@ -64,10 +64,10 @@ fn a_run_tells_the_share_of_its_energy_that_its_budget_cannot_account_for() -> R
     assert!(budget.columns[residual].starts_with("residual_J"));
     let share = |i: usize| {
         let row = row(&budget, i);
-        Drift::Unaccounted(row[residual].abs() / row[1..residual].iter().map(|x| x.abs()).sum::<f64>())
+        EnergyDrift::Unaccounted(row[residual].abs() / row[1..residual].iter().map(|x| x.abs()).sum::<f64>())
     };
     // Read at every step: what is told is of that step, to the bit, and nothing before anything was turned over.
-    assert_eq!(told.len(), budget.t.len());
+    assert_eq!(told.len(), budget.times.len());
     assert_eq!(told[0], None);
     assert!((1..told.len()).all(|i| told[i] == Some(share(i))), "{told:?}");
     Ok(())
@@ -78,9 +78,9 @@ fn a_run_without_a_budget_tells_how_its_energy_changed_and_one_without_either_no
     let with = home("energy", "[[probe]]\nenergy = true\nevery = 1e-9\n");
     let said = told(&with.0)?;
     let energy = table(&with.0, "energy");
-    let total = energy.x.last().unwrap();
-    let change = |i: usize| Some(Drift::Changed(total[i] - total[0], "J/m"));
-    assert_eq!(said.len(), energy.t.len());
+    let total = energy.values.last().unwrap();
+    let change = |i: usize| Some(EnergyDrift::Changed(total[i] - total[0], "J/m"));
+    assert_eq!(said.len(), energy.times.len());
     assert!((0..said.len()).all(|i| said[i] == change(i)), "{said:?}");
     let without = home("neither", "[[probe]]\nmotion = \"box\"\n");
     assert!(told(&without.0)?.iter().all(Option::is_none));
@@ -90,7 +90,7 @@ fn a_run_without_a_budget_tells_how_its_energy_changed_and_one_without_either_no
 #[test]
 fn a_resumed_run_tells_the_change_since_its_start() -> Result<()> {
     let home = home("resumed", "[[probe]]\nenergy = true\nevery = 1e-9\n");
-    let options = Options { out: Some(home.0.join("run")), threads: Some(1), ..Options::default() };
+    let options = RunOptions { out: Some(home.0.join("run")), threads: Some(1), ..RunOptions::default() };
     run::run(&home.0.join("scene.toml"), &options, &mut |now: &Progress| now.time < 0.05)?;
     let mut first = None;
     run::resume(&home.0.join("run"), &[], Some(1), &mut |now: &Progress| {
@@ -98,10 +98,10 @@ fn a_resumed_run_tells_the_change_since_its_start() -> Result<()> {
         true
     })?;
     let energy = table(&home.0, "energy");
-    let total = energy.x.last().unwrap();
+    let total = energy.values.last().unwrap();
     let (time, said) = first.unwrap();
-    let i = energy.t.iter().position(|t| *t == time).unwrap();
+    let i = energy.times.iter().position(|t| *t == time).unwrap();
     assert!(i > 3, "it was interrupted on its way");
-    assert_eq!(said, Some(Drift::Changed(total[i] - total[0], "J/m")));
+    assert_eq!(said, Some(EnergyDrift::Changed(total[i] - total[0], "J/m")));
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::{f64::consts::TAU, fs};
 
 use pontoon::{
     Result,
-    run::{self, Answer, Asked, Options, Progress},
+    run::{self, Progress, RaoResult, RunOptions, StatisticsFilter},
 };
 
 use crate::rig::Home;
@@ -79,9 +79,9 @@ fn float(eta: &[f64], dt: f64) -> Vec<f64> {
 fn run_of_a_sea(name: &str) -> Result<Home> {
     let home = Home::with(&format!("rao-{name}"), SCENE);
     let out = home.0.join("run");
-    let options = Options { out: Some(out.clone()), threads: Some(1), ..Options::default() };
+    let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
     run::run(&home.0.join("scene.toml"), &options, &mut |_: &Progress| true)?;
-    assert!(!out.join(run::RAO).exists(), "a run of no waves has no such file");
+    assert!(!out.join(run::RAO_FILE).exists(), "a run of no waves has no such file");
     let dt = 0.05;
     let eta = sea(dt);
     let mut gauge = String::from("t_s,level_m,eta_m\n");
@@ -99,25 +99,25 @@ fn run_of_a_sea(name: &str) -> Result<Home> {
 #[test]
 fn a_float_in_an_irregular_sea_is_told_over_frequency_as_its_equation_says() -> Result<()> {
     let home = run_of_a_sea("all")?;
-    let told = run::statistics(&home.0.join("run"), &Asked::default())?;
-    let of = |series: &str| -> Vec<Answer> { told.answers.iter().filter(|a| a.series == series).cloned().collect() };
-    assert!(told.answers.iter().all(|answer| answer.name == "rao"), "a regular wave is told at its period alone");
+    let told = run::statistics(&home.0.join("run"), &StatisticsFilter::default())?;
+    let of = |series: &str| -> Vec<RaoResult> { told.raos.iter().filter(|a| a.series == series).cloned().collect() };
+    assert!(told.raos.iter().all(|answer| answer.name == "rao"), "a regular wave is told at its period alone");
     assert!(of("buoy.surge_m").is_empty(), "what does not move does not answer");
     let (heave, pitch) = (of("buoy.heave_m"), of("buoy.pitch_deg"));
     // Lines 1/95 Hz apart, from 0.34 to 1.1 Hz, where this sea has 2 % of its peak's density.
     assert!((60..80).contains(&heave.len()), "{} bands", heave.len());
     for answer in &heave {
-        let (r, band) = (answer.band.frequency / OWN.0, answer.band);
+        let (r, band) = (answer.point.frequency / OWN.0, answer.point);
         let (real, imaginary) = (1.0 - r * r, 2.0 * OWN.1 * r);
         // Quarters of 95 s hold a resonance 0.18 Hz wide to 3 % and 2 degrees; what came before 20 s is forgotten.
         assert!(answer.unit == "m/m" && band.coherence > 0.9, "{answer:?}");
         assert!((band.ratio * real.hypot(imaginary) - 1.0).abs() < 0.05, "{answer:?}");
-        let off = (answer.degrees() + imaginary.atan2(real).to_degrees()).rem_euclid(360.0);
+        let off = (answer.phase_degrees() + imaginary.atan2(real).to_degrees()).rem_euclid(360.0);
         assert!(off.min(360.0 - off) < 5.0, "{answer:?}");
     }
     assert_eq!(pitch.len(), heave.len());
     // A multiple answers by the same multiple, but for round-off.
-    assert!(heave.iter().zip(&pitch).all(|(h, p)| (p.band.ratio / (100.0 * h.band.ratio) - 1.0).abs() < 1e-9));
+    assert!(heave.iter().zip(&pitch).all(|(h, p)| (p.point.ratio / (100.0 * h.point.ratio) - 1.0).abs() < 1e-9));
     assert_eq!(pitch[0].unit, "°/m");
     Ok(())
 }
@@ -125,9 +125,9 @@ fn a_float_in_an_irregular_sea_is_told_over_frequency_as_its_equation_says() -> 
 #[test]
 fn of_too_few_waves_it_is_told_how_many_are_needed() -> Result<()> {
     let home = run_of_a_sea("few")?;
-    let late = Asked { from: Some(370.0), ..Asked::default() };
+    let late = StatisticsFilter { from: Some(370.0), ..StatisticsFilter::default() };
     let told = run::statistics(&home.0.join("run"), &late)?;
-    assert!(told.answers.is_empty(), "30 s hold some 17 waves of this sea");
+    assert!(told.raos.is_empty(), "30 s hold some 17 waves of this sea");
     // That of a `period` asks for nothing over frequency.
     let [remark] = &told.remarks[..] else { panic!("{:?}", told.remarks) };
     assert!(remark.starts_with("statistic rao: ") && remark.contains("and 32 are needed"), "{remark}");

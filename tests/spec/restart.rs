@@ -7,7 +7,7 @@ use pontoon::{
     Result,
     model::Dimension,
     output::Checkpoint,
-    run::{self, Options, Progress},
+    run::{self, Progress, RunOptions},
     scene::Scene,
     simulation::Simulation,
     solid::Dim,
@@ -44,7 +44,7 @@ where
 {
     let home = Home::new(&format!("restart-{name}"));
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/spec/restart/{name}.toml"));
-    let options = |out: &str| Options { out: Some(home.0.join(out)), threads: Some(1), ..Options::default() };
+    let options = |out: &str| RunOptions { out: Some(home.0.join(out)), threads: Some(1), ..RunOptions::default() };
     run::run(&scene, &options("whole"), &mut |_: &Progress| true)?;
     let (whole, broken) = (home.0.join("whole"), home.0.join("broken"));
     run::run(&scene, &options("broken"), &mut |now: &Progress| now.time < first)?;
@@ -135,7 +135,7 @@ fn a_run_that_a_guard_stopped_goes_on_with_another() -> Result<()> {
     let set = |key: &str, value: &str| (key.to_owned(), value.to_owned());
     let run = |out: &str, escape: &str| {
         let sets = vec![set("guard.escape", escape), set("checkpoint.every", "0.05")];
-        let options = Options { out: Some(home.0.join(out)), sets, threads: Some(1) };
+        let options = RunOptions { out: Some(home.0.join(out)), overrides: sets, threads: Some(1) };
         run::run(&scene, &options, &mut |_: &Progress| true)
     };
     run("whole", "remove")?;

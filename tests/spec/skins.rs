@@ -6,8 +6,8 @@ use pontoon::{
     Result,
     geometry::Shape,
     math::{Pose, Vector},
-    report::{self, Field, Shot},
-    run::{self, Options, Progress},
+    report::{self, ColourField, PictureOptions},
+    run::{self, Progress, RunOptions},
     scene::Scene,
     solid::{Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Load, Role, SolidSpec},
 };
@@ -221,7 +221,7 @@ fn the_page_and_the_picture_show_the_skin_outside_the_face() {
     fs::create_dir_all(&home).unwrap();
     let ran = |name: &str, skin: &str| {
         fs::write(home.join("scene.toml"), scene(skin)).unwrap();
-        let options = Options { out: Some(home.join(name)), threads: Some(1), ..Options::default() };
+        let options = RunOptions { out: Some(home.join(name)), threads: Some(1), ..RunOptions::default() };
         run::run(&home.join("scene.toml"), &options, &mut |_: &Progress| true).unwrap().folder
     };
     let (padded, bare) = (ran("padded", "skin = 0.02"), ran("bare", ""));
@@ -238,10 +238,15 @@ fn the_page_and_the_picture_show_the_skin_outside_the_face() {
         assert!(off.abs() < 1e-12, "{point} is {off} m off the skin of a box of 0.2 × 0.1 m");
     }
     let picture = |folder: &Path| {
-        let shot =
-            Shot { times: vec![0.0], field: Field::Pressure, range: Some([0.0, 2000.0]), width: 600, heads: vec![] };
+        let shot = PictureOptions {
+            times: vec![0.0],
+            field: ColourField::Pressure,
+            range: Some([0.0, 2000.0]),
+            width: 600,
+            column_titles: vec![],
+        };
         let out = folder.join("now.png");
-        report::picture(&[folder.to_owned()], &shot, &out).unwrap();
+        report::write_picture(&[folder.to_owned()], &shot, &out).unwrap();
         Pixmap::load_png(out).unwrap()
     };
     let (with, without) = (picture(&padded), picture(&bare));

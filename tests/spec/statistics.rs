@@ -4,7 +4,7 @@ use std::{f64::consts::TAU, fs};
 
 use pontoon::{
     Result,
-    run::{self, Asked, Options, Progress, Statistic},
+    run::{self, Progress, RunOptions, Statistic, StatisticsFilter},
     scene::Scene,
 };
 
@@ -51,7 +51,7 @@ from = 5.0
 fn run_of_waves(name: &str) -> Result<Home> {
     let home = Home::with(&format!("statistics-{name}"), SCENE);
     let out = home.0.join("run");
-    let options = Options { out: Some(out.clone()), threads: Some(1), ..Options::default() };
+    let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
     run::run(&home.0.join("scene.toml"), &options, &mut |_: &Progress| true)?;
     assert!(
         fs::read_to_string(out.join("statistics.csv"))
@@ -91,7 +91,7 @@ fn value(rows: &[Statistic], name: &str, series: &str, quantity: &str) -> f64 {
 #[test]
 fn a_run_tells_heights_periods_reflection_and_raos_of_its_series() -> Result<()> {
     let home = run_of_waves("all")?;
-    let told = run::statistics(&home.0.join("run"), &Asked::default())?;
+    let told = run::statistics(&home.0.join("run"), &StatisticsFilter::default())?;
     assert_eq!(told.remarks, Vec::<String>::new());
     let of = |name: &str, series: &str, quantity: &str| value(&told.rows, name, series, quantity);
     // The fit is exact.
@@ -115,7 +115,7 @@ fn a_run_tells_heights_periods_reflection_and_raos_of_its_series() -> Result<()>
 #[test]
 fn a_part_of_a_series_can_be_asked_for_and_a_series_that_is_none_is_refused() -> Result<()> {
     let home = run_of_waves("part")?;
-    let ask = |series: &str| Asked { series: Some(series.into()), from: Some(3.0), until: Some(9.0) };
+    let ask = |series: &str| StatisticsFilter { series: Some(series.into()), from: Some(3.0), until: Some(9.0) };
     let told = run::statistics(&home.0.join("run"), &ask("buoy"))?;
     assert!(told.rows.iter().all(|row| row.series.starts_with("buoy.") && row.from_s >= 3.0 && row.until_s <= 9.0));
     assert!(told.rows.iter().any(|row| row.quantity == "rao"), "what the scene asks of it, too");

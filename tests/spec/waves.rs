@@ -5,9 +5,9 @@ use std::{f64::consts::TAU, path::Path};
 use pontoon::{
     Error,
     math::Vector,
-    model::{Dimension, Model, Scheme, Viscosity},
-    preflight::{self, Finding, Preflight, Wave},
-    scene::{Built, DrivenConfig, ProbeEntry, Scene, ShapeConfig, SolidConfig, SpongeLayerConfig, WaveConfig},
+    model::{Dimension, Model, TimeScheme, Viscosity},
+    preflight::{self, Finding, GeneratedWave, Preflight},
+    scene::{BuiltScene, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, SpongeLayerConfig, WaveConfig},
     simulation::{Setup, Simulation},
     solid::Dim,
     system::SpongeLayer,
@@ -46,23 +46,23 @@ fn with(driven: &str) -> String {
     FLUME.replacen(PISTON, driven, 1)
 }
 
-fn built(text: &str) -> Result<Built<2>, Error> {
+fn built(text: &str) -> Result<BuiltScene<2>, Error> {
     Scene::parse(text, Path::new(""), &[])?.build()
 }
 
-fn look<const D: usize>(built: Built<D>) -> Preflight
+fn look<const D: usize>(built: BuiltScene<D>) -> Preflight
 where
     Dim<D>: Dimension<D>,
 {
-    let Built { setup, plan, overlapped, still, .. } = built;
-    preflight::look(&Simulation::new(setup).unwrap(), &plan, still, overlapped, &[])
+    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built;
+    preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[])
 }
 
 fn told(driven: &str) -> Preflight {
     look(built(&with(driven)).unwrap())
 }
 
-fn wave(driven: &str) -> Wave {
+fn wave(driven: &str) -> GeneratedWave {
     told(driven).waves.remove(0)
 }
 
@@ -144,8 +144,8 @@ fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
     let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
     assert_eq!(piston, again);
     let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
-        .damped(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
-        .probe(ProbeEntry::motion("paddle"));
+        .with_damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
+        .probe(ProbeConfig::motion("paddle"));
     assert_eq!(look(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
 }
 
@@ -273,7 +273,7 @@ fn the_first_answer_is_that_of_what_stands_in_the_way() {
     let first = wall(0.4);
     assert!(first.answers.as_deref() == Some("wall") && (first.reach_m - 2.0).abs() < 1e-6, "{first:?}");
     assert!((first.back_s - 4.0 / first.group_mps).abs() < 1e-6 && first.damping_m == Some(1.5), "{first:?}");
-    let line = first.first_answer();
+    let line = first.first_reflection();
     assert!(line.contains("2 m to \"wall\"") && line.contains("a damping zone begins at 1.5 m"), "{line}");
     // Waves pass over it.
     let over = wall(0.1);
@@ -359,7 +359,7 @@ fn a_piston_makes_waves_of_the_height_that_was_asked_for() {
 #[test]
 fn a_damping_zone_slows_water_by_its_law_whatever_the_scheme() {
     let water = rig::lattice([0.0, 0.0], [0.4, 0.4], 0.05);
-    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
+    for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 50 }] {
         let mut model = Model::water(2, 0.05, 1.0);
         (model.c0, model.gravity, model.viscosity, model.scheme) = (20.0, vec![0.0, 0.0], Viscosity::None, scheme);
         let levels = vec![0.0; water.len()];

@@ -5,15 +5,15 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::water::StillWater;
+use super::water::StillWaterLevel;
 use crate::{
     error::{Error, Result},
     math::expression::Formula,
-    plan::{Align, CheckWords, ProbeKind, ProbeWords, Reference, Score, StatisticKind, StatisticWords},
+    plan::{Align, CheckPlan, ProbeKind, ProbePlan, Reference, Score, StatisticKind, StatisticPlan},
     probe,
     scene::{
-        context::{Context, Defaults, joined, set_keys, suggestion},
-        probes::ProbeEntry,
+        context::{Context, Defaults, quoted_list, set_keys, suggestion},
+        probes::ProbeConfig,
         table,
     },
 };
@@ -104,40 +104,41 @@ pub struct RaoConfig {
 }
 
 /// The series of a run: its probes with their names.
-pub(crate) struct Series<'a> {
+pub(crate) struct ProbeSeries<'a> {
     /// The probes.
-    pub(crate) probes: &'a [ProbeEntry],
+    pub(crate) probes: &'a [ProbeConfig],
     /// Their names, in the same order.
     pub(crate) names: &'a [String],
 }
 
 /// A series, and the position of the gauge (m) if it is an elevation.
-type Found = (String, Option<Vec<f64>>);
+type SeriesAtPlace = (String, Option<Vec<f64>>);
 
-impl Series<'_> {
+impl ProbeSeries<'_> {
     /// The number of the probe of this name.
     fn probe(&self, ctx: &Context, key: &str, name: &str) -> Result<usize> {
         self.names.iter().position(|known| known == name).ok_or_else(|| {
             let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
             let what = format!("no probe is called \"{name}\"{}", suggestion(name, &names));
-            ctx.wrong_with(key, what, format!("known: {}", names.join(", ")))
+            ctx.error_with_help(key, what, format!("known: {}", names.join(", ")))
         })
     }
 
     /// The series that `word` means.
-    fn find(&self, ctx: &Context, key: &str, word: &str) -> Result<Vec<Found>> {
+    fn find(&self, ctx: &Context, key: &str, word: &str) -> Result<Vec<SeriesAtPlace>> {
         let (name, column) = word.split_once('.').map_or((word, None), |(name, column)| (name, Some(column)));
         let i = self.probe(ctx, key, name)?;
-        let Some(ProbeWords { what: kind, .. }) = self.probes[i].planned(ctx.until) else {
-            return Err(no_series(ctx, key, name));
+        let Some(ProbePlan { what: kind, .. }) = self.probes[i].to_plan(ctx.until) else {
+            return Err(list_has_no_series(ctx, key, name));
         };
-        let all: Vec<Found> = match &kind {
+        let all: Vec<SeriesAtPlace> = match &kind {
             ProbeKind::Elevation { places, .. } if places.len() == 1 => {
                 vec![(format!("{name}.eta_m"), Some(places[0].clone()))]
             }
-            ProbeKind::Elevation { places, .. } => {
-                places.iter().map(|at| (format!("{name}.{}", probe::named("eta_m", at)), Some(at.clone()))).collect()
-            }
+            ProbeKind::Elevation { places, .. } => places
+                .iter()
+                .map(|at| (format!("{name}.{}", probe::column_at_place("eta_m", at)), Some(at.clone())))
+                .collect(),
             ProbeKind::Motion { .. } => {
                 let columns: &[&str] = match ctx.dimension {
                     2 => &["surge_m", "heave_m", "pitch_deg"],
@@ -151,7 +152,7 @@ impl Series<'_> {
             Some(_) => Ok(vec![all.into_iter().find(|(series, _)| series == word).unwrap_or((word.into(), None))]),
             None if all.is_empty() => {
                 let help = "a series is a probe and its column with a point between, as in \"box.heave_m\"";
-                Err(ctx.wrong_with(key, format!("which column of \"{name}\" is meant?"), help))
+                Err(ctx.error_with_help(key, format!("which column of \"{name}\" is meant?"), help))
             }
             None => Ok(all),
         }
@@ -160,14 +161,14 @@ impl Series<'_> {
 
 impl CheckConfig {
     /// Refuses a check of an unknown series, without a reference, or with impossible times or bounds.
-    pub(crate) fn verify(&self, ctx: &Context, key: &str, series: &Series) -> Result<()> {
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, series: &ProbeSeries) -> Result<()> {
         let Some((name, _)) = self.series.split_once('.') else {
             let what = "a series is a probe and its column, with a point between";
-            return Err(ctx.wrong(&format!("{key}.series"), what));
+            return Err(ctx.error_at(&format!("{key}.series"), what));
         };
         let i = series.probe(ctx, &format!("{key}.series"), name)?;
         if series.probes[i].contacts.is_some() {
-            return Err(no_series(ctx, &format!("{key}.series"), name));
+            return Err(list_has_no_series(ctx, &format!("{key}.series"), name));
         }
         self.verify_reference(ctx, key)?;
         self.verify_times(ctx, key)?;
@@ -195,15 +196,15 @@ impl CheckConfig {
                 if let Some((word, _)) = of_table.iter().find(|(_, given)| *given) {
                     let what = format!("a check by a formula has no {word}: that is of a table");
                     let help = "give either formula, or reference and column";
-                    return Err(ctx.wrong_with(&format!("{key}.{word}"), what, help));
+                    return Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
                 }
-                let place = |e: Error| ctx.place(e, &format!("{key}.formula"));
+                let place = |e: Error| ctx.with_location(e, &format!("{key}.formula"));
                 Formula::parse(text).map(|_| ()).map_err(place)
             }
             None => match of_table[..2].iter().find(|(_, given)| !given) {
                 Some((word, _)) => {
                     let what = format!("\"{word}\" is missing: a check needs something to be held against");
-                    Err(ctx.wrong(&format!("{key}.{word}"), what))
+                    Err(ctx.error_at(&format!("{key}.{word}"), what))
                 }
                 None => Ok(()),
             },
@@ -212,58 +213,66 @@ impl CheckConfig {
 
     /// Refuses times out of range.
     fn verify_times(&self, ctx: &Context, key: &str) -> Result<()> {
-        ctx.positive(&format!("{key}.mean"), self.mean)?;
+        ctx.require_positive(&format!("{key}.mean"), self.mean)?;
         if let Some(zero) = self.zero.filter(|zero| !(*zero >= 0.0 && zero.is_finite())) {
-            return Err(ctx.wrong(&format!("{key}.zero"), format!("zero is a time of the run, and {zero} s is none")));
+            return Err(
+                ctx.error_at(&format!("{key}.zero"), format!("zero is a time of the run, and {zero} s is none"))
+            );
         }
         match self.align {
-            Some(Align::Crossing(threshold)) => ctx.positive(&format!("{key}.align.crossing"), Some(threshold))?,
-            Some(Align::Start(threshold)) => ctx.positive(&format!("{key}.align.start"), Some(threshold))?,
+            Some(Align::Crossing(threshold)) => {
+                ctx.require_positive(&format!("{key}.align.crossing"), Some(threshold))?
+            }
+            Some(Align::Start(threshold)) => ctx.require_positive(&format!("{key}.align.start"), Some(threshold))?,
             Some(Align::Best) | None => {}
         }
         let help = "until is the later time, in the run's own time";
-        ctx.interval(key, self.from, self.until, help)
+        ctx.require_interval(key, self.from, self.until, help)
     }
 
     /// Refuses bounds on figures that the check does not compute.
     fn verify_figures(&self, ctx: &Context, key: &str) -> Result<()> {
         let Some(bound) = self.bound else { return Ok(()) };
         let figures = [
-            ("N", bound.n),
-            ("M", bound.m),
+            ("N", bound.relative_l2),
+            ("M", bound.amplitude_ratio),
             ("peak", bound.peak),
             ("off", bound.off),
-            ("aligned_N", bound.aligned_n),
+            ("aligned_N", bound.aligned_relative_l2),
             ("delay", bound.delay),
         ];
         if let Some((word, figure)) = figures.iter().find(|(_, figure)| figure.is_some_and(|x| x < 0.0)) {
             let what = format!("{word} is the largest that passes, and {} is below 0", figure.unwrap_or_default());
-            return Err(ctx.wrong(&format!("{key}.bound.{word}"), what));
+            return Err(ctx.error_at(&format!("{key}.bound.{word}"), what));
         }
         if matches!(self.align, None | Some(Align::Start(_)))
             && let Some((word, _)) = figures[4..].iter().find(|(_, figure)| figure.is_some())
         {
             let what = format!("the bound names {word}, but nothing is aligned");
-            return Err(ctx.wrong_with(&format!("{key}.bound.{word}"), what, "write  align = \"best\"  in this check"));
+            return Err(ctx.error_with_help(
+                &format!("{key}.bound.{word}"),
+                what,
+                "write  align = \"best\"  in this check",
+            ));
         }
         Ok(())
     }
 
     /// The check of the run; opens its table to see that the columns are there.
-    pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckWords> {
-        let place = |e: Error| ctx.place(e, &format!("{key}.reference"));
+    pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
+        let place = |e: Error| ctx.with_location(e, &format!("{key}.reference"));
         let reference = match &self.formula {
             Some(text) => Reference::Formula(text.clone()),
             None => {
                 let file = self.reference.clone().unwrap_or_default();
                 let (time, column) = (self.time.clone().unwrap_or_default(), self.column.clone().unwrap_or_default());
-                let path = table::beside(ctx.folder(), &file).map_err(place)?;
-                table::series(&path, &time, &column).map_err(place)?;
+                let path = table::path_beside(ctx.folder(), &file).map_err(place)?;
+                table::read_series(&path, &time, &column).map_err(place)?;
                 let delay = self.delay.unwrap_or_default();
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, delay }
             }
         };
-        Ok(CheckWords {
+        Ok(CheckPlan {
             series: self.series.clone(),
             reference,
             from: self.from,
@@ -279,7 +288,7 @@ impl CheckConfig {
 
 impl StatisticConfig {
     /// The keys that say its kind.
-    fn kinds(&self) -> Vec<&'static str> {
+    fn named_kinds(&self) -> Vec<&'static str> {
         set_keys([
             ("waves", self.waves.is_some()),
             ("reflection", self.reflection.is_some()),
@@ -288,26 +297,26 @@ impl StatisticConfig {
     }
 
     /// Refuses a statistic that is not of exactly one kind, of unknown series, or with keys of another kind.
-    pub(crate) fn verify(&self, ctx: &Context, key: &str, series: &Series) -> Result<()> {
-        if self.kinds().len() != 1 {
-            let what = format!("a statistic is of one kind; this one of {}", joined(&self.kinds()));
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, series: &ProbeSeries) -> Result<()> {
+        if self.named_kinds().len() != 1 {
+            let what = format!("a statistic is of one kind; this one of {}", quoted_list(&self.named_kinds()));
             let help = "one of waves, reflection, rao; a [[statistic]] section for each";
-            return Err(ctx.wrong_with(key, what, help));
+            return Err(ctx.error_with_help(key, what, help));
         }
-        ctx.positive(&format!("{key}.period"), self.period)?;
-        ctx.positive(&format!("{key}.depth"), self.depth)?;
+        ctx.require_positive(&format!("{key}.period"), self.period)?;
+        ctx.require_positive(&format!("{key}.depth"), self.depth)?;
         if let Some(name) = &self.name {
-            ctx.good_name(&format!("{key}.name"), name)?;
+            ctx.require_file_name(&format!("{key}.name"), name)?;
         }
         let foreign = set_keys([
             ("period", self.period.is_some() && self.waves.is_some()),
             ("depth", self.depth.is_some() && self.reflection.is_none()),
         ]);
         if let Some(word) = foreign.first() {
-            let what = format!("{} needs no {word}", self.kinds()[0]);
-            return Err(ctx.wrong_with(&format!("{key}.{word}"), what, "remove it"));
+            let what = format!("{} needs no {word}", self.named_kinds()[0]);
+            return Err(ctx.error_with_help(&format!("{key}.{word}"), what, "remove it"));
         }
-        ctx.interval(key, self.from, self.until, "until is the later time of the run")?;
+        ctx.require_interval(key, self.from, self.until, "until is the later time of the run")?;
         self.kind(ctx, series, key, 1.0, 1.0).map(|_| ())
     }
 
@@ -316,11 +325,11 @@ impl StatisticConfig {
         &self,
         ctx: &Context,
         key: &str,
-        series: &Series,
-        still: &StillWater,
-    ) -> Result<StatisticWords> {
+        series: &ProbeSeries,
+        still: &StillWaterLevel,
+    ) -> Result<StatisticPlan> {
         let depth = self.depth.unwrap_or(still.depth);
-        Ok(StatisticWords {
+        Ok(StatisticPlan {
             name: self.name.clone().unwrap_or_default(),
             what: self.kind(ctx, series, key, depth, ctx.gravity_norm())?,
             from: self.from,
@@ -329,9 +338,9 @@ impl StatisticConfig {
     }
 
     /// The quantity over water of this `depth` (m) under gravity `g` (m/s²).
-    fn kind(&self, ctx: &Context, series: &Series, key: &str, depth: f64, g: f64) -> Result<StatisticKind> {
+    fn kind(&self, ctx: &Context, series: &ProbeSeries, key: &str, depth: f64, g: f64) -> Result<StatisticKind> {
         let period = self.period;
-        let plain = |found: Vec<Found>| found.into_iter().map(|(series, _)| series).collect::<Vec<_>>();
+        let plain = |found: Vec<SeriesAtPlace>| found.into_iter().map(|(series, _)| series).collect::<Vec<_>>();
         match self {
             StatisticConfig { waves: Some(word), .. } => {
                 Ok(StatisticKind::Waves { series: plain(series.find(ctx, &format!("{key}.waves"), word)?) })
@@ -349,22 +358,22 @@ impl StatisticConfig {
                 let key = format!("{key}.rao.wave");
                 match &plain(series.find(ctx, &key, wave)?)[..] {
                     [wave] => Ok(StatisticKind::Rao { motions, wave: wave.clone(), period }),
-                    _ => Err(ctx.wrong_with(
+                    _ => Err(ctx.error_with_help(
                         &key,
                         format!("\"{wave}\" is more than one series"),
                         "name one, as in \"gauge.eta_m\"",
                     )),
                 }
             }
-            _ => Err(ctx.wrong(key, "what is it of?")),
+            _ => Err(ctx.error_at(key, "what is it of?")),
         }
     }
 }
 
 /// Gauges with their distance from the first in the direction of the last, m.
-fn gauge_positions(ctx: &Context, key: &str, gauges: Vec<Found>) -> Result<Vec<(String, f64)>> {
+fn gauge_positions(ctx: &Context, key: &str, gauges: Vec<SeriesAtPlace>) -> Result<Vec<(String, f64)>> {
     let help = "name three elevation gauges, or a row of them, in the order in which waves pass them";
-    let wrong = |what: String| ctx.wrong_with(key, what, help);
+    let wrong = |what: String| ctx.error_with_help(key, what, help);
     let places: Option<Vec<Vec<f64>>> = gauges.iter().map(|(_, at)| at.clone()).collect();
     let Some(places) = places else {
         return Err(wrong("what is reflected is told by elevation gauges, and one of these is none".into()));
@@ -382,17 +391,17 @@ fn gauge_positions(ctx: &Context, key: &str, gauges: Vec<Found>) -> Result<Vec<(
 }
 
 /// The error that the probe `name` is a list of contacts and has no series.
-fn no_series(ctx: &Context, key: &str, name: &str) -> Error {
+fn list_has_no_series(ctx: &Context, key: &str, name: &str) -> Error {
     let what = format!("\"{name}\" lists all contacts, many at one time, and has no series");
     let help = "of two solids there is one in a [[probe]] of their own:  contact = [\"crate\", \"raft\"]";
-    ctx.wrong_with(key, what, help)
+    ctx.error_with_help(key, what, help)
 }
 
 /// The default name of each statistic: its kind, with a number from the second on.
 pub(crate) fn default_names(statistics: &[StatisticConfig]) -> Vec<String> {
     let mut kinds: Vec<&str> = Vec::new();
     let name = |entry: &StatisticConfig| {
-        let kind = entry.kinds().first().copied().unwrap_or("statistic");
+        let kind = entry.named_kinds().first().copied().unwrap_or("statistic");
         kinds.push(kind);
         match kinds.iter().filter(|before| **before == kind).count() {
             1 => kind.to_string(),

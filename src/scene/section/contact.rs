@@ -36,16 +36,16 @@ impl ContactConfig {
         let plain = self.friction.is_none() && self.restitution.is_none();
         if self.touch == Some(false) && !plain {
             let what = "what does not touch has neither friction nor restitution";
-            return Err(ctx.wrong(&format!("{key}.touch"), what));
+            return Err(ctx.error_at(&format!("{key}.touch"), what));
         }
         let pairs = self.pairs(solids);
         // `touch = true` has a meaning after a rule for some of the same pairs.
         let rules = |rule: &ContactConfig| self.touch.is_some() && !rule.pairs(solids).is_disjoint(&pairs);
         if self.touch != Some(false) && plain && !earlier.iter().any(rules) {
-            return Err(ctx.wrong(key, "this contact is as any other"));
+            return Err(ctx.error_at(key, "this contact is as any other"));
         }
-        ctx.within(&format!("{key}.friction"), self.friction, 10.0)?;
-        ctx.within(&format!("{key}.restitution"), self.restitution, 1.0)
+        ctx.require_range(&format!("{key}.friction"), self.friction, 10.0)?;
+        ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
     }
 
     /// Refuses names that are not one or two solids or groups that can touch.
@@ -54,25 +54,25 @@ impl ContactConfig {
         if !(1..=2).contains(&between.len()) {
             let what = format!("between names two solids or groups, or one, not {}", between.len());
             let help = "write  between = [\"box\", \"tank\"]; one alone means its contacts with all others";
-            return Err(ctx.wrong_with(key, what, help));
+            return Err(ctx.error_with_help(key, what, help));
         }
         let groups: BTreeSet<&str> = solids.iter().filter_map(|solid| solid.group.as_deref()).collect();
         let known: Vec<&str> = solids.iter().map(|solid| solid.name.as_str()).chain(groups.iter().copied()).collect();
         if let Some(name) = between.iter().find(|name| !known.contains(&name.as_str())) {
             let what = format!("no solid or group is called \"{name}\"{}", suggestion(name, &known));
-            return Err(ctx.wrong_with(key, what, format!("known: {}", known.join(", "))));
+            return Err(ctx.error_with_help(key, what, format!("known: {}", known.join(", "))));
         }
         let of_group = between.iter().any(|name| groups.contains(name.as_str()));
         let twice = between.len() == 2 && between[0] == between[1];
         if twice && !of_group {
             let help = "name two; one alone means its contacts with all others";
-            return Err(ctx.wrong_with(key, format!("\"{}\" is named twice", between[0]), help));
+            return Err(ctx.error_with_help(key, format!("\"{}\" is named twice", between[0]), help));
         }
         if (of_group || between.len() == 2) && self.pairs(solids).is_empty() {
             let names = if twice { &between[..1] } else { &between[..] };
             let what = format!("of \"{}\" no two solids can touch", names.join("\" and \""));
             let help = "it takes two, of which one at least must be  free = { density = 500.0 }";
-            return Err(ctx.wrong_with(key, what, help));
+            return Err(ctx.error_with_help(key, what, help));
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     error::Result,
     scene::context::{Context, Defaults},
-    simulation::{Escape, Limits},
+    simulation::{Escape, ParticleLimits},
     system::Periodic,
 };
 
@@ -23,14 +23,14 @@ pub struct BoxConfig {
 impl BoxConfig {
     /// Refuses corners that do not enclose a box.
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
-        ctx.vector(&format!("{key}.min"), &self.min)?;
-        ctx.vector(&format!("{key}.max"), &self.max)?;
+        ctx.require_dimension(&format!("{key}.min"), &self.min)?;
+        ctx.require_dimension(&format!("{key}.max"), &self.max)?;
         match (0..ctx.dimension).find(|&i| self.min[i] >= self.max[i]) {
             Some(i) => {
                 let (min, max) = (self.min[i], self.max[i]);
                 let axis = ["x", "y", "z"][i];
                 let what = format!("{axis} goes from {min} to {max}: nothing lies between");
-                Err(ctx.wrong_with(&format!("{key}.max"), what, "max is the corner with the greater coordinates"))
+                Err(ctx.error_with_help(&format!("{key}.max"), what, "max is the corner with the greater coordinates"))
             }
             None => Ok(()),
         }
@@ -59,10 +59,10 @@ impl PeriodicConfig {
             let Some([from, to]) = side else { continue };
             let key = format!("periodic.{axis}");
             if axis == "z" && ctx.dimension == 2 {
-                return Err(ctx.wrong_with(&key, "a 2-D scene has no z", "its axes are x and y"));
+                return Err(ctx.error_with_help(&key, "a 2-D scene has no z", "its axes are x and y"));
             }
             if !(from < to && from.is_finite() && to.is_finite()) {
-                return Err(ctx.wrong(&key, format!("{axis} goes from {from} to {to}: nothing lies between")));
+                return Err(ctx.error_at(&key, format!("{axis} goes from {from} to {to}: nothing lies between")));
             }
         }
         Ok(())
@@ -97,20 +97,20 @@ impl GuardConfig {
             && !(speed > 0.0 && speed <= 1.0)
         {
             let help = "write a part of the speed of sound, above 0 and at most 1: speed = 0.5";
-            return Err(ctx.wrong_with("guard.speed", format!("a largest speed of {speed} c0"), help));
+            return Err(ctx.error_with_help("guard.speed", format!("a largest speed of {speed} c0"), help));
         }
         if let Some([least, most]) = self.density
             && !(0.0 < least && least < 1.0 && 1.0 < most && most.is_finite())
         {
             let help = "write two parts of ρ₀, one on either side of 1: density = [0.5, 1.5]";
-            return Err(ctx.wrong_with("guard.density", format!("densities from {least} to {most} ρ₀"), help));
+            return Err(ctx.error_with_help("guard.density", format!("densities from {least} to {most} ρ₀"), help));
         }
         Ok(())
     }
 
     /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults) {
-        let usual = Limits::default();
+        let usual = ParticleLimits::default();
         let why = "of c₀: beyond, the water is compressed by an eighth";
         defaults.fill("guard.speed", &mut self.speed, usual.speed, why);
         defaults.fill("guard.density", &mut self.density, usual.density, "of ρ₀: no water is lighter or denser");
@@ -119,9 +119,9 @@ impl GuardConfig {
     }
 
     /// The valid range of a water particle.
-    pub(crate) fn build(&self) -> Limits {
-        let usual = Limits::default();
-        Limits {
+    pub(crate) fn build(&self) -> ParticleLimits {
+        let usual = ParticleLimits::default();
+        ParticleLimits {
             speed: self.speed.unwrap_or(usual.speed),
             density: self.density.unwrap_or(usual.density),
             escape: self.escape.unwrap_or(usual.escape),

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::{
     joint::verify_ends,
     shape::vector,
-    solid::{SolidConfig, known_solid},
-    value::{TimeValueConfig, TimeVectorConfig, ValueUnit},
+    solid::{SolidConfig, require_solid},
+    value::{CoordinateUnit, TimeValueConfig, TimeVectorConfig},
 };
 use crate::{
     error::Result,
@@ -86,7 +86,7 @@ pub enum ForceFrame {
     /// The world's.
     World,
     /// The world's at the start, turning with the solid.
-    Body,
+    WaterBody,
 }
 
 impl SpringConfig {
@@ -115,12 +115,12 @@ impl SpringConfig {
     /// Refuses ends that cannot move and numbers out of range.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
         verify_ends(ctx, key, &self.between, solids)?;
-        ctx.vector(&format!("{key}.from"), &self.from)?;
-        ctx.vector(&format!("{key}.to"), &self.to)?;
-        ctx.positive(&format!("{key}.stiffness"), Some(self.stiffness))?;
+        ctx.require_dimension(&format!("{key}.from"), &self.from)?;
+        ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        ctx.require_positive(&format!("{key}.stiffness"), Some(self.stiffness))?;
         for (word, x) in [("damping", self.damping), ("length", self.length)] {
             if let Some(x) = x.filter(|x| *x < 0.0) {
-                return Err(ctx.wrong(&format!("{key}.{word}"), format!("{word} is 0 or more, not {x}")));
+                return Err(ctx.error_at(&format!("{key}.{word}"), format!("{word} is 0 or more, not {x}")));
             }
         }
         Ok(())
@@ -149,9 +149,9 @@ impl RopeConfig {
     /// Refuses ends that cannot move and a length that is not positive.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
         verify_ends(ctx, key, &self.between, solids)?;
-        ctx.vector(&format!("{key}.from"), &self.from)?;
-        ctx.vector(&format!("{key}.to"), &self.to)?;
-        ctx.positive(&format!("{key}.length"), self.length)
+        ctx.require_dimension(&format!("{key}.from"), &self.from)?;
+        ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        ctx.require_positive(&format!("{key}.length"), self.length)
     }
 
     /// The rope between the points of `solids`.
@@ -174,16 +174,16 @@ impl ForceConfig {
 
     /// Refuses a force on a solid that is not free, and components that do not fit the dimension.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
-        known_solid(ctx, solids, &format!("{key}.on"), &self.on)?;
+        require_solid(ctx, solids, &format!("{key}.on"), &self.on)?;
         if !solids.iter().any(|solid| solid.name == self.on && solid.free.is_some()) {
             let what = format!("\"{}\" is not free: a force does not move it", self.on);
-            return Err(ctx.wrong_with(&format!("{key}.on"), what, "a force acts on a free solid"));
+            return Err(ctx.error_with_help(&format!("{key}.on"), what, "a force acts on a free solid"));
         }
         if let Some(at) = &self.at {
-            ctx.vector(&format!("{key}.at"), at)?;
+            ctx.require_dimension(&format!("{key}.at"), at)?;
         }
         if self.force.is_none() && self.torque.is_none() {
-            return Err(ctx.wrong(key, "neither a force nor a torque is given"));
+            return Err(ctx.error_at(key, "neither a force nor a torque is given"));
         }
         let turns = if ctx.dimension == 3 { 3 } else { 1 };
         for (word, values, count) in [("force", &self.force, ctx.dimension), ("torque", &self.torque, turns)] {
@@ -192,7 +192,7 @@ impl ForceConfig {
             let values = values.components();
             if values.len() != count {
                 let what = format!("{word} has {} components, and a {}-D scene {count}", values.len(), ctx.dimension);
-                return Err(ctx.wrong(&key, what));
+                return Err(ctx.error_at(&key, what));
             }
             values.iter().try_for_each(|value| value.verify(ctx, &key))?;
         }
@@ -202,7 +202,7 @@ impl ForceConfig {
     /// The force on the solid with this number.
     pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, solid: usize) -> Result<ForceSpec<D>> {
         let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<Law>> {
-            values.iter().map(|value| value.0.build(ctx, &format!("{key}.{word}"), ValueUnit::Si)).collect()
+            values.iter().map(|value| value.0.build(ctx, &format!("{key}.{word}"), CoordinateUnit::Si)).collect()
         };
         Ok(ForceSpec {
             name: self.name.clone(),
@@ -210,7 +210,7 @@ impl ForceConfig {
             at: self.at.as_ref().map(|at| vector(at)),
             force: laws("force", self.force.as_ref().map_or(&[], |values| values.components()))?,
             torque: laws("torque", self.torque.as_ref().map_or(&[], |values| values.components()))?,
-            turns: self.frame == Some(ForceFrame::Body),
+            turns: self.frame == Some(ForceFrame::WaterBody),
         })
     }
 }

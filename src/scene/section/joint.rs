@@ -10,8 +10,8 @@ use serde::{
 
 use super::{
     shape::vector,
-    solid::{MotionAxis, SolidConfig, known_solid, verify_axes},
-    value::{TimeValueConfig, ValueUnit},
+    solid::{MotionMode, SolidConfig, require_solid, verify_modes},
+    value::{CoordinateUnit, TimeValueConfig},
 };
 use crate::{
     error::Result,
@@ -39,7 +39,7 @@ pub struct JointConfig {
     pub along: Option<Vec<f64>>,
     /// Motions that a generic joint leaves free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub free: Option<Vec<MotionAxis>>,
+    pub free: Option<Vec<MotionMode>>,
     /// Least and greatest value from the start, m or rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<LimitsConfig>,
@@ -115,7 +115,7 @@ pub enum LimitsConfig {
     /// Of a joint with one way to go.
     One(Vec<f64>),
     /// Of a generic joint.
-    Each(BTreeMap<MotionAxis, Vec<f64>>),
+    Each(BTreeMap<MotionMode, Vec<f64>>),
 }
 
 impl<'de> Deserialize<'de> for LimitsConfig {
@@ -161,7 +161,7 @@ impl JointConfig {
     }
 
     /// The same joint with a linear power take-off of `damping` (N s/m, or N m s/rad of a hinge).
-    pub fn damped(mut self, damping: f64) -> Self {
+    pub fn with_damping(mut self, damping: f64) -> Self {
         self.motor.get_or_insert_default().damping = Some(damping.into());
         self
     }
@@ -170,7 +170,7 @@ impl JointConfig {
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let why = "solids that a joint connects may overlap";
         defaults.fill(format!("{key}.contacts"), &mut self.contacts, false, why);
-        for (word, value) in self.motor.iter_mut().flat_map(|motor| motor.laws_mut()) {
+        for (word, value) in self.motor.iter_mut().flat_map(|motor| motor.time_values_mut()) {
             value.0.fill(defaults, &format!("{key}.motor.{word}"));
         }
     }
@@ -178,25 +178,25 @@ impl JointConfig {
     /// Refuses a joint whose keys do not fit its kind.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
         verify_ends(ctx, key, &self.between, solids)?;
-        ctx.vector(&format!("{key}.at"), &self.at)?;
+        ctx.require_dimension(&format!("{key}.at"), &self.at)?;
         let three = ctx.dimension == 3;
         let (hinge, slider) = (self.kind == JointKindConfig::Hinge, self.kind == JointKindConfig::Slider);
         if self.kind == JointKindConfig::Ball && !three {
             let help = "in 2-D  kind = \"hinge\"  turns freely about its point";
-            return Err(ctx.wrong_with(&format!("{key}.kind"), "a plane has no ball joint", help));
+            return Err(ctx.error_with_help(&format!("{key}.kind"), "a plane has no ball joint", help));
         }
         let (along, generic) = (slider || self.kind == JointKindConfig::Tow, self.kind == JointKindConfig::Generic);
         let needs = [("axis", &self.axis, hinge && three, false), ("along", &self.along, along, generic)];
         for (word, vector, needed, allowed) in needs {
             let key = format!("{key}.{word}");
             match vector {
-                None if needed => return Err(ctx.wrong(&key, format!("{word} is missing: which way?"))),
+                None if needed => return Err(ctx.error_at(&key, format!("{word} is missing: which way?"))),
                 Some(_) if !(needed || allowed) => {
                     let help = "a slider, a tow and a generic joint have  along, a hinge in 3-D has  axis; no other joint has a direction";
-                    return Err(ctx.wrong_with(&key, format!("{word} has no meaning here"), help));
+                    return Err(ctx.error_with_help(&key, format!("{word} has no meaning here"), help));
                 }
                 Some(vector) => {
-                    ctx.direction(&key, vector)?;
+                    ctx.require_direction(&key, vector)?;
                 }
                 None => {}
             }
@@ -205,7 +205,7 @@ impl JointConfig {
         match &self.motor {
             Some(_) if !(hinge || slider) => {
                 let help = "a hinge or a slider has a motor";
-                Err(ctx.wrong_with(&format!("{key}.motor"), "this joint has no way to go", help))
+                Err(ctx.error_with_help(&format!("{key}.motor"), "this joint has no way to go", help))
             }
             Some(motor) => motor.verify(ctx, &format!("{key}.motor"), hinge),
             None => Ok(()),
@@ -216,52 +216,56 @@ impl JointConfig {
     fn verify_limits(&self, ctx: &Context, key: &str) -> Result<()> {
         let generic = self.kind == JointKindConfig::Generic;
         let free = self.free.as_deref().unwrap_or_default();
-        verify_axes(ctx, &format!("{key}.free"), free)?;
+        verify_modes(ctx, &format!("{key}.free"), free)?;
         if generic && free.is_empty() {
-            return Err(ctx.wrong_with(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]"));
+            return Err(ctx.error_with_help(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]"));
         }
         if !generic && self.free.is_some() {
             let help = "the other kinds say what they leave free; a list has  kind = \"generic\"";
-            return Err(ctx.wrong_with(&format!("{key}.free"), "free has no meaning here", help));
+            return Err(ctx.error_with_help(&format!("{key}.free"), "free has no meaning here", help));
         }
         let hinge = self.kind == JointKindConfig::Hinge;
         let way = hinge || self.kind == JointKindConfig::Slider;
-        let mut seen: Vec<MotionAxis> = Vec::new();
+        let mut seen: Vec<MotionMode> = Vec::new();
         for (word, limits) in [("limits", &self.limits), ("limits_deg", &self.limits_deg)] {
             let Some(limits) = limits else { continue };
             let key = format!("{key}.{word}");
             match limits {
                 LimitsConfig::One(_) if generic => {
                     let help = "name the motion: limits = { x = [-0.1, 0.2] }, limits_deg = { turn = [-10.0, 10.0] }";
-                    return Err(ctx.wrong_with(&key, "which motion is limited?", help));
+                    return Err(ctx.error_with_help(&key, "which motion is limited?", help));
                 }
                 LimitsConfig::One(pair) if way => verify_stops(ctx, &key, pair)?,
                 LimitsConfig::Each(all) if generic => {
                     for (mode, pair) in all {
-                        let far = mode.number(ctx.dimension).is_some_and(|number| number < ctx.dimension);
+                        let far = mode.index(ctx.dimension).is_some_and(|number| number < ctx.dimension);
                         if !free.contains(mode) || (word == "limits_deg" && far) || seen.contains(mode) {
                             let help = "each motion in  free  may have one pair, a turn's in rad or in degrees";
-                            return Err(ctx.wrong_with(&key, "limits of what is not free, or twice the same", help));
+                            return Err(ctx.error_with_help(
+                                &key,
+                                "limits of what is not free, or twice the same",
+                                help,
+                            ));
                         }
                         seen.push(*mode);
                         verify_stops(ctx, &key, pair)?;
                     }
                 }
                 LimitsConfig::Each(_) if way => {
-                    return Err(ctx.wrong_with(&key, "this joint has one way to go", "limits = [-0.1, 0.2]"));
+                    return Err(ctx.error_with_help(&key, "this joint has one way to go", "limits = [-0.1, 0.2]"));
                 }
                 _ => {
                     let help = "a hinge, a slider or a generic joint has limits";
-                    return Err(ctx.wrong_with(&key, "this joint has no way to go", help));
+                    return Err(ctx.error_with_help(&key, "this joint has no way to go", help));
                 }
             }
         }
         match (&self.limits, &self.limits_deg) {
             (Some(_), Some(_)) if !generic => {
-                Err(ctx.wrong(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"))
+                Err(ctx.error_at(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"))
             }
             (_, Some(_)) if !(hinge || generic) => {
-                Err(ctx.wrong(&format!("{key}.limits_deg"), "only turns have limits in degrees"))
+                Err(ctx.error_at(&format!("{key}.limits_deg"), "only turns have limits in degrees"))
             }
             _ => Ok(()),
         }
@@ -286,7 +290,7 @@ impl JointConfig {
         let mut joint = JointSpec::new(&self.name, kind, between, vector(&self.at), axis);
         joint.contacts = self.contacts.unwrap_or_default();
         let stops = [(&self.limits, 1.0), (&self.limits_deg, 1f64.to_radians())];
-        let stop = |mode: Option<&MotionAxis>| {
+        let stop = |mode: Option<&MotionMode>| {
             stops.iter().find_map(|(limits, unit)| match (limits, mode) {
                 (Some(LimitsConfig::One(pair)), None) => Some([pair[0] * unit, pair[1] * unit]),
                 (Some(LimitsConfig::Each(all)), Some(mode)) => {
@@ -296,7 +300,7 @@ impl JointConfig {
             })
         };
         joint.limits = stop(None);
-        let number = |mode: &MotionAxis| Some(FreeMode { mode: mode.number(D)?, limits: stop(Some(mode)) });
+        let number = |mode: &MotionMode| Some(FreeMode { mode: mode.index(D)?, limits: stop(Some(mode)) });
         joint.free = self.free.iter().flatten().filter_map(number).collect();
         joint.motor = self.motor.as_ref().map(|motor| motor.build(ctx, &format!("{key}.motor"))).transpose()?;
         Ok(joint)
@@ -305,7 +309,7 @@ impl JointConfig {
 
 impl MotorConfig {
     /// The laws that are given, with their keys.
-    fn laws(&self) -> impl Iterator<Item = (&'static str, &TimeValueConfig)> {
+    fn time_values(&self) -> impl Iterator<Item = (&'static str, &TimeValueConfig)> {
         let all = [
             ("force", &self.force),
             ("torque", &self.torque),
@@ -319,7 +323,7 @@ impl MotorConfig {
     }
 
     /// All laws, to be filled in.
-    fn laws_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut TimeValueConfig)> {
+    fn time_values_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut TimeValueConfig)> {
         let all = [
             ("force", &mut self.force),
             ("torque", &mut self.torque),
@@ -335,32 +339,32 @@ impl MotorConfig {
     /// Refuses a motor without a force, or with keys that do not fit its joint.
     fn verify(&self, ctx: &Context, key: &str, hinge: bool) -> Result<()> {
         let foreign: &[&str] = if hinge { &["force"] } else { &["torque", "position_deg"] };
-        if let Some((word, _)) = self.laws().find(|(word, _)| foreign.contains(word)) {
+        if let Some((word, _)) = self.time_values().find(|(word, _)| foreign.contains(word)) {
             let help = "a hinge has a torque, N m, and angles in rad or degrees; a slider a force, N, and metres";
-            return Err(ctx.wrong_with(&format!("{key}.{word}"), format!("{word} has no meaning here"), help));
+            return Err(ctx.error_with_help(&format!("{key}.{word}"), format!("{word} has no meaning here"), help));
         }
         let position = self.position.is_some() || self.position_deg.is_some();
         let drives = [&self.force, &self.torque, &self.stiffness, &self.damping];
         if drives.iter().all(|law| law.is_none()) {
-            return Err(ctx.wrong(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
+            return Err(ctx.error_at(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
         }
         if self.position.is_some() && self.position_deg.is_some() {
-            return Err(ctx.wrong(&format!("{key}.position_deg"), "position and position_deg say the same twice"));
+            return Err(ctx.error_at(&format!("{key}.position_deg"), "position and position_deg say the same twice"));
         }
         if position && self.stiffness.is_none() {
             let what = "a position needs a stiffness with which it is held";
-            return Err(ctx.wrong(&format!("{key}.stiffness"), what));
+            return Err(ctx.error_at(&format!("{key}.stiffness"), what));
         }
         if self.velocity.is_some() && self.damping.is_none() {
             let what = "a velocity needs a damping with which it is held";
-            return Err(ctx.wrong(&format!("{key}.damping"), what));
+            return Err(ctx.error_at(&format!("{key}.damping"), what));
         }
-        ctx.positive(&format!("{key}.strongest"), self.strongest)?;
-        self.laws().try_for_each(|(word, value)| value.verify(ctx, &format!("{key}.{word}")))?;
+        ctx.require_positive(&format!("{key}.strongest"), self.strongest)?;
+        self.time_values().try_for_each(|(word, value)| value.verify(ctx, &format!("{key}.{word}")))?;
         for (word, value) in [("stiffness", &self.stiffness), ("damping", &self.damping)] {
             if let Some(x) = value.as_ref().and_then(TimeValueConfig::number).filter(|x| *x < 0.0) {
                 let what = format!("{word} is {x}: below 0 it would drive what it should hold");
-                return Err(ctx.wrong(&format!("{key}.{word}"), what));
+                return Err(ctx.error_at(&format!("{key}.{word}"), what));
             }
         }
         Ok(())
@@ -368,11 +372,11 @@ impl MotorConfig {
 
     fn build(&self, ctx: &Context, key: &str) -> Result<Motor> {
         let mut motor = Motor { strongest: self.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
-        for (word, value) in self.laws() {
+        for (word, value) in self.time_values() {
             let unit = match word {
-                "position_deg" => ValueUnit::Degrees,
-                "position" | "velocity" => ValueUnit::Radians,
-                _ => ValueUnit::Si,
+                "position_deg" => CoordinateUnit::Degrees,
+                "position" | "velocity" => CoordinateUnit::Radians,
+                _ => CoordinateUnit::Si,
             };
             let law = value.0.build(ctx, &format!("{key}.{word}"), unit)?;
             match word {
@@ -395,11 +399,11 @@ fn verify_stops(ctx: &Context, key: &str, pair: &[f64]) -> Result<()> {
                 return Ok(());
             }
             let help = "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees";
-            Err(ctx.wrong_with(key, format!("from {min} to {max} degrees it would turn all the way round"), help))
+            Err(ctx.error_with_help(key, format!("from {min} to {max} degrees it would turn all the way round"), help))
         }
         _ => {
             let what = format!("{pair:?} does not reach from 0 or less to 0 or more; 0 is where it starts");
-            Err(ctx.wrong(key, what))
+            Err(ctx.error_at(key, what))
         }
     }
 }
@@ -408,11 +412,11 @@ fn verify_stops(ctx: &Context, key: &str, pair: &[f64]) -> Result<()> {
 pub(crate) fn verify_ends(ctx: &Context, key: &str, between: &[String], solids: &[SolidConfig]) -> Result<()> {
     let key = format!("{key}.between");
     if !(1..=2).contains(&between.len()) {
-        return Err(ctx.wrong(&key, format!("between names one solid or two, not {}", between.len())));
+        return Err(ctx.error_at(&key, format!("between names one solid or two, not {}", between.len())));
     }
-    between.iter().try_for_each(|name| known_solid(ctx, solids, &key, name))?;
+    between.iter().try_for_each(|name| require_solid(ctx, solids, &key, name))?;
     if between.len() == 2 && between[0] == between[1] {
-        return Err(ctx.wrong(&key, format!("\"{}\" is named twice", between[0])));
+        return Err(ctx.error_at(&key, format!("\"{}\" is named twice", between[0])));
     }
     let free = |solid: &&SolidConfig| between.contains(&solid.name) && solid.free.is_some();
     if solids.iter().any(|solid| free(&solid)) {
@@ -420,16 +424,18 @@ pub(crate) fn verify_ends(ctx: &Context, key: &str, between: &[String], solids: 
     }
     let verb = if between.len() == 2 { "are" } else { "is" };
     let what = format!("\"{}\" {verb} not free: nothing here can move otherwise", between.join("\" and \""));
-    Err(ctx.wrong_with(&key, what, "one of them at least must be  free = { density = 500.0 }"))
+    Err(ctx.error_with_help(&key, what, "one of them at least must be  free = { density = 500.0 }"))
 }
 
 /// Refuses names that are not names, or are given twice.
 pub(crate) fn verify_names(ctx: &Context, kind: &str, names: &[&str]) -> Result<()> {
     names.iter().enumerate().try_for_each(|(i, name)| {
         let key = format!("{kind}.{i}.name");
-        ctx.good_name(&key, name)?;
+        ctx.require_file_name(&key, name)?;
         match names[..i].contains(name) {
-            true => Err(ctx.wrong_with(&key, format!("two {kind}s are called \"{name}\""), "give each its own name")),
+            true => {
+                Err(ctx.error_with_help(&key, format!("two {kind}s are called \"{name}\""), "give each its own name"))
+            }
             false => Ok(()),
         }
     })

@@ -3,10 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::water::StillWater;
+use super::water::StillWaterLevel;
 use crate::{
     error::Result,
-    model::{C0_FACTOR, Diffusion, Gradient, Kernel, Model, PairLoopKind, Scheme, Shifting, Slip, Viscosity, Walls},
+    model::{
+        C0_FACTOR, Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
+        Walls,
+    },
     scene::context::{Context, Defaults},
 };
 
@@ -15,19 +18,19 @@ const CFL_MAX: f64 = 0.8;
 
 /// Least stiffness μ of the lattice, –: below, still water around a float reached 0.07 to 0.13 √(g depth) within a second,
 /// above at most 0.08 (docs/stability.md).
-const SOFTEST: f64 = -0.07;
+const MIN_LATTICE_STIFFNESS: f64 = -0.07;
 
 /// Least depth of still water over the radius of the kernel, –: at 0.67 the water rises by some per cent of dp, at 0.75 not
 /// at all (docs/stability.md).
-const SHALLOW: f64 = 0.75;
+const MIN_DEPTH_RATIO: f64 = 0.75;
 
 /// The chosen laws.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ModelConfig {
-    /// Kernel.
+    /// KernelKind.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub kernel: Option<Kernel>,
+    pub kernel: Option<KernelKind>,
     /// Smoothing length over particle spacing, –.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub h_over_dp: Option<f64>,
@@ -36,7 +39,7 @@ pub struct ModelConfig {
     pub c_h: Option<f64>,
     /// The pressure's gradient.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub gradient: Option<Gradient>,
+    pub gradient: Option<PressureGradient>,
     /// Viscosity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Viscosity>,
@@ -72,10 +75,10 @@ pub struct ModelConfig {
 /// The time scheme.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct TimeConfig {
-    /// Scheme.
+pub struct TimeSteppingConfig {
+    /// TimeScheme.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub scheme: Option<Scheme>,
+    pub scheme: Option<TimeScheme>,
     /// Courant number, –.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cfl: Option<f64>,
@@ -95,9 +98,9 @@ impl ModelConfig {
             ("model.rho0", self.rho0),
             ("model.gamma", self.gamma),
         ];
-        numbers.into_iter().try_for_each(|(key, x)| ctx.positive(key, x))?;
+        numbers.into_iter().try_for_each(|(key, x)| ctx.require_positive(key, x))?;
         let both = |a: &str, b: &str, help: &str| {
-            Err(ctx.wrong_with(&format!("model.{b}"), format!("{a} and {b} say the same thing twice"), help))
+            Err(ctx.error_with_help(&format!("model.{b}"), format!("{a} and {b} say the same thing twice"), help))
         };
         if self.h_over_dp.is_some() && self.c_h.is_some() {
             return both("h_over_dp", "c_h", "give one: h = h_over_dp · dp = c_h · √dimension · dp");
@@ -108,7 +111,7 @@ impl ModelConfig {
         let reach = 2.0 * ctx.h / ctx.dp;
         if !(1.9..=12.0).contains(&reach) {
             let what = format!("the kernel would reach {reach:.2} dp; sums over neighbours need 1.9 to 12");
-            return Err(ctx.wrong_with(self.smoothing_key(), what, "write  h_over_dp = 1.7"));
+            return Err(ctx.error_with_help(self.smoothing_key(), what, "write  h_over_dp = 1.7"));
         }
         Ok(())
     }
@@ -166,15 +169,15 @@ impl ModelConfig {
     }
 
     /// The laws and constants of a scene over `still` water.
-    pub(crate) fn build(&self, ctx: &Context, time: &TimeConfig, still: &StillWater) -> Result<Model> {
+    pub(crate) fn build(&self, ctx: &Context, time: &TimeSteppingConfig, still: &StillWaterLevel) -> Result<Model> {
         let gravity = ctx.gravity.map_or_else(|| vec![0.0; ctx.dimension], <[f64]>::to_vec);
         let g = ctx.gravity_norm();
         let c0 = self.c0.unwrap_or(self.c0_factor.unwrap_or_default() * (g * still.depth).sqrt());
         if !(c0.is_finite() && c0 > 0.0) {
             let help = "write  c0 = ...  in [model]: 10 to 20 times the largest speed expected, m/s";
-            return Err(ctx.wrong_with("model.c0", "without gravity the depth gives no speed of sound", help));
+            return Err(ctx.error_with_help("model.c0", "without gravity the depth gives no speed of sound", help));
         }
-        let missing = |key: &str| ctx.wrong(key, "this law has no value");
+        let missing = |key: &str| ctx.error_at(key, "this law has no value");
         Ok(Model {
             kernel: self.kernel.ok_or_else(|| missing("model.kernel"))?,
             h: ctx.h,
@@ -197,37 +200,37 @@ impl ModelConfig {
     }
 
     /// Refuses laws that exclude each other, and a kernel with which the initial lattice is unstable under its own pressure.
-    pub(crate) fn verify_lattice<const D: usize>(&self, ctx: &Context, model: &Model) -> Result<()> {
+    pub(crate) fn require_stable_lattice<const D: usize>(&self, ctx: &Context, model: &Model) -> Result<()> {
         if let Some(what) = model.conflict() {
             let help = "write  kernel = \"wendland\"  and  shifting = \"none\", or  gradient = \"plain\"";
-            return Err(ctx.wrong_with("model.gradient", what, help));
+            return Err(ctx.error_with_help("model.gradient", what, help));
         }
         if model.gravity.iter().all(|g| *g == 0.0) {
             return Ok(());
         }
         let (h, stiffness) = (model.h / model.dp, model.lattice_stiffness::<D>());
-        if stiffness > SOFTEST {
+        if stiffness > MIN_LATTICE_STIFFNESS {
             return Ok(());
         }
         let key = self.smoothing_key();
         let what = format!(
             "with this kernel at h = {h:.2} dp still water does not stay still: the lattice on which it starts gives way in shear \
-             (its stiffness over its pressure is {stiffness:.3}, and {SOFTEST} the least)"
+             (its stiffness over its pressure is {stiffness:.3}, and {MIN_LATTICE_STIFFNESS} the least)"
         );
-        Err(ctx.wrong_with(key, what, "write  h_over_dp = 1.7  and  kernel = \"wendland\""))
+        Err(ctx.error_with_help(key, what, "write  h_over_dp = 1.7  and  kernel = \"wendland\""))
     }
 }
 
-impl TimeConfig {
+impl TimeSteppingConfig {
     /// Refuses numbers out of range.
     pub(crate) fn verify(&self, ctx: &Context) -> Result<()> {
-        ctx.positive("time.cfl", self.cfl)?;
-        ctx.positive("time.dt_max", self.dt_max)?;
+        ctx.require_positive("time.cfl", self.cfl)?;
+        ctx.require_positive("time.dt_max", self.dt_max)?;
         match self.cfl {
             Some(cfl) if cfl > CFL_MAX => {
                 let what =
                     format!("a Courant number of {cfl}: above {CFL_MAX} water boils, often without another sign");
-                Err(ctx.wrong_with("time.cfl", what, "write  cfl = 0.4; with Verlet  cfl = 0.2"))
+                Err(ctx.error_with_help("time.cfl", what, "write  cfl = 0.4; with Verlet  cfl = 0.2"))
             }
             _ => Ok(()),
         }
@@ -238,7 +241,7 @@ impl TimeConfig {
         let why = "second order, without the odd–even mode of Verlet, as exact at the same price";
         defaults.fill("time.scheme", &mut self.scheme, usual.scheme, why);
         let (cfl, why) = match self.scheme {
-            Some(Scheme::Verlet { .. }) => (0.2, "the method's, for Verlet"),
+            Some(TimeScheme::Verlet { .. }) => (0.2, "the method's, for Verlet"),
             _ => (usual.cfl, "impacts, contacts and ropes are worse above; waves and still water take 0.6"),
         };
         defaults.fill("time.cfl", &mut self.cfl, cfl, why);
@@ -255,9 +258,9 @@ fn default_h_over_dp(dimension: usize) -> (f64, &'static str) {
 }
 
 /// Refuses still water so shallow that no kernel is complete between its surface and its bed.
-pub(crate) fn verify_depth(ctx: &Context, still: &StillWater, model: &Model) -> Result<()> {
+pub(crate) fn require_depth(ctx: &Context, still: &StillWaterLevel, model: &Model) -> Result<()> {
     let reach = model.support_radius();
-    if model.gravity.last().is_none_or(|g| *g == 0.0) || still.depth > 0.999 * SHALLOW * reach {
+    if model.gravity.last().is_none_or(|g| *g == 0.0) || still.depth > 0.999 * MIN_DEPTH_RATIO * reach {
         return Ok(());
     }
     let what = format!(
@@ -265,6 +268,10 @@ pub(crate) fn verify_depth(ctx: &Context, still: &StillWater, model: &Model) -> 
         still.depth / ctx.dp,
         reach / ctx.dp
     );
-    let dp = still.depth * ctx.dp / (SHALLOW * reach);
-    Err(ctx.wrong_with("water", what, format!("{SHALLOW} of the reach is the least: write  dp = {dp:.2e}  or less")))
+    let dp = still.depth * ctx.dp / (MIN_DEPTH_RATIO * reach);
+    Err(ctx.error_with_help(
+        "water",
+        what,
+        format!("{MIN_DEPTH_RATIO} of the reach is the least: write  dp = {dp:.2e}  or less"),
+    ))
 }

@@ -12,7 +12,7 @@ use super::domain::BoxConfig;
 use crate::{
     math::format::bytes,
     output::frame::particle_bytes,
-    plan::FrameWords,
+    plan::FramesPlan,
     scene::context::{Context, Defaults, suggestion},
 };
 
@@ -28,21 +28,21 @@ const FRAMES: [f64; 2] = [20.0, 100.0];
 /// Wall time between checkpoints where the scene does not give it, s.
 const CHECKPOINT_WALL: f64 = 600.0;
 
-/// FramesConfig for ParaView: `"off"`, or when and which fields.
+/// FramesChoice for ParaView: `"off"`, or when and which fields.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(rename_all = "snake_case")]
-pub enum FramesConfig {
+pub enum FramesChoice {
     /// None are written.
     Off,
     /// Some are.
     #[schemars(untagged)]
-    On(FrameOutputConfig),
+    On(FramesConfig),
 }
 
 /// When frames are written, and with which fields.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct FrameOutputConfig {
+pub struct FramesConfig {
     /// Simulated time between frames, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub every: Option<f64>,
@@ -54,7 +54,7 @@ pub struct FrameOutputConfig {
     pub corners: Option<BoxConfig>,
 }
 
-impl Serialize for FramesConfig {
+impl Serialize for FramesChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Off => serializer.serialize_str("off"),
@@ -63,36 +63,36 @@ impl Serialize for FramesConfig {
     }
 }
 
-impl<'de> Deserialize<'de> for FramesConfig {
+impl<'de> Deserialize<'de> for FramesChoice {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> std::result::Result<Self, De::Error> {
         struct Words;
         impl<'de> Visitor<'de> for Words {
-            type Value = FramesConfig;
+            type Value = FramesChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a table with `every` and `fields`, or \"off\"")
             }
-            fn visit_str<E: de::Error>(self, word: &str) -> std::result::Result<FramesConfig, E> {
+            fn visit_str<E: de::Error>(self, word: &str) -> std::result::Result<FramesChoice, E> {
                 match word {
-                    "off" => Ok(FramesConfig::Off),
+                    "off" => Ok(FramesChoice::Off),
                     _ => Err(E::invalid_value(de::Unexpected::Str(word), &self)),
                 }
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<FramesConfig, A::Error> {
-                FrameOutputConfig::deserialize(MapAccessDeserializer::new(map)).map(FramesConfig::On)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<FramesChoice, A::Error> {
+                FramesConfig::deserialize(MapAccessDeserializer::new(map)).map(FramesChoice::On)
             }
         }
         deserializer.deserialize_any(Words)
     }
 }
 
-impl FramesConfig {
+impl FramesChoice {
     /// Refuses unknown fields and an empty box.
     pub(crate) fn verify(&self, ctx: &Context) -> crate::error::Result<()> {
-        let Self::On(FrameOutputConfig { every, fields, corners }) = self else { return Ok(()) };
-        ctx.positive("frames.every", *every)?;
+        let Self::On(FramesConfig { every, fields, corners }) = self else { return Ok(()) };
+        ctx.require_positive("frames.every", *every)?;
         if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
             let what = format!("no field is called \"{field}\"{}", suggestion(field, &FIELDS));
-            return Err(ctx.wrong_with("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
+            return Err(ctx.error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
         }
         corners.as_ref().map_or(Ok(()), |corners| corners.verify(ctx, "frames.box"))
     }
@@ -107,9 +107,9 @@ impl FramesConfig {
     }
 
     /// The frames of the run; `None` if it writes none.
-    pub(crate) fn build(&self, ctx: &Context) -> Option<FrameWords> {
+    pub(crate) fn build(&self, ctx: &Context) -> Option<FramesPlan> {
         let Self::On(words) = self else { return None };
-        Some(FrameWords {
+        Some(FramesPlan {
             every: words.every.unwrap_or(ctx.until),
             fields: words.fields.clone().unwrap_or_default(),
             crop: words.corners.as_ref().map(|corners| [corners.min.clone(), corners.max.clone()]),
@@ -117,7 +117,7 @@ impl FramesConfig {
     }
 }
 
-impl FrameOutputConfig {
+impl FramesConfig {
     /// How many frames a run has by default, and why.
     fn default_count(&self, water_particles: f64) -> (f64, String) {
         let fields = self.fields.clone().unwrap_or_else(|| FIELDS.map(String::from).to_vec());
@@ -145,8 +145,8 @@ pub struct CheckpointConfig {
 
 impl CheckpointConfig {
     pub(crate) fn verify(&self, ctx: &Context) -> crate::error::Result<()> {
-        ctx.positive("checkpoint.every", self.every)?;
-        ctx.positive("checkpoint.wall", self.wall)
+        ctx.require_positive("checkpoint.every", self.every)?;
+        ctx.require_positive("checkpoint.wall", self.wall)
     }
 
     /// Fills in the defaults.

@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::Result,
-    geometry::{Shape, Touchable},
+    geometry::{ContactGeometry, Shape},
     math::{Bounds, Pose, Vector},
     scene::{
-        context::{Context, Defaults, joined, last_part, set_keys},
+        context::{Context, Defaults, last_part, quoted_list, set_keys},
         mesh, svg, table,
-        untagged::{Draft, LengthUnit, LineConfig},
+        untagged::{DraftChoice, LengthUnit, PolylineConfig},
     },
 };
 
@@ -41,7 +41,7 @@ pub enum ShapeConfig {
         radius: f64,
         /// Direction of the straight part; upright if not said.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        axis: Option<Axis>,
+        axis: Option<AxisName>,
     },
     /// A circular cylinder around its centre; 3-D only.
     Cylinder {
@@ -51,12 +51,12 @@ pub enum ShapeConfig {
         radius: f64,
         /// Direction of its axis; upright if not said.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        axis: Option<Axis>,
+        axis: Option<AxisName>,
     },
     /// A polygon, counter-clockwise; 2-D only.
-    Polygon(LineConfig),
+    Polygon(PolylineConfig),
     /// A wall along an open line, the water on its left; 2-D only.
-    Polyline(LineConfig),
+    Polyline(PolylineConfig),
     /// An open-topped tank: bottom and walls around the inner box that begins at the frame's origin.
     Tank {
         /// Inner edge lengths.
@@ -68,7 +68,7 @@ pub enum ShapeConfig {
     /// A solid by its surface, from a file; 3-D only.
     Mesh(MeshConfig),
     /// Several shapes as one solid.
-    Compound(Vec<PartConfig>),
+    Compound(Vec<CompoundPartConfig>),
 }
 
 /// A closed surface in a file beside the scene: STL or OBJ.
@@ -88,13 +88,13 @@ pub struct MeshConfig {
     pub flip: Option<bool>,
     /// What other bodies touch; fitting if not said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<Touchable>,
+    pub contact: Option<ContactGeometry>,
 }
 
 /// A coordinate direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Axis {
+pub enum AxisName {
     /// First.
     X,
     /// Second: up in 2-D.
@@ -106,7 +106,7 @@ pub enum Axis {
 /// A part of a compound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PartConfig {
+pub struct CompoundPartConfig {
     /// Its shape.
     pub shape: ShapeConfig,
     /// Its place in the compound's frame.
@@ -132,7 +132,7 @@ pub struct PlacementConfig {
     pub bottom: Option<f64>,
     /// Depth of the shape's lowest point below the highest still level.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub draft: Option<Draft>,
+    pub draft: Option<DraftChoice>,
     /// Counter-clockwise turn, degrees; 2-D.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
@@ -164,48 +164,48 @@ impl ShapeConfig {
 
     /// A polygon through `points` (m), counter-clockwise.
     pub fn polygon<const N: usize>(points: [[f64; 2]; N]) -> Self {
-        Self::Polygon(LineConfig::through(points))
+        Self::Polygon(PolylineConfig::through(points))
     }
 
     /// Refuses a shape that has no meaning in the scene's dimension, or whose lengths are not lengths.
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         let sizes = |key: &str, size: &[f64]| {
-            ctx.vector(&format!("{key}.size"), size)?;
-            size.iter().try_for_each(|x| ctx.positive(&format!("{key}.size"), Some(*x)))
+            ctx.require_dimension(&format!("{key}.size"), size)?;
+            size.iter().try_for_each(|x| ctx.require_positive(&format!("{key}.size"), Some(*x)))
         };
         let only = |dimension: usize, word: &str, instead: &str| match ctx.dimension == dimension {
             true => Ok(()),
             false => {
                 let what = format!("a {word} needs a {dimension}-D scene, and this one is {}-D", ctx.dimension);
-                Err(ctx.wrong_with(key, what, instead))
+                Err(ctx.error_with_help(key, what, instead))
             }
         };
-        let axis = |key: &str, axis: Option<Axis>| match axis {
-            Some(Axis::Z) if ctx.dimension == 2 => {
-                Err(ctx.wrong_with(&format!("{key}.axis"), "a 2-D scene has no z axis", "write  axis = \"x\""))
+        let axis = |key: &str, axis: Option<AxisName>| match axis {
+            Some(AxisName::Z) if ctx.dimension == 2 => {
+                Err(ctx.error_with_help(&format!("{key}.axis"), "a 2-D scene has no z axis", "write  axis = \"x\""))
             }
             _ => Ok(()),
         };
         match self {
             ShapeConfig::Box { size } => sizes(&format!("{key}.box"), size),
-            ShapeConfig::Ball { radius } => ctx.positive(&format!("{key}.ball.radius"), Some(*radius)),
+            ShapeConfig::Ball { radius } => ctx.require_positive(&format!("{key}.ball.radius"), Some(*radius)),
             ShapeConfig::Capsule { length, radius, axis: a } => {
                 let key = format!("{key}.capsule");
-                ctx.positive(&format!("{key}.length"), Some(*length))?;
-                ctx.positive(&format!("{key}.radius"), Some(*radius))?;
+                ctx.require_positive(&format!("{key}.length"), Some(*length))?;
+                ctx.require_positive(&format!("{key}.radius"), Some(*radius))?;
                 axis(&key, *a)
             }
             ShapeConfig::Cylinder { length, radius, .. } => {
                 only(3, "cylinder", "in 2-D a ball is a disc:  shape = { ball = { radius = 0.1 } }")?;
-                ctx.positive(&format!("{key}.cylinder.length"), Some(*length))?;
-                ctx.positive(&format!("{key}.cylinder.radius"), Some(*radius))
+                ctx.require_positive(&format!("{key}.cylinder.length"), Some(*length))?;
+                ctx.require_positive(&format!("{key}.cylinder.radius"), Some(*radius))
             }
             ShapeConfig::Polygon(words) => {
                 only(2, "polygon", "in 3-D, boxes, balls, cylinders and capsules can be put together as a compound")?;
                 verify_line(ctx, &format!("{key}.polygon"), words)?;
                 verify_drawing(ctx, &format!("{key}.polygon"), words)?;
                 match words.thickness {
-                    Some(_) => Err(ctx.wrong(&format!("{key}.polygon"), "a polygon is solid: it has no thickness")),
+                    Some(_) => Err(ctx.error_at(&format!("{key}.polygon"), "a polygon is solid: it has no thickness")),
                     None => Ok(()),
                 }
             }
@@ -213,22 +213,24 @@ impl ShapeConfig {
                 only(2, "polyline", "in 3-D, walls are boxes or a tank")?;
                 verify_line(ctx, &format!("{key}.polyline"), words)?;
                 match words.is_drawing() {
-                    true => Err(ctx.wrong(&format!("{key}.polyline.file"), "a drawing is a closed outline: a polygon")),
+                    true => {
+                        Err(ctx.error_at(&format!("{key}.polyline.file"), "a drawing is a closed outline: a polygon"))
+                    }
                     false => verify_drawing(ctx, &format!("{key}.polyline"), words),
                 }
             }
             ShapeConfig::Tank { size, thickness } => {
-                ctx.positive(&format!("{key}.tank.thickness"), *thickness)?;
+                ctx.require_positive(&format!("{key}.tank.thickness"), *thickness)?;
                 sizes(&format!("{key}.tank"), size)
             }
             ShapeConfig::Mesh(words) => {
                 only(3, "mesh", "in 2-D an outline is a polygon:  shape = { polygon = { file = \"hull.svg\" } }")?;
-                ctx.positive(&format!("{key}.mesh.scale"), words.scale)
+                ctx.require_positive(&format!("{key}.mesh.scale"), words.scale)
             }
             ShapeConfig::Compound(parts) => {
                 let key = format!("{key}.compound");
                 if parts.is_empty() {
-                    return Err(ctx.wrong(&key, "a compound has one part or more"));
+                    return Err(ctx.error_at(&key, "a compound has one part or more"));
                 }
                 parts.iter().enumerate().try_for_each(|(i, part)| {
                     part.shape.verify(ctx, &format!("{key}.{i}.shape"))?;
@@ -241,7 +243,7 @@ impl ShapeConfig {
     /// Fills in its defaults.
     pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, key: &str) {
         let thick = "as many dp as the kernel reaches";
-        let upright = [Axis::Y, Axis::Z][ctx.dimension - 2];
+        let upright = [AxisName::Y, AxisName::Z][ctx.dimension - 2];
         match self {
             ShapeConfig::Capsule { axis, .. } => {
                 defaults.fill(format!("{key}.capsule.axis"), axis, upright, "upright");
@@ -249,7 +251,7 @@ impl ShapeConfig {
             ShapeConfig::Cylinder { axis, .. } => {
                 defaults.fill(format!("{key}.cylinder.axis"), axis, upright, "upright");
             }
-            ShapeConfig::Polyline(LineConfig { thickness, .. }) => {
+            ShapeConfig::Polyline(PolylineConfig { thickness, .. }) => {
                 defaults.fill(format!("{key}.polyline.thickness"), thickness, ctx.layers() as f64 * ctx.dp, thick);
             }
             ShapeConfig::Tank { thickness, .. } => {
@@ -265,7 +267,7 @@ impl ShapeConfig {
                     "neither STL nor OBJ tells its unit",
                 );
                 let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
-                defaults.fill(format!("{key}.contact"), &mut words.contact, Touchable::Fitting, why);
+                defaults.fill(format!("{key}.contact"), &mut words.contact, ContactGeometry::Fitting, why);
             }
             ShapeConfig::Polygon(words) if words.is_drawing() => {
                 let key = format!("{key}.polygon");
@@ -289,7 +291,7 @@ impl ShapeConfig {
     /// The shape; opens the files that it names.
     pub(crate) fn build<const D: usize>(&self, ctx: &Context) -> Result<Shape<D>> {
         let thickness = |given: Option<f64>| given.unwrap_or(ctx.layers() as f64 * ctx.dp);
-        let number = |axis: Option<Axis>| axis.map_or(D - 1, |axis| axis as usize);
+        let number = |axis: Option<AxisName>| axis.map_or(D - 1, |axis| axis as usize);
         let shape = match self {
             ShapeConfig::Box { size } => Shape::Box { size: vector(size) },
             ShapeConfig::Ball { radius } => Shape::Ball { radius: *radius },
@@ -308,7 +310,7 @@ impl ShapeConfig {
             }
             ShapeConfig::Mesh(words) => mesh_shape(ctx, words)?,
             ShapeConfig::Compound(parts) => {
-                let part = |part: &PartConfig| {
+                let part = |part: &CompoundPartConfig| {
                     let inner = part.shape.build(ctx)?;
                     let pose = part.at.as_ref().map_or_else(Pose::identity, |at| at.build(&inner, 0.0));
                     Ok((pose, inner))
@@ -321,43 +323,43 @@ impl ShapeConfig {
     }
 }
 
-fn verify_line(ctx: &Context, key: &str, words: &LineConfig) -> Result<()> {
-    ctx.positive(&format!("{key}.thickness"), words.thickness)?;
+fn verify_line(ctx: &Context, key: &str, words: &PolylineConfig) -> Result<()> {
+    ctx.require_positive(&format!("{key}.thickness"), words.thickness)?;
     match (&words.points, &words.file) {
-        (Some(points), None) => points.iter().try_for_each(|p| ctx.vector(key, p)),
+        (Some(points), None) => points.iter().try_for_each(|p| ctx.require_dimension(key, p)),
         (None, Some(_)) => Ok(()),
-        _ => Err(ctx.wrong(key, format!("a {} has either points or a file of points", last_part(key)))),
+        _ => Err(ctx.error_at(key, format!("a {} has either points or a file of points", last_part(key)))),
     }
 }
 
 /// Refuses words of a drawing where there is none.
-fn verify_drawing(ctx: &Context, key: &str, words: &LineConfig) -> Result<()> {
-    ctx.positive(&format!("{key}.scale"), words.scale)?;
+fn verify_drawing(ctx: &Context, key: &str, words: &PolylineConfig) -> Result<()> {
+    ctx.require_positive(&format!("{key}.scale"), words.scale)?;
     let words_of_one = [("id", words.id.is_some()), ("scale", words.scale.is_some()), ("unit", words.unit.is_some())];
     match words_of_one.iter().find(|(_, given)| *given && !words.is_drawing()) {
-        Some((word, _)) => Err(ctx.wrong(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"))),
+        Some((word, _)) => Err(ctx.error_at(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"))),
         None => Ok(()),
     }
 }
 
 fn mesh_shape<const D: usize>(ctx: &Context, words: &MeshConfig) -> Result<Shape<D>> {
-    let path = table::beside(ctx.folder(), &words.file)?;
+    let path = table::path_beside(ctx.folder(), &words.file)?;
     let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
     let mesh = mesh::read(&path, unit, words.flip.unwrap_or(false))?;
     Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: words.contact.unwrap_or_default() })
 }
 
-fn points<const D: usize>(ctx: &Context, words: &LineConfig) -> Result<Vec<Vector<D>>> {
+fn points<const D: usize>(ctx: &Context, words: &PolylineConfig) -> Result<Vec<Vector<D>>> {
     if let Some(points) = &words.points {
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let path = table::beside(ctx.folder(), words.file.as_deref().unwrap_or(""))?;
+    let path = table::path_beside(ctx.folder(), words.file.as_deref().unwrap_or(""))?;
     if words.is_drawing() {
         let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
         let points = svg::outline(&path, words.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let columns = table::columns(&path, &["x_m", "y_m"])?;
+    let columns = table::read_columns(&path, &["x_m", "y_m"])?;
     Ok(columns[0].iter().zip(&columns[1]).map(|(&x, &y)| vector(&[x, y])).collect())
 }
 
@@ -369,13 +371,14 @@ impl PlacementConfig {
 
     /// Afloat at rest at the horizontal coordinates `x` (m).
     pub fn afloat(x: &[f64]) -> Self {
-        Self { draft: Some(Draft::Equilibrium), ..Self::point(x) }
+        Self { draft: Some(DraftChoice::Equilibrium), ..Self::point(x) }
     }
 
     /// Refuses a place that has no meaning in the scene's dimension, or says the height twice.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, may_float: bool) -> Result<()> {
         let three = ctx.dimension == 3;
-        let refuse = |word: &str, what: &str, help: &str| Err(ctx.wrong_with(&format!("{key}.{word}"), what, help));
+        let refuse =
+            |word: &str, what: &str, help: &str| Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
         if self.z.is_some() && !three {
             return refuse("z", "a 2-D scene has no z", "in 2-D x is horizontal and y is up");
         }
@@ -384,7 +387,7 @@ impl PlacementConfig {
         }
         match &self.turn_deg {
             Some(_) if !three => return refuse("turn_deg", "a turn in 2-D is one angle", "write  angle_deg = 30.0"),
-            Some(turn) => ctx.vector(&format!("{key}.turn_deg"), turn)?,
+            Some(turn) => ctx.require_dimension(&format!("{key}.turn_deg"), turn)?,
             None => {}
         }
         let up = if three { ("z", self.z.is_some()) } else { ("y", self.y.is_some()) };
@@ -392,7 +395,7 @@ impl PlacementConfig {
         let heights = set_keys(heights);
         if heights.len() > 1 {
             let help = "give one: the height of the frame, of the lowest point, or the draft";
-            return refuse(heights[1], &format!("{} say the height twice", joined(&heights)), help);
+            return refuse(heights[1], &format!("{} say the height twice", quoted_list(&heights)), help);
         }
         if !may_float && self.draft.is_some() {
             return refuse("draft", "only a solid has a draft", "give the height");
@@ -410,8 +413,8 @@ impl PlacementConfig {
         };
         let mut pose = Pose::rotated(position, &turn);
         let bottom = match self.draft {
-            Some(Draft::Metres(draft)) => Some(level - draft),
-            Some(Draft::Equilibrium) => Some(level),
+            Some(DraftChoice::Metres(draft)) => Some(level - draft),
+            Some(DraftChoice::Equilibrium) => Some(level),
             None => self.bottom,
         };
         if let Some(bottom) = bottom {

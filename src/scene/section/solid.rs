@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     motion::DrivenConfig,
     shape::{PlacementConfig, ShapeConfig, vector},
-    water::WaterExtent,
+    water::StillWater,
     wavemaker,
 };
 use crate::{
@@ -14,8 +14,8 @@ use crate::{
     geometry::Shape,
     math::{Bivector, Matrix, Pose, Vector},
     scene::{
-        context::{Context, Defaults, joined, set_keys, suggestion},
-        untagged::{Draft, Numbers},
+        context::{Context, Defaults, quoted_list, set_keys, suggestion},
+        untagged::{DraftChoice, NumberOrArray},
     },
     solid::{FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
 };
@@ -52,7 +52,7 @@ pub struct SolidConfig {
     pub driven: Option<DrivenConfig>,
     /// Water, weight and contacts move it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub free: Option<FreeConfig>,
+    pub free: Option<FreeBodyConfig>,
     /// Coulomb friction coefficient, –.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f64>,
@@ -67,7 +67,7 @@ pub struct SolidConfig {
 /// A body that water, weight and contacts move.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct FreeConfig {
+pub struct FreeBodyConfig {
     /// Density, kg/m³.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
@@ -77,7 +77,7 @@ pub struct FreeConfig {
     /// Inertia about the centre of mass, kg m² (kg m²/m in 2-D): a number in 2-D; in 3-D the three
     /// about the solid's own axes, or the 3×3 tensor.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub inertia: Option<Numbers>,
+    pub inertia: Option<NumberOrArray>,
     /// From the centroid to the centre of mass, in the solid's frame, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre_offset: Option<Vec<f64>>,
@@ -86,19 +86,19 @@ pub struct FreeConfig {
     pub velocity: Option<Vec<f64>>,
     /// Spin at the start, rad/s: a number in 2-D, a vector in 3-D.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub spin: Option<Numbers>,
+    pub spin: Option<NumberOrArray>,
     /// When it is let go, s: until then it is held still.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub release: Option<f64>,
     /// Motions that are locked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub locked: Vec<MotionAxis>,
+    pub locked: Vec<MotionMode>,
 }
 
 /// A mode of motion, which can be locked or left free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum MotionAxis {
+pub enum MotionMode {
     /// Translation along x.
     X,
     /// Translation along y.
@@ -115,9 +115,9 @@ pub enum MotionAxis {
     TurnZ,
 }
 
-impl MotionAxis {
+impl MotionMode {
     /// Its number among those of this dimension: translations, then turns; none if there is no such motion.
-    pub(crate) fn number(self, dimension: usize) -> Option<usize> {
+    pub(crate) fn index(self, dimension: usize) -> Option<usize> {
         match (self, dimension == 3) {
             (Self::X, _) => Some(0),
             (Self::Y, _) => Some(1),
@@ -153,7 +153,7 @@ impl SolidConfig {
 
     /// A homogeneous free body of `density` (kg/m³).
     pub fn free(name: impl Into<String>, shape: ShapeConfig, density: f64) -> Self {
-        let free = FreeConfig { density: Some(density), ..FreeConfig::default() };
+        let free = FreeBodyConfig { density: Some(density), ..FreeBodyConfig::default() };
         Self { free: Some(free), ..Self::new(name, shape) }
     }
 
@@ -170,10 +170,10 @@ impl SolidConfig {
 
     /// Refuses a solid that is not complete; `others` are the solids before it and `all` those of the scene.
     fn verify(&self, ctx: &Context, key: &str, others: &[SolidConfig], all: &[SolidConfig]) -> Result<()> {
-        ctx.good_name(&format!("{key}.name"), &self.name)?;
+        ctx.require_file_name(&format!("{key}.name"), &self.name)?;
         if others.iter().any(|other| other.name == self.name) {
             let what = format!("two solids are called \"{}\"", self.name);
-            return Err(ctx.wrong_with(&format!("{key}.name"), what, "give each its own name"));
+            return Err(ctx.error_with_help(&format!("{key}.name"), what, "give each its own name"));
         }
         if let Some(group) = &self.group {
             verify_group(ctx, all, &format!("{key}.group"), group)?;
@@ -183,8 +183,8 @@ impl SolidConfig {
             at.verify(ctx, &format!("{key}.at"), true)?;
         }
         self.verify_role(ctx, key)?;
-        ctx.within(&format!("{key}.friction"), self.friction, 10.0)?;
-        ctx.within(&format!("{key}.restitution"), self.restitution, 1.0)
+        ctx.require_range(&format!("{key}.friction"), self.friction, 10.0)?;
+        ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
     }
 
     /// Fills in its defaults.
@@ -211,16 +211,16 @@ impl SolidConfig {
         if roles.len() != 1 {
             let what = match roles.len() {
                 0 => format!("nothing says what moves solid \"{}\"", self.name),
-                _ => format!("solid \"{}\" is {}; it can be one of them", self.name, joined(&roles)),
+                _ => format!("solid \"{}\" is {}; it can be one of them", self.name, quoted_list(&roles)),
             };
             let help = "write one of\n  fixed  = true\n  driven = { along = [1.0, 0.0], distance = { formula = \
                         \"0.05*sin(2*pi*t)\" } }\n  free   = { density = 500.0 }";
             let place = roles.last().map_or(key.to_string(), |role| format!("{key}.{role}"));
-            return Err(ctx.wrong_with(&place, what, help));
+            return Err(ctx.error_with_help(&place, what, help));
         }
         if self.fixed == Some(false) {
             let help = "a solid that is not fixed is driven = { ... } or free = { ... }";
-            return Err(ctx.wrong_with(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
+            return Err(ctx.error_with_help(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
         }
         if let Some(words) = &self.driven {
             words.verify(ctx, &format!("{key}.driven"))?;
@@ -232,16 +232,11 @@ impl SolidConfig {
     }
 
     /// The solid in the water `pool`, from whose level drafts are measured.
-    pub(crate) fn build<const D: usize>(
-        &self,
-        ctx: &Context,
-        key: &str,
-        pool: &WaterExtent<D>,
-    ) -> Result<SolidSpec<D>> {
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, pool: &StillWater<D>) -> Result<SolidSpec<D>> {
         let level = pool.still.level;
         let place = |part: &str| {
             let key = format!("{key}.{part}");
-            move |e: Error| ctx.place(e, &key)
+            move |e: Error| ctx.with_location(e, &key)
         };
         let shape: Shape<D> = self.shape.build(ctx).map_err(place("shape"))?;
         let (name, at) = (&self.name, self.at.clone().unwrap_or_default());
@@ -258,16 +253,16 @@ impl SolidConfig {
                 let body = words.build(&shape);
                 let part = if words.inertia.is_some() { "free.inertia" } else { "free" };
                 body.check()
-                    .map_err(|e| Error { what: format!("solid \"{}\": {}", name, e.what), ..e })
+                    .map_err(|e| Error { message: format!("solid \"{}\": {}", name, e.message), ..e })
                     .map_err(place(part))?;
                 Role::Free(body)
             }
             (None, None) => Role::Fixed,
         };
-        if at.draft == Some(Draft::Equilibrium) {
+        if at.draft == Some(DraftChoice::Equilibrium) {
             let Role::Free(body) = &role else {
                 let key = format!("{key}.at.draft");
-                return Err(ctx.wrong_with(
+                return Err(ctx.error_with_help(
                     &key,
                     "only a free body finds its own draft",
                     "give the height or a draft in metres",
@@ -287,21 +282,21 @@ impl SolidConfig {
             contact_skin: self.contact_skin.unwrap_or_default(),
         };
         let blamed = if spec.skin_fits() { key.to_string() } else { format!("{key}.contact_skin") };
-        spec.check().map_err(|e| ctx.place(e, &blamed))?;
+        spec.check().map_err(|e| ctx.with_location(e, &blamed))?;
         verify_weight(ctx, key, &spec)?;
         verify_thickness(ctx, key, &spec)?;
         Ok(spec)
     }
 }
 
-impl FreeConfig {
+impl FreeBodyConfig {
     /// Refuses a body without a mass, and vectors that do not fit the dimension.
     fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
-        ctx.positive(&format!("{key}.density"), self.density)?;
-        let mass = ctx.positive(&format!("{key}.mass"), self.mass);
+        ctx.require_positive(&format!("{key}.density"), self.density)?;
+        let mass = ctx.require_positive(&format!("{key}.mass"), self.mass);
         mass.map_err(|e| e.help("write  free = { mass = 10.0 }        # kg; in 2-D kg/m"))?;
         if self.density.is_some() == self.mass.is_some() {
-            return Err(ctx.wrong_with(
+            return Err(ctx.error_with_help(
                 key,
                 "a free body has either a density or a mass",
                 "write  free = { density = 500.0 }        # kg/m³",
@@ -309,39 +304,39 @@ impl FreeConfig {
         }
         for (word, vector) in [("centre_offset", &self.centre_offset), ("velocity", &self.velocity)] {
             if let Some(vector) = vector {
-                ctx.vector(&format!("{key}.{word}"), vector)?;
+                ctx.require_dimension(&format!("{key}.{word}"), vector)?;
             }
         }
-        ctx.positive(&format!("{key}.release"), self.release)?;
+        ctx.require_positive(&format!("{key}.release"), self.release)?;
         if self.release.is_some() && (self.velocity.is_some() || self.spin.is_some()) {
             let what = "what is held at first starts at rest, with neither velocity nor spin";
-            return Err(ctx.wrong(&format!("{key}.release"), what));
+            return Err(ctx.error_at(&format!("{key}.release"), what));
         }
         let three = ctx.dimension == 3;
         let spin_fits = match &self.spin {
             None => true,
-            Some(Numbers::One(_)) => !three,
-            Some(Numbers::List(list)) => three && list.len() == 3,
-            Some(Numbers::Rows(_)) => false,
+            Some(NumberOrArray::One(_)) => !three,
+            Some(NumberOrArray::List(list)) => three && list.len() == 3,
+            Some(NumberOrArray::Rows(_)) => false,
         };
         if !spin_fits {
-            return Err(ctx.wrong_with(
+            return Err(ctx.error_with_help(
                 &format!("{key}.spin"),
                 "spin does not fit the dimension",
                 "in 2-D a number, spin = 0.5; in 3-D a vector, spin = [0.0, 0.0, 0.5]        # rad/s",
             ));
         }
         self.verify_inertia(ctx, &format!("{key}.inertia"))?;
-        verify_axes(ctx, &format!("{key}.locked"), &self.locked)
+        verify_modes(ctx, &format!("{key}.locked"), &self.locked)
     }
 
     /// Refuses an inertia that does not fit the dimension or is not symmetric and positive.
     fn verify_inertia(&self, ctx: &Context, key: &str) -> Result<()> {
         let good = match (&self.inertia, ctx.dimension) {
             (None, _) => true,
-            (Some(Numbers::One(x)), 2) => *x > 0.0,
-            (Some(Numbers::List(list)), 3) => list.len() == 3 && list.iter().all(|x| *x > 0.0),
-            (Some(Numbers::Rows(rows)), 3) => {
+            (Some(NumberOrArray::One(x)), 2) => *x > 0.0,
+            (Some(NumberOrArray::List(list)), 3) => list.len() == 3 && list.iter().all(|x| *x > 0.0),
+            (Some(NumberOrArray::Rows(rows)), 3) => {
                 rows.len() == 3
                     && rows.iter().all(|row| row.len() == 3)
                     && (0..3).all(|i| rows[i][i] > 0.0 && (0..i).all(|j| rows[i][j] == rows[j][i]))
@@ -352,7 +347,7 @@ impl FreeConfig {
             return Ok(());
         }
         let help = "in 2-D a positive number, kg m²/m; in 3-D three positive numbers or a symmetric 3×3 tensor, kg m²";
-        Err(ctx.wrong_with(key, "this cannot be an inertia", help))
+        Err(ctx.error_with_help(key, "this cannot be an inertia", help))
     }
 
     /// The body of this `shape`.
@@ -362,23 +357,23 @@ impl FreeConfig {
             (None, mass) => FreeBody::from_mass(shape, mass.unwrap_or_default()),
         };
         match &self.inertia {
-            Some(Numbers::One(x)) => {
+            Some(NumberOrArray::One(x)) => {
                 body.inertia = Matrix::zeros();
                 body.inertia[(0, 0)] = *x;
             }
-            Some(Numbers::List(list)) => body.inertia = Matrix::from_diagonal(&vector(list)),
-            Some(Numbers::Rows(rows)) => body.inertia = Matrix::from_fn(|i, j| rows[i][j]),
+            Some(NumberOrArray::List(list)) => body.inertia = Matrix::from_diagonal(&vector(list)),
+            Some(NumberOrArray::Rows(rows)) => body.inertia = Matrix::from_fn(|i, j| rows[i][j]),
             None => {}
         }
         let given = |x: &Option<Vec<f64>>| x.as_ref().map_or_else(Vector::zeros, |x| vector(x));
         body.centre += given(&self.centre_offset);
         body.velocity = given(&self.velocity);
         body.spin = match &self.spin {
-            Some(Numbers::One(x)) => Bivector::from_axial(&[*x]),
-            Some(Numbers::List(list)) => Bivector::from_axial(list),
+            Some(NumberOrArray::One(x)) => Bivector::from_axial(&[*x]),
+            Some(NumberOrArray::List(list)) => Bivector::from_axial(list),
             _ => Bivector::zero(),
         };
-        for mode in self.locked.iter().filter_map(|axis| axis.number(D)) {
+        for mode in self.locked.iter().filter_map(|axis| axis.index(D)) {
             match mode.checked_sub(D) {
                 None => body.locked_translations[mode] = true,
                 Some(axis) => body.locked_rotations[axis] = true,
@@ -397,20 +392,20 @@ pub(crate) fn verify(ctx: &Context, solids: &[SolidConfig]) -> Result<()> {
 /// Refuses a group name that is not a name, or is the name of a solid.
 fn verify_group(ctx: &Context, solids: &[SolidConfig], key: &str, group: &str) -> Result<()> {
     let help = "a group is one word of letters, digits, _ and -, as in  group = \"floats\"";
-    ctx.good_name(key, group).map_err(|e| e.help(help))?;
+    ctx.require_file_name(key, group).map_err(|e| e.help(help))?;
     match solids.iter().any(|solid| solid.name == group) {
         true => {
             let help = "give the group a name of its own: in  between  it stands beside those of solids";
-            Err(ctx.wrong_with(key, format!("a solid is called \"{group}\", too"), help))
+            Err(ctx.error_with_help(key, format!("a solid is called \"{group}\", too"), help))
         }
         false => Ok(()),
     }
 }
 
 /// Refuses motions that there are not in the scene's dimension.
-pub(crate) fn verify_axes(ctx: &Context, key: &str, axes: &[MotionAxis]) -> Result<()> {
-    match axes.iter().find(|axis| axis.number(ctx.dimension).is_none()) {
-        Some(_) => Err(ctx.wrong_with(
+pub(crate) fn verify_modes(ctx: &Context, key: &str, axes: &[MotionMode]) -> Result<()> {
+    match axes.iter().find(|axis| axis.index(ctx.dimension).is_none()) {
+        Some(_) => Err(ctx.error_with_help(
             key,
             format!("there is no such motion in {}-D", ctx.dimension),
             "in 2-D: x, y, turn; in 3-D: x, y, z, turn_x, turn_y, turn_z",
@@ -419,7 +414,7 @@ pub(crate) fn verify_axes(ctx: &Context, key: &str, axes: &[MotionAxis]) -> Resu
     }
 }
 
-pub(crate) fn known_solid(ctx: &Context, solids: &[SolidConfig], key: &str, name: &str) -> Result<()> {
+pub(crate) fn require_solid(ctx: &Context, solids: &[SolidConfig], key: &str, name: &str) -> Result<()> {
     if solids.iter().any(|solid| solid.name == name) {
         return Ok(());
     }
@@ -429,12 +424,12 @@ pub(crate) fn known_solid(ctx: &Context, solids: &[SolidConfig], key: &str, name
         let what = format!("\"{name}\" is a group, and here a single solid is meant");
         let help =
             "ties, forces and probes are of single solids, and only  [[contact]] between  takes groups; of this one";
-        return Err(ctx.wrong_with(key, what, format!("{help}: {}", members.join(", "))));
+        return Err(ctx.error_with_help(key, what, format!("{help}: {}", members.join(", "))));
     }
     let names: Vec<&str> = solids.iter().map(|solid| solid.name.as_str()).collect();
     let known =
         if names.is_empty() { "the scene has no solids".into() } else { format!("known: {}", names.join(", ")) };
-    Err(ctx.wrong_with(key, format!("no solid is called \"{name}\"{}", suggestion(name, &names)), known))
+    Err(ctx.error_with_help(key, format!("no solid is called \"{name}\"{}", suggestion(name, &names)), known))
 }
 
 /// Refuses a free body under gravity that is small and weighs less than half a water particle: it would ride on single ones.
@@ -450,7 +445,7 @@ fn verify_weight<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) 
     let what =
         format!("\"{}\" is small and weighs {part:.2} of a water particle: no draft could come of that", spec.name);
     let dp = 0.99 * ctx.dp * (body.mass / least).powf(1.0 / D as f64);
-    Err(ctx.wrong_with(
+    Err(ctx.error_with_help(
         &format!("{key}.free"),
         what,
         format!("half of one is the least: write  dp = {dp:.2e}  or less"),
@@ -462,7 +457,7 @@ fn verify_thickness<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D
     let (rho0, heavy) = (ctx.rho0.unwrap_or_default(), ctx.has_gravity());
     let Role::Free(body) = &spec.role else { return Ok(()) };
     let thickness = spec.shape.bounds_at(&Pose::identity()).size().min();
-    let density = body.mass / (rho0 * spec.shape.volume().volume);
+    let density = body.mass / (rho0 * spec.shape.volume_properties().volume);
     if !heavy || thickness >= THIN * ctx.dp || density >= THIN_DENSITY {
         return Ok(());
     }
@@ -476,5 +471,5 @@ fn verify_thickness<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D
         "two rows bear it: write  dp = {:.2e}  or less, or make it as heavy as {THIN_DENSITY}",
         0.5 * thickness
     );
-    Err(ctx.wrong_with(&format!("{key}.free"), what, help))
+    Err(ctx.error_with_help(&format!("{key}.free"), what, help))
 }

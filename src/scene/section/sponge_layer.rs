@@ -11,7 +11,7 @@ use crate::{
     system::SpongeLayer,
 };
 
-use super::{shape::vector, water::StillWater};
+use super::{shape::vector, water::StillWaterLevel};
 
 /// β ℓ/((n + 1) √(gd)) of a layer without `strength`: a long wave that crosses the layer and returns keeps e⁻⁴ = 2 % of its height.
 const CROSSING_LOSS: f64 = 4.0;
@@ -49,29 +49,29 @@ impl SpongeLayerConfig {
 
     /// Refuses a layer of no thickness, along a periodic axis, or whose strength nothing determines.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, periodic: Option<&PeriodicConfig>) -> Result<()> {
-        ctx.vector(&format!("{key}.from"), &self.from)?;
-        ctx.vector(&format!("{key}.to"), &self.to)?;
-        ctx.positive(&format!("{key}.strength"), self.strength)?;
-        ctx.positive(&format!("{key}.power"), self.power)?;
+        ctx.require_dimension(&format!("{key}.from"), &self.from)?;
+        ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        ctx.require_positive(&format!("{key}.strength"), self.strength)?;
+        ctx.require_positive(&format!("{key}.power"), self.power)?;
         let way: Vec<f64> = self.to.iter().zip(&self.from).map(|(to, from)| to - from).collect();
         if way.iter().all(|x| x.abs() < ctx.dp) {
             let help = "the water loses its motion from `from` on, and fully at `to`, a wave length further";
-            return Err(ctx.wrong_with(&format!("{key}.to"), "the zone is shorter than dp", help));
+            return Err(ctx.error_with_help(&format!("{key}.to"), "the zone is shorter than dp", help));
         }
         let sides = periodic.into_iter().flat_map(|p| [p.x, p.y, p.z]);
         if way.iter().zip(sides).any(|(x, side)| *x != 0.0 && side.is_some()) {
             let what = "the zone goes along a periodic axis, on which it has neither beginning nor end";
-            return Err(ctx.wrong_with(key, what, "make it across the period"));
+            return Err(ctx.error_with_help(key, what, "make it across the period"));
         }
         if self.strength.is_none() && ctx.gravity.is_some() && !ctx.has_gravity() {
             let what = "without gravity nothing says how strong the zone is";
-            return Err(ctx.wrong_with(&format!("{key}.strength"), what, "write  strength = 5.0        # 1/s"));
+            return Err(ctx.error_with_help(&format!("{key}.strength"), what, "write  strength = 5.0        # 1/s"));
         }
         Ok(())
     }
 
     /// The layer over water at rest; without `strength` that follows from the length of the layer and the depth.
-    pub(crate) fn build<const D: usize>(&self, ctx: &Context, still: &StillWater) -> SpongeLayer<D> {
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, still: &StillWaterLevel) -> SpongeLayer<D> {
         let (from, to): (Vector<D>, Vector<D>) = (vector(&self.from), vector(&self.to));
         let power = self.power.unwrap_or(POWER);
         let usual = CROSSING_LOSS * (power + 1.0) * (ctx.gravity_norm() * still.depth).sqrt() / (to - from).norm();

@@ -10,7 +10,7 @@ use serde::{
 
 use crate::{
     error,
-    math::{expression::Formula, time_series::Series},
+    math::{expression::Formula, time_series::TimeSeries},
     scene::{
         context::{Context, Defaults},
         table,
@@ -20,7 +20,7 @@ use crate::{
 
 /// The unit in which a law is written.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum ValueUnit {
+pub(crate) enum CoordinateUnit {
     /// SI, whatever the quantity.
     Si,
     /// Radians, or degrees in a column whose name ends in `_deg`.
@@ -32,7 +32,7 @@ pub(crate) enum ValueUnit {
 /// How a driven coordinate moves: `formula`, or `file` with `column`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct TimeLawConfig {
+pub struct TimeFunctionConfig {
     /// A formula in t (s), with sin, cos, exp, …, and pi.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub formula: Option<String>,
@@ -50,15 +50,15 @@ pub struct TimeLawConfig {
     pub scale: Option<f64>,
 }
 
-impl TimeLawConfig {
+impl TimeFunctionConfig {
     /// Refuses a law that is not either a formula or a column of a file.
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> error::Result<()> {
         match (&self.formula, &self.file) {
             (Some(_), None) if self.column.is_none() && self.scale.is_none() && self.time.is_none() => Ok(()),
-            (Some(_), None) => Err(ctx.wrong(key, "column, time and scale belong to a file, not to a formula")),
+            (Some(_), None) => Err(ctx.error_at(key, "column, time and scale belong to a file, not to a formula")),
             (None, Some(_)) if self.column.is_some() => Ok(()),
-            (None, Some(_)) => Err(ctx.wrong(key, "which column of the file?")),
-            _ => Err(ctx.wrong(key, "a law is either a formula or a file with a column")),
+            (None, Some(_)) => Err(ctx.error_at(key, "which column of the file?")),
+            _ => Err(ctx.error_at(key, "a law is either a formula or a file with a column")),
         }
     }
 
@@ -71,55 +71,57 @@ impl TimeLawConfig {
     }
 
     /// The law, with the values in SI units.
-    pub(crate) fn build(&self, ctx: &Context, key: &str, unit: ValueUnit) -> error::Result<Law> {
-        let place = |word: &str, e: error::Error| ctx.place(e, &format!("{key}.{word}"));
+    pub(crate) fn build(&self, ctx: &Context, key: &str, unit: CoordinateUnit) -> error::Result<Law> {
+        let place = |word: &str, e: error::Error| ctx.with_location(e, &format!("{key}.{word}"));
         if let Some(text) = &self.formula {
             let formula = Formula::parse(text).map_err(|e| place("formula", e))?;
             return Ok(Law::Formula(match unit {
-                ValueUnit::Degrees => Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?,
-                ValueUnit::Si | ValueUnit::Radians => formula,
+                CoordinateUnit::Degrees => {
+                    Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?
+                }
+                CoordinateUnit::Si | CoordinateUnit::Radians => formula,
             }));
         }
         let file = self.file.as_deref().unwrap_or("");
-        let path = table::beside(ctx.folder(), file).map_err(|e| place("file", e))?;
+        let path = table::path_beside(ctx.folder(), file).map_err(|e| place("file", e))?;
         let column = self.column.as_deref().unwrap_or("");
         let time = self.time.as_deref().unwrap_or("");
-        let series = table::series(&path, time, column).map_err(|e| place("column", e))?;
-        let degrees = unit == ValueUnit::Degrees || (unit == ValueUnit::Radians && column.ends_with("_deg"));
+        let series = table::read_series(&path, time, column).map_err(|e| place("column", e))?;
+        let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
         let factor = self.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
         let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
-        Series::new(series.times(), values).map(Law::Table).map_err(|e| place("scale", e))
+        TimeSeries::new(series.times(), values).map(Law::Table).map_err(|e| place("scale", e))
     }
 }
 
 /// A value in time: a number, a formula in t, or a law's table.
 #[derive(Clone, Debug, Default, PartialEq, JsonSchema)]
-pub struct TimeValueConfig(#[schemars(with = "ValueForm")] pub TimeLawConfig);
+pub struct TimeValueConfig(#[schemars(with = "TimeValueForm")] pub TimeFunctionConfig);
 
 /// How a value may be written, for the schema.
 #[derive(JsonSchema)]
 #[schemars(untagged)]
 #[allow(dead_code, reason = "only its shape counts")]
-enum ValueForm {
+enum TimeValueForm {
     /// A number.
     Number(f64),
     /// A formula.
     Text(String),
     /// A law.
-    Law(TimeLawConfig),
+    Law(TimeFunctionConfig),
 }
 
 impl TimeValueConfig {
     /// The formula `text`, in t (s).
     pub fn formula(text: impl Into<String>) -> Self {
-        Self(TimeLawConfig { formula: Some(text.into()), ..TimeLawConfig::default() })
+        Self(TimeFunctionConfig { formula: Some(text.into()), ..TimeFunctionConfig::default() })
     }
 
     /// Refuses a value that cannot be read.
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> error::Result<()> {
         self.0.verify(ctx, key)?;
         match &self.0.formula {
-            Some(text) => Formula::parse(text).map(|_| ()).map_err(|e| ctx.place(e, key)),
+            Some(text) => Formula::parse(text).map(|_| ()).map_err(|e| ctx.with_location(e, key)),
             None => Ok(()),
         }
     }
@@ -140,7 +142,7 @@ impl Serialize for TimeValueConfig {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match (self.number(), &self.0) {
             (Some(x), _) => serializer.serialize_f64(x),
-            (None, TimeLawConfig { formula: Some(text), .. }) => serializer.serialize_str(text),
+            (None, TimeFunctionConfig { formula: Some(text), .. }) => serializer.serialize_str(text),
             (None, words) => words.serialize(serializer),
         }
     }
@@ -149,19 +151,19 @@ impl Serialize for TimeValueConfig {
 impl<'de> Deserialize<'de> for TimeValueConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
         match TimeVectorConfig::deserialize(deserializer)?.0 {
-            OneOrMany::One(value) => Ok(value),
-            OneOrMany::Many(_) => Err(de::Error::custom("a list, where one value is meant")),
+            TimeVectorForm::One(value) => Ok(value),
+            TimeVectorForm::Many(_) => Err(de::Error::custom("a list, where one value is meant")),
         }
     }
 }
 
 /// One value in time, or one for each component.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
-pub struct TimeVectorConfig(OneOrMany);
+pub struct TimeVectorConfig(TimeVectorForm);
 
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(untagged)]
-enum OneOrMany {
+enum TimeVectorForm {
     One(TimeValueConfig),
     Many(Vec<TimeValueConfig>),
 }
@@ -169,22 +171,22 @@ enum OneOrMany {
 impl TimeVectorConfig {
     /// These components.
     pub fn new(components: impl IntoIterator<Item = TimeValueConfig>) -> Self {
-        Self(OneOrMany::Many(components.into_iter().collect()))
+        Self(TimeVectorForm::Many(components.into_iter().collect()))
     }
 
     /// The components.
     pub fn components(&self) -> &[TimeValueConfig] {
         match &self.0 {
-            OneOrMany::One(one) => std::slice::from_ref(one),
-            OneOrMany::Many(many) => many,
+            TimeVectorForm::One(one) => std::slice::from_ref(one),
+            TimeVectorForm::Many(many) => many,
         }
     }
 
     /// The components, to be filled in.
     pub(crate) fn components_mut(&mut self) -> &mut [TimeValueConfig] {
         match &mut self.0 {
-            OneOrMany::One(one) => std::slice::from_mut(one),
-            OneOrMany::Many(many) => many,
+            TimeVectorForm::One(one) => std::slice::from_mut(one),
+            TimeVectorForm::Many(many) => many,
         }
     }
 }
@@ -192,8 +194,8 @@ impl TimeVectorConfig {
 impl Serialize for TimeVectorConfig {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.0 {
-            OneOrMany::One(one) => one.serialize(serializer),
-            OneOrMany::Many(many) => many.serialize(serializer),
+            TimeVectorForm::One(one) => one.serialize(serializer),
+            TimeVectorForm::Many(many) => many.serialize(serializer),
         }
     }
 }
@@ -208,24 +210,24 @@ impl<'de> Deserialize<'de> for TimeVectorConfig {
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<TimeVectorConfig, E> {
                 let words = TimeValueConfig::formula(text);
-                Ok(TimeVectorConfig(OneOrMany::One(words.number().map_or(words, TimeValueConfig::from))))
+                Ok(TimeVectorConfig(TimeVectorForm::One(words.number().map_or(words, TimeValueConfig::from))))
             }
             fn visit_f64<E: de::Error>(self, x: f64) -> Result<TimeVectorConfig, E> {
-                Ok(TimeVectorConfig(OneOrMany::One(x.into())))
+                Ok(TimeVectorConfig(TimeVectorForm::One(x.into())))
             }
             fn visit_i64<E: de::Error>(self, x: i64) -> Result<TimeVectorConfig, E> {
-                Ok(TimeVectorConfig(OneOrMany::One((x as f64).into())))
+                Ok(TimeVectorConfig(TimeVectorForm::One((x as f64).into())))
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<TimeVectorConfig, A::Error> {
-                let words = TimeLawConfig::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(TimeVectorConfig(OneOrMany::One(TimeValueConfig(words))))
+                let words = TimeFunctionConfig::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(TimeVectorConfig(TimeVectorForm::One(TimeValueConfig(words))))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<TimeVectorConfig, A::Error> {
                 let mut many = Vec::new();
                 while let Some(value) = seq.next_element()? {
                     many.push(value);
                 }
-                Ok(TimeVectorConfig(OneOrMany::Many(many)))
+                Ok(TimeVectorConfig(TimeVectorForm::Many(many)))
             }
         }
         deserializer.deserialize_any(Form)

@@ -9,9 +9,9 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    geometry::{Region, Shape},
-    math::{Bounds, Pose, Vector, expression::Field},
-    scene::{context::Context, untagged::FieldConfig},
+    geometry::{Shape, WaterRegion},
+    math::{Bounds, Pose, Vector, expression::ScalarField},
+    scene::{context::Context, untagged::FieldFormulaConfig},
 };
 
 /// Largest distance of water from the origin, in supports of the kernel: beyond, differences of coordinates are not exact.
@@ -28,10 +28,10 @@ pub struct WaterConfig {
     pub level: Option<f64>,
     /// Velocity at the start, m/s: a formula in the place or a number for each axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<Vec<FieldConfig>>,
+    pub velocity: Option<Vec<FieldFormulaConfig>>,
     /// Pressure at the start beyond that of water at rest, Pa: a formula in the place or a number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pressure: Option<FieldConfig>,
+    pub pressure: Option<FieldFormulaConfig>,
 }
 
 /// What a body of water fills: a box by its corners, or any shape somewhere.
@@ -54,12 +54,12 @@ impl FillConfig {
     fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         match (&self.corners, &self.shape) {
             (Some(corners), None) if self.at.is_none() => corners.verify(ctx, &format!("{key}.box")),
-            (Some(_), None) => Err(ctx.wrong(&format!("{key}.at"), "a box by its corners needs no place")),
+            (Some(_), None) => Err(ctx.error_at(&format!("{key}.at"), "a box by its corners needs no place")),
             (None, Some(shape)) => {
                 shape.verify(ctx, &format!("{key}.shape"))?;
                 self.at.as_ref().map_or(Ok(()), |at| at.verify(ctx, &format!("{key}.at"), false))
             }
-            _ => Err(ctx.wrong(key, "fill takes either a box or a shape")),
+            _ => Err(ctx.error_at(key, "fill takes either a box or a shape")),
         }
     }
 }
@@ -75,8 +75,8 @@ impl WaterConfig {
     }
 
     /// Its region, its level and its initial motion.
-    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<Body<D>> {
-        let place = |e: Error| ctx.place(e, &format!("{key}.fill"));
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<WaterBody<D>> {
+        let place = |e: Error| ctx.with_location(e, &format!("{key}.fill"));
         let (shape, pose) = match &self.fill {
             FillConfig { corners: Some(corners), .. } => {
                 let (min, mut max): (Vector<D>, Vector<D>) = (vector(&corners.min), vector(&corners.max));
@@ -84,7 +84,7 @@ impl WaterConfig {
                 (Shape::Box { size: max - min }, Pose::at(0.5 * (min + max)))
             }
             FillConfig { shape, at, .. } => {
-                let Some(shape) = shape else { return Err(ctx.wrong(key, "what does the water fill?")) };
+                let Some(shape) = shape else { return Err(ctx.error_at(key, "what does the water fill?")) };
                 let shape = shape.build(ctx).map_err(place)?;
                 let pose = at.as_ref().map_or_else(Pose::identity, |at| at.build(&shape, 0.0));
                 (shape, pose)
@@ -95,19 +95,20 @@ impl WaterConfig {
         let level = self.level.unwrap_or(f64::INFINITY).min(top);
         if level <= bottom {
             let what = format!("the level is not above {bottom} m, the bottom of this water");
-            return Err(ctx.wrong(&format!("{key}.level"), what));
+            return Err(ctx.error_at(&format!("{key}.level"), what));
         }
-        Ok(Body { region: Region { shape, pose }, bottom, level, flow: self.flow(ctx, key)? })
+        Ok(WaterBody { region: WaterRegion { shape, pose }, bottom, level, flow: self.flow(ctx, key)? })
     }
 
     /// Its motion at the start.
     fn flow<const D: usize>(&self, ctx: &Context, key: &str) -> Result<InitialFlow<D>> {
-        let field = |key: &str, field: &FieldConfig| Field::parse(&field.0).map_err(|e| ctx.place(e, key));
+        let field =
+            |key: &str, field: &FieldFormulaConfig| ScalarField::parse(&field.0).map_err(|e| ctx.with_location(e, key));
         let velocity = match &self.velocity {
             Some(components) => {
                 let key = format!("{key}.velocity");
                 if components.len() != D {
-                    return Err(ctx.wrong(&key, format!("velocity has {} entries, not {D}", components.len())));
+                    return Err(ctx.error_at(&key, format!("velocity has {} entries, not {D}", components.len())));
                 }
                 Some(components.iter().map(|component| field(&key, component)).collect::<Result<_>>()?)
             }
@@ -120,29 +121,29 @@ impl WaterConfig {
 
 /// The motion of a body of water at the start.
 pub(crate) struct InitialFlow<const D: usize> {
-    velocity: Option<Vec<Field<D>>>,
-    pressure: Option<Field<D>>,
+    velocity: Option<Vec<ScalarField<D>>>,
+    pressure: Option<ScalarField<D>>,
 }
 
 impl<const D: usize> InitialFlow<D> {
     /// Velocity (m/s) and pressure beyond the hydrostatic one (Pa) at `r` (m).
     pub(crate) fn at(&self, r: &Vector<D>) -> (Vector<D>, f64) {
         let velocity = self.velocity.as_ref();
-        let velocity = velocity.map_or_else(Vector::zeros, |v| Vector::from_fn(|i, _| v[i].at(r)));
-        (velocity, self.pressure.as_ref().map_or(0.0, |field| field.at(r)))
+        let velocity = velocity.map_or_else(Vector::zeros, |v| Vector::from_fn(|i, _| v[i].value_at(r)));
+        (velocity, self.pressure.as_ref().map_or(0.0, |field| field.value_at(r)))
     }
 }
 
 /// A body of water.
-pub(crate) struct Body<const D: usize> {
-    pub(crate) region: Region<D>,
+pub(crate) struct WaterBody<const D: usize> {
+    pub(crate) region: WaterRegion<D>,
     pub(crate) bottom: f64,
     /// Height of the still surface, m.
     pub(crate) level: f64,
     pub(crate) flow: InitialFlow<D>,
 }
 
-impl<const D: usize> Body<D> {
+impl<const D: usize> WaterBody<D> {
     /// Signed distance (m) of the point `x` (m) from this water, negative inside.
     pub(crate) fn distance(&self, x: &Vector<D>) -> f64 {
         self.region.shape.signed_distance(&self.region.pose.local(x))
@@ -161,16 +162,16 @@ impl<const D: usize> Body<D> {
 
 /// The water at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StillWater {
+pub struct StillWaterLevel {
     /// The highest level, from which drafts are measured, m.
     pub level: f64,
     /// From the lowest point of the water to there, m.
     pub depth: f64,
 }
 
-impl StillWater {
+impl StillWaterLevel {
     /// Of all bodies of water.
-    pub(crate) fn of<const D: usize>(water: &[Body<D>]) -> Self {
+    pub(crate) fn of<const D: usize>(water: &[WaterBody<D>]) -> Self {
         let level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
         let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
         Self { level, depth: level - bottom }
@@ -178,28 +179,28 @@ impl StillWater {
 }
 
 /// The water at rest and the box around it.
-pub(crate) struct WaterExtent<const D: usize> {
-    pub(crate) still: StillWater,
+pub(crate) struct StillWater<const D: usize> {
+    pub(crate) still: StillWaterLevel,
     pub(crate) bounds: Bounds<D>,
 }
 
-impl<const D: usize> WaterExtent<D> {
+impl<const D: usize> StillWater<D> {
     /// Of all bodies of water; there is one at least.
-    pub(crate) fn of(water: &[Body<D>]) -> Self {
+    pub(crate) fn of(water: &[WaterBody<D>]) -> Self {
         let mut bounds: Bounds<D> =
             Bounds { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) };
         for body in water {
             let own = body.bounds();
             bounds = Bounds { min: bounds.min.inf(&own.min), max: bounds.max.sup(&own.max) };
         }
-        Self { still: StillWater::of(water), bounds }
+        Self { still: StillWaterLevel::of(water), bounds }
     }
 }
 
 /// Refuses water so far from the origin that its coordinates are not exact enough.
-pub(crate) fn verify_near_origin<const D: usize>(ctx: &Context, water: &[Body<D>]) -> Result<()> {
+pub(crate) fn require_near_origin<const D: usize>(ctx: &Context, water: &[WaterBody<D>]) -> Result<()> {
     let most = FARTHEST * 2.0 * ctx.h;
-    let far = |body: &Body<D>| {
+    let far = |body: &WaterBody<D>| {
         let bounds = body.bounds();
         bounds.min.iter().chain(bounds.max.iter()).map(|x| x.abs()).fold(0.0, f64::max)
     };
@@ -207,7 +208,7 @@ pub(crate) fn verify_near_origin<const D: usize>(ctx: &Context, water: &[Body<D>
         Some((i, far)) => {
             let what = format!("this water is {far:.1e} m from the origin; places are exact up to {most:.1e} m");
             let help = "move the scene to the origin, or make dp larger";
-            Err(ctx.wrong_with(&format!("water.{i}.fill"), what, help))
+            Err(ctx.error_with_help(&format!("water.{i}.fill"), what, help))
         }
         None => Ok(()),
     }

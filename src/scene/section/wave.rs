@@ -10,7 +10,7 @@ use serde::{
 
 use crate::{
     error::Result,
-    scene::context::{Context, Defaults, joined, set_keys},
+    scene::context::{Context, Defaults, quoted_list, set_keys},
     wavemaker::{COMPONENTS, Theory},
 };
 
@@ -41,7 +41,7 @@ pub struct WaveConfig {
     pub components: Option<WaveComponentsConfig>,
     /// The surface that was measured somewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub elevation: Option<MeasuredWaveConfig>,
+    pub elevation: Option<MeasuredElevationConfig>,
     /// How long the paddle takes to its full motion, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ramp: Option<f64>,
@@ -50,7 +50,7 @@ pub struct WaveConfig {
     pub depth: Option<f64>,
     /// Whether the paddle takes the waves that come back to it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub absorb: Option<AbsorptionConfig>,
+    pub absorb: Option<AbsorbChoice>,
 }
 
 /// A regular wave.
@@ -131,7 +131,7 @@ pub struct WaveComponentsConfig {
 /// A measured elevation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct MeasuredWaveConfig {
+pub struct MeasuredElevationConfig {
     /// The table, beside the scene.
     pub file: String,
     /// Its column of elevations, m.
@@ -153,17 +153,17 @@ pub struct MeasuredWaveConfig {
 /// Whether a paddle absorbs: `true`, or how.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum AbsorptionConfig {
+pub enum AbsorbChoice {
     /// As usual, or not at all.
     Switch(bool),
     /// As these words say.
-    Settings(AbsorberConfig),
+    Parameters(AbsorptionConfig),
 }
 
 /// How a paddle absorbs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct AbsorberConfig {
+pub struct AbsorptionConfig {
     /// Period whose waves it takes whole, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub period: Option<f64>,
@@ -175,29 +175,29 @@ pub struct AbsorberConfig {
     pub speed: Option<f64>,
 }
 
-impl AbsorptionConfig {
+impl AbsorbChoice {
     /// The settings of the absorption; `None` if the paddle does not absorb.
-    pub(crate) fn settings(self) -> Option<AbsorberConfig> {
+    pub(crate) fn settings(self) -> Option<AbsorptionConfig> {
         match self {
-            Self::Switch(absorbs) => absorbs.then(AbsorberConfig::default),
-            Self::Settings(words) => Some(words),
+            Self::Switch(absorbs) => absorbs.then(AbsorptionConfig::default),
+            Self::Parameters(words) => Some(words),
         }
     }
 }
 
-impl<'de> Deserialize<'de> for AbsorptionConfig {
+impl<'de> Deserialize<'de> for AbsorbChoice {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> std::result::Result<Self, De::Error> {
         struct Form;
         impl<'de> Visitor<'de> for Form {
-            type Value = AbsorptionConfig;
+            type Value = AbsorbChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "true, or a table with `period`, `stroke`, `speed`")
             }
-            fn visit_bool<E: de::Error>(self, absorbs: bool) -> std::result::Result<AbsorptionConfig, E> {
-                Ok(AbsorptionConfig::Switch(absorbs))
+            fn visit_bool<E: de::Error>(self, absorbs: bool) -> std::result::Result<AbsorbChoice, E> {
+                Ok(AbsorbChoice::Switch(absorbs))
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<AbsorptionConfig, A::Error> {
-                AbsorberConfig::deserialize(MapAccessDeserializer::new(map)).map(AbsorptionConfig::Settings)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<AbsorbChoice, A::Error> {
+                AbsorptionConfig::deserialize(MapAccessDeserializer::new(map)).map(AbsorbChoice::Parameters)
             }
         }
         deserializer.deserialize_any(Form)
@@ -230,17 +230,17 @@ impl WaveConfig {
 
     /// No wave: a paddle that takes those of `period` (s) that come to it.
     pub fn absorber(period: f64) -> Self {
-        let words = AbsorberConfig { period: Some(period), ..AbsorberConfig::default() };
-        Self { absorb: Some(AbsorptionConfig::Settings(words)), ..Self::default() }
+        let words = AbsorptionConfig { period: Some(period), ..AbsorptionConfig::default() };
+        Self { absorb: Some(AbsorbChoice::Parameters(words)), ..Self::default() }
     }
 
     /// The same wave of a paddle that takes what comes back to it.
     pub fn absorbing(self) -> Self {
-        Self { absorb: Some(AbsorptionConfig::Switch(true)), ..self }
+        Self { absorb: Some(AbsorbChoice::Switch(true)), ..self }
     }
 
     /// The kinds that it names.
-    fn kinds(&self) -> Vec<&'static str> {
+    fn named_kinds(&self) -> Vec<&'static str> {
         set_keys([
             ("regular", self.regular.is_some()),
             ("jonswap", self.jonswap.is_some()),
@@ -267,7 +267,7 @@ impl WaveConfig {
                 "the paddle sets out forwards",
             );
         }
-        for (word, sea) in self.seas() {
+        for (word, sea) in self.spectra_mut() {
             let Some(sea) = sea else { continue };
             if word == "jonswap" {
                 defaults.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
@@ -292,7 +292,7 @@ impl WaveConfig {
         }
     }
 
-    fn seas(&mut self) -> [(&'static str, &mut Option<IrregularWaveConfig>); 3] {
+    fn spectra_mut(&mut self) -> [(&'static str, &mut Option<IrregularWaveConfig>); 3] {
         [
             ("jonswap", &mut self.jonswap),
             ("bretschneider", &mut self.bretschneider),
@@ -302,27 +302,31 @@ impl WaveConfig {
 
     /// Refuses a wave that is not of exactly one kind, or whose numbers are out of range.
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
-        let kinds = self.kinds();
-        let absorb = self.absorb.and_then(AbsorptionConfig::settings);
+        let kinds = self.named_kinds();
+        let absorb = self.absorb.and_then(AbsorbChoice::settings);
         if let Some(words) = &absorb {
             words.verify(ctx, &format!("{key}.absorb"), !kinds.is_empty())?;
         }
         if kinds.len() > 1 || (kinds.is_empty() && absorb.is_none()) {
             let what = match kinds.len() {
                 0 => "which wave?".to_string(),
-                _ => format!("a paddle makes one kind of wave; this one {}", joined(&kinds)),
+                _ => format!("a paddle makes one kind of wave; this one {}", quoted_list(&kinds)),
             };
-            return Err(ctx.wrong(key, what));
+            return Err(ctx.error_at(key, what));
         }
         let gravity = ctx.gravity.is_none_or(|g| {
             let (up, rest) = g.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
             up < 0.0 && rest.iter().all(|x| *x == 0.0)
         });
         if !gravity {
-            return Err(ctx.wrong_with("gravity", "waves need gravity straight down", "write  gravity = [0.0, -9.81]"));
+            return Err(ctx.error_with_help(
+                "gravity",
+                "waves need gravity straight down",
+                "write  gravity = [0.0, -9.81]",
+            ));
         }
-        ctx.positive(&format!("{key}.ramp"), self.ramp)?;
-        ctx.positive(&format!("{key}.depth"), self.depth)?;
+        ctx.require_positive(&format!("{key}.ramp"), self.ramp)?;
+        ctx.require_positive(&format!("{key}.depth"), self.depth)?;
         let Some(kind) = kinds.first() else { return Ok(()) };
         let key = &format!("{key}.{kind}");
         let mut numbers = Vec::new();
@@ -330,7 +334,11 @@ impl WaveConfig {
             numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
             if let Some(order) = words.order.filter(|order| !(1..=2).contains(order)) {
                 let help = "order = 1, or  order = 2  without free waves of twice the frequency";
-                return Err(ctx.wrong_with(&format!("{key}.order"), format!("order is 1 or 2, not {order}"), help));
+                return Err(ctx.error_with_help(
+                    &format!("{key}.order"),
+                    format!("order is 1 or 2, not {order}"),
+                    help,
+                ));
             }
         }
         for sea in [&self.jonswap, &self.bretschneider, &self.pierson_moskowitz].into_iter().flatten() {
@@ -342,7 +350,7 @@ impl WaveConfig {
             numbers.extend([("distance", Some(words.distance)), ("time", Some(words.time)), ("gamma", words.gamma)]);
         }
         numbers.extend(self.solitary.iter().map(|words| ("height", Some(words.height))));
-        numbers.into_iter().try_for_each(|(word, x)| ctx.positive(&format!("{key}.{word}"), x))
+        numbers.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))
     }
 }
 
@@ -354,28 +362,28 @@ impl IrregularWaveConfig {
         if grown && self.peak_period.is_some() {
             let what = "the height of a fully grown sea says its period: 5 s √(height in m)";
             let help = "leave it out, or write  bretschneider = { height = 0.1, peak_period = 1.4 }";
-            return Err(ctx.wrong_with(&place("peak_period"), what, help));
+            return Err(ctx.error_with_help(&place("peak_period"), what, help));
         }
         if !grown && self.peak_period.is_none() {
-            return Err(ctx.wrong(&place("peak_period"), "peak_period is missing"));
+            return Err(ctx.error_at(&place("peak_period"), "peak_period is missing"));
         }
         if self.gamma.is_some() && !key.ends_with("jonswap") {
-            return Err(ctx.wrong_with(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
+            return Err(ctx.error_with_help(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
         }
         Ok(())
     }
 }
 
-impl AbsorberConfig {
+impl AbsorptionConfig {
     /// Refuses numbers that are not positive, and a paddle without a wave and without a period.
     fn verify(&self, ctx: &Context, key: &str, makes_waves: bool) -> Result<()> {
         let all = [("period", self.period), ("stroke", self.stroke), ("speed", self.speed)];
-        all.into_iter().try_for_each(|(word, x)| ctx.positive(&format!("{key}.{word}"), x))?;
+        all.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))?;
         match makes_waves || self.period.is_some() {
             true => Ok(()),
             false => {
                 let what = "a paddle that makes no wave of its own absorbs those of a period, and none is said";
-                Err(ctx.wrong_with(key, what, "write  wave = { absorb = { period = 1.2 } }"))
+                Err(ctx.error_with_help(key, what, "write  wave = { absorb = { period = 1.2 } }"))
             }
         }
     }

@@ -5,15 +5,15 @@ use std::f64::consts::TAU;
 use super::{
     motion::DrivenConfig,
     shape::{vector, world_bounds},
-    water::WaterExtent,
+    water::StillWater,
     wave::{
-        AbsorberConfig, AbsorptionConfig, IrregularWaveConfig, MeasuredWaveConfig, WaveComponentsConfig, WaveConfig,
+        AbsorbChoice, AbsorptionConfig, IrregularWaveConfig, MeasuredElevationConfig, WaveComponentsConfig, WaveConfig,
     },
 };
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Bivector, Bounds, Pose, Vector, time_series::Series},
+    math::{Bivector, Bounds, Pose, Vector, time_series::TimeSeries},
     scene::{context::Context, table},
     solid::{Law, Motion},
     wavemaker::{Absorber, Component, Paddle, Spectrum, Tuning, Wave, Wavemaker},
@@ -23,7 +23,7 @@ use crate::{
 const GAUGE_DISTANCE: f64 = 2.0;
 
 /// Where a paddle is that absorbs, and the direction of its waves.
-struct Site<const D: usize> {
+struct AbsorberSite<const D: usize> {
     /// A point (m) of its face at rest, in the middle of its width.
     face: Vector<D>,
     /// Where its waves go; a unit vector.
@@ -32,16 +32,16 @@ struct Site<const D: usize> {
     level: f64,
 }
 
-impl<const D: usize> Site<D> {
+impl<const D: usize> AbsorberSite<D> {
     /// Of a paddle in the box `own`, whose waves go along `way`.
     fn of(own: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
         let middle = 0.5 * (own.min + own.max);
-        Self { face: middle + way * (furthest(own, &way) - middle.dot(&way)), way, level }
+        Self { face: middle + way * (support(own, &way) - middle.dot(&way)), way, level }
     }
 }
 
 /// The largest x·`way` in a box.
-fn furthest<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
+fn support<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
     (0..D).map(|i| (way[i] * bounds.min[i]).max(way[i] * bounds.max[i])).sum()
 }
 
@@ -52,68 +52,68 @@ pub(super) fn build<const D: usize>(
     words: &DrivenConfig,
     wave: &WaveConfig,
     (shape, pose): (&Shape<D>, &Pose<D>),
-    pool: &WaterExtent<D>,
+    pool: &StillWater<D>,
 ) -> Result<Motion<D>> {
     let own = world_bounds(shape, pose);
     let depth = wave.depth.unwrap_or(pool.still.depth);
     let g = ctx.gravity.and_then(|g| g.last()).map_or(0.0, |g| -g);
     let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
     match &words.along {
-        Some(along) => piston(ctx, key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
-        None => flap(ctx, key, words, wave, &maker, (&own, pool)),
+        Some(along) => piston_motion(ctx, key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
+        None => flap_motion(ctx, key, words, wave, &maker, (&own, pool)),
     }
 }
 
 /// The motion of a piston that goes `along`; `own` is the box around it.
-fn piston<const D: usize>(
+fn piston_motion<const D: usize>(
     ctx: &Context,
     key: &str,
     wave: &WaveConfig,
     along: Vector<D>,
     maker: &Wavemaker,
-    (own, pool): (&Bounds<D>, &WaterExtent<D>),
+    (own, pool): (&Bounds<D>, &StillWater<D>),
 ) -> Result<Motion<D>> {
-    let refuse = |what: &str, help: &str| Err(ctx.wrong_with(&format!("{key}.along"), what, help));
+    let refuse = |what: &str, help: &str| Err(ctx.error_with_help(&format!("{key}.along"), what, help));
     if along[D - 1].abs() > 1e-6 {
         return refuse("a piston that makes waves slides level", "write  along = [1.0, 0.0]");
     }
-    let ahead = furthest(&pool.bounds, &along) - furthest(own, &along);
+    let ahead = support(&pool.bounds, &along) - support(own, &along);
     if ahead <= ctx.dp {
         let help = "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
         return refuse("there is no water before the paddle in this direction", help);
     }
     let key = format!("{key}.wave");
-    let law = wave_of(ctx, &key, wave, maker)?;
+    let law = wave_from_config(ctx, &key, wave, maker)?;
     if law.stroke() > 0.5 * ahead {
         let what = format!("the piston would go {:.3} m to and fro, and the water is {ahead:.3} m long", law.stroke());
         let help = "waves so long need a longer tank: take a shorter period or a lower height";
-        return Err(ctx.wrong_with(&key, what, help));
+        return Err(ctx.error_with_help(&key, what, help));
     }
-    let site = Site::of(own, along, pool.still.level);
+    let site = AbsorberSite::of(own, along, pool.still.level);
     with_absorption(ctx, &key, wave, maker, &site, Motion::slide(along, Law::Wave(Box::new(law))))
 }
 
 /// The motion of a flap; `own` is the box around it.
-fn flap<const D: usize>(
+fn flap_motion<const D: usize>(
     ctx: &Context,
     key: &str,
     words: &DrivenConfig,
     wave: &WaveConfig,
     maker: &Wavemaker,
-    (own, pool): (&Bounds<D>, &WaterExtent<D>),
+    (own, pool): (&Bounds<D>, &StillWater<D>),
 ) -> Result<Motion<D>> {
     let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
     let arm = pool.still.level - hinge[D - 1];
     if arm <= 0.0 {
         let what = format!("the hinge is {:.3} m above the still level: such a flap makes no wave by theory", -arm);
         let help = format!("a flap is hinged below {:.3} m: at the bed, above or under it", pool.still.level);
-        return Err(ctx.wrong_with(&format!("{key}.hinge"), what, help));
+        return Err(ctx.error_with_help(&format!("{key}.hinge"), what, help));
     }
     let unit = |x: &Vec<f64>| vector::<D>(x).normalize().iter().copied().collect();
     let axis: Vec<f64> = words.axis.as_ref().map_or_else(|| vec![1.0], unit);
     if axis.get(2).is_some_and(|x| x.abs() > 1e-6) {
         let help = "write  axis = [0.0, 1.0, 0.0]";
-        return Err(ctx.wrong_with(&format!("{key}.axis"), "the axis of a flap that makes waves is level", help));
+        return Err(ctx.error_with_help(&format!("{key}.axis"), "the axis of a flap that makes waves is level", help));
     }
     let mut up = Vector::zeros();
     up[D - 1] = 1.0;
@@ -122,8 +122,8 @@ fn flap<const D: usize>(
     let sense = if way.dot(&middle) < 0.0 { -1.0 } else { 1.0 };
     let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
     let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
-    let law = wave_of(ctx, &key, wave, &maker)?;
-    let site = Site::of(own, way.normalize() * sense, pool.still.level);
+    let law = wave_from_config(ctx, &key, wave, &maker)?;
+    let site = AbsorberSite::of(own, way.normalize() * sense, pool.still.level);
     with_absorption(ctx, &key, wave, &maker, &site, Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
 }
 
@@ -133,10 +133,10 @@ fn with_absorption<const D: usize>(
     key: &str,
     words: &WaveConfig,
     maker: &Wavemaker,
-    site: &Site<D>,
+    site: &AbsorberSite<D>,
     motion: Motion<D>,
 ) -> Result<Motion<D>> {
-    match words.absorb.and_then(AbsorptionConfig::settings) {
+    match words.absorb.and_then(AbsorbChoice::settings) {
         Some(words) => absorbing(ctx, &format!("{key}.absorb"), &words, maker, site, motion),
         None => Ok(motion),
     }
@@ -146,32 +146,32 @@ fn with_absorption<const D: usize>(
 fn absorbing<const D: usize>(
     ctx: &Context,
     key: &str,
-    words: &AbsorberConfig,
+    words: &AbsorptionConfig,
     maker: &Wavemaker,
-    site: &Site<D>,
+    site: &AbsorberSite<D>,
     motion: Motion<D>,
 ) -> Result<Motion<D>> {
     let Some(wave) = motion.wave() else { return Ok(motion) };
-    let AbsorberConfig { period, stroke, speed } = *words;
+    let AbsorptionConfig { period, stroke, speed } = *words;
     let tuning = Tuning { period, gauge: GAUGE_DISTANCE * ctx.h, level: site.level, stroke, speed };
-    let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| ctx.place(e, key))?;
+    let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| ctx.with_location(e, key))?;
     let gauge: Vector<D> = site.face + site.way * absorber.gauge();
     Ok(motion.absorbing(absorber, gauge, site.way))
 }
 
 /// The still paddle's own wave: none, before those that it absorbs.
-fn no_wave(ctx: &Context, key: &str, words: Option<AbsorberConfig>, maker: &Wavemaker) -> Result<Wave> {
+fn zero_wave(ctx: &Context, key: &str, words: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<Wave> {
     match words.and_then(|words| words.period) {
-        Some(period) => maker.silent(period).map_err(|e| ctx.place(e, key)),
-        None => Err(ctx.wrong(key, "which wave?")),
+        Some(period) => maker.silent(period).map_err(|e| ctx.with_location(e, key)),
+        None => Err(ctx.error_at(key, "which wave?")),
     }
 }
 
 /// The wave that a paddle is to make.
-fn wave_of(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> Result<Wave> {
+fn wave_from_config(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> Result<Wave> {
     let place = |word: &str| {
         let key = format!("{key}.{word}");
-        move |e: Error| ctx.place(e, &key)
+        move |e: Error| ctx.with_location(e, &key)
     };
     let gamma = |gamma: Option<f64>| gamma.unwrap_or(3.3);
     let wave = match words {
@@ -181,15 +181,15 @@ fn wave_of(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> R
         }
         WaveConfig { jonswap: Some(config), .. } => {
             let spectrum = Spectrum::jonswap(config.peak_period.unwrap_or_default(), gamma(config.gamma));
-            sea(config, &spectrum, maker).map_err(place("jonswap.height"))?
+            irregular_wave(config, &spectrum, maker).map_err(place("jonswap.height"))?
         }
         WaveConfig { bretschneider: Some(config), .. } => {
             let spectrum = Spectrum::bretschneider(config.peak_period.unwrap_or_default());
-            sea(config, &spectrum, maker).map_err(place("bretschneider.height"))?
+            irregular_wave(config, &spectrum, maker).map_err(place("bretschneider.height"))?
         }
         WaveConfig { pierson_moskowitz: Some(config), .. } => {
             let spectrum = Spectrum::pierson_moskowitz(config.height, maker.g);
-            sea(config, &spectrum, maker).map_err(place("pierson_moskowitz.height"))?
+            irregular_wave(config, &spectrum, maker).map_err(place("pierson_moskowitz.height"))?
         }
         WaveConfig { focused: Some(words), .. } => {
             let spectrum = Spectrum::jonswap(words.peak_period, gamma(words.gamma));
@@ -202,15 +202,15 @@ fn wave_of(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> R
             made.map_err(place("solitary.height"))?
         }
         WaveConfig { components: Some(words), .. } => {
-            let components = components(ctx, words).map_err(place("components.file"))?;
+            let components = read_components(ctx, words).map_err(place("components.file"))?;
             maker.components(&components).map_err(place("components"))?
         }
         WaveConfig { elevation: Some(words), .. } => {
-            let series = measured(ctx, words).map_err(place("elevation.column"))?;
+            let series = read_elevation(ctx, words).map_err(place("elevation.column"))?;
             let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
             maker.recorded(&series, distance, delay).map_err(place("elevation"))?
         }
-        _ => no_wave(ctx, key, words.absorb.and_then(AbsorptionConfig::settings), maker)?,
+        _ => zero_wave(ctx, key, words.absorb.and_then(AbsorbChoice::settings), maker)?,
     };
     Ok(match words.ramp {
         Some(ramp) => wave.ramp(ramp),
@@ -219,9 +219,9 @@ fn wave_of(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> R
 }
 
 /// The components of a table.
-fn components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<Component>> {
-    let path = table::beside(ctx.folder(), &words.file)?;
-    let names = table::header(&path)?;
+fn read_components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<Component>> {
+    let path = table::path_beside(ctx.folder(), &words.file)?;
+    let names = table::read_header(&path)?;
     let either = |one: &'static str, other: &'static str| {
         let given = [(one, true), (other, false)].into_iter().find(|(column, _)| names.iter().any(|n| n == column));
         given.ok_or_else(|| {
@@ -231,7 +231,7 @@ fn components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<Compone
     };
     let (time, is_period) = either("period_s", "frequency_hz")?;
     let (phase, in_degrees) = either("phase_deg", "phase_rad")?;
-    let columns = table::columns(&path, &["amplitude_m", time, phase])?;
+    let columns = table::read_columns(&path, &["amplitude_m", time, phase])?;
     let component = |i: usize| {
         let (x, phase) = (columns[1][i], columns[2][i]);
         if x <= 0.0 {
@@ -246,14 +246,14 @@ fn components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<Compone
 }
 
 /// The elevation of a table.
-fn measured(ctx: &Context, words: &MeasuredWaveConfig) -> Result<Series> {
-    let path = table::beside(ctx.folder(), &words.file)?;
-    let series = table::series(&path, words.time.as_deref().unwrap_or("t_s"), &words.column)?;
+fn read_elevation(ctx: &Context, words: &MeasuredElevationConfig) -> Result<TimeSeries> {
+    let path = table::path_beside(ctx.folder(), &words.file)?;
+    let series = table::read_series(&path, words.time.as_deref().unwrap_or("t_s"), &words.column)?;
     let scale = words.scale.unwrap_or(1.0);
-    Series::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
+    TimeSeries::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
 }
 
 /// An irregular sea of this spectrum.
-fn sea(words: &IrregularWaveConfig, spectrum: &Spectrum, maker: &Wavemaker) -> Result<Wave> {
+fn irregular_wave(words: &IrregularWaveConfig, spectrum: &Spectrum, maker: &Wavemaker) -> Result<Wave> {
     maker.sea(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
 }

@@ -3,7 +3,7 @@
 //! [`Dim`] picks the engine of a dimension: `Dim<2>` has one if the feature `dim2` is on, `Dim<3>` with `dim3`.
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::{Bivector, Vector},
     solid::{Constraints, Kinematics, Load, Mobility, SolidSpec},
 };
@@ -191,6 +191,6 @@ pub(super) fn iterations(masses: impl Iterator<Item = f64>) -> usize {
 
 /// The error of a state that cannot be saved or restored.
 pub(super) fn restart(why: impl std::fmt::Display) -> Error {
-    Error::new(Kind::Restart, format!("the rigid bodies of the checkpoint: {why}"))
+    Error::new(ErrorKind::Restart, format!("the rigid bodies of the checkpoint: {why}"))
         .help("a checkpoint is read only by the version and for the scene that wrote it; start the run anew")
 }

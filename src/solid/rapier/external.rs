@@ -35,7 +35,10 @@ pub fn solid(
     let mut parts = Vec::new();
     for collider in body.colliders().iter().filter_map(|&handle| colliders.get(handle)).filter(|c| !c.is_sensor()) {
         let place = collider.position_wrt_parent().map_or_else(Pose::identity, world::from_frame);
-        parts.push((place, shape(collider.shape()).map_err(|e| Error { what: format!("{name}: {}", e.what), ..e })?));
+        parts.push((
+            place,
+            shape(collider.shape()).map_err(|e| Error { message: format!("{name}: {}", e.message), ..e })?,
+        ));
     }
     let own = |place: &Pose<D>| *place == Pose::identity();
     let shape = match parts.pop() {

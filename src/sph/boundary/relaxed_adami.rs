@@ -30,20 +30,20 @@ pub fn relaxation(dt: f64, h: f64, c0: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallExtrapolation<N, const D: usize> {
     /// Σ V_f W_wf, –.
-    pub weight: N,
+    pub weight_sum: N,
     /// Σ V_f W_wf P_f/ρ₀, m²/s².
-    pub head: N,
+    pub pressure_sum: N,
     /// Σ V₀ W_wf r_wf, m.
-    pub arm: [N; D],
+    pub offset_sum: [N; D],
     /// Σ V_f W_wf v_f, m/s; summed where the wall's [`Slip`](super::Slip) asks for it.
-    pub velocity: [N; D],
+    pub velocity_sum: [N; D],
 }
 
 impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     /// All sums `zero`.
     #[inline(always)]
-    pub fn all(zero: N) -> Self {
-        Self { weight: zero, head: zero, arm: [zero; D], velocity: [zero; D] }
+    pub fn filled_with(zero: N) -> Self {
+        Self { weight_sum: zero, pressure_sum: zero, offset_sum: [zero; D], velocity_sum: [zero; D] }
     }
 
     /// Adds a water particle of pressure `p` (P/ρ₀, m²/s²) and specific volume `s` (ρ₀/ρ) at r_w − `r_wf` (m), seen with
@@ -51,9 +51,9 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     #[inline(always)]
     pub fn add(&mut self, w: N, p: N, s: N, r_wf: [N; D]) {
         let share = w * s;
-        self.weight = self.weight + share;
-        self.head = share.fma(p, self.head);
-        for (arm, r) in self.arm.iter_mut().zip(r_wf) {
+        self.weight_sum = self.weight_sum + share;
+        self.pressure_sum = share.fma(p, self.pressure_sum);
+        for (arm, r) in self.offset_sum.iter_mut().zip(r_wf) {
             *arm = w.fma(r, *arm);
         }
     }
@@ -62,7 +62,7 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     #[inline(always)]
     pub fn add_velocity(&mut self, w: N, s: N, v: [N; D]) {
         let share = w * s;
-        for (flow, v) in self.velocity.iter_mut().zip(v) {
+        for (flow, v) in self.velocity_sum.iter_mut().zip(v) {
             *flow = share.fma(v, *flow);
         }
     }
@@ -73,13 +73,13 @@ impl<const D: usize> WallExtrapolation<f64, D> {
     /// `depth` (m) below the face.
     pub fn pressure(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 {
         // At the rim of the support the weight is the square of a rounding: no water.
-        if self.weight < 1e-9 {
+        if self.weight_sum < 1e-9 {
             return 0.0;
         }
-        let arm = Vector::from(self.arm);
+        let arm = Vector::from(self.offset_sum);
         // The face is where the water is: a thin plate has two.
         let least = arm.try_normalize(0.0).map_or(0.0, |away| (g.dot(&away) * depth).min(0.0));
-        ((self.head + pull.dot(&arm)) / self.weight).max(least)
+        ((self.pressure_sum + pull.dot(&arm)) / self.weight_sum).max(least)
     }
 }
 

@@ -25,6 +25,13 @@ pub enum Slip {
     Free,
 }
 
+impl Slip {
+    /// Share of the viscosity that acts between water and solids, –.
+    pub fn wall_viscosity_factor(self) -> f64 {
+        if self == Self::Free { 0.0 } else { 1.0 }
+    }
+}
+
 /// Most d/d̄: at the rim of the support the mean of few particles says little.
 const MAX_RATIO: f64 = 4.0;
 
@@ -36,15 +43,15 @@ pub fn no_slip_velocity<const D: usize>(
     normal: &Vector<D>,
     depth: f64,
 ) -> Vector<D> {
-    if fit.weight < 1e-9 {
+    if fit.weight_sum < 1e-9 {
         return v;
     }
     // r_wf points from the water to the wall.
-    let height = -normal.dot(&Vector::from(fit.arm)) / fit.weight - depth;
+    let height = -normal.dot(&Vector::from(fit.offset_sum)) / fit.weight_sum - depth;
     if height <= 0.0 {
         return v;
     }
-    let past = Vector::from(fit.velocity) / fit.weight - v;
+    let past = Vector::from(fit.velocity_sum) / fit.weight_sum - v;
     let along = past - normal * normal.dot(&past);
     v - along * (depth / height).min(MAX_RATIO)
 }

@@ -1,8 +1,44 @@
-//! Density diffusions, one a file. They act between water particles only: a wall's density is not
-//! the water's to smooth.
+//! Density diffusion, one law a file. What the rest of the program needs of a law it asks here.
 
 mod fourtakas;
 mod molteni;
 
 pub use fourtakas::{Fourtakas, FourtakasTerm};
 pub use molteni::Molteni;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::FluidProperties;
+
+/// The density diffusion. Scene key `model.diffusion`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Diffusion {
+    /// None.
+    None,
+    /// Molteni & Colagrossi (2009).
+    Molteni(Molteni),
+    /// Fourtakas et al. (2019): without the hydrostatic part of the density difference.
+    Fourtakas(Fourtakas),
+}
+
+impl Diffusion {
+    /// The term in the pair loop.
+    pub fn term<const D: usize>(&self, properties: &FluidProperties<D>) -> Option<FourtakasTerm<D>> {
+        match self {
+            Self::None => None,
+            Self::Molteni(law) => Some(law.term(properties)),
+            Self::Fourtakas(law) => Some(law.term(properties)),
+        }
+    }
+
+    /// λ h/c₀ (–) of the shortest waves, λ the rate at which the diffusion damps them: 7 δ.
+    pub fn damping(&self) -> f64 {
+        7.0 * match self {
+            Self::None => 0.0,
+            Self::Molteni(law) => law.delta,
+            Self::Fourtakas(law) => law.delta,
+        }
+    }
+}

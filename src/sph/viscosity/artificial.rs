@@ -38,6 +38,6 @@ pub struct ArtificialTerm {
 impl<const D: usize> Term<D> for ArtificialTerm {
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        (ab.constant(self.alpha_c_h) * ab.velocity_along_r.min(ab.constant(0.0))).fma(ab.drag, sum)
+        (ab.constant(self.alpha_c_h) * ab.velocity_along_r.min(ab.constant(0.0))).fma(ab.viscous_factor, sum)
     }
 }

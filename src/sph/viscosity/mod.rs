@@ -1,4 +1,5 @@
-//! Viscosities, one a file.
+//! Viscosities, one a file. What the rest of the program needs of a viscosity it asks here: its terms in the pair loop, the
+//! time step that it allows, its stress and its damping. A new viscosity is a file and its lines in this one.
 
 mod artificial;
 mod laminar;
@@ -7,3 +8,79 @@ mod sps;
 pub use artificial::{Artificial, ArtificialTerm};
 pub use laminar::{Laminar, LaminarTerm};
 pub use sps::{Sps, SpsTerm};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{FluidProperties, Term, Units};
+
+/// The viscosity. Scene key `model.viscosity`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Viscosity {
+    /// None: the ideal fluid.
+    None,
+    /// Artificial viscosity (Monaghan 1992).
+    Artificial(Artificial),
+    /// Laminar viscosity (Lo & Shao 2002; Morris 1997).
+    Laminar(Laminar),
+    /// Laminar viscosity with sub-particle-scale turbulence (Dalrymple & Rogers 2006).
+    Sps(Sps),
+}
+
+/// Continues with the terms of a viscosity: `fluid` between water particles, `wall` between water and solids.
+pub trait TermConsumer<const D: usize> {
+    /// The result.
+    type Output;
+    /// Continues.
+    fn with_terms<T: Term<D> + 'static, W: Term<D> + 'static>(self, fluid: T, wall: W) -> Self::Output;
+}
+
+impl Viscosity {
+    /// Calls `next` with the terms in the given units. `wall_share` (–) is the part of the viscosity that acts between water and
+    /// solids, `viscous_sum` that of a viscous force that η² leaves on the lattice.
+    pub fn terms<const D: usize, N: TermConsumer<D>>(
+        self,
+        properties: &FluidProperties<D>,
+        units: &Units,
+        wall_share: f64,
+        viscous_sum: impl Fn() -> f64,
+        next: N,
+    ) -> N::Output {
+        match self {
+            Self::None => next.with_terms((), ()),
+            Self::Artificial(law) => {
+                let wall = Artificial { alpha: law.alpha * wall_share };
+                next.with_terms(law.term(properties), wall.term(properties))
+            }
+            Self::Laminar(law) => {
+                let wall = Laminar { nu0: law.nu0 * wall_share };
+                next.with_terms(law.term(units, viscous_sum()), wall.term(units, viscous_sum()))
+            }
+            Self::Sps(law) => {
+                let wall = Sps { nu0: law.nu0 * wall_share, ..law };
+                next.with_terms(law.terms(units, viscous_sum()), wall.terms(units, viscous_sum()))
+            }
+        }
+    }
+
+    /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity [@morris1997].
+    pub fn step_limit(&self, h: f64) -> f64 {
+        let nu0 = match self {
+            Self::Laminar(law) => law.nu0,
+            Self::Sps(law) => law.nu0,
+            Self::None | Self::Artificial(_) => 0.0,
+        };
+        h * h / (8.0 * nu0)
+    }
+
+    /// The stress law, if the viscosity keeps a stress tensor for each particle.
+    pub fn stress(&self) -> Option<Sps> {
+        if let Self::Sps(law) = self { Some(*law) } else { None }
+    }
+
+    /// λ h/c₀ (–) of the shortest waves, λ the rate at which the viscosity damps them: 3.5 α.
+    pub fn damping(&self) -> f64 {
+        if let Self::Artificial(law) = self { 3.5 * law.alpha } else { 0.0 }
+    }
+}

@@ -7,11 +7,11 @@ use std::{collections::BTreeMap, path::Path};
 
 use serde::Deserialize;
 
-use super::judge::{Bound, Course, Judge, Of};
+use super::criteria::{Bound, Criteria, MotionBound, SolidBound};
 use crate::{
-    error::{Error, Kind, Result, nearest},
-    math::expression::Field,
-    output::checkpoint::hash,
+    error::{Error, ErrorKind, Result, nearest_name},
+    math::expression::ScalarField,
+    output::checkpoint::fnv1a,
     scene::Scene,
 };
 
@@ -24,25 +24,25 @@ const DEEPEST: usize = 8;
 /// A family of cases along one or two axes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Map {
+pub struct StressMap {
     /// Its name.
     pub name: String,
     /// What it asks, in a sentence.
     pub about: String,
     /// What is varied along the columns of its picture.
-    pub x: Axis,
+    pub x: MapAxis,
     /// What is varied along its rows.
-    pub y: Option<Axis>,
+    pub y: Option<MapAxis>,
     scene: String,
     #[serde(default)]
-    judge: Judge,
+    judge: Criteria,
     /// Whether it is too long for `--quick`.
     #[serde(default)]
     slow: bool,
     #[serde(skip)]
     parts: BTreeMap<String, String>,
     #[serde(skip)]
-    always: Judge,
+    default_criteria: Criteria,
     /// The file that it is from, for messages.
     #[serde(skip)]
     file: String,
@@ -51,7 +51,7 @@ pub struct Map {
 /// What is varied, and its values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Axis {
+pub struct MapAxis {
     /// What it is, in words.
     pub label: String,
     /// Its unit.
@@ -62,49 +62,50 @@ pub struct Axis {
 
 /// One run of a map.
 #[derive(Clone, Debug)]
-pub struct Case {
+pub struct StressCase {
     /// The map.
     pub map: String,
     /// Its column and row.
-    pub place: [usize; 2],
+    pub cell: [usize; 2],
     /// Its values, in words.
     pub values: Vec<String>,
     /// The scene, every hole filled.
     pub scene: Scene,
     /// What it is judged by.
-    pub judge: Judge,
+    pub criteria: Criteria,
     /// What makes it another than any other case or version: a run of the same key is not run again.
     pub key: String,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct MapsFile {
     #[serde(default)]
-    judge: Judge,
+    judge: Criteria,
     #[serde(default)]
     part: BTreeMap<String, String>,
-    map: Vec<Map>,
+    map: Vec<StressMap>,
 }
 
 /// All maps: those of `file`, or those that come with the program.
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is no list of maps.
-pub fn maps(file: Option<&Path>) -> Result<Vec<Map>> {
+pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> {
     let Some(path) = file else { return read(TEXT, NAME) };
     let text = std::fs::read_to_string(path)
         .map_err(|why| Error::file(path, why).help("name a file of [[map]] entries; docs/stability.md shows one"))?;
     read(&text, &path.display().to_string())
 }
 
-fn read(text: &str, name: &str) -> Result<Vec<Map>> {
-    let File { judge, part, map } = toml::from_str(text).map_err(|e| {
+fn read(text: &str, name: &str) -> Result<Vec<StressMap>> {
+    let MapsFile { judge, part, map } = toml::from_str(text).map_err(|e| {
         let line = e.span().map(|span| text[..span.start].matches('\n').count() + 1);
         Error::scene(e.message().to_string()).at(name, line.map(|line| (line, 1)), "")
     })?;
-    let whole = |map: Map| Map { parts: part.clone(), always: judge.clone(), file: name.into(), ..map };
-    let all: Vec<Map> = map.into_iter().map(whole).collect();
+    let whole =
+        |map: StressMap| StressMap { parts: part.clone(), default_criteria: judge.clone(), file: name.into(), ..map };
+    let all: Vec<StressMap> = map.into_iter().map(whole).collect();
     match (0..all.len()).find(|&i| all[..i].iter().any(|map| map.name == all[i].name)) {
         Some(i) => Err(Error::scene(format!("two maps are called {:?}", all[i].name)).at(name, None, "map.name")),
         None => Ok(all),
@@ -115,31 +116,31 @@ fn read(text: &str, name: &str) -> Result<Vec<Map>> {
 ///
 /// # Errors
 /// `Usage` if there is no such map: names the nearest.
-pub fn choose(all: Vec<Map>, names: &[String], quick: bool) -> Result<Vec<Map>> {
+pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> {
     if names.is_empty() {
         return Ok(all.into_iter().filter(|map| !(quick && map.slow)).collect());
     }
     let map = |name: &String| {
         all.iter().find(|map| map.name == *name).cloned().ok_or_else(|| {
             let list = "`pontoon stress --list` lists all";
-            let help = match nearest(name, all.iter().map(|map| map.name.as_str())) {
+            let help = match nearest_name(name, all.iter().map(|map| map.name.as_str())) {
                 Some(near) => format!("did you mean {near:?}? {list}"),
                 None => list.into(),
             };
-            Error::new(Kind::Usage, format!("there is no map {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no map {name:?}")).help(help)
         })
     };
     names.iter().map(map).collect()
 }
 
-impl Axis {
+impl MapAxis {
     /// Its values, in words.
-    pub fn words(&self) -> Vec<String> {
+    pub fn value_labels(&self) -> Vec<String> {
         self.values.iter().map(word).collect()
     }
 }
 
-impl Map {
+impl StressMap {
     /// How many cases it has.
     pub fn count(&self) -> usize {
         self.x.values.len() * self.y.as_ref().map_or(1, |y| y.values.len())
@@ -149,33 +150,33 @@ impl Map {
     ///
     /// # Errors
     /// `Scene` if a hole cannot be filled or the scene is none: names map and values.
-    pub fn cases(&self, quick: bool) -> Result<Vec<Case>> {
+    pub fn cases(&self, quick: bool) -> Result<Vec<StressCase>> {
         let ends = |n: usize| (0..n).filter(|&i| !quick || i == 0 || i + 1 == n).collect::<Vec<_>>();
         let rows = self.y.as_ref().map_or(1, |y| y.values.len());
         let places = ends(rows).into_iter().flat_map(|j| ends(self.x.values.len()).into_iter().map(move |i| [i, j]));
         places.map(|place| self.case(place)).collect()
     }
 
-    fn case(&self, place: [usize; 2]) -> Result<Case> {
+    fn case(&self, place: [usize; 2]) -> Result<StressCase> {
         let y = self.y.as_ref().map(|y| &y.values[place[1]]);
         let values: Vec<&toml::Value> = std::iter::once(&self.x.values[place[0]]).chain(y).collect();
         let words: Vec<String> = values.iter().map(|value| word(value)).collect();
         let here = |error: Error| error.at(self.file.clone(), None, format!("{} at {}", self.name, words.join(", ")));
-        let fill = |text: &str| self.filled(text, &values, 0).map_err(here);
+        let fill = |text: &str| self.substituted(text, &values, 0).map_err(here);
         let scene = Scene::parse(&fill(&self.scene)?, Path::new(""), &[]).map_err(|mut error| {
-            error.what = format!("map {} at {}: {}", self.name, words.join(", "), error.what);
+            error.message = format!("map {} at {}: {}", self.name, words.join(", "), error.message);
             error
         })?;
-        let judge = self.judge.clone().over(&self.always);
-        let course = |course: Course| Ok(Course { formula: fill(&course.formula)?, ..course });
-        let judge = Judge { motion: judge.motion.into_iter().map(course).collect::<Result<_>>()?, ..judge };
-        let text = format!("{}\n{}\n{}", scene.to_toml()?, judge.asks(), env!("CARGO_PKG_VERSION"));
-        let key = format!("{:016x}", hash(text.as_bytes()));
-        Ok(Case { map: self.name.clone(), place, values: words, scene, judge, key })
+        let judge = self.judge.clone().with_defaults(&self.default_criteria);
+        let course = |course: MotionBound| Ok(MotionBound { formula: fill(&course.formula)?, ..course });
+        let judge = Criteria { motion: judge.motion.into_iter().map(course).collect::<Result<_>>()?, ..judge };
+        let text = format!("{}\n{}\n{}", scene.to_toml()?, judge.required_figures(), env!("CARGO_PKG_VERSION"));
+        let key = format!("{:016x}", fnv1a(text.as_bytes()));
+        Ok(StressCase { map: self.name.clone(), cell: place, values: words, scene, criteria: judge, key })
     }
 
     /// `text` with its holes filled.
-    fn filled(&self, text: &str, values: &[&toml::Value], depth: usize) -> Result<String> {
+    fn substituted(&self, text: &str, values: &[&toml::Value], depth: usize) -> Result<String> {
         if depth > DEEPEST {
             return Err(Error::scene("a part holds itself"));
         }
@@ -186,22 +187,22 @@ impl Map {
                 return Err(Error::scene("a hole \"${\" is not closed").help("write  ${2*x}"));
             };
             whole += before;
-            whole += &self.fill(hole.trim(), values, depth)?;
+            whole += &self.placeholder_value(hole.trim(), values, depth)?;
             rest = after;
         }
         Ok(whole + rest)
     }
 
-    fn fill(&self, hole: &str, values: &[&toml::Value], depth: usize) -> Result<String> {
+    fn placeholder_value(&self, hole: &str, values: &[&toml::Value], depth: usize) -> Result<String> {
         let named = ["x", "y"].iter().position(|name| *name == hole).and_then(|i| values.get(i));
         if let Some(toml::Value::String(word)) = named {
             return Ok(word.clone());
         }
         if let Some(part) = self.parts.get(hole) {
-            return self.filled(part, values, depth + 1);
+            return self.substituted(part, values, depth + 1);
         }
         let number = |i: usize| values.get(i).and_then(|value| number(value)).unwrap_or(f64::NAN);
-        let value = Field::<2>::parse(hole)?.at(&[number(0), number(1)].into());
+        let value = ScalarField::<2>::parse(hole)?.value_at(&[number(0), number(1)].into());
         if !value.is_finite() {
             let help = "a formula of x and y, the numbers along the axes, or the name of a part";
             return Err(Error::scene(format!("the hole \"{hole}\" is {value}")).help(help));
@@ -211,11 +212,11 @@ impl Map {
     }
 }
 
-impl Judge {
+impl Criteria {
     /// This judge, with what it does not say itself from `other`.
-    fn over(self, other: &Self) -> Self {
+    fn with_defaults(self, other: &Self) -> Self {
         let bound = |own: Option<Bound>, other: &Option<Bound>| own.or_else(|| other.clone());
-        let list = |own: Vec<Of>, other: &Vec<Of>| if own.is_empty() { other.clone() } else { own };
+        let list = |own: Vec<SolidBound>, other: &Vec<SolidBound>| if own.is_empty() { other.clone() } else { own };
         Self {
             energy: bound(self.energy, &other.energy),
             walls: bound(self.walls, &other.walls),
@@ -287,10 +288,10 @@ mod tests {
         let cases = all.iter().map(|map| map.cases(false)).collect::<Result<Vec<_>>>()?.concat();
         assert!(cases.len() >= 200, "{} cases: the matrix is to have 200", cases.len());
         for case in &cases {
-            assert!(case.judge.energy.is_some() && case.judge.walls.is_some(), "{}", case.map);
+            assert!(case.criteria.energy.is_some() && case.criteria.walls.is_some(), "{}", case.map);
             // A refusal is an outcome too, as long as it says what to write.
             if let Err(error) = case.scene.plan() {
-                assert!(error.kind == Kind::Scene && error.help.is_some(), "{}: {error}", case.map);
+                assert!(error.kind == ErrorKind::Scene && error.help.is_some(), "{}: {error}", case.map);
             }
         }
         for map in &all {
@@ -301,7 +302,7 @@ mod tests {
 
     #[test]
     fn a_map_that_is_not_there_names_the_nearest() -> Result<()> {
-        let error = choose(maps(None)?, &["flaot".to_string()], false).err();
+        let error = select_maps(maps(None)?, &["flaot".to_string()], false).err();
         assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"float\"?")));
         Ok(())
     }

@@ -4,28 +4,28 @@
 //! figures against bounds; [`EnergyBudget`] works the list off and keeps what came out. A case is right, stopped with a
 //! reason, wrong, or cut by its budget: unfinished.
 
-mod chart;
-mod judge;
-mod ledger;
+mod map_chart;
+mod criteria;
+mod result_store;
 mod maps;
-mod measure;
-mod trial;
+mod measurements;
+mod case_run;
 
-pub use judge::{Bound, Course, Figures, Judge, Of, Outcome};
-pub use ledger::{EnergyBudget, Entry};
-pub use maps::{Axis, Case, Map, choose, maps};
-pub use trial::{BUDGET, End, Trial};
+pub use case_run::{BUDGET, CaseEnd, CaseRun};
+pub use criteria::{Bound, CaseOutcome, Criteria, MeasuredFigures, MotionBound, SolidBound};
+pub use maps::{MapAxis, StressCase, StressMap, maps, select_maps};
+pub use result_store::{CaseResult, StressResults};
 
 /// What came out of a case, in a line.
-pub fn said(entry: &Entry) -> String {
+pub fn summary_line(entry: &CaseResult) -> String {
     let values = entry.case.values.join(", ");
     let Some((outcome, missed)) = entry.verdict() else { return format!("{values}: not run") };
-    let why = match entry.trial.as_ref().map(|trial| &trial.end) {
-        Some(End::Stopped(why)) => format!(": {why}"),
-        Some(End::Refused(why)) => format!(": refused: {why}"),
-        Some(End::Panicked(why)) => format!(": panicked: {why}"),
+    let why = match entry.run.as_ref().map(|trial| &trial.end) {
+        Some(CaseEnd::Stopped(why)) => format!(": {why}"),
+        Some(CaseEnd::Refused(why)) => format!(": refused: {why}"),
+        Some(CaseEnd::Panicked(why)) => format!(": panicked: {why}"),
         _ if missed.is_empty() => String::new(),
         _ => format!(": {}", missed.join("; ")),
     };
-    format!("{values}: {}{why}", chart::name(outcome))
+    format!("{values}: {}{why}", map_chart::outcome_name(outcome))
 }

@@ -7,8 +7,8 @@ mod contact;
 
 use super::{Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Law, Load, Motion, Role, SolidSpec};
 use crate::{
-    error::{Kind, Result},
-    geometry::{Mesh, Shape, Touchable},
+    error::{ErrorKind, Result},
+    geometry::{ContactGeometry, Mesh, Shape},
     math::expression::Formula,
     math::{Bivector, Matrix, Pose, Vector},
 };
@@ -178,7 +178,7 @@ fn a_box_at_rest_weighs_on_the_floor() {
     rests::<2>();
     rests::<3>();
     // Where two facets meet, the engine solves the points of both as one face's.
-    let seabed = meshed([1.0, 1.0, 1.0], false, Touchable::Fitting);
+    let seabed = meshed([1.0, 1.0, 1.0], false, ContactGeometry::Fitting);
     rests_on(solid("seabed", seabed, [0.0, 0.0, -0.5], Role::Fixed));
 }
 
@@ -228,8 +228,8 @@ where
     run(&mut *other, 400);
     assert_eq!(unbroken, (1..3).map(|i| other.kinematics(i)).collect::<Vec<_>>());
     assert_eq!(contacts, other.contacts());
-    assert_eq!(other.restore(&saved[..saved.len() / 2]).unwrap_err().kind, Kind::Restart);
-    assert_eq!(other.restore(b"\x03abc").unwrap_err().kind, Kind::Restart);
+    assert_eq!(other.restore(&saved[..saved.len() / 2]).unwrap_err().kind, ErrorKind::Restart);
+    assert_eq!(other.restore(b"\x03abc").unwrap_err().kind, ErrorKind::Restart);
 }
 
 #[test]
@@ -335,7 +335,7 @@ fn every_shape_is_felt_at_its_true_face() {
 }
 
 /// A block around the origin as a mesh; with `notch` its top has a groove along y, down to the middle.
-fn meshed(size: [f64; 3], notch: bool, contact: Touchable) -> Shape<3> {
+fn meshed(size: [f64; 3], notch: bool, contact: ContactGeometry) -> Shape<3> {
     let [x, y, z] = size.map(|s| 0.5 * s);
     let mut outline = vec![[-x, -z], [x, -z], [x, z], [-x, z]];
     if notch {
@@ -359,13 +359,13 @@ fn meshed(size: [f64; 3], notch: bool, contact: Touchable) -> Shape<3> {
 #[test]
 fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
     let size = [0.4, 0.4, 0.2];
-    for contact in [Touchable::Fitting, Touchable::Surface, Touchable::Hull] {
+    for contact in [ContactGeometry::Fitting, ContactGeometry::Surface, ContactGeometry::Hull] {
         let height = settled(meshed(size, false, contact), [0.03, 0.02, 0.0], 0.1);
         assert!((height - 0.1).abs() < 20e-6, "{contact:?}: {height}");
     }
-    let height = settled(meshed(size, true, Touchable::Fitting), [0.0, 0.02, 0.0], 0.0);
+    let height = settled(meshed(size, true, ContactGeometry::Fitting), [0.0, 0.02, 0.0], 0.0);
     assert!(height.abs() < 20e-6, "a ball lies in the groove: {height}");
-    let height = settled(meshed(size, true, Touchable::Hull), [0.0, 0.02, 0.0], 0.1);
+    let height = settled(meshed(size, true, ContactGeometry::Hull), [0.0, 0.02, 0.0], 0.1);
     assert!((height - 0.1).abs() < 20e-6, "the hull has no groove: {height}");
 }
 
@@ -373,10 +373,11 @@ fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
 fn a_moving_mesh_stands_on_its_hull_or_its_parts_and_is_saved_with_them() {
     let size = [0.1, 0.1, 0.1];
     for (shape, off) in [
-        (meshed(size, false, Touchable::Fitting), 20e-6),
-        (meshed(size, true, Touchable::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
+        (meshed(size, false, ContactGeometry::Fitting), 20e-6),
+        (meshed(size, true, ContactGeometry::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
     ] {
-        let seabed = solid("seabed", meshed([1.0, 1.0, 1.0], false, Touchable::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
+        let seabed =
+            solid("seabed", meshed([1.0, 1.0, 1.0], false, ContactGeometry::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
         let solids = [seabed, solid("body", shape, [0.0, 0.0, 0.055], Role::Free(light()))];
         let (mut first, mut second) = (engine(&solids, down()).unwrap(), engine(&solids, down()).unwrap());
         let run = |engine: &mut Box<dyn Engine<3>>, n: usize| {

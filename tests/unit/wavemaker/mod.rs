@@ -23,7 +23,7 @@ pub(super) fn all() -> Vec<(&'static str, Wave)> {
         ("flap", flap.regular(0.08, 1.2, 0.4, 2).unwrap()),
         ("sea", flap.sea(0.05, &sea, 7, 100).unwrap()),
         ("focused", piston.focused(0.05, &sea, 4.0, 10.0, 100).unwrap()),
-        ("recorded", piston.recorded(&Series::new(times, eta).unwrap(), 1.0, 2.0).unwrap()),
+        ("recorded", piston.recorded(&TimeSeries::new(times, eta).unwrap(), 1.0, 2.0).unwrap()),
         ("boussinesq", piston.solitary(0.1, Theory::Boussinesq).unwrap()),
         ("rayleigh", piston.solitary(0.1, Theory::Rayleigh).unwrap()),
     ]
@@ -192,7 +192,7 @@ fn a_record_gives_back_what_was_measured() {
     let eta = |t: f64| 0.02 * (TAU * t / 1.25 + 0.3).sin() + 0.01 * (TAU * t / 0.8).cos();
     let times: Vec<f64> = (0..=1000).map(|i| 2.0 + 0.02 * f64::from(i)).collect();
     let values: Vec<f64> = times.iter().map(|t| eta(*t)).collect();
-    let wave = maker.recorded(&Series::new(times, values).unwrap(), 1.5, 3.0).unwrap();
+    let wave = maker.recorded(&TimeSeries::new(times, values).unwrap(), 1.5, 3.0).unwrap();
     for t in [4.0, 7.3, 11.1, 19.0] {
         let shown = wave.elevation(1.5, t + 3.0).unwrap();
         // Whole periods of both fit into the record: the rest is round-off and the half per cent at either end.

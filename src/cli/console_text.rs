@@ -1,0 +1,173 @@
+//! The texts that are printed: at the start, at the end, for `scenes`.
+
+use std::fmt::Write;
+
+use pontoon::{
+    analysis::{Verdict, format_verdicts},
+    output::manifest::{FrameTotals, RunStatus},
+    run::{FinalBodyState, RunOutcome, RunStart},
+};
+
+pub use pontoon::math::format::{bytes, duration};
+
+use super::scene_lookup::BundledSceneInfo;
+
+/// A table with its columns aligned, two spaces in; the first row is its header.
+pub fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |i: usize| rows.iter().filter_map(|r| r.get(i)).map(|x| x.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths).map(|(x, &w)| format!("{x:w$}"));
+        text += &format!("  {}", cells.collect::<Vec<_>>().join("  "));
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    }
+    text
+}
+
+/// `n` with a metric prefix: 1.23 M.
+pub fn short_number(n: f64) -> String {
+    match n {
+        n if n >= 1e9 => format!("{:.2} G", n / 1e9),
+        n if n >= 1e6 => format!("{:.2} M", n / 1e6),
+        n if n >= 1e4 => format!("{:.1} k", n / 1e3),
+        n if n >= 100.0 => format!("{n:.0}"),
+        n => format!("{n:.2}"),
+    }
+}
+
+/// A number of threads as a user says it.
+pub fn threads(n: usize) -> String {
+    if n == 1 { "1 thread".into() } else { format!("{n} threads") }
+}
+
+/// How many warnings there are, if there are any.
+pub fn warnings(count: usize) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some("1 warning".into()),
+        n => Some(format!("{n} warnings")),
+    }
+}
+
+/// Said when a run begins.
+pub fn start_text(start: &RunStart) -> String {
+    let (manifest, count) = (start.manifest, start.manifest.particles);
+    let mut text = format!("{}\n", manifest.title);
+    for warning in &manifest.warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    let _ = writeln!(
+        text,
+        "{} water and {} boundary particles, {}, results in {}",
+        count.fluid,
+        count.boundary,
+        threads(manifest.threads),
+        start.folder.display()
+    );
+    text
+}
+
+/// Said when a run ends.
+pub fn end_text(outcome: &RunOutcome) -> String {
+    let manifest = &outcome.manifest;
+    let how = match manifest.status {
+        RunStatus::Finished => "finished",
+        RunStatus::Interrupted => "interrupted",
+        RunStatus::Running | RunStatus::Failed => "failed",
+    };
+    let mut text = format!("\n{}: {how}\n", manifest.title);
+    text += &table(&[
+        vec![
+            "simulated".into(),
+            format!("{:.6} of {} s in {} steps", manifest.simulated_s, manifest.until_s, manifest.steps),
+        ],
+        vec![
+            "wall time".into(),
+            format!(
+                "{} with {}, {} of processors",
+                duration(manifest.wall_s),
+                threads(manifest.threads),
+                duration(manifest.cpu_s)
+            ),
+        ],
+        vec!["speed".into(), format!("{} particle-steps/s", short_number(manifest.particle_steps_per_second))],
+    ]);
+    if manifest.removed > 0 {
+        let what = if manifest.removed == 1 { "particle" } else { "particles" };
+        let _ = writeln!(text, "\n{} water {what} left the domain and went: removed.csv", manifest.removed);
+    }
+    if !outcome.bodies.is_empty() {
+        let _ = write!(text, "\n{}", bodies(&outcome.bodies));
+    }
+    if !manifest.checks.is_empty() {
+        let _ = write!(text, "\n{}", checks(&manifest.checks));
+    }
+    let _ = writeln!(text, "\nfiles in {}", outcome.folder.display());
+    for file in &manifest.files {
+        let _ = writeln!(text, "  {file}");
+    }
+    match manifest.frames {
+        FrameTotals { count: 0, .. } => {}
+        FrameTotals { count: 1, bytes: size } => text += &format!("  1 frame, {}, in frames/\n", bytes(size as f64)),
+        FrameTotals { count, bytes: size } => {
+            text += &format!("  {count} frames, {}, in frames/\n", bytes(size as f64))
+        }
+    }
+    if manifest.status == RunStatus::Interrupted {
+        let _ = writeln!(text, "\ngo on with: pontoon resume {}", outcome.folder.display());
+    } else if manifest.files.iter().any(|file| file.starts_with("series/")) {
+        let _ = writeln!(text, "means, waves, spectra: pontoon stats {}", outcome.folder.display());
+    }
+    text
+}
+
+fn bodies(bodies: &[FinalBodyState]) -> String {
+    let axes = ["x", "y", "z"].iter().take(bodies[0].position.len()).map(|a| format!("{a} (m)"));
+    let mut rows = vec![vec!["body".to_string()]];
+    rows[0].extend(axes.chain(["speed (m/s)".into(), "turn (deg)".into()]));
+    for body in bodies {
+        let mut row = vec![body.name.clone()];
+        row.extend(body.position.iter().map(|x| format!("{x:.4}")));
+        row.push(format!("{:.4}", body.speed));
+        row.push(body.rotation_deg.iter().map(|x| format!("{x:.2}")).collect::<Vec<_>>().join(" "));
+        rows.push(row);
+    }
+    table(&rows)
+}
+
+fn checks(checks: &[Verdict]) -> String {
+    let all: Vec<(&[String], &Verdict)> = checks.iter().map(|v| (&[][..], v)).collect();
+    table(&format_verdicts::verdict_rows(&all, &[]))
+}
+
+/// What `scenes` prints.
+pub fn scene_list(scenes: &[BundledSceneInfo]) -> String {
+    let mut text = String::new();
+    for scene in scenes {
+        let place = scene.folder.as_ref().map_or("built in".into(), |folder| folder.display().to_string());
+        let _ = writeln!(text, "{}  ({place})\n  {}", scene.name, scene.title);
+        if !scene.about.is_empty() {
+            let _ = writeln!(text, "  {}", scene.about);
+        }
+    }
+    text + "\nrun one with: pontoon run NAME\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_said_briefly() {
+        assert_eq!([short_number(1.234e6), short_number(5.0), short_number(123.4)], ["1.23 M", "5.00", "123"]);
+    }
+
+    #[test]
+    fn a_table_is_aligned() {
+        let rows = [["a", "b"], ["long", "x"]].map(|r| r.map(String::from).to_vec());
+        assert_eq!(table(&rows), "  a     b\n  long  x\n");
+    }
+}

@@ -1,0 +1,63 @@
+//! The mean over time of what is read at every step, from one row of a table to the next.
+
+use serde::{Deserialize, Serialize};
+
+/// A mean in the making: all that it needs to go on to the same bits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct IntervalMean {
+    /// Time (s) and values of the last reading.
+    last: Option<(f64, Vec<f64>)>,
+    /// ∫ x dt since the last row by the trapezoid, and how long x was known (s): two for each column.
+    sums: Vec<(f64, f64)>,
+}
+
+impl IntervalMean {
+    /// Time (s) and values of the last reading.
+    pub fn last(&self) -> Option<(f64, &[f64])> {
+        self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
+    }
+
+    /// Adds the reading `row` of time `t` (s), later than the last.
+    pub fn add(&mut self, t: f64, row: Vec<f64>) {
+        self.sums.resize(row.len(), (0.0, 0.0));
+        if let Some((before, old)) = &self.last {
+            for ((sum, known), (a, b)) in self.sums.iter_mut().zip(old.iter().zip(&row)) {
+                if a.is_finite() && b.is_finite() {
+                    *sum += 0.5 * (t - before) * (a + b);
+                    *known += t - before;
+                }
+            }
+        }
+        self.last = Some((t, row));
+    }
+
+    /// The mean since the last row, of the last `totals` columns the reading itself; a mean of nothing is the reading, too.
+    /// The next begins here.
+    pub fn take(&mut self, totals: usize) -> Vec<f64> {
+        let row = self.last.as_ref().map_or(&[][..], |(_, row)| row);
+        let means = row.len().saturating_sub(totals);
+        let of = |(i, (x, (sum, known))): (usize, (&f64, &(f64, f64)))| {
+            if i < means && *known > 0.0 { sum / known } else { *x }
+        };
+        let taken = row.iter().zip(&self.sums).enumerate().map(of).collect();
+        self.sums.fill((0.0, 0.0));
+        taken
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::IntervalMean;
+
+    #[test]
+    fn a_mean_is_that_of_the_line_through_the_readings_and_gaps_do_not_count() {
+        let mut mean = IntervalMean::default();
+        mean.add(0.0, vec![1.0, f64::NAN, 0.0]);
+        assert_eq!(mean.take(1)[0], 1.0, "of a single reading it is the reading");
+        mean.add(1.0, vec![3.0, 5.0, 1.0]);
+        mean.add(2.0, vec![3.0, 7.0, 4.0]);
+        assert_eq!(mean.take(1), [2.5, 6.0, 4.0], "2 and 3 over a second each; 6 where it was known; the total itself");
+        mean.add(2.5, vec![5.0, 7.0, 5.0]);
+        assert_eq!(mean.take(1), [4.0, 7.0, 5.0], "it begins anew where the row before was written");
+    }
+}

@@ -1,0 +1,116 @@
+//! How the face of a driven solid goes to and fro at the still level.
+
+use super::PreflightContext;
+use crate::{
+    math::{Bounds, Vector},
+    solid::{Motion, Solid},
+};
+
+/// Times at which a driven solid is looked at.
+const TIMES_SEEN: usize = 2000;
+
+/// Share of a motion's whole range that a turn back must have to be one.
+const TURN: f64 = 0.05;
+
+/// How a solid's face goes at the still level.
+pub(super) struct DrivenStroke<const D: usize> {
+    /// Sideways, where it goes furthest, or where the waves of its law go; a unit vector.
+    pub(super) direction: Vector<D>,
+    /// The largest swing, m, and half its period, s; no period if it does not turn.
+    pub(super) stroke: f64,
+    pub(super) half_period: Option<f64>,
+    /// The largest speed, m/s.
+    pub(super) speed: f64,
+}
+
+impl<const D: usize> PreflightContext<'_, D> {
+    /// How the material point in the still level goes sideways.
+    pub(super) fn driven_stroke(
+        &self,
+        solid: &Solid<D>,
+        motion: &Motion<D>,
+        bounds: &Bounds<D>,
+    ) -> Option<DrivenStroke<D>> {
+        let mut mark = 0.5 * (bounds.min + bounds.max);
+        mark[D - 1] = self.still_water.level;
+        if let Some(law) = motion.wave() {
+            let (way, speed): (Vec<f64>, Vec<f64>) = law.course(self.end_time()).into_iter().unzip();
+            let stroke = largest_stroke(&way).map_or_else(|| range(&way), |(stroke, _)| stroke);
+            let speed = speed.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+            return Some(DrivenStroke { direction: wave_direction(motion, &mark)?, stroke, half_period: None, speed });
+        }
+        let local = solid.kinematics.pose.local(&mark);
+        let step = self.end_time() / TIMES_SEEN as f64;
+        let sideways: Vec<Vector<D>> = (0..=TIMES_SEEN)
+            .map(|k| {
+                let mut way = motion.kinematics(&solid.spec.pose, k as f64 * step).pose.point(&local) - mark;
+                way[D - 1] = 0.0;
+                way
+            })
+            .collect();
+        let far = sideways.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?.try_normalize(0.0)?;
+        let way: Vec<f64> = sideways.iter().map(|x| x.dot(&far)).collect();
+        let speed = way.windows(2).map(|ab| (ab[1] - ab[0]).abs() / step).fold(0.0, f64::max);
+        let (stroke, half) = match largest_stroke(&way) {
+            Some((stroke, steps)) => (stroke, Some(steps as f64 * step)),
+            None => (range(&way), None),
+        };
+        Some(DrivenStroke { direction: far, stroke, half_period: half, speed })
+    }
+}
+
+/// Where the waves of a paddle by name go, whose point at `mark` (m) is in the still level; level, a unit vector.
+pub(super) fn wave_direction<const D: usize>(motion: &Motion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
+    let mut way = *motion.headings(mark).first()?;
+    way[D - 1] = 0.0;
+    way.try_normalize(0.0)
+}
+
+/// How far `way` is from end to end.
+fn range(way: &[f64]) -> f64 {
+    let (least, most) =
+        way.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    most - least
+}
+
+/// The largest swing of `way` from one turn to the next, and how many samples it takes; `None` if it never turns.
+fn largest_stroke(way: &[f64]) -> Option<(f64, usize)> {
+    let range = range(way);
+    let mut turns = vec![0];
+    // The furthest sample since the last turn, in the present sense.
+    let (mut furthest, mut sense) = (0, 0.0);
+    for (i, x) in way.iter().enumerate() {
+        let on = x - way[furthest];
+        if sense == 0.0 && on.abs() > TURN * range {
+            (furthest, sense) = (i, on.signum());
+        } else if on * sense >= 0.0 && sense != 0.0 {
+            furthest = i;
+        } else if on * sense < -TURN * range {
+            turns.push(furthest);
+            (furthest, sense) = (i, -sense);
+        }
+    }
+    if turns.len() < 2 {
+        return None;
+    }
+    turns.push(furthest);
+    let swings = turns.windows(2).map(|ab| ((way[ab[1]] - way[ab[0]]).abs(), ab[1] - ab[0]));
+    swings.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(stroke, steps)| *stroke > 0.0 && *steps > 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    #[test]
+    fn the_largest_swing_is_found_under_a_ramp_and_past_noise() {
+        let way = |t: f64| 0.1 * (t / 4.0).min(1.0) * (TAU * t).sin() + 1e-3 * (57.0 * t).sin();
+        let samples: Vec<f64> = (0..=1000).map(|i| way(0.01 * i as f64)).collect();
+        let (stroke, steps) = largest_stroke(&samples).unwrap_or((0.0, 0));
+        // Noise moves the turns by a few samples and the stroke by its own 2 per cent.
+        assert!((stroke - 0.2).abs() < 0.005 && (45..=55).contains(&steps), "{stroke} {steps}");
+        assert_eq!(largest_stroke(&[0.0, 0.1, 0.3, 0.4]), None, "it never turns");
+    }
+}

@@ -1,0 +1,240 @@
+//! Waves that driven solids make: those that were asked for by name as they are, those of another motion by the linear
+//! theory of wavemakers for its largest swing; against dp, the paddle and the tank.
+
+use serde::Serialize;
+
+use super::{
+    Finding, PreflightContext,
+    rounding::{three_digits, two_digits_down},
+    thickness::has_full_layers,
+    wavemaker_site::WavemakerSite,
+};
+use crate::{
+    scene::world_bounds,
+    solid::{Motion, Role, Solid},
+    wavemaker::{Paddle, Regime, Region, Train},
+};
+
+/// Wave height over dp below which waves lose much of it on their way.
+pub(super) const LEAST: f64 = 5.0;
+
+/// Wave length over dp below which a wave is not resolved: two supports of the kernel to a crest.
+const SHORTEST: f64 = 15.0;
+
+/// The wave of a driven solid.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GeneratedWave {
+    /// Name of the solid.
+    pub solid: String,
+    /// Its kind, in the words of a scene; absent if the solid's motion was given instead.
+    pub kind: Option<&'static str>,
+    /// Order of the paddle's theory.
+    pub order: usize,
+    /// The largest swing from one turn to the next, at the still level, m.
+    pub stroke_m: f64,
+    /// Period, of a sea that of the peak; of a motion twice the time of its swing; s. Absent of a solitary wave.
+    pub period_s: Option<f64>,
+    /// Height: as named, of a sea the significant one; else by linear theory from the stroke; m.
+    pub height_m: f64,
+    /// The same over dp.
+    pub height_dp: f64,
+    /// Length, of a solitary wave between the points of a hundredth of its height, m.
+    pub length_m: f64,
+    /// The same over dp.
+    pub length_dp: f64,
+    /// Depth at the paddle, m.
+    pub depth_m: f64,
+    /// kd; absent of a solitary wave.
+    pub kd: Option<f64>,
+    /// How deep the water is for the wave; a solitary one is in shallow water.
+    pub regime: Regime,
+    /// Which theory holds, after the chart of Le Méhauté.
+    pub region: Region,
+    /// Speed of the crests, m/s.
+    pub celerity_mps: f64,
+    /// Speed of the wave's front and energy, m/s.
+    pub group_mps: f64,
+    /// The paddle's largest speed at the still level, m/s.
+    pub paddle_mps: f64,
+    /// How long the paddle takes to its full motion, s; 0 if its motion was given.
+    pub ramp_s: f64,
+    /// From the paddle to the first thing that answers, m.
+    pub reach_m: f64,
+    /// The solid that answers; absent of the end of the water.
+    pub answers: Option<String>,
+    /// Where a damping zone begins before that, m from the paddle.
+    pub damping_m: Option<f64>,
+    /// When the front is where something answers, s.
+    pub far_s: f64,
+    /// When what comes back from there is at the paddle, s.
+    pub back_s: f64,
+}
+
+impl<const D: usize> PreflightContext<'_, D> {
+    /// The waves of the solids that are driven to and fro through the surface.
+    pub(super) fn generated_waves(&self, findings: &mut Vec<Finding>) -> Vec<GeneratedWave> {
+        let mut waves = Vec::new();
+        let depth = self.still_water.depth;
+        if self.g > 0.0 && depth < 10.0 * self.dp() * (1.0 - 1e-9) {
+            let what = format!(
+                "the water is {} m deep, {} dp: too few for waves and floats, which take 10",
+                three_digits(depth),
+                three_digits(depth / self.dp())
+            );
+            findings.push(Finding::warning("shallow", what, format!("dp = {}", two_digits_down(0.1 * depth))));
+        }
+        for solid in self.solids() {
+            let Role::Driven(motion) = &solid.spec.role else { continue };
+            if let Some(law) = motion.wave() {
+                self.check_site(solid, motion, law, findings);
+            }
+            let Some((wave, stand)) = self.generated_wave(solid, motion) else { continue };
+            self.check_resolution(&wave, findings);
+            self.misplaced_zones(&wave, &stand, findings);
+            if let Some(law) = motion.wave() {
+                self.check_wave(&wave, solid, law, findings);
+                self.check_speed(&wave, law, findings);
+                self.check_focus(&wave, &stand, law, findings);
+            }
+            waves.push(wave);
+        }
+        self.dry_zones(findings);
+        self.check_statistic_periods(&waves, findings);
+        waves
+    }
+
+    /// What is too small for dp.
+    fn check_resolution(&self, wave: &GeneratedWave, findings: &mut Vec<Finding>) {
+        let name = &wave.solid;
+        if wave.height_dp < LEAST {
+            let what = format!(
+                "\"{name}\" makes waves about {} m high, {} dp; with less than {LEAST} dp they lose height",
+                three_digits(wave.height_m),
+                three_digits(wave.height_dp)
+            );
+            findings.push(Finding::warning(
+                "low_waves",
+                what,
+                format!("dp = {}", two_digits_down(wave.height_m / LEAST)),
+            ));
+        }
+        if wave.length_dp < SHORTEST {
+            let what = format!(
+                "\"{name}\" makes waves {} m long, {} dp; with less than {SHORTEST} dp they die away",
+                three_digits(wave.length_m),
+                three_digits(wave.length_dp)
+            );
+            findings.push(Finding::warning(
+                "short_waves",
+                what,
+                format!("dp = {}", two_digits_down(wave.length_m / SHORTEST)),
+            ));
+        }
+    }
+
+    fn generated_wave(&self, solid: &Solid<D>, motion: &Motion<D>) -> Option<(GeneratedWave, WavemakerSite<D>)> {
+        let level = self.still_water.level;
+        let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
+        // A tank that is shaken holds the water rather than pushing it.
+        if has_full_layers(&solid.spec.shape)
+            || self.g == 0.0
+            || bounds.min[D - 1] >= level
+            || bounds.max[D - 1] <= level
+        {
+            return None;
+        }
+        let swing = self.driven_stroke(solid, motion, &bounds)?;
+        let named = motion.wave();
+        let [stand, behind] = [swing.direction, -swing.direction].map(|way| WavemakerSite::new(&bounds, way, level));
+        // A given motion makes waves to both sides: those count that go the longer way.
+        let stand = if named.is_none() && self.water_end(&behind) > self.water_end(&stand) { behind } else { stand };
+        let depth = named.map_or(self.still_water.depth, |wave| wave.depth());
+        let facts = named.map(|wave| wave.facts());
+        let kind = facts.map(|facts| facts.kind);
+        let (order, ramp) = (facts.map_or(1, |f| f.order), named.map_or(0.0, |wave| wave.ramp_time()));
+        let mut wave = match facts.and_then(|facts| facts.solitary) {
+            Some(own) => GeneratedWave {
+                period_s: None,
+                height_m: own.height,
+                length_m: own.length(),
+                kd: None,
+                regime: Regime::Shallow,
+                region: Region::Solitary,
+                celerity_mps: own.celerity,
+                group_mps: own.celerity,
+                ..GeneratedWave::empty(&solid.spec.name)
+            },
+            None => {
+                let train = match facts.and_then(|facts| facts.train) {
+                    Some(train) => train,
+                    None => Train::of(std::f64::consts::PI / swing.half_period?, depth, self.g),
+                };
+                let height =
+                    facts.map_or_else(|| swing.stroke * self.equivalent_paddle(motion).transfer(&train), |f| f.height);
+                GeneratedWave {
+                    period_s: Some(train.period()),
+                    height_m: height,
+                    length_m: train.length(),
+                    kd: Some(train.kd()),
+                    regime: train.regime(),
+                    region: train.region(height),
+                    celerity_mps: train.celerity(),
+                    group_mps: train.group(),
+                    ..GeneratedWave::empty(&solid.spec.name)
+                }
+            }
+        };
+        (wave.kind, wave.order, wave.depth_m, wave.ramp_s) = (kind, order, depth, ramp);
+        (wave.stroke_m, wave.paddle_mps) = (swing.stroke, swing.speed);
+        (wave.height_dp, wave.length_dp) = (wave.height_m / self.dp(), wave.length_m / self.dp());
+        (wave.reach_m, wave.answers) = self.first_reflector(solid, &stand);
+        wave.damping_m = self.damping_start(&stand).filter(|begins| *begins < wave.reach_m);
+        (wave.far_s, wave.back_s) = (wave.reach_m / wave.group_mps, 2.0 * wave.reach_m / wave.group_mps);
+        (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some((wave, stand))
+    }
+
+    /// The motion as a paddle's.
+    fn equivalent_paddle(&self, motion: &Motion<D>) -> Paddle {
+        match motion.hinge_height() {
+            Some(height) if height < self.still_water.level => Paddle::Flap { arm: self.still_water.level - height },
+            _ => Paddle::Piston,
+        }
+    }
+}
+
+impl GeneratedWave {
+    /// When the first answer is back at the paddle, and from where, in one line.
+    pub fn first_reflection(&self) -> String {
+        let (reach, far, back) = (three_digits(self.reach_m), three_digits(self.far_s), three_digits(self.back_s));
+        let what = self.answers.as_ref().map_or("the far end".into(), |name| format!("\"{name}\""));
+        let zone = self.damping_m.map(|begins| format!("; a damping zone begins at {} m", three_digits(begins)));
+        format!("{reach} m to {what}: there after {far} s, back after {back} s{}", zone.unwrap_or_default())
+    }
+
+    fn empty(solid: &str) -> Self {
+        Self {
+            solid: solid.into(),
+            kind: None,
+            order: 1,
+            stroke_m: 0.0,
+            period_s: None,
+            height_m: 0.0,
+            height_dp: 0.0,
+            length_m: 0.0,
+            length_dp: 0.0,
+            depth_m: 0.0,
+            kd: None,
+            regime: Regime::Shallow,
+            region: Region::Airy,
+            celerity_mps: 0.0,
+            group_mps: 0.0,
+            paddle_mps: 0.0,
+            ramp_s: 0.0,
+            reach_m: 0.0,
+            answers: None,
+            damping_m: None,
+            far_s: 0.0,
+            back_s: 0.0,
+        }
+    }
+}

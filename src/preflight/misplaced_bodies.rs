@@ -1,0 +1,89 @@
+//! What can hardly be meant of bodies and their ties: beside the water or longer than it, harder to turn than its size explains, made
+//! fast far away.
+
+use super::{
+    Finding, PreflightContext,
+    rounding::{three_digits, two_digits_up},
+};
+use crate::{
+    math::{Bounds, Vector},
+    scene::world_bounds,
+    solid::{Role, Solid},
+};
+
+impl<const D: usize> PreflightContext<'_, D> {
+    /// Free bodies and ties where one would not look for them; `touching`: which solids touch another.
+    pub(super) fn misplaced_bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) {
+        let water = Bounds::around(self.system.fluid().r).grown(0.5 * self.dp());
+        for (i, solid) in self.solids().iter().enumerate() {
+            let Role::Free(body) = &solid.spec.role else { continue };
+            if self.g > 0.0 && !touching[i] {
+                findings.extend(self.outside_water(solid, &water));
+            }
+            let size = solid.spec.shape.bounds().size().norm();
+            let inertia = if D == 2 { body.inertia[(0, 0)] } else { body.inertia.diagonal().max() };
+            let gyration = (inertia / body.mass).sqrt();
+            if gyration > size {
+                let what = format!(
+                    "\"{}\" has a radius of gyration of {} m and is {} m large: it hardly turns",
+                    solid.spec.name,
+                    three_digits(gyration),
+                    three_digits(size)
+                );
+                let mend = "leave inertia out, which is then the homogeneous shape's".into();
+                findings.push(Finding::warning("large_inertia", what, mend));
+            }
+        }
+        self.distant_attachments(findings);
+    }
+
+    /// A body that no water is under, or that is longer than all of it.
+    fn outside_water(&self, solid: &Solid<D>, water: &Bounds<D>) -> Option<Finding> {
+        let (name, own) = (&solid.spec.name, world_bounds(&solid.spec.shape, &solid.kinematics.pose));
+        let (long, there) = (own.size(), water.size());
+        for (axis, word) in ["x", "y"].iter().enumerate().take(D - 1) {
+            let [first, last] = [water.min[axis], water.max[axis]].map(three_digits);
+            if own.min[axis] > water.max[axis] || own.max[axis] < water.min[axis] {
+                let what = format!("\"{name}\" starts beside the water, which is from {word} = {first} to {last} m");
+                let mend = "put it over the water, or on something that carries it".into();
+                return Some(Finding::warning("beside_water", what, mend));
+            }
+            if long[axis] > there[axis] + 2.0 * self.dp() {
+                let what = format!(
+                    "\"{name}\" is {} m long along {word}, and the water is {} m: it cannot float there",
+                    three_digits(long[axis]),
+                    three_digits(there[axis])
+                );
+                let mend =
+                    format!("make it smaller, or the tank longer by {} m", two_digits_up(long[axis] - there[axis]));
+                return Some(Finding::warning("larger_than_water", what, mend));
+            }
+        }
+        None
+    }
+
+    /// Ends of joints, lines and forces that are further off their free body than that is large.
+    fn distant_attachments(&self, findings: &mut Vec<Finding>) {
+        let links = self.system.constraints();
+        let joints = links.joints.iter().flat_map(|j| j.between.map(|end| ("joint", &j.name, end, j.at)));
+        let springs = links.springs.iter().flat_map(|s| s.ends.map(|end| ("spring", &s.name, end.solid, end.at)));
+        let ropes = links.ropes.iter().flat_map(|r| r.ends.map(|end| ("rope", &r.name, end.solid, end.at)));
+        let forces = links.forces.iter().filter_map(|f| Some(("force", &f.name, Some(f.solid), f.at?)));
+        for (kind, name, end, at) in joints.chain(springs).chain(ropes).chain(forces) {
+            let Some(solid) = end.map(|solid| &self.solids()[solid]) else { continue };
+            findings.extend(self.distant_attachment(kind, name, solid, &at));
+        }
+    }
+
+    fn distant_attachment(&self, kind: &str, name: &str, solid: &Solid<D>, at: &Vector<D>) -> Option<Finding> {
+        let size = solid.spec.shape.bounds().size().norm();
+        let off = solid.spec.shape.signed_distance(&solid.kinematics.pose.local(at));
+        (matches!(solid.spec.role, Role::Free(_)) && off > size).then(|| {
+            let body = &solid.spec.name;
+            let what = format!("{kind} \"{name}\" is made fast to \"{body}\" {} m off it", three_digits(off));
+            let mend =
+                format!("\"{body}\" is {} m large: is the place meant, a point of the world?", three_digits(size));
+            Finding::note("far_tie", what, mend)
+        })
+    }
+}

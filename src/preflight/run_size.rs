@@ -1,0 +1,137 @@
+//! How large a run is: particles, memory, disk.
+
+use serde::Serialize;
+
+use super::{
+    Finding, PreflightContext, StepSizeLimits,
+    rounding::{three_digits, two_digits_up},
+};
+use crate::{math::format::bytes, model::PressureGradient, output::frame::particle_bytes};
+
+/// Disk that frames may take without a word, B.
+const BUDGET: f64 = 10e9;
+
+/// LoadBreakdown of the water's lattice that solids may take: without a word, and without a warning.
+const TAKEN: [f64; 2] = [0.25, 0.5];
+
+/// Length of a number in a table with its comma, B: seventeen digits as a rule.
+const NUMBER: f64 = 19.0;
+
+/// How large a run is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunSize {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particles of water.
+    pub fluid: usize,
+    /// Boundary particles of all solids.
+    pub boundary: usize,
+    /// Those of them that have water near them; the others cost next to nothing.
+    pub wet: usize,
+    /// Layers of boundary particles.
+    pub layers: usize,
+    /// Depth of the water, m.
+    pub depth_m: f64,
+    /// The same over dp.
+    pub depth_dp: f64,
+    /// Places of the water's lattice that solids took.
+    pub removed: usize,
+    /// Memory of its arrays, lists and frames while it runs, B: about.
+    pub memory_bytes: f64,
+    /// What it will write.
+    pub disk: DiskUse,
+}
+
+/// What a run will write, about, B.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DiskUse {
+    /// Tables of the probes.
+    pub tables_bytes: f64,
+    /// Number of frames.
+    pub frames: usize,
+    /// All frames.
+    pub frames_bytes: f64,
+    /// A checkpoint, before it is packed.
+    pub checkpoint_bytes: f64,
+}
+
+impl<const D: usize> PreflightContext<'_, D> {
+    /// How large the run is; `columns`: how many each probe writes beside the time.
+    pub(super) fn size(
+        &self,
+        step: &StepSizeLimits,
+        columns: &[usize],
+        removed: usize,
+        findings: &mut Vec<Finding>,
+    ) -> RunSize {
+        let (system, model) = (self.system, self.system.model());
+        let (fluid, boundary) = (system.fluid().len(), system.boundary().len());
+        let disk = self.disk(step, columns);
+        let share = removed as f64 / (removed + fluid) as f64;
+        if share > TAKEN[0] {
+            let what = format!("solids take {} % of what the water was to fill", three_digits(100.0 * share));
+            let mend = "if that is not meant, see where they are".to_string();
+            findings.push(if share > TAKEN[1] {
+                Finding::warning("water_removed", what, mend)
+            } else {
+                Finding::note("water_removed", what, mend)
+            });
+        }
+        if disk.frames_bytes > BUDGET {
+            let what = format!("{} frames will take {}", disk.frames, bytes(disk.frames_bytes));
+            let every = self.plan.frames.as_ref().map_or(0.0, |f| f.every).max(step.dt_s);
+            let mend =
+                format!("frames.every = {} keeps them to 10 GB", two_digits_up(every * disk.frames_bytes / BUDGET));
+            findings.push(Finding::warning("large_frames", what, mend));
+        }
+        RunSize {
+            dimension: D,
+            fluid,
+            boundary,
+            wet: system.boundary_near_fluid_count(),
+            layers: model.boundary_layers(),
+            depth_m: self.still_water.depth,
+            depth_dp: self.still_water.depth / model.dp,
+            removed,
+            memory_bytes: self.memory(),
+            disk,
+        }
+    }
+
+    /// Memory (B) of a run: the arrays of the particles, their lists, what a step and a frame take for a while.
+    fn memory(&self) -> f64 {
+        let system = self.system;
+        let (fluid, boundary) = (system.fluid().len() as f64, system.boundary().len() as f64);
+        let (d, number) = (D as f64, 8.0);
+        let particle = 2.0 * d * number + number + 4.0;
+        let tensor = |needed: bool| if needed { 3.0 * d * d * number } else { 0.0 };
+        let stress = tensor(system.model().viscosity.stress().is_some());
+        let forms = tensor(system.model().gradient == PressureGradient::Corrected);
+        let extra = if system.model().shift().is_some() { (2.0 * d + 2.0) * number } else { 0.0 };
+        // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
+        let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + forms + extra;
+        let skin = particle + (2.0 * d + 2.0) * number;
+        // A frame is put together as numbers, packed, as text and as the file's text.
+        let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * particle_bytes(&frames.fields).1);
+        // States to go back to: two, and what it takes to make one.
+        let states = 3.0 * (fluid * (particle + d * number) + boundary * particle);
+        fluid * water + boundary * skin + states + system.neighbour_list_bytes() as f64 + fluid.max(boundary) * picture
+    }
+
+    fn disk(&self, step: &StepSizeLimits, columns: &[usize]) -> DiskUse {
+        let (fluid, boundary) = (self.system.fluid().len() as f64, self.system.boundary().len() as f64);
+        // An output comes at every step at most.
+        let count = |every: f64| (self.end_time() / every.max(step.dt_s)).floor() + 1.0;
+        let tables = self.plan.probes.iter().zip(columns);
+        let tables_bytes = tables.map(|(probe, n)| count(probe.every) * (n + 1) as f64 * NUMBER).sum();
+        let frames = self.plan.frames.as_ref().map_or(0.0, |f| count(f.every));
+        let (water, solids) = self.plan.frames.as_ref().map_or((0.0, 0.0), |frames| particle_bytes(&frames.fields));
+        let d = D as f64;
+        DiskUse {
+            tables_bytes,
+            frames: frames as usize,
+            frames_bytes: frames * (fluid * water + boundary * solids),
+            checkpoint_bytes: fluid * (3.0 * d * 8.0 + 11.0) + boundary * (2.0 * d * 8.0 + 11.0),
+        }
+    }
+}

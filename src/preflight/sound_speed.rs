@@ -1,0 +1,171 @@
+//! The speed of sound against the speeds that are known beforehand, and how long a step may be.
+
+use serde::Serialize;
+
+use super::{
+    Finding, PreflightContext,
+    rounding::{three_digits, two_digits_down, two_digits_up},
+    surface_samples,
+};
+use crate::{
+    model::TimeScheme,
+    solid::{Role, Solid},
+    sph::boundary::Slip,
+};
+
+/// Speed of sound over the largest speed, at least: densities vary by the square of its inverse, then 1 %.
+const TIMES: f64 = 10.0;
+
+/// Times at which a driven solid is looked at.
+const TIMES_SEEN: usize = 1000;
+
+/// Places of a driven solid that are looked at.
+const PLACES_SEEN: usize = 32;
+
+/// Speed of sound and what it must outrun.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SoundSpeed {
+    /// Speed of sound c₀, m/s.
+    pub c0_mps: f64,
+    /// c₀ over √(g·depth), –; absent without gravity.
+    pub over_depth: Option<f64>,
+    /// Speeds that are known beforehand, the largest first.
+    pub expected: Vec<ExpectedSpeed>,
+}
+
+/// A speed known beforehand.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExpectedSpeed {
+    /// Of what.
+    pub what: String,
+    /// m/s.
+    pub speed_mps: f64,
+}
+
+impl SoundSpeed {
+    /// The largest speed expected, m/s; 0 if none is known.
+    pub fn fastest(&self) -> f64 {
+        self.expected.first().map_or(0.0, |e| e.speed_mps)
+    }
+}
+
+/// How long a step may be, s.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepSizeLimits {
+    /// The longest step: the least of those below. Impacts shorten it further.
+    pub dt_s: f64,
+    /// What binds it: `sound`, `gravity`, `viscosity`, `springs` or `dt_max`.
+    pub bound_by: String,
+    /// By sound, CFL h/c₀.
+    pub sound_s: f64,
+    /// By gravity, CFL √(h/g); absent without it.
+    pub gravity_s: Option<f64>,
+    /// By viscosity, h²/(8 ν₀); absent without one.
+    pub viscosity_s: Option<f64>,
+    /// By springs and stiff motors; absent without any.
+    pub springs_s: Option<f64>,
+    /// By the model's `dt_max`; absent without one.
+    pub dt_max_s: Option<f64>,
+    /// Steps to the end at dt: there will be some more.
+    pub steps: f64,
+    /// Force passes a step.
+    pub passes: usize,
+}
+
+impl<const D: usize> PreflightContext<'_, D> {
+    /// Speeds that are known: of long waves, driven faces, falling bodies, water and bodies at the start.
+    pub(super) fn sound_speed(&self, findings: &mut Vec<Finding>) -> SoundSpeed {
+        let long = (self.g * self.still_water.depth).sqrt();
+        let water = self.system.fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let mut expected = vec![("long waves, √(g·depth)".to_string(), long), ("the water at the start".into(), water)];
+        for (i, solid) in self.solids().iter().enumerate() {
+            let name = &solid.spec.name;
+            match &solid.spec.role {
+                Role::Fixed => {}
+                Role::Driven(_) => expected.push((format!("\"{name}\", driven"), self.driven_speed(i))),
+                Role::Free(_) => expected.push(self.impact_speed(solid)),
+            }
+        }
+        expected.retain(|(_, speed)| *speed > 0.0);
+        expected.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let c0 = self.system.model().c0;
+        if let Some((what, speed)) = expected.first()
+            && c0 < TIMES * speed * (1.0 - 1e-3)
+        {
+            let text = format!(
+                "the speed of sound, {} m/s, is only {} times that of {what}, {} m/s: the water's \
+                 density will vary by {} %",
+                three_digits(c0),
+                three_digits(c0 / speed),
+                three_digits(*speed),
+                three_digits(100.0 * (speed / c0).powi(2)),
+            );
+            let mend = format!("{TIMES} times needs  c0 = {}  in [model]", two_digits_up(TIMES * speed));
+            findings.push(Finding::warning("slow_sound", text, mend));
+        }
+        let over_depth = (long > 0.0).then(|| c0 / long);
+        let expected = expected.into_iter().map(|(what, speed_mps)| ExpectedSpeed { what, speed_mps }).collect();
+        SoundSpeed { c0_mps: c0, over_depth, expected }
+    }
+
+    /// The largest speed (m/s) with which a face of driven solid `i` pushes water below the still level. Along the
+    /// face it counts only where water sticks to it; a face that recedes does not, gravity fills the space.
+    fn driven_speed(&self, i: usize) -> f64 {
+        let Role::Driven(motion) = &self.solids()[i].spec.role else { return 0.0 };
+        let slips = self.system.model().slip == Slip::Free;
+        let mut fastest: f64 = 0.0;
+        for k in 0..=TIMES_SEEN {
+            let now = motion.kinematics(&self.solids()[i].spec.pose, self.end_time() * k as f64 / TIMES_SEEN as f64);
+            for face in surface_samples::thinned(&self.surface_samples[i], PLACES_SEEN) {
+                let x = now.pose.point(&face.x);
+                if x[D - 1] <= self.still_water.level {
+                    let v = now.velocity + now.spin.velocity_at(&(x - now.centre));
+                    fastest = fastest.max(if slips { (now.pose.rotation * face.n).dot(&v) } else { v.norm() });
+                }
+            }
+        }
+        fastest
+    }
+
+    /// The speed (m/s) of a free body at the start, or with which it will strike the water.
+    fn impact_speed(&self, solid: &Solid<D>) -> (String, f64) {
+        let (name, start) = (&solid.spec.name, solid.kinematics.velocity.norm());
+        let drop = self.lowest_point(solid) - self.still_water.level;
+        if drop > 0.0 && self.g > 0.0 {
+            let what = format!("\"{name}\" after a fall of {} m", three_digits(drop));
+            return (what, (start * start + 2.0 * self.g * drop).sqrt());
+        }
+        (format!("\"{name}\" at the start"), start)
+    }
+
+    /// How long a step may be; `springs`: as far as they go, s.
+    pub(super) fn step_size_limits(&self, springs: f64, findings: &mut Vec<Finding>) -> StepSizeLimits {
+        let model = self.system.model();
+        let finite = |x: f64| (x > 0.0 && x.is_finite()).then_some(x);
+        let sound_s = model.cfl * model.h / model.c0;
+        let gravity_s = finite(model.cfl * (model.h / self.system.gravity().norm()).sqrt());
+        let (viscosity_s, dt_max_s) = (finite(model.viscosity.step_limit(model.h)), finite(model.dt_max));
+        let springs_s = finite(springs);
+        let others = [("gravity", gravity_s), ("viscosity", viscosity_s), ("springs", springs_s), ("dt_max", dt_max_s)];
+        let mut all = vec![("sound".to_string(), sound_s)];
+        all.extend(others.into_iter().filter_map(|(what, dt)| Some((what.to_string(), dt?))));
+        let (bound_by, dt_s) =
+            all.into_iter().fold((String::new(), f64::INFINITY), |least, x| if x.1 < least.1 { x } else { least });
+        let slower = sound_s / dt_s;
+        if bound_by == "springs" && slower > 2.0 {
+            let what = format!(
+                "springs or motors are so stiff that the run takes {} times as many steps",
+                three_digits(slower)
+            );
+            // What swings so fast in the water is beyond the sound that particles carry: docs/stability.md.
+            let damped =
+                "in water a spring whose body swings as fast has a hundredth of the critical damping, 2 √(k m)";
+            let soft = two_digits_down(slower.powi(-2));
+            let mend = format!("{soft} of the stiffness is soft enough; a rope costs no steps; {damped}");
+            findings.push(Finding::warning("stiff_spring", what, mend));
+        }
+        let passes = if matches!(model.scheme, TimeScheme::Verlet { .. }) { 1 } else { 2 };
+        let steps = (self.end_time() / dt_s).ceil();
+        StepSizeLimits { dt_s, bound_by, sound_s, gravity_s, viscosity_s, springs_s, dt_max_s, steps, passes }
+    }
+}

@@ -1,0 +1,61 @@
+//! The faces of a solid, seen at the places of its outermost boundary particles.
+
+use crate::{
+    geometry::Shape,
+    math::Vector,
+    solid::{Role, Solid},
+};
+
+/// A place on the true face of a solid, in its own frame.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceSample<const D: usize> {
+    /// The place, m.
+    pub x: Vector<D>,
+    /// Outward normal, unit length.
+    pub n: Vector<D>,
+}
+
+/// The faces of `solid`, dp (m) apart; none of a fixed tank or polyline, whose skin is as thick as is needed.
+pub fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<SurfaceSample<D>> {
+    match (&solid.spec.role, &solid.spec.shape) {
+        (Role::Fixed, Shape::Tank { .. } | Shape::Polyline { .. }) => Vec::new(),
+        (_, shape) => of_shape(shape, dp),
+    }
+}
+
+/// The faces of `shape`, dp (m) apart, but for those at which the parts of a compound join.
+pub fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
+    let free =
+        |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
+    shape
+        .boundary_points(dp, 1)
+        .into_iter()
+        .flat_map(|point| nearest_samples(shape, &point.r, dp))
+        .filter(free)
+        .collect()
+}
+
+/// The face before `r` (m); both, where that is midway between two, as in a plate of a single row.
+fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Vec<SurfaceSample<D>> {
+    let face = |r: Vector<D>| {
+        let n = shape.outward_normal(&r, 0.05 * dp);
+        SurfaceSample { x: r - n * shape.signed_distance(&r), n }
+    };
+    let own = face(*r);
+    if own.n.norm() > 0.5 {
+        return vec![own];
+    }
+    // Midway neither face is nearer; a little to each side one is.
+    let aside = |axis: usize| {
+        let mut off = Vector::zeros();
+        off[axis] = 0.2 * dp;
+        [face(r + off), face(r - off)]
+    };
+    let both = (0..D).map(aside).find(|[one, other]| one.n.dot(&other.n) < -0.5);
+    both.into_iter().flatten().collect()
+}
+
+/// Every so many-th of `faces`, `most` of them or fewer.
+pub fn thinned<const D: usize>(faces: &[SurfaceSample<D>], most: usize) -> impl Iterator<Item = &SurfaceSample<D>> {
+    faces.iter().step_by(faces.len().div_ceil(most).max(1))
+}

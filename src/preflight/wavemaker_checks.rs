@@ -1,0 +1,230 @@
+//! Paddles that make waves by name: what their waves may not become, and where a paddle is no paddle of theory.
+
+use super::{
+    Finding, GeneratedWave, PreflightContext,
+    driven_motion::wave_direction,
+    generated_waves::LEAST,
+    rounding::{three_digits, two_digits_down, two_digits_up},
+    thickness::has_full_layers,
+    wavemaker_site::WavemakerSite,
+};
+use crate::{
+    plan::StatisticKind,
+    scene::world_bounds,
+    solid::{Motion, Solid},
+    wavemaker::{self, FAST, Facts, Paddle, Region, Train},
+};
+
+/// Angle (rad) of a flap beyond which small angles are no good theory: 30°.
+const STEEP: f64 = std::f64::consts::FRAC_PI_6;
+
+/// The highest of a thousand waves over the significant height (Rayleigh).
+const HIGHEST: f64 = 1.86;
+
+/// Share of the run that a ramp may take.
+const RAMP: f64 = 0.5;
+
+/// How far the depth that a wave is made for may be above that of the water, and a period beside that of the paddle.
+const DEEPER: f64 = 0.01;
+const BESIDE: f64 = 0.05;
+
+impl<const D: usize> PreflightContext<'_, D> {
+    /// A paddle by name that stands in the water as no paddle of theory does.
+    pub(super) fn check_site(
+        &self,
+        solid: &Solid<D>,
+        motion: &Motion<D>,
+        law: &wavemaker::Wave,
+        findings: &mut Vec<Finding>,
+    ) {
+        let (name, level) = (&solid.spec.name, self.still_water.level);
+        if has_full_layers(&solid.spec.shape) {
+            return;
+        }
+        let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
+        let (bottom, top) = (bounds.min[D - 1], bounds.max[D - 1]);
+        if top <= level {
+            let (top_m, level_m) = (three_digits(top), three_digits(level));
+            let what = format!(
+                "\"{name}\" ends at {top_m} m, and the water stands at {level_m} m: it makes no wave of theory"
+            );
+            let higher = two_digits_up(self.crest(law.facts()).max(level + self.dp()) - top);
+            findings.push(Finding::warning(
+                "drowned_paddle",
+                what,
+                format!("{higher} m more of height hold its crests"),
+            ));
+        }
+        let Some(way) = wave_direction(motion, &(0.5 * (bounds.min + bounds.max))) else { return };
+        let Some(depth) = self.depth_at(&WavemakerSite::new(&bounds, way, level)) else { return };
+        let under = bottom - (level - depth);
+        if law.paddle() == Paddle::Piston && under > self.dp() * (1.0 + 1e-6) {
+            let what = format!(
+                "the piston \"{name}\" ends {} m above the lowest water before it: water goes under it, and theory is \
+                 for one that reaches the bed",
+                three_digits(under)
+            );
+            // A bed at zero is there to round-off.
+            let bed = 1e-6 * (1e6 * (level - depth)).round();
+            findings.push(Finding::warning("lifted_paddle", what, format!("bottom = {}", three_digits(bed))));
+        }
+        if law.depth() > depth * (1.0 + DEEPER) {
+            let what = format!(
+                "the wave of \"{name}\" is made for {} m of water, and there are {} m before it",
+                three_digits(law.depth()),
+                three_digits(depth)
+            );
+            findings.push(Finding::warning("wrong_depth", what, format!("wave.depth = {}", three_digits(depth))));
+        }
+    }
+
+    /// About how high (m) the crests of a wave reach at the paddle.
+    fn crest(&self, facts: &Facts) -> f64 {
+        self.still_water.level + if facts.solitary.is_some() { 1.0 } else { 0.75 } * facts.height
+    }
+
+    /// A paddle that goes too fast for theory, or is too slow to come to its motion.
+    pub(super) fn check_speed(&self, wave: &GeneratedWave, law: &wavemaker::Wave, findings: &mut Vec<Finding>) {
+        let (name, most) = (&wave.solid, FAST * wave.celerity_mps);
+        if wave.paddle_mps > most * (1.0 + 1e-9) {
+            let what = format!(
+                "\"{name}\" goes at up to {} m/s, more than half as fast as its crests, {} m/s: theory, by which the \
+                 paddle moves, is for small motions",
+                three_digits(wave.paddle_mps),
+                three_digits(wave.celerity_mps)
+            );
+            let share = most / wave.paddle_mps;
+            let mend = match law.facts().kind {
+                "regular" => format!("height = {}", two_digits_down(share * wave.height_m)),
+                _ => format!("{} of the height does not", two_digits_down(share)),
+            };
+            findings.push(Finding::warning("fast_paddle", what, mend));
+        }
+        let (ramp, most) = (law.ramp_time(), RAMP * self.end_time());
+        if ramp > most * (1.0 + 1e-9) {
+            let (ramp_s, run) = (three_digits(ramp), three_digits(self.end_time()));
+            let what = format!("\"{name}\" takes {ramp_s} s to its full motion, and the run is {run} s long");
+            let mend = format!("until = {}, or wave.ramp = {}", two_digits_up(ramp / RAMP), two_digits_down(most));
+            findings.push(Finding::warning("long_ramp", what, mend));
+        }
+    }
+
+    /// A group whose crest is to stand where it cannot.
+    pub(super) fn check_focus(
+        &self,
+        wave: &GeneratedWave,
+        stand: &WavemakerSite<D>,
+        law: &wavemaker::Wave,
+        findings: &mut Vec<Finding>,
+    ) {
+        let Some((distance, time)) = law.facts().focus else { return };
+        let (name, end) = (&wave.solid, self.water_end(stand));
+        let least = distance / wave.group_mps + wave.ramp_s;
+        if distance > end {
+            let (distance, end_m) = (three_digits(distance), three_digits(end));
+            let what = format!("the group of \"{name}\" is to stand {distance} m off, and the water ends at {end_m} m");
+            findings.push(Finding::warning("far_focus", what, format!("distance = {}", two_digits_down(end))));
+        } else if time < least * (1.0 - 1e-9) {
+            let what = format!(
+                "the group of \"{name}\" is to stand at {} s, and its energy takes {} s to get there at {} m/s, after \
+                 a ramp of {} s",
+                three_digits(time),
+                three_digits(distance / wave.group_mps),
+                three_digits(wave.group_mps),
+                three_digits(wave.ramp_s)
+            );
+            findings.push(Finding::warning("early_focus", what, format!("time = {}", two_digits_up(least))));
+        }
+    }
+
+    /// Statistics about another period than that of the one regular wave.
+    pub(super) fn check_statistic_periods(&self, waves: &[GeneratedWave], findings: &mut Vec<Finding>) {
+        let [GeneratedWave { kind: Some("regular"), period_s: Some(own), solid, .. }] = waves else { return };
+        for words in &self.plan.statistics {
+            let (StatisticKind::Reflection { period, .. } | StatisticKind::Rao { period, .. }) = &words.what else {
+                continue;
+            };
+            let Some(period) = period.filter(|period| (period / own - 1.0).abs() > BESIDE) else { continue };
+            let what = format!(
+                "the statistic \"{}\" is of waves of {} s, and \"{solid}\" makes waves of {} s",
+                words.name,
+                three_digits(period),
+                three_digits(*own)
+            );
+            findings.push(Finding::warning("stale_period", what, format!("period = {own:.4}")));
+        }
+    }
+
+    /// How two terms of Stokes are enough for a regular wave.
+    fn stokes_validity(&self, train: &Train, height: f64) -> String {
+        let lower = train.highest_of_stokes();
+        let shorter = train.longest_of_stokes(height).filter(|_| lower < LEAST * self.dp());
+        let shorter = shorter.map(|period| {
+            format!(
+                "the period is long for waves of that height in this depth: period = {}, or ",
+                two_digits_down(period)
+            )
+        });
+        format!("{}height = {}", shorter.unwrap_or_default(), two_digits_down(lower))
+    }
+
+    /// What a wave that was asked for may not become.
+    pub(super) fn check_wave(
+        &self,
+        wave: &GeneratedWave,
+        solid: &Solid<D>,
+        law: &wavemaker::Wave,
+        findings: &mut Vec<Finding>,
+    ) {
+        let (name, facts) = (&wave.solid, law.facts());
+        let sea = !matches!(facts.kind, "regular" | "solitary");
+        if let Some(train) = facts.train.filter(|_| sea) {
+            let (most, high) = (train.highest(), if facts.kind == "focused" { 0.8 } else { HIGHEST } * wave.height_m);
+            if high > most {
+                let what = format!(
+                    "the highest waves of \"{name}\", about {} m, will break: {} m is the most at their period",
+                    three_digits(high),
+                    three_digits(most)
+                );
+                let mend = format!("{} of the height stays whole", two_digits_down(most / high));
+                findings.push(Finding::note("breaking_waves", what, mend));
+            }
+        }
+        if let Some(train) = facts.train.filter(|_| wave.region == Region::Cnoidal && !sea) {
+            let what = format!(
+                "the wave of \"{name}\" is cnoidal, H L²/d³ = {}: Stokes' theory, by which the paddle moves, holds to 26",
+                three_digits(train.ursell(wave.height_m))
+            );
+            findings.push(Finding::warning("beyond_stokes", what, self.stokes_validity(&train, wave.height_m)));
+        }
+        if let Paddle::Flap { arm } = law.paddle()
+            && (0.5 * wave.stroke_m / arm).atan() > STEEP
+        {
+            let degrees = (0.5 * wave.stroke_m / arm).atan().to_degrees();
+            let what = format!(
+                "the flap \"{name}\" swings by {} degrees to each side, beyond what theory is for",
+                three_digits(degrees)
+            );
+            let arm = two_digits_up(0.5 * wave.stroke_m / STEEP.tan());
+            findings.push(Finding::warning(
+                "steep_flap",
+                what,
+                format!("a hinge {arm} m below the still level swings by 30"),
+            ));
+        }
+        let top = world_bounds(&solid.spec.shape, &solid.kinematics.pose).max[D - 1];
+        let crest = self.crest(facts);
+        if top < crest {
+            let what = format!(
+                "the crests at \"{name}\" reach about {} m, and it ends at {} m: water goes over it",
+                three_digits(crest),
+                three_digits(top)
+            );
+            findings.push(Finding::warning(
+                "overtopped_paddle",
+                what,
+                format!("{} m more of height hold it", two_digits_up(crest - top)),
+            ));
+        }
+    }
+}

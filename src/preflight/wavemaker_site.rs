@@ -1,0 +1,150 @@
+//! Where a paddle stands: what lies in the way of its waves, and which zones take them.
+
+use super::{
+    Finding, GeneratedWave, PreflightContext,
+    rounding::{place, three_digits, two_digits_up},
+    thickness::has_full_layers,
+};
+use crate::{
+    math::{Bounds, Vector},
+    scene::world_bounds,
+    solid::Solid,
+    system::SpongeLayer,
+};
+
+/// The least part of a face's normal that looks at the waves: gentler slopes than 1:20 are beaches, on which the water
+/// ends.
+const FACING: f64 = 0.05;
+
+/// A paddle at rest, and where its waves go.
+pub(super) struct WavemakerSite<const D: usize> {
+    /// The box around it, m.
+    bounds: Bounds<D>,
+    /// Where its waves go; level, a unit vector.
+    pub(super) direction: Vector<D>,
+    /// The middle of its face in the still level, m.
+    pub(super) face: Vector<D>,
+}
+
+impl<const D: usize> WavemakerSite<D> {
+    /// Of a paddle in the box `bounds`, whose waves go along `way`, in water that stands at `level` (m).
+    pub(super) fn new(bounds: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
+        let middle = 0.5 * (bounds.min + bounds.max);
+        let mut face = middle + way * (support(bounds, &way) - middle.dot(&way));
+        face[D - 1] = level;
+        Self { bounds: *bounds, direction: way, face }
+    }
+
+    /// How far (m) `x` (m) lies before the face; none if the waves pass beside it.
+    fn distance_ahead(&self, x: &Vector<D>) -> Option<f64> {
+        let off = x - self.face;
+        let ahead = off.dot(&self.direction);
+        let mut beside = off - self.direction * ahead;
+        beside[D - 1] = 0.0;
+        let breast = beside
+            .try_normalize(1e-9)
+            .is_none_or(|side| beside.norm() < support(&self.bounds, &side) - side.dot(&self.face));
+        breast.then_some(ahead)
+    }
+
+    /// Where (m before the face) a zone begins into which the waves run.
+    fn zone_start(&self, zone: &SpongeLayer<D>) -> Option<f64> {
+        let way = zone.to - zone.from;
+        let along = way.dot(&self.direction);
+        (along > 0.0).then(|| ((zone.from - self.face).dot(&way) / along).max(0.0))
+    }
+}
+
+/// The largest x·`way` in a box.
+pub(super) fn support<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
+    (0..D).map(|i| (way[i] * bounds.min[i]).max(way[i] * bounds.max[i])).sum()
+}
+
+impl<const D: usize> PreflightContext<'_, D> {
+    /// From the face to the end of the water, m.
+    pub(super) fn water_end(&self, stand: &WavemakerSite<D>) -> f64 {
+        let water = Bounds::around(self.system.fluid().r);
+        (support(&water, &stand.direction) - stand.face.dot(&stand.direction)).max(0.0)
+    }
+
+    /// How far (m) the waves of `paddle` go before something answers, and which solid it is; none: the end of the
+    /// water, which is also what holds it.
+    pub(super) fn first_reflector(&self, paddle: &Solid<D>, stand: &WavemakerSite<D>) -> (f64, Option<String>) {
+        let end = self.water_end(stand);
+        let others = self.solids().iter().enumerate().filter(|(_, other)| {
+            let bounds = world_bounds(&other.spec.shape, &other.kinematics.pose);
+            let through = bounds.min[D - 1] < self.still_water.level && bounds.max[D - 1] > self.still_water.level;
+            through && !std::ptr::eq(*other, paddle) && !has_full_layers(&other.spec.shape)
+        });
+        let near = others.filter_map(|(i, other)| Some((self.reflector_distance(i, stand)?, other.spec.name.clone())));
+        let nearest = near.filter(|(ahead, _)| *ahead < end).min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map_or((end, None), |(ahead, name)| (ahead, Some(name)))
+    }
+
+    /// How far (m) before a paddle's face the solid `i` looks at its waves, in the still level.
+    fn reflector_distance(&self, i: usize, stand: &WavemakerSite<D>) -> Option<f64> {
+        let pose = &self.solids()[i].kinematics.pose;
+        let ahead = self.surface_samples[i].iter().filter_map(|face| {
+            let (x, n) = (pose.point(&face.x), pose.rotation * face.n);
+            let (high, facing) = (x[D - 1] - self.still_water.level, n.dot(&stand.direction));
+            let looks = high.abs() <= self.dp() && facing < -FACING;
+            // From its place to the still level along the face.
+            let ahead = stand.distance_ahead(&x).filter(|_| looks)? + high * n[D - 1] / facing;
+            (ahead > 0.0).then_some(ahead)
+        });
+        ahead.min_by(f64::total_cmp)
+    }
+
+    /// Where (m before the face) the first damping zone begins that lies in the way.
+    pub(super) fn damping_start(&self, stand: &WavemakerSite<D>) -> Option<f64> {
+        self.system.sponge_layers().iter().filter_map(|zone| stand.zone_start(zone)).min_by(f64::total_cmp)
+    }
+
+    /// Depth (m) of the water before a paddle; none if it is dry there. A step of the bed below one dp is none.
+    pub(super) fn depth_at(&self, stand: &WavemakerSite<D>) -> Option<f64> {
+        let (dp, reach) = (self.dp(), self.system.model().support_radius());
+        let water = self.system.fluid().r;
+        let beside = |r: &&Vector<D>| stand.distance_ahead(r).is_some_and(|ahead| (-dp..reach).contains(&ahead));
+        let lowest = |least: f64, r: &Vector<D>| least.min(r[D - 1]);
+        let rise = water.iter().filter(beside).fold(f64::INFINITY, lowest) - water.iter().fold(f64::INFINITY, lowest);
+        rise.is_finite().then_some(self.still_water.depth - if rise > dp { rise } else { 0.0 })
+    }
+
+    /// Damping zones in which there is no water.
+    pub(super) fn dry_zones(&self, findings: &mut Vec<Finding>) {
+        let water = self.system.fluid().r;
+        let idle = |zone: &&SpongeLayer<D>| water.iter().all(|r| zone.rate(r) == 0.0);
+        for zone in self.system.sponge_layers().iter().filter(idle) {
+            let what = format!("{} lies outside of the water: it takes no waves", zone_extent(zone));
+            let all = Bounds::around(water);
+            let mend = format!("the water is between {} and {}", place(&all.min), place(&all.max));
+            findings.push(Finding::warning("idle_damping", what, mend));
+        }
+    }
+
+    /// Damping zones that are over before a wave is, or that begin beyond the paddle.
+    pub(super) fn misplaced_zones(&self, wave: &GeneratedWave, stand: &WavemakerSite<D>, findings: &mut Vec<Finding>) {
+        let (zones, least) = (self.system.sponge_layers(), 0.5 * wave.length_m);
+        if let Some(zone) = zones.iter().find(|zone| zone.length() < least * (1.0 - 1e-9)) {
+            let what = format!(
+                "a damping zone is {} m long, and the waves of \"{}\" are {} m: much of them will come back",
+                three_digits(zone.length()),
+                wave.solid,
+                three_digits(wave.length_m)
+            );
+            let mend = format!("half a wave length, {} m, is the least, a whole one is better", two_digits_up(least));
+            findings.push(Finding::warning("short_damping", what, mend));
+        }
+        for zone in zones.iter().filter(|zone| zone.rate(&stand.face) >= zone.strength * (1.0 - 1e-9)) {
+            let what =
+                format!("{} is at its full strength at \"{}\", which makes waves", zone_extent(zone), wave.solid);
+            let mend =
+                format!("`from` is where waves come from: from = {}, to = {}", place(&zone.to), place(&zone.from));
+            findings.push(Finding::warning("reversed_damping", what, mend));
+        }
+    }
+}
+
+fn zone_extent<const D: usize>(zone: &SpongeLayer<D>) -> String {
+    format!("the damping zone from {} to {}", place(&zone.from), place(&zone.to))
+}

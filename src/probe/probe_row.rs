@@ -1,0 +1,52 @@
+//! Several gauges of one kind as one probe: the places stand in the names of the columns.
+
+use super::Probe;
+use crate::simulation::Simulation;
+
+/// Watches with several probes; a column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
+pub struct ProbeRow<const D: usize> {
+    members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>,
+}
+
+impl<const D: usize> ProbeRow<D> {
+    /// The probes of `members`, each with its place (m).
+    pub fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self {
+        Self { members }
+    }
+}
+
+/// The name of the column `column` at the place `at` (m), to a micrometre.
+pub fn column_at_place(column: &str, at: &[f64]) -> String {
+    let rounded = at.iter().map(|x| format!("{}", (x * 1e6).round() / 1e6 + 0.0));
+    let place = rounded.collect::<Vec<_>>().join("_");
+    match column.rsplit_once('_') {
+        Some((name, unit)) => format!("{name}_at_{place}_{unit}"),
+        None => format!("{column}_at_{place}"),
+    }
+}
+
+impl<const D: usize> Probe<D> for ProbeRow<D> {
+    fn columns(&self) -> Vec<String> {
+        let each = self.members.iter();
+        each.flat_map(|(at, probe)| probe.columns().into_iter().map(|column| column_at_place(&column, at))).collect()
+    }
+
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        self.members.iter().flat_map(|(_, probe)| probe.sample(sim)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::column_at_place;
+
+    #[test]
+    fn a_place_is_written_without_the_noise_of_round_off() {
+        let columns = [
+            column_at_place("eta_m", &[0.1 + 0.2]),
+            column_at_place("vx_mps", &[-0.5, 2.0]),
+            column_at_place("p_Pa", &[-1e-9, 0.0]),
+        ];
+        assert_eq!(columns, ["eta_at_0.3_m", "vx_at_-0.5_2_mps", "p_at_0_0_Pa"]);
+    }
+}

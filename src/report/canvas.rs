@@ -1,0 +1,213 @@
+//! The drawing of pictures: panels with particles and solids, metres along their edges, the bar of colours.
+
+use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash, Transform};
+
+use super::{
+    colour::{self, ColourMap},
+    html,
+    picture::{ColourField, Panel},
+    text::{Anchor, TextRenderer, fill_path, solid_paint},
+};
+
+/// Ink of titles.
+pub const TITLE_COLOUR: [u8; 3] = [40, 46, 52];
+const QUIET: [u8; 3] = [110, 118, 126];
+const BODY: [u8; 3] = [203, 196, 186];
+const WALL: [u8; 3] = [226, 228, 230];
+const EDGE: [u8; 3] = [70, 66, 60];
+
+/// A panel's place on the picture.
+pub struct PanelView {
+    /// Low corner of what it shows on the sheet, m.
+    pub low: [f64; 2],
+    /// High corner, m.
+    pub high: [f64; 2],
+    /// Pixels a metre.
+    pub scale: f64,
+    /// Its upper left corner, pixels.
+    pub corner: (f32, f32),
+    /// Its width and height, pixels.
+    pub size: (f32, f32),
+    /// Size of the letters, pixels.
+    pub em: f32,
+}
+
+impl PanelView {
+    fn to_pixel(&self, x: &[f64; 2]) -> (f32, f32) {
+        let across = (self.scale * (x[0] - self.low[0])) as f32;
+        (self.corner.0 + across, self.corner.1 + (self.scale * (self.high[1] - x[1])) as f32)
+    }
+
+    /// Draws `panel` on a sheet of its own, which cuts what sticks out, and lays it `on` the picture.
+    pub fn draw_panel(&self, on: &mut Pixmap, panel: &Panel, map: ColourMap, range: [f64; 2]) {
+        let Some(mut own) = Pixmap::new(self.size.0.ceil() as u32, self.size.1.ceil() as u32) else { return };
+        let flat = panel.geometry.dimension == 2;
+        let here = PanelView { corner: (0.0, 0.0), ..*self };
+        for (points, closed, moves) in panel.lines.iter().filter(|(_, _, moves)| !moves || !flat) {
+            here.draw_line(&mut own, points, *closed, (flat && !moves).then_some(WALL), 0.06);
+        }
+        let radius = (0.58 * panel.geometry.dp * self.scale) as f32;
+        for (x, value) in &panel.points {
+            let share = |value: &f64| colour::colour_at(map, (value - range[0]) / (range[1] - range[0]));
+            draw_particle(&mut own, here.to_pixel(x), radius, value.as_ref().map_or(BODY, share), !flat);
+        }
+        for (points, closed, _) in panel.lines.iter().filter(|(_, _, moves)| *moves && flat) {
+            here.draw_line(&mut own, points, *closed, Some(BODY), 0.12);
+        }
+        for (points, closed, _) in &panel.contact_skins {
+            here.draw_dashed(&mut own, points, *closed);
+        }
+        let (x, y) = (self.corner.0 as i32, self.corner.1 as i32);
+        on.draw_pixmap(x, y, own.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
+    }
+
+    /// The line through `points`.
+    fn path(&self, points: &[[f64; 2]], closed: bool) -> Option<Path> {
+        let mut path = PathBuilder::new();
+        for (i, x) in points.iter().enumerate() {
+            let (x, y) = self.to_pixel(x);
+            if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+        }
+        if closed {
+            path.close();
+        }
+        path.finish()
+    }
+
+    /// A thin dashed line.
+    fn draw_dashed(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool) {
+        let Some(path) = self.path(points, closed) else { return };
+        let dash = StrokeDash::new(vec![0.4 * self.em, 0.3 * self.em], 0.0);
+        let stroke = Stroke { width: (0.06 * self.em).max(1.0), dash, ..Stroke::default() };
+        on.stroke_path(&path, &solid_paint(EDGE, 255), &stroke, Transform::identity(), None);
+    }
+
+    /// A line `thick` em thick.
+    fn draw_line(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool, inside: Option<[u8; 3]>, thick: f32) {
+        let Some(path) = self.path(points, closed) else { return };
+        if let Some(colour) = inside {
+            fill_path(on, &path, colour, 255);
+        }
+        let stroke = Stroke { width: (thick * self.em).max(1.0), ..Stroke::default() };
+        let cover = if inside.is_some() { 255 } else { 110 };
+        on.stroke_path(&path, &solid_paint(EDGE, cover), &stroke, Transform::identity(), None);
+    }
+
+    /// Metres along the lower edge, and along the left one if this is the first panel of its row.
+    pub fn draw_ticks(&self, on: &mut Pixmap, ink: &TextRenderer, first: bool) {
+        let (em, small) = (self.em, 0.8 * self.em);
+        let bottom = self.corner.1 + self.size.1;
+        for x in tick_values(self.low[0], self.high[0], 6.0) {
+            let (px, _) = self.to_pixel(&[x, self.low[1]]);
+            self.draw_tick(on, (px, bottom), (px, bottom + 0.3 * em));
+            ink.write(
+                on,
+                &html::with_minus_sign(&tick_label(x)),
+                (px, bottom + 1.2 * em),
+                small,
+                Anchor::Middle,
+                QUIET,
+            );
+        }
+        let count = (6.0 * self.size.1 / self.size.0).max(2.0);
+        for y in tick_values(self.low[1], self.high[1], f64::from(count)) {
+            let (_, py) = self.to_pixel(&[self.low[0], y]);
+            self.draw_tick(on, (self.corner.0 - 0.3 * em, py), (self.corner.0, py));
+            if first {
+                let at = (self.corner.0 - 0.5 * em, py + 0.3 * em);
+                ink.write(on, &html::with_minus_sign(&tick_label(y)), at, small, Anchor::End, QUIET);
+            }
+        }
+        if first {
+            ink.write(on, "m", (self.corner.0 - 0.5 * em, bottom + 1.2 * em), small, Anchor::End, QUIET);
+        }
+    }
+
+    fn draw_tick(&self, on: &mut Pixmap, from: (f32, f32), to: (f32, f32)) {
+        let mut path = PathBuilder::new();
+        path.move_to(from.0, from.1);
+        path.line_to(to.0, to.1);
+        if let Some(path) = path.finish() {
+            let stroke = Stroke { width: (0.06 * self.em).max(1.0), ..Stroke::default() };
+            on.stroke_path(&path, &solid_paint(QUIET, 255), &stroke, Transform::identity(), None);
+        }
+    }
+}
+
+/// A particle: a disc, a square where it is but a few pixels wide, and a `ball` with a shade where it is one.
+fn draw_particle(on: &mut Pixmap, (x, y): (f32, f32), radius: f32, colour: [u8; 3], ball: bool) {
+    if radius < 1.5 {
+        let side = (2.0 * radius).max(0.5);
+        if let Some(square) = Rect::from_xywh(x - radius, y - radius, side, side) {
+            on.fill_rect(square, &solid_paint(colour, 255), Transform::identity(), None);
+        }
+        return;
+    }
+    let mut disc = |x: f32, y: f32, radius: f32, colour: [u8; 3]| {
+        if let Some(path) = PathBuilder::from_circle(x, y, radius) {
+            fill_path(on, &path, colour, 255);
+        }
+    };
+    if ball {
+        disc(x, y, radius, colour.map(|c| (0.72 * f32::from(c)) as u8));
+        disc(x - 0.12 * radius, y - 0.16 * radius, 0.8 * radius, colour);
+    } else {
+        disc(x, y, radius, colour);
+    }
+}
+
+/// The colours from one end of the range to the other, with marks.
+pub fn draw_colour_bar(
+    on: &mut Pixmap,
+    ink: &TextRenderer,
+    bar: (f32, f32, f32, f32),
+    em: f32,
+    field: ColourField,
+    range: [f64; 2],
+) {
+    let wide = bar.2.min(40.0 * em).floor();
+    for i in 0..wide as u32 {
+        let colour = colour::colour_at(field.colour_map(), f64::from(i) / f64::from(wide));
+        if let Some(strip) = Rect::from_xywh(bar.0 + i as f32, bar.1, 1.0, bar.3) {
+            on.fill_rect(strip, &solid_paint(colour, 255), Transform::identity(), None);
+        }
+    }
+    for x in tick_values(range[0], range[1], 6.0) {
+        let at = bar.0 + wide * ((x - range[0]) / (range[1] - range[0])) as f32;
+        ink.write(
+            on,
+            &html::with_minus_sign(&tick_label(x)),
+            (at, bar.1 + bar.3 + 1.2 * em),
+            0.8 * em,
+            Anchor::Middle,
+            TITLE_COLOUR,
+        );
+    }
+    ink.write(on, field.title(), (bar.0, bar.1 + bar.3 + 2.7 * em), em, Anchor::Start, TITLE_COLOUR);
+}
+
+/// Round numbers between `low` and `high`, about `count` of them.
+fn tick_values(low: f64, high: f64, count: f64) -> Vec<f64> {
+    let wished = ((high - low) / count).max(1e-300);
+    let ten = 10f64.powf(wished.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|x| x * ten).find(|x| *x >= 0.999 * wished).unwrap_or(10.0 * ten);
+    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+    (first..=last).map(|i| i as f64 * step).collect()
+}
+
+/// A round number without the round-off of its multiple.
+fn tick_label(x: f64) -> String {
+    format!("{}", (x * 1e9).round() / 1e9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_round_and_within() {
+        assert_eq!(tick_values(-0.1, 1.05, 6.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        assert_eq!(tick_label(tick_values(0.0, 1.0, 6.0)[3]), "0.6");
+        assert_eq!(tick_values(0.0, 3000.0, 6.0).last(), Some(&3000.0));
+    }
+}

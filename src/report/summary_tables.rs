@@ -1,0 +1,108 @@
+//! Figures of series in tables: extremes, means, waves; the budget of energies.
+
+use super::{html, run_data::ProbeTable};
+use crate::{
+    analysis::{moments, zero_crossing_waves},
+    math::time_series::TimeSeries,
+    probe::relative_residual,
+};
+
+/// The numbers of the column `x` over `t` (s) as a series; none if there are less than two.
+pub(super) fn column_series(t: &[f64], x: &[f64]) -> Option<TimeSeries> {
+    let (t, x): (Vec<f64>, Vec<f64>) = t.iter().zip(x).filter(|(_, x)| x.is_finite()).unzip();
+    TimeSeries::new(t, x).ok()
+}
+
+/// The figures of all columns of `tables`, a row for each, but for entries of a budget or a balance that are 0 throughout; the first
+/// row is the head.
+pub fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
+    let head = ["series", "unit", "least", "at, s", "largest", "at, s", "mean", "std", "last", "waves", "period, s"];
+    let mut rows =
+        vec![head.into_iter().chain(["mean height", "highest third", "highest"]).map(String::from).collect::<Vec<_>>()];
+    let digits = html::four_digits;
+    let time = |t: f64| format!("{t:.3}");
+    for table in tables {
+        for (i, (name, x)) in table.columns.iter().zip(&table.values).enumerate() {
+            if table.is_breakdown() && table.is_zero(i) {
+                continue;
+            }
+            let Some(series) = column_series(&table.times, x) else { continue };
+            let f = moments(&series);
+            let mut row = vec![format!("{} · {}", table.name, html::column_label(name)), html::unit(name).into()];
+            row.extend([digits(f.min.0), time(f.min.1), digits(f.max.0), time(f.max.1)]);
+            row.extend([digits(f.mean), digits(f.standard_deviation), digits(f.last)]);
+            row.extend(zero_crossing_waves(&series).map_or_else(
+                || vec![String::new(); 5],
+                |w| {
+                    vec![
+                        w.count.to_string(),
+                        digits(w.mean_period),
+                        digits(w.mean_height),
+                        digits(w.significant_height),
+                        digits(w.max_height),
+                    ]
+                },
+            ));
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+/// The budget of an energy table: what each part was at the start and the end, and its extremes; and what it comes to
+/// in words. None of any other table.
+pub fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
+    if table.what != "energy" {
+        return None;
+    }
+    let unit = html::unit(table.columns.first()?);
+    let head = ["part", "start", "end", "change", "least", "largest"];
+    let heads = head.iter().map(|h| if *h == "part" { h.to_string() } else { format!("{h}, {unit}") });
+    let mut rows = vec![heads.collect::<Vec<String>>()];
+    let digits = html::four_digits;
+    let find = |part: &str| table.columns.iter().position(|name| html::column_label(name) == part);
+    for (name, x) in table.columns.iter().zip(&table.values) {
+        let (first, f) = (*x.first()?, moments(&column_series(&table.times, x)?));
+        let cells = [first, f.last, f.last - first, f.min.0, f.max.0];
+        rows.push(std::iter::once(html::column_label(name)).chain(cells.map(digits)).collect());
+    }
+    let total = &table.values[find("total")?];
+    let change = total.last()? - total.first()?;
+    let moving = find("water kinetic")
+        .and_then(|i| column_series(&table.times, &table.values[i]))
+        .map_or(0.0, |s| moments(&s).max.0);
+    let mut said =
+        format!("The total {} by {} {unit}", if change < 0.0 { "falls" } else { "rises" }, digits(change.abs()));
+    if moving > 0.0 {
+        said += &format!(", {:.1} % of the most kinetic energy that the water had", 100.0 * change.abs() / moving);
+    }
+    said += ". It changes by the work of driven and fixed solids and by dissipation.";
+    Some((rows, said))
+}
+
+/// What a budget table comes to at the end: each entry, and its share of all that was turned over; and how well it closes, in
+/// words. None of any other table.
+pub fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
+    if table.what != "energy budget" {
+        return None;
+    }
+    let unit = html::unit(table.columns.first()?);
+    let last = table.values.iter().map(|x| x.last().copied()).collect::<Option<Vec<f64>>>()?;
+    let entries = last.get(1..last.len().checked_sub(1)?)?;
+    let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
+    let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
+    let row = |(name, energy): (&String, &f64)| {
+        vec![
+            html::column_label(name),
+            html::four_digits(*energy),
+            html::with_minus_sign(&format!("{:.2}", share(*energy))),
+        ]
+    };
+    let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
+    let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();
+    let said = format!(
+        "The entries add up to what water and bodies have stored, but for {} % of all that was turned over.",
+        html::four_digits(100.0 * relative_residual(&last).unwrap_or_default())
+    );
+    Some((rows, said))
+}

@@ -1,0 +1,68 @@
+//! What became of the energy so far: told while a run goes on, if a probe watches it.
+
+use std::fmt;
+
+use crate::{
+    output::CsvTable,
+    plan::{Plan, ProbeKind},
+    preflight::three_digits,
+    probe::relative_residual,
+};
+
+/// What became of the energy since the start, by the latest reading of a probe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EnergyDrift {
+    /// By a `budget`: what its entries do not account for, over all that was turned over, –.
+    Unaccounted(f64),
+    /// By an `energy`: how much more there is of it than at the start, and the unit, J or J/m.
+    Changed(f64, &'static str),
+}
+
+impl EnergyDrift {
+    /// By the last row of a `budget`; none before anything was turned over.
+    pub fn from_budget(last: &[f64]) -> Option<Self> {
+        relative_residual(last).map(Self::Unaccounted)
+    }
+
+    /// By the first and the last row of an `energy`, which ends with the total.
+    pub fn from_energy(first: &[f64], last: &[f64], unit: &'static str) -> Option<Self> {
+        Some(Self::Changed(last.last()? - first.last()?, unit))
+    }
+}
+
+impl fmt::Display for EnergyDrift {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unaccounted(share) => write!(f, "energy off {} %", three_digits(100.0 * share)),
+            Self::Changed(energy, unit) => {
+                write!(f, "energy {}{} {unit}", if *energy < 0.0 { "" } else { "+" }, three_digits(*energy))
+            }
+        }
+    }
+}
+
+/// Which probe of a run tells it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct DriftMonitor {
+    /// Its number in the plan.
+    pub probe: usize,
+    budget: bool,
+    unit: &'static str,
+}
+
+impl DriftMonitor {
+    /// The first budget of `plan`, else the first probe of the energy, of a run in so many dimensions.
+    pub fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> {
+        let find = |what| plan.probes.iter().position(|words| words.what == what);
+        let unit = if dimension == 2 { "J/m" } else { "J" };
+        let of = |probe, budget| Self { probe, budget, unit };
+        let budget = find(ProbeKind::Budget).map(|probe| of(probe, true));
+        budget.or_else(|| find(ProbeKind::Energy).map(|probe| of(probe, false)))
+    }
+
+    /// What the probe's `table` tells so far.
+    pub fn drift(self, table: &CsvTable) -> Option<EnergyDrift> {
+        let (first, (_, last)) = (table.first_row()?, table.last_row()?);
+        if self.budget { EnergyDrift::from_budget(last) } else { EnergyDrift::from_energy(first, last, self.unit) }
+    }
+}

@@ -1,0 +1,104 @@
+//! Which of the checkpoints in a run's folder the run goes on from: the last one, or the one before where the last
+//! is of no use, and what of its scene may change then. Writes nothing.
+
+use std::{fs, path::Path};
+
+use super::{
+    outputs::{contact_list_path, series_folder},
+    run_folder,
+};
+use crate::{
+    error::{Error, ErrorKind, Result},
+    output::{Checkpoint, checkpoint},
+    scene::Scene,
+};
+
+/// What a run goes on from.
+pub struct ResumePoint {
+    /// The checkpoint.
+    pub checkpoint: Checkpoint,
+    /// The scene, as it was at the start; its guards may have been set since.
+    pub scene: Scene,
+    /// Why it is not the last checkpoint, if it is the one before.
+    pub warning: Option<String>,
+}
+
+impl ResumePoint {
+    /// The run in `folder` goes on with other guards: they tell when it stops, and no law that moves it hangs on them.
+    ///
+    /// # Errors
+    /// `Usage` for a key of anything else; `Scene` for guards that no scene may have.
+    pub fn with_guard_overrides(mut self, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
+        if sets.is_empty() {
+            return Ok(self);
+        }
+        if let Some((key, _)) = sets.iter().find(|(key, _)| key.split('.').next() != Some("guard")) {
+            let what = format!("{key} cannot be changed in a run that has begun: only [guard] can");
+            let help =
+                format!("--set guard.escape=remove is such a change; `pontoon run` with --set {key}=… starts afresh");
+            return Err(Error::new(ErrorKind::Usage, what).help(help));
+        }
+        let known = &mut self.checkpoint;
+        known.overrides.retain(|(key, _)| sets.iter().all(|(set, _)| set != key));
+        known.overrides.extend_from_slice(sets);
+        self.scene = Scene::read(&folder.join(run_folder::SCENE), &known.overrides)?;
+        known.scene_hash = checkpoint::fnv1a(self.scene.to_toml()?.as_bytes());
+        Ok(self)
+    }
+}
+
+/// The newest checkpoint of use in `folder`.
+///
+/// # Errors
+/// What is wrong with the last one, if the one before is of no use either.
+pub fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
+    let last = match load_matching(folder, checkpoint::LAST) {
+        Ok((checkpoint, scene)) => return Ok(ResumePoint { checkpoint, scene, warning: None }),
+        Err(why) => why,
+    };
+    match load_matching(folder, checkpoint::PREVIOUS) {
+        Ok((checkpoint, scene)) => {
+            let warning = format!(
+                "{}; the run goes on from the checkpoint before, {}, at t = {:.6} s",
+                last.message,
+                checkpoint::PREVIOUS,
+                checkpoint.time
+            );
+            Ok(ResumePoint { checkpoint, scene, warning: Some(warning) })
+        }
+        // Said once where both say the same, and nothing of one that never was.
+        Err(why) if why.message == last.message || !folder.join(checkpoint::PREVIOUS).exists() => Err(last),
+        Err(why) => {
+            let help = last.help.clone().unwrap_or_default();
+            Err(last.help(format!("the checkpoint before is of no use either: {}\n{help}", why.message)))
+        }
+    }
+}
+
+/// Whether `folder` holds a checkpoint, be it of use or not.
+pub fn has_checkpoint(folder: &Path) -> bool {
+    [checkpoint::LAST, checkpoint::PREVIOUS].iter().any(|name| folder.join(name).exists())
+}
+
+/// The checkpoint `name` in `folder`, if the scene and the tables there are those that it was made with.
+fn load_matching(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
+    let checkpoint = Checkpoint::read(&folder.join(name))?;
+    let scene = Scene::read(&folder.join(run_folder::SCENE), &checkpoint.overrides)?;
+    if checkpoint::fnv1a(scene.to_toml()?.as_bytes()) != checkpoint.scene_hash {
+        let what = format!("the scene in {} is not the one that this run began with", folder.display());
+        return Err(
+            Error::new(ErrorKind::Restart, what).help("undo the change there, or start afresh with `pontoon run`")
+        );
+    }
+    let plan = scene.plan()?;
+    let series = plan.probes.iter().map(|probe| series_folder(folder).join(format!("{}.csv", probe.name)));
+    let lists = plan.contacts.iter().map(|list| contact_list_path(folder, &list.name));
+    for (table, &bytes) in series.chain(lists).zip(&checkpoint.outputs.table_bytes) {
+        let there = fs::metadata(&table).map_or(0, |file| file.len());
+        if there < bytes {
+            let what = format!("{} has {there} bytes, fewer than the {bytes} of {name}", table.display());
+            return Err(Error::new(ErrorKind::Restart, what).help("start the run afresh with `pontoon run`"));
+        }
+    }
+    Ok((checkpoint, scene))
+}

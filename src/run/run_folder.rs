@@ -1,0 +1,153 @@
+//! The folder of a run: where it is made, and the copy of the scene that it keeps.
+
+use std::{
+    fs,
+    path::{Component, Path, PathBuf},
+};
+
+use crate::{
+    error::{Error, ErrorKind, Result},
+    output::checkpoint,
+    scene::table,
+};
+
+/// The kept scene, in the run's folder.
+pub const SCENE: &str = "scene/scene.toml";
+
+/// The report of a run that could not go on, in its folder.
+pub const FAILURE: &str = "failure.json";
+
+/// The scene file that `path` means: itself, or the `scene.toml` in it.
+pub fn scene_file(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join("scene.toml") } else { path.to_owned() }
+}
+
+/// A short name for the scene in `file`: its folder's, or its own if it is not called `scene.toml`.
+fn scene_name(file: &Path) -> String {
+    let whole = fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
+    let own = if whole.file_name().is_some_and(|n| n == "scene.toml") { whole.parent() } else { Some(whole.as_path()) };
+    own.and_then(Path::file_stem).map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned())
+}
+
+/// Makes the folder of a new run: `out`, which must be new or empty, or else `runs/<scene>`,
+/// `runs/<scene>-2`, … whichever is free.
+///
+/// # Errors
+/// `Usage` if `out` holds something; `File` if the folder cannot be made.
+pub fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
+    let refused = |path: &Path, why: std::io::Error| {
+        Error::file(path, format!("cannot be made: {why}")).help("choose another folder with --out")
+    };
+    if let Some(out) = out {
+        fs::create_dir_all(out).map_err(|why| refused(out, why))?;
+        if fs::read_dir(out).map_err(|why| Error::file(out, why))?.next().is_some() {
+            let help = if out.join("manifest.json").exists() {
+                format!("it holds a run: go on with it by `pontoon resume {}`, or choose another folder", out.display())
+            } else {
+                "choose another folder; results are never written over other files".into()
+            };
+            return Err(Error::new(ErrorKind::Usage, format!("the folder {} is not empty", out.display())).help(help));
+        }
+        return Ok(out.to_owned());
+    }
+    let runs = Path::new("runs");
+    fs::create_dir_all(runs).map_err(|why| refused(runs, why))?;
+    let name = scene_name(file);
+    let mut number = 1;
+    loop {
+        let folder = runs.join(if number == 1 { name.clone() } else { format!("{name}-{number}") });
+        match fs::create_dir(&folder) {
+            Ok(()) => return Ok(folder),
+            Err(why) if why.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
+            Err(why) => return Err(refused(&folder, why)),
+        }
+    }
+}
+
+/// Removes the report of an earlier failure and the part of a checkpoint from the `folder` of a run that goes on.
+///
+/// # Errors
+/// `File` if one cannot be removed.
+pub fn remove_failure_report(folder: &Path) -> Result<()> {
+    [FAILURE, checkpoint::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
+        Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::file(&path, format!("cannot be removed: {why}")))
+        }
+        _ => Ok(()),
+    })
+}
+
+/// Copies the scene in `file` into the run's `folder`, and the tables beside it that `words` names, the
+/// TOML of the scene in force, so that the folder can be resumed wherever it is moved.
+///
+/// # Errors
+/// `File` if something cannot be read or written.
+pub fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
+    let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
+    let copy = |source: &Path, target: &Path| -> Result<()> {
+        let parent = target.parent().unwrap_or(&to);
+        fs::create_dir_all(parent).map_err(|why| Error::file(parent, why))?;
+        fs::copy(source, target).map(|_| ()).map_err(|why| Error::file(target, format!("cannot be written: {why}")))
+    };
+    copy(file, &folder.join(SCENE))?;
+    referenced_files(words)
+        .iter()
+        .filter(|name| from.join(name).is_file() && table::is_within(from, &from.join(name)))
+        .try_for_each(|name| copy(&from.join(name), &to.join(name)))
+}
+
+/// Whether the tables that `words` names, but for those of `apart`, are in the run's `folder` as they are beside
+/// the scene in `file`.
+pub fn tables_unchanged(file: &Path, words: &str, folder: &Path, apart: &[&str]) -> bool {
+    let (beside, kept) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
+    let same = |name: &String| fs::read(beside.join(name)).ok() == fs::read(kept.join(name)).ok();
+    referenced_files(words).iter().filter(|name| !apart.contains(&name.as_str())).all(same)
+}
+
+/// All words in the TOML `words` that could name a file beside it.
+fn referenced_files(words: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    if let Ok(table) = words.parse::<toml::Table>() {
+        table.values().for_each(|value| collect_strings(value, &mut names));
+    }
+    let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
+    names.retain(|name| !name.is_empty() && Path::new(name).components().all(inside));
+    names
+}
+
+/// All strings in a TOML value.
+fn collect_strings(value: &toml::Value, found: &mut Vec<String>) {
+    match value {
+        toml::Value::String(word) => found.push(word.clone()),
+        toml::Value::Array(items) => items.iter().for_each(|item| collect_strings(item, found)),
+        toml::Value::Table(items) => items.values().for_each(|item| collect_strings(item, found)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_folder_keeps_the_scene_and_the_tables_it_names_but_no_others() -> std::io::Result<()> {
+        let home = std::env::temp_dir().join(format!("pontoon-folder-{}", std::process::id()));
+        let scene = home.join("bay");
+        fs::create_dir_all(scene.join("data"))?;
+        let words = "a = { file = \"./data/flap.csv\" }\nb = [\"../secret.csv\", \"no.csv\"]\n";
+        fs::write(scene.join("scene.toml"), words)?;
+        fs::write(scene.join("data/flap.csv"), "t_s,x_m\n")?;
+        fs::write(scene.join("other.csv"), "")?;
+        fs::write(home.join("secret.csv"), "")?;
+        let file = scene_file(&scene);
+        assert_eq!(scene_name(&file), "bay");
+        let out = home.join("out");
+        let folder = create_run_folder(&file, Some(&out)).map_err(std::io::Error::other)?;
+        copy_scene(&file, words, &folder).map_err(std::io::Error::other)?;
+        assert!(out.join("scene/data/flap.csv").is_file() && out.join(SCENE).is_file());
+        assert!(!out.join("scene/other.csv").exists() && !out.join("secret.csv").exists());
+        let again = create_run_folder(&file, Some(&out)).err().map(|e| e.kind);
+        assert_eq!(again, Some(ErrorKind::Usage), "a folder that holds something is never written to");
+        fs::remove_dir_all(home)
+    }
+}

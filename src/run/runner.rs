@@ -1,0 +1,384 @@
+//! The course of one run: from the built scene to its end, its interruption or its failure.
+
+use std::{path::PathBuf, time::Instant};
+
+use cpu_time::ProcessTime;
+
+use super::{
+    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart,
+    energy_drift::DriftMonitor,
+    lock::Lock,
+    outputs::{Outputs, series_folder},
+    probe_factory, resume_point, run_folder, statistics,
+};
+use crate::{
+    analysis::{ReferenceCheck, Verdict},
+    error::{Error, ErrorKind, Result},
+    model::Dimension,
+    output::{
+        Checkpoint, Manifest, OutputPositions, checkpoint,
+        manifest::{FrameTotals, Machine, ParticleCounts, RunStatus, ValueInForce},
+        removed_particles, write_atomically,
+    },
+    preflight,
+    scene::{BuiltScene, Plan, ResolvedValue, Scene},
+    simulation::Simulation,
+    solid::{Dim, HasEngine as _, Role},
+};
+
+/// A run in progress.
+pub struct Runner<const D: usize> {
+    sim: Simulation<D>,
+    outputs: Outputs<D>,
+    drift_monitor: Option<DriftMonitor>,
+    checks: Vec<ReferenceCheck>,
+    plan: Plan,
+    manifest: Manifest,
+    folder: PathBuf,
+    /// What the next checkpoint says, but for what changes.
+    checkpoint: Checkpoint,
+    /// How far the outputs were at each time (s) to which the simulation may go back, the older first.
+    rollback_positions: Vec<(f64, OutputPositions)>,
+    resumed: bool,
+    /// Whether the last checkpoint in the folder, if there is one, may become the one before.
+    last_checkpoint_valid: bool,
+    /// How many removed particles are listed; more than there are if others may be listed than those.
+    removed_written: usize,
+    /// When the last checkpoint was written, and how long after it the next is due (s).
+    last_checkpoint: (Instant, f64),
+    started_at: Instant,
+    /// Processor time of the program when the run began, where the system tells.
+    cpu_at_start: Option<ProcessTime>,
+    _lock: Lock,
+}
+
+impl<const D: usize> Runner<D>
+where
+    Dim<D>: Dimension<D>,
+{
+    /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
+    pub fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> {
+        let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
+        let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
+        let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
+        let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
+        let checks = probe_factory::checks_from_plan(&plan, &probes)?;
+        let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
+        let mut warnings = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns).warnings();
+        let text = scene.to_toml()?;
+        let values = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
+        let (folder, mut checkpoint, resumed, warning, lock) = match origin {
+            RunOrigin::Fresh { file, out, overrides } => {
+                let folder = run_folder::create_run_folder(file, out)?;
+                let lock = Lock::acquire(&folder)?;
+                run_folder::copy_scene(file, &text, &folder)?;
+                (folder, Checkpoint::initial(&text, overrides), false, None, lock)
+            }
+            RunOrigin::Resumed { folder, checkpoint, warning, lock } => {
+                (folder.to_owned(), *checkpoint, true, warning, lock)
+            }
+        };
+        if resumed {
+            // Before any table is cut back: a state of no use leaves all as it was.
+            sim.restore(&std::mem::take(&mut checkpoint.state))?;
+        }
+        let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
+        if resumed {
+            run_folder::remove_failure_report(&folder)?;
+        }
+        let good = warning.is_none();
+        // The list of a killed run may be ahead of its checkpoint.
+        let listed = if resumed && folder.join(removed_particles::REMOVED).exists() { usize::MAX } else { 0 };
+        warnings.extend(warning);
+        warnings.extend(sim.rollbacks().iter().map(ToString::to_string));
+        let (name, version) = Dim::<D>::VERSION;
+        let engine = format!("{name} {version}");
+        let manifest = Manifest { engine, warnings, values, scene: text, ..initial_manifest(&sim, &plan, &checkpoint) };
+        let saved = (Instant::now(), plan.checkpoint_wall);
+        Ok(Self {
+            sim,
+            outputs,
+            drift_monitor: DriftMonitor::from_plan(&plan, D),
+            checks,
+            plan,
+            manifest,
+            folder,
+            checkpoint,
+            rollback_positions: Vec::new(),
+            resumed,
+            last_checkpoint_valid: good,
+            removed_written: listed,
+            last_checkpoint: saved,
+            started_at: begun,
+            cpu_at_start: begun_cpu,
+            _lock: lock,
+        })
+    }
+}
+
+impl<const D: usize> Runner<D> {
+    /// Runs to the end, or until `watch` says stop.
+    pub fn run(mut self, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+        self.update_manifest();
+        self.manifest.write(&self.folder)?;
+        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest });
+        match self.advance(watch) {
+            Ok(status) => {
+                self.manifest.status = status;
+                let mut late = Vec::new();
+                self.evaluate_checks();
+                if status == RunStatus::Finished {
+                    late = statistics::write(&self.folder, &self.plan)?;
+                    late.extend(self.sim.violated_joints());
+                    self.manifest.warnings.extend(late.iter().cloned());
+                }
+                self.update_manifest();
+                self.manifest.write(&self.folder)?;
+                Ok(RunOutcome {
+                    bodies: final_body_states(&self.sim),
+                    folder: self.folder,
+                    manifest: self.manifest,
+                    end_warnings: late,
+                })
+            }
+            Err(error) => Err(self.record_failure(error)),
+        }
+    }
+
+    /// Steps and writes; says whether the end was reached.
+    fn advance(&mut self, watch: &mut dyn RunObserver) -> Result<RunStatus> {
+        if !self.resumed {
+            self.outputs.write_due(&self.sim)?;
+        }
+        let until = self.manifest.until_s;
+        let mut going = watch.step(&self.progress());
+        while going && self.sim.time() < until {
+            if self.sim.needs_rollback_state() {
+                self.rollback_positions.retain(|(time, _)| self.sim.has_rollback_state(*time));
+                self.rollback_positions.push((self.sim.time(), self.outputs.positions()));
+            }
+            let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rollbacks().len());
+            let stepped = self.sim.step_to(until);
+            self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
+            // Dry boundary particles are not moved on and do not count.
+            let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
+            // A run that went back has made fewer passes than before.
+            self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
+            stepped?;
+            self.follow_rollback(rescued, watch)?;
+            let mut written = self.outputs.write_due(&self.sim)?;
+            // The clock on the wall decides when the state is kept, never what it is.
+            written.checkpoint |= self.last_checkpoint.0.elapsed().as_secs_f64() >= self.last_checkpoint.1;
+            if written.checkpoint {
+                self.save_checkpoint()?;
+            }
+            if written.checkpoint || written.frame {
+                self.write_removed()?;
+                self.update_manifest();
+                self.manifest.write(&self.folder)?;
+            }
+            going = watch.step(&self.progress());
+        }
+        if self.sim.time() < until {
+            self.save_checkpoint()?;
+            self.write_removed()?;
+            return Ok(RunStatus::Interrupted);
+        }
+        self.outputs.finish(&self.sim)?;
+        self.write_removed()?;
+        Ok(RunStatus::Finished)
+    }
+
+    /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
+    /// manifest, and takes back what was written of the course that ended in the alarm.
+    fn follow_rollback(&mut self, known: usize, watch: &mut dyn RunObserver) -> Result<()> {
+        let Some(how) = self.sim.rollbacks().get(known).cloned() else {
+            return Ok(());
+        };
+        watch.rolled_back(&how);
+        self.manifest.warnings.push(how.to_string());
+        // As many may leave again, and be others.
+        self.removed_written = if self.removed_written > 0 { usize::MAX } else { 0 };
+        let Some((_, extent)) = self.rollback_positions.iter().rfind(|(time, _)| *time == how.back_to).cloned() else {
+            return Ok(());
+        };
+        // Both checkpoints first: those there may be of the course that ended, and ask for rows that are about to go. The state
+        // knows of no alarm yet: it is met again, or another guard is set.
+        self.last_checkpoint_valid = false;
+        self.outputs.sync()?;
+        let state = self.sim.save_with_rollbacks(known)?;
+        self.write_checkpoint(state.clone(), extent.clone())?;
+        self.write_checkpoint(state, extent.clone())?;
+        self.outputs.roll_back_to(&extent)
+    }
+
+    /// Lists the particles that were removed, if that is news.
+    fn write_removed(&mut self) -> Result<()> {
+        let lost = self.sim.removed_particles();
+        if lost.len() != self.removed_written {
+            removed_particles::write(&self.folder, lost)?;
+            self.removed_written = lost.len();
+        }
+        Ok(())
+    }
+
+    /// Writes the checkpoint, of outputs that are on the disk.
+    fn save_checkpoint(&mut self) -> Result<()> {
+        self.outputs.sync()?;
+        self.write_checkpoint(self.sim.save()?, self.outputs.positions())
+    }
+
+    /// Writes the checkpoint of the simulation's `state` of now and of `outputs`.
+    fn write_checkpoint(&mut self, state: Vec<u8>, outputs: OutputPositions) -> Result<()> {
+        let (time, wall, cpu) = (self.sim.time(), self.wall_seconds(), self.cpu_seconds());
+        let now = Checkpoint { state, time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };
+        now.write(&self.folder, self.last_checkpoint_valid)?;
+        (self.last_checkpoint_valid, self.last_checkpoint.0) = (true, Instant::now());
+        Ok(())
+    }
+
+    /// Keeps what can be kept of a run that cannot go on; the error with where that is.
+    fn record_failure(mut self, mut error: Error) -> Error {
+        let mut reports = Vec::new();
+        if let Some(fault) = &error.fault {
+            // Whatever of this fails, the fault itself is what the user must hear.
+            reports.push(self.outputs.write_last_frame(&self.sim));
+            reports.push(self.write_removed());
+            let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
+            reports.push(write_atomically(&self.folder.join(run_folder::FAILURE), &text));
+        }
+        self.update_manifest();
+        self.manifest.record_failure(&error);
+        self.evaluate_checks();
+        reports.push(self.manifest.write(&self.folder));
+        let kept =
+            if reports.iter().all(Result::is_ok) { "everything recorded so far is" } else { "what could be kept is" };
+        let mut help = error.help.take().map_or_else(String::new, |help| help + "\n");
+        if self.folder.exists() {
+            help += &format!("{kept} in {}", self.folder.display());
+        }
+        if error.kind == ErrorKind::File && resume_point::has_checkpoint(&self.folder) {
+            help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
+        }
+        error.help(help)
+    }
+
+    /// Holds the series against their references. A run that has not come to its end keeps and misses no bound.
+    fn evaluate_checks(&mut self) {
+        let series = series_folder(&self.folder);
+        let whole = self.manifest.status == RunStatus::Finished;
+        let judge = |check: &ReferenceCheck| match check.verdict(&series) {
+            verdict if whole || verdict.passed.is_none() => verdict,
+            part => Verdict { passed: None, note: Some("the run has not finished: not judged".into()), ..part },
+        };
+        self.manifest.checks = self.checks.iter().map(judge).collect();
+    }
+
+    /// Brings the manifest's figures up to date.
+    fn update_manifest(&mut self) {
+        let now = self.progress();
+        self.manifest.removed = self.sim.removed_particles().len();
+        self.manifest.steps = now.steps;
+        self.manifest.simulated_s = now.time;
+        self.manifest.wall_s = now.wall;
+        self.manifest.cpu_s = self.cpu_seconds();
+        self.manifest.particle_steps = self.checkpoint.particle_steps;
+        self.manifest.particle_steps_per_second = now.rate;
+        self.manifest.frames = self.outputs.frame_totals();
+        let there = |name: &&str| self.folder.join(name).exists();
+        let fixed = [
+            statistics::STATISTICS_FILE,
+            statistics::SPECTRA_FILE,
+            statistics::RAO_FILE,
+            "frames.pvd",
+            checkpoint::LAST,
+            checkpoint::PREVIOUS,
+            removed_particles::REMOVED,
+            run_folder::FAILURE,
+            run_folder::SCENE,
+        ];
+        let mut files: Vec<String> = self.outputs.table_paths().collect();
+        files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
+        files.push("manifest.json".into());
+        self.manifest.files = files;
+    }
+
+    /// Wall time so far, s.
+    fn wall_seconds(&self) -> f64 {
+        self.checkpoint.wall_seconds + self.started_at.elapsed().as_secs_f64()
+    }
+
+    /// Processor time so far, s; where the system does not tell, what all threads together could have used.
+    fn cpu_seconds(&self) -> f64 {
+        let spent = self.cpu_at_start.and_then(|begun| begun.try_elapsed().ok());
+        let threads = rayon::current_num_threads() as f64;
+        self.checkpoint.cpu_seconds
+            + spent.map_or_else(|| threads * self.started_at.elapsed().as_secs_f64(), |spent| spent.as_secs_f64())
+    }
+
+    fn progress(&self) -> Progress {
+        let work = self.checkpoint.particle_steps as f64;
+        let stepping = self.checkpoint.stepping_seconds;
+        Progress {
+            time: self.sim.time(),
+            until: self.manifest.until_s,
+            dt: self.sim.dt(),
+            steps: self.sim.steps(),
+            wall: self.wall_seconds(),
+            rate: if stepping > 0.0 { work / stepping } else { 0.0 },
+            energy: self.drift_monitor.and_then(|teller| teller.drift(self.outputs.table(teller.probe))),
+        }
+    }
+}
+
+/// The manifest before the first step.
+fn initial_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: &Checkpoint) -> Manifest {
+    Manifest {
+        status: RunStatus::Running,
+        title: plan.title.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        commit: option_env!("PONTOON_COMMIT").map(String::from),
+        engine: String::new(),
+        threads: rayon::current_num_threads(),
+        particles: ParticleCounts { fluid: sim.system().fluid().len(), boundary: sim.system().boundary().len() },
+        removed: 0,
+        steps: 0,
+        simulated_s: 0.0,
+        until_s: plan.until,
+        wall_s: 0.0,
+        cpu_s: 0.0,
+        particle_steps: 0,
+        particle_steps_per_second: 0.0,
+        checks: vec![],
+        files: vec![],
+        frames: FrameTotals::default(),
+        error: None,
+        fault: None,
+        warnings: vec![],
+        machine: Machine::current(),
+        set: checkpoint.overrides.iter().cloned().collect(),
+        values: vec![],
+        scene: String::new(),
+    }
+}
+
+impl From<ResolvedValue> for ValueInForce {
+    fn from(of: ResolvedValue) -> Self {
+        Self { key: of.key, value: of.value, source: of.source.to_string() }
+    }
+}
+
+/// The free bodies as they are now.
+fn final_body_states<const D: usize>(sim: &Simulation<D>) -> Vec<FinalBodyState> {
+    let free = sim.system().solids().iter().filter(|s| matches!(s.spec.role, Role::Free(_)));
+    free.map(|s| FinalBodyState {
+        name: s.spec.name.clone(),
+        position: s.kinematics.centre.iter().copied().collect(),
+        speed: s.kinematics.velocity.norm(),
+        rotation_deg: s.kinematics.pose.rotation_vector().into_iter().map(f64::to_degrees).collect(),
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests;

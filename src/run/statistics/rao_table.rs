@@ -1,0 +1,112 @@
+//! How motions answer irregular waves over frequency, at a run's end: `rao.csv`, a row for each frequency of each motion.
+
+use std::{f64::consts::PI, path::Path};
+
+use serde::{Serialize, Serializer};
+
+use crate::{analysis::RaoPoint, error::Result, output::write_atomically};
+
+/// The file, in the run's folder.
+pub const RAO_FILE: &str = "rao.csv";
+
+/// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO`] for keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RaoResult {
+    /// Name of the `[[statistic]]`.
+    pub name: String,
+    /// The motion, as `probe.column`.
+    pub series: String,
+    /// Unit of the ratio, as `m/m`.
+    pub unit: String,
+    /// The answer.
+    pub point: RaoPoint,
+}
+
+impl RaoResult {
+    /// Phase of the motion less that of the wave, degrees.
+    pub fn phase_degrees(&self) -> f64 {
+        self.point.phase * 180.0 / PI
+    }
+
+    fn row(&self) -> RaoRow<'_> {
+        let RaoPoint { frequency, ratio, coherence, .. } = self.point;
+        RaoRow {
+            name: &self.name,
+            series: &self.series,
+            frequency_hz: frequency,
+            period_s: 1.0 / frequency,
+            rao: ratio,
+            unit: &self.unit,
+            phase_deg: self.phase_degrees(),
+            coherence,
+        }
+    }
+}
+
+impl Serialize for RaoResult {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        self.row().serialize(serializer)
+    }
+}
+
+/// An answer by the columns of the file.
+#[derive(Serialize)]
+struct RaoRow<'a> {
+    name: &'a str,
+    series: &'a str,
+    frequency_hz: f64,
+    period_s: f64,
+    rao: f64,
+    unit: &'a str,
+    phase_deg: f64,
+    coherence: f64,
+}
+
+/// Writes `answers` into the run's `folder`; no file if there are none.
+///
+/// # Errors
+/// `File` if it cannot be written.
+pub fn write(folder: &Path, answers: &[RaoResult]) -> Result<()> {
+    if answers.is_empty() {
+        return Ok(());
+    }
+    let mut text = String::from("name,series,frequency_hz,period_s,rao,unit,phase_deg,coherence\n");
+    for answer in answers {
+        let RaoRow { name, series, frequency_hz, period_s, rao, unit, phase_deg, coherence } = answer.row();
+        text += &format!("{name},{series},{frequency_hz:?},{period_s:?},{rao:?},{unit},{phase_deg:?},{coherence:?}\n");
+    }
+    write_atomically(&folder.join(RAO_FILE), text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+
+    #[test]
+    fn each_frequency_of_each_motion_has_a_row_and_an_object_and_no_answer_no_file() -> Result<()> {
+        let folder = std::env::temp_dir().join(format!("pontoon-rao-rows-{}", std::process::id()));
+        let failed = |why| Error::file(&folder, why);
+        std::fs::create_dir_all(&folder).map_err(failed)?;
+        write(&folder, &[])?;
+        assert!(!folder.join(RAO_FILE).exists());
+        let answer = |frequency, phase| RaoResult {
+            name: "rao".into(),
+            series: "buoy.pitch_deg".into(),
+            unit: "°/m".into(),
+            point: RaoPoint { frequency, ratio: 1.5, phase, coherence: 0.75 },
+        };
+        write(&folder, &[answer(0.5, 0.0), answer(0.625, -0.5 * PI)])?;
+        let text = std::fs::read_to_string(folder.join(RAO_FILE)).map_err(failed)?;
+        let rows = [
+            "name,series,frequency_hz,period_s,rao,unit,phase_deg,coherence",
+            "rao,buoy.pitch_deg,0.5,2.0,1.5,°/m,0.0,0.75",
+            "rao,buoy.pitch_deg,0.625,1.6,1.5,°/m,-90.0,0.75",
+        ];
+        assert_eq!(text.lines().collect::<Vec<_>>(), rows);
+        let json = serde_json::to_string(&answer(0.625, -0.5 * PI)).map_err(|why| Error::file(&folder, why))?;
+        let expected = r#"{"name":"rao","series":"buoy.pitch_deg","frequency_hz":0.625,"period_s":1.6,"rao":1.5,"unit":"°/m","phase_deg":-90.0,"coherence":0.75}"#;
+        assert_eq!(json, expected, "programs find the columns of the file");
+        std::fs::remove_dir_all(&folder).map_err(failed)
+    }
+}

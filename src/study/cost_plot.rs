@@ -1,0 +1,150 @@
+//! What the cases of one scene cost, beside what they are worth: error over processor time.
+
+use super::{
+    Job, LineStyle, PlotLine, ResultRow,
+    html_page::{self, escape},
+    log_log_plot,
+    repeat_spread::{self, CostPoint, group_repeats},
+    result_rows::RELATIVE_METRICS,
+};
+use crate::error::Result;
+
+/// The law that tells the colours apart.
+const LAW: &str = "model.viscosity";
+
+/// For every scene of which two or more of `jobs` have finished, and every check with N: N, and N with the
+/// delay taken out, over processor time.
+///
+/// # Errors
+/// `File` if a drawing fails.
+pub fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> Result<String> {
+    let mut text = String::new();
+    for scene in unique(jobs.iter().map(|job| job.group.as_str())) {
+        let own: Vec<&Job> = jobs.iter().filter(|job| job.group == scene).collect();
+        let known: Vec<(&Job, Vec<&ResultRow>)> = group_repeats(rows)
+            .into_iter()
+            .filter_map(|of| Some((*own.iter().find(|job| job.name == of[0].run)?, of)))
+            .collect();
+        let mut drawn = Vec::new();
+        for check in unique(known.iter().map(|(_, of)| of[0].check.as_str())) {
+            for (error, figure) in RELATIVE_METRICS {
+                let points: Vec<(&Job, CostPoint)> = known
+                    .iter()
+                    .filter(|(_, of)| of[0].check == check)
+                    .filter_map(|(job, of)| Some((*job, CostPoint::new(of, figure)?)))
+                    .collect();
+                // Two checks of one series differ in their means alone.
+                if points.len() > 1 && !drawn.contains(&points) {
+                    text += &plot(scene, check, error, &points, repeat_spread::error_bar_note(rows))?;
+                    drawn.push(points);
+                }
+            }
+        }
+    }
+    Ok(match text.is_empty() {
+        true => text,
+        false => format!("<h2>Error against run time</h2>\n{text}"),
+    })
+}
+
+/// One point for each case, in the colour of its viscosity; `bars` says what its bar is.
+fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bars: &str) -> Result<String> {
+    let laws = unique(points.iter().map(|(job, _)| viscosity(job)));
+    let line = |(i, law_of_line): (usize, &&str)| {
+        let own: Vec<_> = points.iter().filter(|(job, _)| viscosity(job) == *law_of_line).collect();
+        let labels = own.iter().map(|(job, _)| short_name(&job.name, scene).to_string()).collect();
+        let spans = own.iter().map(|(_, point)| point.span).collect();
+        PlotLine {
+            labels,
+            spans,
+            ..PlotLine::new(i, LineStyle::Dots, own.iter().map(|(_, point)| point.place).collect())
+        }
+    };
+    let lines: Vec<PlotLine> = laws.iter().enumerate().map(line).collect();
+    let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, –")], &lines)?;
+    let keys: Vec<(usize, String)> = laws.iter().enumerate().map(|(i, law)| (i, format!("{LAW} = {law}"))).collect();
+    let title = format!("<h3>{}: {error} of {}</h3>\n", escape(scene), escape(check));
+    let caption = format!("A point for each case, with its name. Left and low is good.{bars}");
+    Ok(title + &html_page::plot_figure(&svg, &keys, &caption))
+}
+
+/// The viscosity of a case.
+fn viscosity(job: &Job) -> &str {
+    job.overrides.iter().rev().find(|(key, _)| key == LAW).map_or("that of the scene", |(_, value)| value)
+}
+
+/// The name of a case without that of its scene, where it starts with it.
+fn short_name<'a>(name: &'a str, scene: &str) -> &'a str {
+    name.strip_prefix(scene).and_then(|rest| rest.strip_prefix('-')).unwrap_or(name)
+}
+
+/// Each of `words` once, in their order.
+fn unique<'a>(words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut found = Vec::new();
+    for word in words {
+        if !found.contains(&word) {
+            found.push(word);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::ErrorMetrics;
+
+    fn job(name: &str, scene: &str, law: &str) -> Job {
+        Job {
+            name: name.into(),
+            repeat: 1,
+            scene: scene.into(),
+            overrides: vec![(LAW.into(), law.into())],
+            folder: name.into(),
+            group: scene.into(),
+            dp: 0.01,
+            varied: vec![],
+        }
+    }
+
+    fn row(run: &str, n: f64, cpu_s: f64, status: &'static str) -> ResultRow {
+        let figures = ErrorMetrics { relative_l2: Some(n), ..ErrorMetrics::default() };
+        ResultRow {
+            run: run.into(),
+            check: "force.fx_N".into(),
+            metrics: figures,
+            cpu_s: Some(cpu_s),
+            status,
+            ..ResultRow::default()
+        }
+    }
+
+    #[test]
+    fn cases_of_a_scene_stand_beside_one_another() -> Result<()> {
+        let jobs = [job("column-1", "column", "none"), job("column-3", "column", "sps"), job("tank", "tank", "none")];
+        let rows = [
+            row("column-1", 0.5, 100.0, "finished"),
+            row("column-3", 0.4, 150.0, "finished"),
+            ResultRow { check: "force.fx_N (2)".into(), ..row("column-1", 0.5, 100.0, "finished") },
+            ResultRow { check: "force.fx_N (2)".into(), ..row("column-3", 0.4, 150.0, "finished") },
+            row("tank", 0.1, 2.0, "finished"),
+        ];
+        let text = cost_figures(&jobs, &rows)?;
+        for word in ["column: N of force.fx_N", ">\n1\n<", ">\n3\n<", "model.viscosity = none", "model.viscosity = sps"]
+        {
+            assert!(text.contains(word), "\"{word}\" is not in\n{text}");
+        }
+        assert!(!text.contains("tank"), "one case has nothing to stand beside");
+        assert_eq!(text.matches("<svg").count(), 1, "a second check of the series has the same N");
+        assert!(!text.contains("aligned"), "a figure that no case has is not drawn");
+        Ok(())
+    }
+
+    #[test]
+    fn what_has_not_finished_is_not_drawn() -> Result<()> {
+        let jobs = [job("column-1", "column", "none"), job("column-3", "column", "sps")];
+        let rows = [row("column-1", 0.5, 100.0, "finished"), row("column-3", 0.4, 150.0, "failed")];
+        assert!(cost_figures(&jobs, &rows)?.is_empty());
+        Ok(())
+    }
+}

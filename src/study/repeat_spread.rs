@@ -1,0 +1,214 @@
+//! How far the repeats of a run lie apart: what of an error is chance.
+
+use serde::Serialize;
+
+use super::{
+    ResultRow,
+    result_rows::{MAX_ABS_METRIC, Metric},
+};
+use crate::analysis::format_verdicts;
+
+/// The figures of which a spread is told.
+const SPREAD_METRICS: [Metric; 5] = [
+    ("N", |r| r.metrics.relative_l2),
+    ("M", |r| r.metrics.amplitude_ratio),
+    ("peak", |r| r.metrics.peak),
+    ("aligned N", |r| r.aligned_relative_l2),
+    MAX_ABS_METRIC,
+];
+
+/// A figure over all repeats of a run that have finished.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// How many repeats.
+    pub runs: usize,
+    /// Their mean.
+    pub mean: f64,
+    /// Standard deviation of one run, from the repeats (n − 1); none for a single one.
+    pub deviation: Option<f64>,
+    /// The least.
+    pub least: f64,
+    /// The greatest.
+    pub greatest: f64,
+}
+
+/// A run, a check and a figure, and how far the repeats lie apart in it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RepeatSpread {
+    /// Name of the run.
+    pub run: String,
+    /// What was compared, as `probe.column`.
+    pub check: String,
+    /// Which figure.
+    pub figure: &'static str,
+    /// How far the repeats lie apart.
+    #[serde(flatten)]
+    pub spread: Spread,
+}
+
+impl Spread {
+    /// Of `values`; none if there are none.
+    ///
+    /// ```
+    /// # use pontoon::study::Spread;
+    /// let spread = Spread::of([0.1, 0.2, 0.3]).unwrap();
+    /// assert!((spread.mean - 0.2).abs() < 1e-15 && (spread.deviation.unwrap() - 0.1).abs() < 1e-15);
+    /// assert_eq!((spread.runs, spread.least, spread.greatest), (3, 0.1, 0.3));
+    /// ```
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let all: Vec<f64> = values.into_iter().collect();
+        let runs = all.len();
+        let mean = all.iter().sum::<f64>() / runs as f64;
+        let squares: f64 = all.iter().map(|x| (x - mean) * (x - mean)).sum();
+        (runs > 0).then(|| Self {
+            runs,
+            mean,
+            deviation: (runs > 1).then(|| (squares / (runs - 1) as f64).sqrt()),
+            least: all.iter().copied().fold(f64::INFINITY, f64::min),
+            greatest: all.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        })
+    }
+
+    /// In words: mean ± deviation (least to greatest), with numbers as `number` writes them.
+    pub fn format(&self, number: fn(Option<f64>) -> String) -> String {
+        let [mean, least, greatest] = [self.mean, self.least, self.greatest].map(|x| number(Some(x)));
+        let deviation = match self.deviation {
+            None => return mean,
+            // Too small for the digits of the mean.
+            Some(x) if x > 0.0 && x < 1e-3 * self.mean.abs() => format!("{x:.0e}"),
+            x => number(x),
+        };
+        let ends = if least == greatest { String::new() } else { format!(" ({least} to {greatest})") };
+        format!("{mean} ± {deviation}{ends}")
+    }
+}
+
+/// The finished rows of each run and check, its repeats together, in the order of `rows`.
+pub fn group_repeats(rows: &[ResultRow]) -> Vec<Vec<&ResultRow>> {
+    let mut all: Vec<Vec<&ResultRow>> = Vec::new();
+    for row in rows.iter().filter(|row| row.status == "finished") {
+        match all.iter_mut().find(|of| of[0].run == row.run && of[0].check == row.check) {
+            Some(of) => of.push(row),
+            None => all.push(vec![row]),
+        }
+    }
+    all
+}
+
+/// How far the rows `of` one run and check lie apart in a figure; none where no row knows it.
+pub fn spread_of(of: &[&ResultRow], figure: fn(&ResultRow) -> Option<f64>) -> Option<Spread> {
+    Spread::of(of.iter().filter_map(|row| figure(row)))
+}
+
+/// How far the repeats of each run lie apart in each figure; nothing if no run is repeated.
+pub fn repeat_spreads(rows: &[ResultRow]) -> Vec<RepeatSpread> {
+    let figure = |of: &[&ResultRow], (figure, value): Metric| {
+        Some(RepeatSpread { run: of[0].run.clone(), check: of[0].check.clone(), figure, spread: spread_of(of, value)? })
+    };
+    let repeated = group_repeats(rows).into_iter().filter(|of| of.len() > 1);
+    repeated.flat_map(|of| SPREAD_METRICS.into_iter().filter_map(move |metric| figure(&of, metric))).collect()
+}
+
+/// Whether any run is repeated.
+pub fn has_repeats(rows: &[ResultRow]) -> bool {
+    rows.iter().any(|row| row.repeat > 1)
+}
+
+/// Runs that share a name as one point of a plot of error over processor time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CostPoint {
+    /// Mean processor time, s, and mean error.
+    pub place: (f64, f64),
+    /// The least and the greatest error.
+    pub span: (f64, f64),
+    /// Particle spacing, m.
+    pub dp: f64,
+}
+
+impl CostPoint {
+    /// Of the rows `of` one run and check; none where no error is known, or no processor time.
+    pub fn new(of: &[&ResultRow], error: fn(&ResultRow) -> Option<f64>) -> Option<Self> {
+        let (cost, error) = (spread_of(of, |row| row.cpu_s)?.mean, spread_of(of, error)?);
+        Some(Self { place: (cost, error.mean), span: (error.least, error.greatest), dp: of[0].dp })
+    }
+}
+
+/// What must be said of the bars of a plot; nothing if no run is repeated.
+pub fn error_bar_note(rows: &[ResultRow]) -> &'static str {
+    match has_repeats(rows) {
+        true => " A point is the mean of its repeats, its bar goes from the least to the greatest.",
+        false => "",
+    }
+}
+
+/// The spreads as a table in words, a row for each run and check, the first row its head; empty if no run is repeated.
+pub fn spread_table(rows: &[ResultRow]) -> Vec<Vec<String>> {
+    let all: Vec<Vec<&ResultRow>> = group_repeats(rows).into_iter().filter(|of| of.len() > 1).collect();
+    let known = |(_, figure): &Metric| all.iter().any(|of| spread_of(of, *figure).is_some());
+    let used: Vec<Metric> = SPREAD_METRICS.into_iter().filter(known).collect();
+    let row = |of: &Vec<&ResultRow>| {
+        let told = |(name, figure): &Metric| {
+            let number =
+                if *name == MAX_ABS_METRIC.0 { format_verdicts::format_value } else { format_verdicts::format_metric };
+            spread_of(of, *figure).map_or("–".into(), |spread| spread.format(number))
+        };
+        let mut cells = vec![of[0].run.clone(), of[0].check.clone(), of.len().to_string()];
+        cells.extend(used.iter().map(told));
+        cells.push(spread_of(of, |row| row.cpu_s).map_or("–".into(), |spread| format!("{:.1}", spread.mean)));
+        cells
+    };
+    let head = ["run", "check", "runs"].into_iter().chain(used.iter().map(|(name, _)| *name)).chain(["processors, s"]);
+    let head = (!all.is_empty()).then(|| head.map(String::from).collect());
+    head.into_iter().chain(all.iter().map(row)).collect()
+}
+
+/// What their table says.
+pub const REPEATS_NOTE: &str = "Repeats start with their water moved by a millionth of dp more each time: what differs between them is chance. \
+    Mean ± standard deviation of one run (least to greatest). Two laws whose means are nearer than that are not told apart by one run of each.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::ErrorMetrics;
+
+    fn row(run: &str, repeat: usize, n: Option<f64>) -> ResultRow {
+        let figures = ErrorMetrics { relative_l2: n, ..ErrorMetrics::default() };
+        let status = if n.is_some() { "finished" } else { "failed" };
+        ResultRow {
+            run: run.into(),
+            repeat,
+            check: "box.surge_m".into(),
+            metrics: figures,
+            status,
+            cpu_s: Some(2.0),
+            ..ResultRow::default()
+        }
+    }
+
+    #[test]
+    fn repeats_stand_together_and_those_that_failed_are_left_out() {
+        let rows = [
+            row("a", 1, Some(0.10)),
+            row("a", 2, Some(0.14)),
+            row("a", 3, None),
+            row("b", 1, Some(0.2)),
+            row("b", 2, Some(0.2)),
+        ];
+        let all = repeat_spreads(&rows);
+        assert_eq!(all.iter().map(|a| (a.run.as_str(), a.spread.runs)).collect::<Vec<_>>(), [("a", 2), ("b", 2)]);
+        let told = spread_table(&rows);
+        assert_eq!(told[0], ["run", "check", "runs", "N", "processors, s"]);
+        assert_eq!(told[1], ["a", "box.surge_m", "2", "0.120 ± 0.028 (0.100 to 0.140)", "2.0"]);
+        assert_eq!(told[2][3], "0.200 ± 0.000");
+    }
+
+    #[test]
+    fn nothing_is_told_of_runs_that_were_made_once() {
+        assert!(repeat_spreads(&[row("a", 1, Some(0.1)), row("b", 1, Some(0.2))]).is_empty());
+        assert!(spread_table(&[row("a", 1, Some(0.1))]).is_empty());
+        assert_eq!(Spread::of([]), None);
+        let said = |values: &[f64]| Spread::of(values.iter().copied()).map(|s| s.format(format_verdicts::format_value));
+        assert_eq!(said(&[0.25]), Some("0.250".into()));
+        assert_eq!(said(&[0.25, 0.25 + 1e-7]), Some("0.250 ± 7e-8".into()), "no row of noughts");
+    }
+}

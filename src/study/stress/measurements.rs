@@ -1,0 +1,214 @@
+//! What of a running simulation the judge wants to know: followed step by step, never touched.
+
+use super::{
+    StressCase,
+    criteria::{Energies, EnergyBalance, MeasuredFigures, draft_figure, max_or_invalid, motion_figure},
+};
+use crate::{
+    error::Result,
+    geometry::Shape,
+    math::{Bivector, Vector, expression::Formula},
+    probe::{EnergyProbe, MotionProbe, Probe, find_solid},
+    simulation::Simulation,
+    solid::{Kinematics, Role, Solid, hydrostatics::equilibrium_height},
+    system::System,
+};
+
+/// How often a run is looked at: an excess of energy that comes and goes lasts for many sound crossings.
+const LOOKS: f64 = 200.0;
+
+/// Follows one run.
+pub(super) struct Measurements<'a, const D: usize> {
+    case: &'a StressCase,
+    energy: EnergyProbe,
+    energy_balance: EnergyBalance,
+    known_motions: Vec<(MotionProbe<D>, usize, Formula)>,
+    before: Vec<Kinematics<D>>,
+    /// Momentum (kg m/s) at the start, and what moves: Σ m |v| then.
+    momentum: (Vector<D>, f64),
+    depth: f64,
+    level: f64,
+    next: f64,
+    figures: MeasuredFigures,
+}
+
+impl<'a, const D: usize> Measurements<'a, D> {
+    /// Begins with the simulation at its start; `level` is the height of the still water, m.
+    pub(super) fn new(case: &'a StressCase, sim: &Simulation<D>, level: f64) -> Result<Self> {
+        let system = sim.system();
+        let energy = EnergyProbe::new(system);
+        let mut courses = Vec::new();
+        for course in &case.criteria.motion {
+            let probe = MotionProbe::new(system, &course.solid)?;
+            let columns = Probe::<D>::columns(&probe);
+            let Some(column) = columns.iter().position(|name| *name == course.column) else {
+                let what = format!("a motion has no column {:?}; it has {}", course.column, columns.join(", "));
+                return Err(crate::Error::scene(what));
+            };
+            courses.push((probe, column, Formula::parse(&course.formula)?));
+        }
+        let lowest = system.fluid().r.iter().map(|r| r[D - 1]).fold(f64::INFINITY, f64::min);
+        let lift = masses(system) * system.gravity().norm() * system.model().dp;
+        let mut measure = Self {
+            case,
+            energy_balance: EnergyBalance::new(energies(&energy, sim), lift),
+            energy,
+            known_motions: courses,
+            before: Vec::new(),
+            momentum: (momentum(sim), momentum_scale(system)),
+            depth: level - lowest + 0.5 * system.model().dp,
+            level,
+            next: 0.0,
+            figures: MeasuredFigures::new(),
+        };
+        measure.store_kinematics(sim);
+        measure.sample(sim)?;
+        Ok(measure)
+    }
+
+    /// Told after each step, of length `dt` (s).
+    pub(super) fn step(&mut self, sim: &Simulation<D>, dt: f64) -> Result<()> {
+        let driven: f64 =
+            self.before.iter().zip(sim.system().solids()).map(|(then, now)| driven_work(then, now, dt)).sum();
+        self.energy_balance.add_work(driven + constraint_work(sim, &self.before, dt));
+        self.store_kinematics(sim);
+        let until = self.case.scene.until;
+        if sim.time() < self.next && sim.time() < until {
+            return Ok(());
+        }
+        self.next = sim.time() + until / LOOKS;
+        self.sample(sim)
+    }
+
+    /// What was found.
+    pub(super) fn figures(mut self) -> MeasuredFigures {
+        self.figures.insert("energy".into(), self.energy_balance.relative_excess());
+        self.figures
+    }
+
+    fn store_kinematics(&mut self, sim: &Simulation<D>) {
+        self.before = sim.system().solids().iter().map(|solid| solid.kinematics).collect();
+    }
+
+    fn sample(&mut self, sim: &Simulation<D>) -> Result<()> {
+        self.energy_balance.update(energies(&self.energy, sim));
+        let (judge, system) = (&self.case.criteria, sim.system());
+        for (name, figure) in ["walls", "bodies", "outside"].into_iter().zip(wall_violations(system)) {
+            self.record_max(name, figure);
+        }
+        if judge.momentum.is_some() {
+            let pushed = system.gravity() * (masses(system) * sim.time());
+            let off = (momentum(sim) - self.momentum.0 - pushed).norm();
+            self.record_max("momentum", off / self.momentum.1.max(pushed.norm()).max(f64::MIN_POSITIVE));
+        }
+        let courses = self.known_motions.iter().zip(&judge.motion).map(|((probe, column, formula), course)| {
+            let off = probe.sample(sim)[*column] - formula.value_and_rate(sim.time()).0;
+            (motion_figure(course), off.abs())
+        });
+        for (name, off) in courses.collect::<Vec<_>>() {
+            self.record_max(&name, off);
+        }
+        if sim.time() < 0.5 * self.case.scene.until {
+            return Ok(());
+        }
+        if judge.quiet.is_some() {
+            let fastest = system.fluid().v.iter().map(|v| v.norm()).fold(0.0, max_or_invalid);
+            self.record_max("quiet", fastest / (system.gravity().norm() * self.depth).sqrt());
+        }
+        for of in &judge.draft {
+            let solid = &system.solids()[find_solid(system, &of.solid)?];
+            let Role::Free(body) = &solid.spec.role else { continue };
+            let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+            let off = equilibrium_height(shape, pose, body.mass, system.model().rho0, self.level)?;
+            self.record_max(&draft_figure(&of.solid), off.abs() / system.model().dp);
+        }
+        Ok(())
+    }
+
+    fn record_max(&mut self, name: &str, figure: f64) {
+        let entry = self.figures.entry(name.into()).or_insert(0.0);
+        *entry = max_or_invalid(*entry, figure);
+    }
+}
+
+fn energies<const D: usize>(probe: &EnergyProbe, sim: &Simulation<D>) -> Energies {
+    // The columns of the probe: water's kinetic, potential, compression; bodies' kinetic, potential; their sum.
+    let row = probe.sample(sim);
+    Energies { kinetic: row[0] + row[3], potential: row[1] + row[4], compression: row[2] }
+}
+
+/// What a driven solid does to the water in a step (J): minus the water's load along its mean motion. The load is that of the
+/// step's last pass, in its middle where there are two.
+fn driven_work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
+    let Role::Driven(_) = &now.spec.role else { return 0.0 };
+    let velocity = (then.velocity + now.kinematics.velocity) * 0.5;
+    let spin: Bivector<D> = (then.spin + now.kinematics.spin) * 0.5;
+    -dt * (now.load.force.dot(&velocity) + now.load.torque.power(&spin))
+}
+
+/// What springs, motors and forces do to the free bodies in a step (J), each at the mean of its motion before and after; none where no
+/// loads are kept.
+fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
+    let one = |(i, then): (usize, &Kinematics<D>)| {
+        let (now, shares) = (sim.system().solids()[i].kinematics, sim.load_breakdown(i)?);
+        let (velocity, spin) = ((then.velocity + now.velocity) * 0.5, (then.spin + now.spin) * 0.5);
+        Some(dt * (shares.springs + shares.motors + shares.forces).power(&Kinematics { velocity, spin, ..now }))
+    };
+    before.iter().enumerate().filter_map(one).sum()
+}
+
+/// Mass of water and free bodies, kg.
+fn masses<const D: usize>(system: &System<D>) -> f64 {
+    let bodies: f64 = free_bodies(system).map(|(_, mass)| mass).sum();
+    system.particle_mass() * system.fluid().len() as f64 + bodies
+}
+
+/// Momentum of water and free bodies, kg m/s, with what light ones have yet to get.
+fn momentum<const D: usize>(sim: &Simulation<D>) -> Vector<D> {
+    let system = sim.system();
+    let water = system.fluid().v.iter().sum::<Vector<D>>() * system.particle_mass();
+    let on_the_way = (0..system.solids().len()).fold(water, |sum, i| sum + sim.pending_impulse(i));
+    free_bodies(system).fold(on_the_way, |sum, (solid, mass)| sum + solid.kinematics.velocity * mass)
+}
+
+/// Σ m |v| of water and free bodies, kg m/s.
+fn momentum_scale<const D: usize>(system: &System<D>) -> f64 {
+    let water: f64 = system.fluid().v.iter().map(|v| v.norm()).sum();
+    free_bodies(system)
+        .fold(water * system.particle_mass(), |sum, (solid, mass)| sum + solid.kinematics.velocity.norm() * mass)
+}
+
+/// Free solids and their masses.
+fn free_bodies<const D: usize>(system: &System<D>) -> impl Iterator<Item = (&Solid<D>, f64)> {
+    system.solids().iter().filter_map(|solid| match &solid.spec.role {
+        Role::Free(body) => Some((solid, body.mass)),
+        _ => None,
+    })
+}
+
+/// How deep (dp) water lies inside a solid, how deep the face of a free body inside another solid, and how much water has
+/// left a tank but over its rim.
+fn wall_violations<const D: usize>(system: &System<D>) -> [f64; 3] {
+    let (dp, skin) = (system.model().dp, system.boundary());
+    let [mut deepest, mut pressed, mut outside] = [0.0; 3];
+    for (i, solid) in system.solids().iter().enumerate() {
+        let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+        let depth = |r: &Vector<D>| -shape.signed_distance(&pose.local(r)) / dp;
+        deepest = system.fluid().r.iter().map(depth).fold(deepest, max_or_invalid);
+        for (k, body) in system.solids().iter().enumerate() {
+            if k != i && matches!(body.spec.role, Role::Free(_)) {
+                // Its outermost boundary particles lie half a dp behind its face.
+                pressed = skin.r[body.boundary.clone()].iter().map(|r| depth(r) + 0.5).fold(pressed, max_or_invalid);
+            }
+        }
+        if let Shape::Tank { size, thickness } = shape {
+            let beside = |r: &&Vector<D>| {
+                let x = pose.local(r);
+                let below = x[D - 1] < -thickness;
+                below || (x[D - 1] < size[D - 1] && (0..D - 1).any(|i| x[i] < -thickness || x[i] > size[i] + thickness))
+            };
+            outside += system.fluid().r.iter().filter(beside).count() as f64;
+        }
+    }
+    [deepest, pressed, outside]
+}
