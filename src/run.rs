@@ -38,7 +38,7 @@ use crate::{
     error::{Error, ErrorKind, Result},
     model::Dimension,
     output::{Checkpoint, Manifest, manifest::RunStatus},
-    scene::Scene,
+    scene::{RenamedName, Scene},
     simulation::Rollback,
     solid::Dim,
 };
@@ -61,6 +61,8 @@ pub struct RunStart<'a> {
     pub folder: &'a Path,
     /// What the manifest says at the start: caption, particles, threads, warnings.
     pub manifest: &'a Manifest,
+    /// The keys and values that the scene writes with an old name.
+    pub renamed: &'a [RenamedName],
 }
 
 /// How far a run is.
@@ -200,7 +202,7 @@ fn run_in_dimension<const D: usize>(scene: &Scene, origin: RunOrigin, watch: &mu
 where
     Dim<D>: Dimension<D>,
 {
-    runner::Runner::<D>::new(scene, origin)?.run(watch)
+    runner::Runner::<D>::new(scene, origin)?.run(scene.renamed_names(), watch)
 }
 
 /// The error of a scene in a dimension that this program was built without.

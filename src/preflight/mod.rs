@@ -33,7 +33,7 @@ pub use sound_speed::{ExpectedSpeed, SoundSpeed, StepSizeLimits};
 use crate::{
     error::Error,
     plan::Plan,
-    scene::StillWaterLevel,
+    scene::{RenamedName, StillWaterLevel},
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
@@ -73,6 +73,11 @@ impl Finding {
 
     fn note(topic: &'static str, what: String, mend: String) -> Self {
         Self { severity: Severity::Note, topic, what, mend }
+    }
+
+    /// That the scene writes a key or a value with an old name.
+    pub fn renamed_name(name: &RenamedName) -> Self {
+        Self::note("old_name", name.to_string(), format!("write  {}", name.new))
     }
 
     /// That the timing stopped with `error` after so many `steps`.

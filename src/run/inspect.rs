@@ -142,6 +142,7 @@ where
     probe_factory::checks_from_plan(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
     let mut preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+    preflight.findings.extend(scene.renamed_names().iter().map(Finding::renamed_name));
     let solids = sim.system().solids().iter().map(|s| SolidSummary {
         name: s.spec.name.clone(),
         role: preflight::role_name(&s.spec.role),

@@ -21,7 +21,7 @@ use crate::{
         removed_particles, write_atomically,
     },
     preflight,
-    scene::{BuiltScene, Plan, ResolvedValue, Scene},
+    scene::{BuiltScene, Plan, RenamedName, ResolvedValue, Scene},
     simulation::Simulation,
     solid::{Dim, HasEngine as _, Role},
 };
@@ -117,11 +117,11 @@ where
 }
 
 impl<const D: usize> Runner<D> {
-    /// Runs to the end, or until `watch` says stop.
-    pub fn run(mut self, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+    /// Runs to the end, or until `watch` says stop; `renamed` are the old names in the scene.
+    pub fn run(mut self, renamed: &[RenamedName], watch: &mut dyn RunObserver) -> Result<RunOutcome> {
         self.update_manifest();
         self.manifest.write(&self.folder)?;
-        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest });
+        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest, renamed });
         match self.advance(watch) {
             Ok(status) => {
                 self.manifest.status = status;

@@ -35,7 +35,6 @@ mod section {
     pub mod shape;
     pub mod solid;
     pub mod sponge_layer;
-    pub mod value;
     pub mod water;
     pub mod wave;
     pub mod wavemaker;
@@ -75,15 +74,17 @@ pub use section::{
     shape::{AxisName, CompoundPartConfig, MeshConfig, PlacementConfig, ShapeConfig},
     solid::{FreeBodyConfig, MotionMode, SolidConfig},
     sponge_layer::SpongeLayerConfig,
-    value::{TimeFunctionConfig, TimeValueConfig, TimeVectorConfig},
     water::{FillConfig, StillWaterLevel, WaterConfig},
     wave::{
         AbsorbChoice, AbsorptionConfig, FocusedWaveConfig, IrregularWaveConfig, MeasuredElevationConfig,
         RegularWaveConfig, SolitaryWaveConfig, WaveComponentsConfig, WaveConfig,
     },
 };
-pub use toml_source::{Renamed, ValueSource, current_key};
-pub use untagged::{DraftChoice, FieldFormulaConfig, LengthUnit, NumberOrArray, PolylineConfig};
+pub use toml_source::{RenamedName, ValueSource, current_key};
+pub use untagged::{
+    DraftChoice, FieldFormulaConfig, LengthUnit, NumberOrArray, PolylineConfig, TimeFunctionConfig, TimeValueConfig,
+    TimeVectorConfig,
+};
 
 /// Most bytes of a scene's text; the longest bundled one has 3,000.
 const MOST_TEXT: u64 = 1 << 20;
@@ -292,7 +293,7 @@ impl Scene {
     }
 
     /// The keys and values that the scene writes with an old name.
-    pub fn renamed(&self) -> &[Renamed] {
+    pub fn renamed_names(&self) -> &[RenamedName] {
         &self.origin.renamed
     }
 

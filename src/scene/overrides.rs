@@ -1,14 +1,58 @@
 //! `--set key=value`: puts a value into the TOML of a scene before it is deserialised.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, ops::Range};
 
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
 };
 
-use super::toml_source::{CHOICES, OverrideLocations, subkey};
 use crate::error::{Error, Result, nearest_name};
+
+/// Keys whose value is one choice out of several laws.
+pub(super) const CHOICES: [&str; 9] = [
+    "model.kernel",
+    "model.viscosity",
+    "model.diffusion",
+    "model.shifting",
+    "model.walls",
+    "model.gradient",
+    "model.slip",
+    "model.sweep",
+    "time.scheme",
+];
+
+/// The key `part` inside the key `path`.
+pub(super) fn subkey(path: &str, part: impl std::fmt::Display) -> String {
+    if path.is_empty() { part.to_string() } else { format!("{path}.{part}") }
+}
+
+/// The locations of the keys of `--set`: beyond the text, one for each key.
+pub(super) struct OverrideLocations {
+    /// The first location.
+    first: usize,
+    /// The keys, in the order of their locations.
+    keys: Vec<String>,
+}
+
+impl OverrideLocations {
+    /// None yet, for an override of `text`.
+    pub fn after(text: &str) -> Self {
+        Self { first: text.len() + 1, keys: Vec::new() }
+    }
+
+    /// A new location for `key`.
+    pub fn place(&mut self, key: &str) -> Range<usize> {
+        let place = self.first + self.keys.len();
+        self.keys.push(key.into());
+        place..place
+    }
+
+    /// The key at a location; `None` if that is in the text.
+    pub fn key(&self, place: usize) -> Option<String> {
+        self.keys.get(place.checked_sub(self.first)?).cloned()
+    }
+}
 
 /// Puts the value written as `text` at `key`, every word of it at a place of `marks`; what is no TOML value is a word.
 /// Returns the key with numbers in place of names.

@@ -18,21 +18,11 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use super::{diagnostics, overrides};
+use super::{
+    diagnostics,
+    overrides::{self, CHOICES, OverrideLocations, subkey},
+};
 use crate::error::{Error, Result};
-
-/// Keys whose value is one choice out of several laws.
-pub(super) const CHOICES: [&str; 9] = [
-    "model.kernel",
-    "model.viscosity",
-    "model.diffusion",
-    "model.shifting",
-    "model.walls",
-    "model.gradient",
-    "model.slip",
-    "model.sweep",
-    "time.scheme",
-];
 
 /// Where the keys of a scene were written. Scenes of equal content are equal wherever they were written.
 #[derive(Clone, Debug, Default)]
@@ -52,12 +42,12 @@ pub(super) struct SceneSource {
     /// Names of the solids, in order, so that a key can say `solid.box` for `solid.2`.
     names: Vec<String>,
     /// Keys and values that are written with an old name.
-    pub renamed: Vec<Renamed>,
+    pub renamed: Vec<RenamedName>,
 }
 
 /// A key or a value that is written with an old name, which still works.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Renamed {
+pub struct RenamedName {
     /// The key, with the names of solids.
     pub key: String,
     /// The old name.
@@ -68,7 +58,7 @@ pub struct Renamed {
     pub source: ValueSource,
 }
 
-impl fmt::Display for Renamed {
+impl fmt::Display for RenamedName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { key, old, new, source } = self;
         write!(f, "\"{old}\" is called \"{new}\" now ({key}, {source})")
@@ -145,7 +135,7 @@ impl SceneSource {
             true => ValueSource::Line(line_column(&self.text, start).0),
             false => ValueSource::Set,
         };
-        self.renamed.push(Renamed { key: key.into(), old, new, source });
+        self.renamed.push(RenamedName { key: key.into(), old, new, source });
     }
 
     /// Whether `key`, or one above it, was set on the command line.
@@ -189,7 +179,7 @@ pub(super) fn read<T: DeserializeOwned>(
     walk(root.get_ref(), "", &mut entries);
     origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
     expand_bare_choices(root.get_mut());
-    let mut marks = OverrideLocations { first: text.len() + 1, keys: Vec::new() };
+    let mut marks = OverrideLocations::after(text);
     for (key, value) in &sets {
         let key = overrides::apply_override(root.get_mut(), key, value, &mut marks)
             .map_err(|e| e.at("--set", None, key.clone()))?;
@@ -215,28 +205,6 @@ pub(super) fn read<T: DeserializeOwned>(
     Ok((scene, origin))
 }
 
-/// Where the words of `--set` stand: beyond the text, each key at a place of its own.
-pub(super) struct OverrideLocations {
-    /// The first such place.
-    first: usize,
-    /// The keys, from there on.
-    keys: Vec<String>,
-}
-
-impl OverrideLocations {
-    /// A place for `key`.
-    pub fn place(&mut self, key: &str) -> Range<usize> {
-        let place = self.first + self.keys.len();
-        self.keys.push(key.into());
-        place..place
-    }
-
-    /// The key at a place; none if that is in the text.
-    fn key(&self, place: usize) -> Option<String> {
-        self.keys.get(place.checked_sub(self.first)?).cloned()
-    }
-}
-
 /// Line and column, from 1, of the byte `at`.
 fn line_column(text: &str, at: usize) -> (usize, usize) {
     let mut at = at.min(text.len());
@@ -253,11 +221,6 @@ struct WrittenKey {
     path: String,
     key: Range<usize>,
     value: Range<usize>,
-}
-
-/// The key `part` inside the key `path`.
-pub(super) fn subkey(path: &str, part: impl std::fmt::Display) -> String {
-    if path.is_empty() { part.to_string() } else { format!("{path}.{part}") }
 }
 
 fn walk(table: &DeTable, path: &str, entries: &mut Vec<WrittenKey>) {
@@ -320,7 +283,7 @@ fn expand_bare_choices(root: &mut DeTable) {
 fn current_names(sets: &[(String, String)], origin: &mut SceneSource) -> Vec<(String, String)> {
     let current = |(key, value): &(String, String)| {
         let mut note = |key: &str, old, new| {
-            origin.renamed.push(Renamed { key: key.into(), old, new, source: ValueSource::Set });
+            origin.renamed.push(RenamedName { key: key.into(), old, new, source: ValueSource::Set });
         };
         if let Some((old, new)) = renamed_key(key) {
             note(key, old, new);

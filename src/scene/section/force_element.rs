@@ -7,11 +7,13 @@ use super::{
     joint::verify_ends,
     shape::vector,
     solid::{SolidConfig, require_solid},
-    value::{CoordinateUnit, TimeValueConfig, TimeVectorConfig},
 };
 use crate::{
     error::Result,
-    scene::context::{Context, Defaults},
+    scene::{
+        context::{Context, Defaults},
+        untagged::{CoordinateUnit, TimeValueConfig, TimeVectorConfig},
+    },
     solid::{End, ForceSpec, Law, RopeSpec, SpringSpec},
 };
 

@@ -11,11 +11,13 @@ use serde::{
 use super::{
     shape::vector,
     solid::{MotionMode, SolidConfig, require_solid, verify_modes},
-    value::{CoordinateUnit, TimeValueConfig},
 };
 use crate::{
     error::Result,
-    scene::context::{Context, Defaults, last_part},
+    scene::{
+        context::{Context, Defaults, last_part},
+        untagged::{CoordinateUnit, TimeValueConfig},
+    },
     solid::{FreeMode, JointKind, JointSpec, Motor},
 };
 

@@ -3,14 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    shape::vector,
-    value::{CoordinateUnit, TimeFunctionConfig},
-    wave::WaveConfig,
-};
+use super::{shape::vector, wave::WaveConfig};
 use crate::{
     error::Result,
-    scene::context::{Context, Defaults, quoted_list},
+    scene::{
+        context::{Context, Defaults, quoted_list},
+        untagged::{CoordinateUnit, TimeFunctionConfig},
+    },
     solid::Motion,
 };
 
