@@ -314,7 +314,7 @@ fn require_inside_domain<const D: usize>(
     }
 }
 
-/// The error that no water is left: names the first free body that has no room in it.
+/// The error that no water is left: names the first free body that is larger than the water.
 fn no_water_error<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Error {
     let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
     let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size();
@@ -346,7 +346,7 @@ fn require_affordable<const D: usize>(ctx: &Context, water: &[WaterBody<D>], sol
         return Ok(());
     }
     let (volume, surface) = volume_and_surface(water, solids);
-    // Six digits say it: 0.3, not 0.30000000000000004.
+    // Six digits: 0.3, not 0.30000000000000004.
     let volume = format!("{volume:.5e}").parse().unwrap_or(volume);
     let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
     let what = format!(

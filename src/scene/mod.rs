@@ -94,7 +94,6 @@ const MOST_TEXT: u64 = 1 << 20;
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Caption.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
     /// 2 or 3.
     pub dimension: usize,
@@ -103,19 +102,14 @@ pub struct Scene {
     /// Simulated time at which the run ends, s.
     pub until: f64,
     /// Acceleration of gravity, m/s².
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<Vec<f64>>,
     /// Largest random offset of a water particle from its lattice point at the start, in each direction, over dp.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub jitter: Option<f64>,
     /// Box that nothing may leave.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub domain: Option<BoxConfig>,
     /// Periodic sides.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<PeriodicConfig>,
     /// The valid range of water particles.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub guard: Option<GuardConfig>,
     /// Bodies of water.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -151,10 +145,8 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probe: Vec<ProbeConfig>,
     /// FramesChoice for ParaView.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frames: Option<FramesChoice>,
     /// Checkpoints.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<CheckpointConfig>,
     /// Comparisons with references.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

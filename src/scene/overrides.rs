@@ -54,7 +54,7 @@ impl OverrideLocations {
     }
 }
 
-/// Puts the value written as `text` at `key`, every word of it at a place of `marks`; what is no TOML value is a word.
+/// Puts the value written as `text` at `key` and locates its parts by `marks`; text that is no TOML value is a string.
 /// Returns the key with numbers in place of names.
 ///
 /// # Errors
@@ -132,7 +132,7 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
     })
 }
 
-/// The value of `key` with every word of it at a place of its own.
+/// The value of `key` with a location of its own for each of its parts.
 fn with_locations<'i>(value: DeValue<'i>, key: &str, marks: &mut OverrideLocations) -> Spanned<DeValue<'i>> {
     let place = marks.place(key);
     let value = match value {

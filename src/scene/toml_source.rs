@@ -1,6 +1,6 @@
 //! Reads TOML, applies `--set`, and records where every key was written, so that each error names its place.
 //!
-//! A choice written as a bare word, `viscosity = "artificial"`, is read as the choice with nothing set,
+//! A choice that is a bare word, `viscosity = "artificial"`, is read as the choice with its defaults,
 //! `viscosity = { artificial = {} }`.
 
 use std::{
@@ -264,7 +264,7 @@ fn solid_names(root: &DeTable) -> Vec<String> {
     solids.into_iter().flat_map(|s| s.iter()).enumerate().map(|(i, s)| name(s).unwrap_or(i.to_string())).collect()
 }
 
-/// Writes out every choice given as a bare word.
+/// Replaces every choice that is a bare word by a table.
 fn expand_bare_choices(root: &mut DeTable) {
     for choice in CHOICES {
         let Some((section, key)) = choice.split_once('.') else { continue };

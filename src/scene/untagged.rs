@@ -181,22 +181,16 @@ impl LengthUnit {
 #[schemars(with = "PointsOrTable")]
 pub struct PolylineConfig {
     /// Points, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<Vec<Vec<f64>>>,
     /// A table of points, or a drawing (.svg), beside the scene.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// The outline's id in the drawing.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub id: Option<String>,
-    /// Factor on the drawing's lengths, –; 1 if not said.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Factor on the drawing's lengths, –; by default 1.
     pub scale: Option<f64>,
-    /// LengthUnit of the drawing's lengths; m if not said.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Unit of the drawing's lengths; by default m.
     pub unit: Option<LengthUnit>,
-    /// Thickness of a wall, m; as many dp as the kernel reaches if not said.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Thickness of a wall, m; by default as many dp as the kernel reaches.
     pub thickness: Option<f64>,
 }
 
@@ -222,11 +216,11 @@ struct PolylineTable {
     file: Option<String>,
     /// The outline's id in the drawing.
     id: Option<String>,
-    /// Factor on the drawing's lengths, –; 1 if not said.
+    /// Factor on the drawing's lengths, –; by default 1.
     scale: Option<f64>,
-    /// LengthUnit of the drawing's lengths; m if not said.
+    /// Unit of the drawing's lengths; by default m.
     unit: Option<LengthUnit>,
-    /// Thickness of a wall, m; as many dp as the kernel reaches if not said.
+    /// Thickness of a wall, m; by default as many dp as the kernel reaches.
     thickness: Option<f64>,
 }
 
@@ -279,19 +273,14 @@ pub(crate) enum CoordinateUnit {
 #[serde(deny_unknown_fields, default)]
 pub struct TimeFunctionConfig {
     /// A formula in t (s), with sin, cos, exp, …, and pi.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub formula: Option<String>,
     /// A table, beside the scene.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Its column of values.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub column: Option<String>,
     /// Its column of times, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
     /// Factor on the values of the table, –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
 }
 

@@ -18,47 +18,35 @@ use crate::{
     },
 };
 
-/// One `[[check]]`: a column of a probe held against a column of a reference table, or against a formula.
+/// One `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CheckConfig {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
     /// The reference table, beside the scene.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<String>,
     /// Its column of values.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub column: Option<String>,
     /// Its column of times, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
     /// Time added to the reference's, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delay: Option<f64>,
     /// The reference as a formula in the run's time t (s), in place of a table.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub formula: Option<String>,
     /// First time of the run that counts, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<f64>,
     /// Last time of the run that counts, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
     /// Time of the run at which the instrument was set to zero, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero: Option<f64>,
     /// Time over which the instrument takes its mean, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean: Option<f64>,
     /// How the run is moved in time to lie on its reference.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub align: Option<Align>,
-    /// What the paper reached.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// The scores of the paper.
     pub paper: Option<Score>,
-    /// What the run must reach.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// The scores that the run must reach.
     pub bound: Option<Score>,
 }
 
@@ -67,33 +55,25 @@ pub struct CheckConfig {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StatisticConfig {
-    /// What it is called.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Its name.
     pub name: Option<String>,
-    /// A series: its extremes, mean and deviation, its waves one by one, its spectrum.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// A series: its extremes, mean, deviation, single waves and spectrum.
     pub waves: Option<String>,
-    /// Gauges in the order in which the waves that come pass them: what goes back.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Reflection: gauges in the order in which incident waves pass them.
     pub reflection: Option<Vec<String>>,
-    /// How a motion answers a wave.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Response amplitude operator.
     pub rao: Option<RaoConfig>,
-    /// Period of regular waves, s; all waves about the peak if not said.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Period of regular waves, s; by default all waves about the peak.
     pub period: Option<f64>,
     /// Depth at the gauges, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<f64>,
     /// First time of the run that counts, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<f64>,
     /// Last time of the run that counts, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
 }
 
-/// A motion and the wave that it answers.
+/// A motion and the wave that excites it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RaoConfig {
@@ -124,7 +104,7 @@ impl ProbeSeries<'_> {
         })
     }
 
-    /// The series that `word` means.
+    /// The series that `word` names.
     fn find(&self, ctx: &Context, key: &str, word: &str) -> Result<Vec<SeriesAtPlace>> {
         let (name, column) = word.split_once('.').map_or((word, None), |(name, column)| (name, Some(column)));
         let i = self.probe(ctx, key, name)?;
@@ -287,7 +267,7 @@ impl CheckConfig {
 }
 
 impl StatisticConfig {
-    /// The keys that say its kind.
+    /// The keys that give its kind.
     fn named_kinds(&self) -> Vec<&'static str> {
         set_keys([
             ("waves", self.waves.is_some()),

@@ -19,13 +19,10 @@ pub struct ContactConfig {
     /// The two, each a solid or a group of them; or one, for its contacts with all others.
     pub between: Vec<String>,
     /// `false`: they pass through one another.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub touch: Option<bool>,
     /// Coulomb friction coefficient, –.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f64>,
     /// Restitution coefficient, –.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
 }
 

@@ -42,13 +42,10 @@ impl BoxConfig {
 #[serde(deny_unknown_fields, default)]
 pub struct PeriodicConfig {
     /// Along x, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<[f64; 2]>,
     /// Along y, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<[f64; 2]>,
     /// Along z, m; 3-D only.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<[f64; 2]>,
 }
 
@@ -80,13 +77,10 @@ impl PeriodicConfig {
 #[serde(deny_unknown_fields, default)]
 pub struct GuardConfig {
     /// Largest speed of water over c₀, –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
     /// Smallest and largest density over ρ₀, –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub density: Option<[f64; 2]>,
     /// What happens to a particle that leaves the domain.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub escape: Option<Escape>,
 }
 

@@ -17,7 +17,7 @@ use crate::{
     solid::{End, ForceSpec, Law, RopeSpec, SpringSpec},
 };
 
-/// One `[[spring]]`: a spring or, if it goes slack, a mooring line.
+/// One `[[spring]]`: a spring, or a mooring line if it bears tension only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringConfig {
@@ -25,24 +25,21 @@ pub struct SpringConfig {
     pub name: String,
     /// The solids at its two ends; or one, the other end on the ground.
     pub between: Vec<String>,
-    /// Where it is made fast to the first, m, at the start.
+    /// Attachment point on the first solid at the start, m.
     pub from: Vec<f64>,
-    /// Where it is made fast to the second or the ground, m, at the start.
+    /// Attachment point on the second solid or the ground at the start, m.
     pub to: Vec<f64>,
     /// N/m.
     pub stiffness: f64,
     /// N s/m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<f64>,
     /// Length without tension, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<f64>,
-    /// Whether it goes slack instead of pushing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Whether it bears tension only.
     pub tension_only: Option<bool>,
 }
 
-/// One `[[rope]]`: it goes slack and cannot be stretched.
+/// One `[[rope]]`: an inextensible line that bears tension only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RopeConfig {
@@ -50,16 +47,15 @@ pub struct RopeConfig {
     pub name: String,
     /// The solids at its two ends; or one, the other end on the ground.
     pub between: Vec<String>,
-    /// Where it is made fast to the first, m, at the start.
+    /// Attachment point on the first solid at the start, m.
     pub from: Vec<f64>,
-    /// Where it is made fast to the second or the ground, m, at the start.
+    /// Attachment point on the second solid or the ground at the start, m.
     pub to: Vec<f64>,
-    /// The longest that it can be, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Its length, m.
     pub length: Option<f64>,
 }
 
-/// One `[[force]]`: a force and a torque on a free solid, after laws of time.
+/// One `[[force]]`: a force and a torque on a free solid, as functions of time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForceConfig {
@@ -67,27 +63,23 @@ pub struct ForceConfig {
     pub name: String,
     /// The solid.
     pub on: String,
-    /// The point of the solid that is here at the start, m; its centre of mass if not said.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Point of application at the start, m; by default the centre of mass.
     pub at: Option<Vec<f64>>,
     /// Its components, N.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<TimeVectorConfig>,
     /// Its components, N m: one in 2-D.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub torque: Option<TimeVectorConfig>,
     /// Whether the axes turn with the solid.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<ForceFrame>,
 }
 
-/// Whose axes.
+/// The axes of a force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceFrame {
-    /// The world's.
+    /// Those of the world.
     World,
-    /// The world's at the start, turning with the solid.
+    /// Those of the world at the start, turning with the solid.
     WaterBody,
 }
 

@@ -27,36 +27,29 @@ use crate::{
 pub struct JointConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
-    /// What it leaves free.
+    /// Its kind.
     pub kind: JointKindConfig,
-    /// The two solids, of which the second moves against the first; or one, which moves against the world.
+    /// Two solids, the motion being that of the second relative to the first; or one, relative to the world.
     pub between: Vec<String>,
-    /// The point of the world at which it sits at the start, m.
+    /// Its position in the world at the start, m.
     pub at: Vec<f64>,
     /// Direction of the axis of a hinge; 3-D only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<Vec<f64>>,
     /// Direction of a slider or a tow; of a generic joint the first axis of its frame.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<Vec<f64>>,
-    /// Motions that a generic joint leaves free.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Modes that a generic joint leaves free.
     pub free: Option<Vec<MotionMode>>,
     /// Least and greatest value from the start, m or rad.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<LimitsConfig>,
-    /// The same of turns, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// The same for rotations, degrees.
     pub limits_deg: Option<LimitsConfig>,
-    /// What moves or brakes it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// A drive, brake or power take-off.
     pub motor: Option<MotorConfig>,
-    /// Whether its two solids touch one another.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Whether its two solids have contact forces with each other.
     pub contacts: Option<bool>,
 }
 
-/// What a joint leaves free.
+/// The kind of a joint, by the motion that it leaves free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JointKindConfig {
@@ -68,13 +61,13 @@ pub enum JointKindConfig {
     #[serde(alias = "prismatic")]
     #[schemars(extend("also" = "prismatic"))]
     Slider,
-    /// Nothing.
+    /// No motion.
     Fixed,
-    /// Turning any way; 3-D only.
+    /// Turning about any axis; 3-D only.
     #[serde(alias = "spherical")]
     #[schemars(extend("also" = "spherical"))]
     Ball,
-    /// All but moving along a line.
+    /// All motions but that along a line.
     Tow,
     /// The motions in its list `free`.
     Generic,
@@ -85,36 +78,28 @@ pub enum JointKindConfig {
 #[serde(deny_unknown_fields, default)]
 pub struct MotorConfig {
     /// F₀ of a slider, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<TimeValueConfig>,
     /// F₀ of a hinge, N m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<TimeValueConfig>,
     /// x*, m or rad.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub position: Option<TimeValueConfig>,
     /// x* of a hinge, degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub position_deg: Option<TimeValueConfig>,
     /// v*, m/s or rad/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity: Option<TimeValueConfig>,
     /// k, N/m or N m/rad.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<TimeValueConfig>,
     /// c, N s/m or N m s/rad.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub damping: Option<TimeValueConfig>,
-    /// The strongest that it can be, N or N m.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Largest magnitude of its force, N or N m.
     pub strongest: Option<f64>,
 }
 
-/// End stops: least and greatest value, or such a pair for each of several motions.
+/// End stops: least and greatest value, or such a pair for each of several modes.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum LimitsConfig {
-    /// Of a joint with one way to go.
+    /// Of a joint with one degree of freedom.
     One(Vec<f64>),
     /// Of a generic joint.
     Each(BTreeMap<MotionMode, Vec<f64>>),
@@ -214,7 +199,7 @@ impl JointConfig {
         }
     }
 
-    /// Refuses axes that a joint cannot leave free, and end stops that are not of what it leaves free.
+    /// Refuses modes that the joint cannot leave free, and end stops of modes that it does not leave free.
     fn verify_limits(&self, ctx: &Context, key: &str) -> Result<()> {
         let generic = self.kind == JointKindConfig::Generic;
         let free = self.free.as_deref().unwrap_or_default();

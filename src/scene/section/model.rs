@@ -29,46 +29,32 @@ const MIN_DEPTH_RATIO: f64 = 0.75;
 #[serde(deny_unknown_fields, default)]
 pub struct ModelConfig {
     /// KernelKind.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub kernel: Option<KernelKind>,
     /// Smoothing length over particle spacing, –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub h_over_dp: Option<f64>,
     /// Smoothing length over the spacing's diagonal √D·dp, –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub c_h: Option<f64>,
     /// The pressure's gradient.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub gradient: Option<PressureGradient>,
     /// Viscosity.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Viscosity>,
     /// Density diffusion.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub diffusion: Option<Diffusion>,
     /// Particle shifting.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub shifting: Option<Shifting>,
     /// Walls.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub walls: Option<Walls>,
     /// How water slips along solids.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub slip: Option<Slip>,
     /// Which sweep adds up the pairs.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub sweep: Option<PairLoopKind>,
     /// Speed of sound, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub c0: Option<f64>,
     /// Speed of sound over √(g · depth), –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub c0_factor: Option<f64>,
     /// Reference density, kg/m³.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub rho0: Option<f64>,
     /// Exponent of the equation of state, –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub gamma: Option<f64>,
 }
 
@@ -77,13 +63,10 @@ pub struct ModelConfig {
 #[serde(deny_unknown_fields, default)]
 pub struct TimeSteppingConfig {
     /// TimeScheme.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub scheme: Option<TimeScheme>,
     /// Courant number, –.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub cfl: Option<f64>,
     /// Longest step, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub dt_max: Option<f64>,
 }
 

@@ -18,28 +18,20 @@ use crate::{
 #[serde(deny_unknown_fields, default)]
 pub struct DrivenConfig {
     /// Direction of a translation (its length does not matter).
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub along: Option<Vec<f64>>,
     /// Distance along it, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<TimeFunctionConfig>,
     /// World point of a hinge, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub hinge: Option<Vec<f64>>,
     /// Direction of its axis; 3-D only.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<Vec<f64>>,
     /// Angle about it, rad.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<TimeFunctionConfig>,
     /// Angle about it, degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<TimeFunctionConfig>,
     /// The wave that it is to make.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub wave: Option<WaveConfig>,
     /// Several motions at once, in place of all of these, each in the frame that those before it have moved.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub motions: Option<Vec<DrivenConfig>>,
 }
 

@@ -44,13 +44,11 @@ pub enum FramesChoice {
 #[serde(deny_unknown_fields, default)]
 pub struct FramesConfig {
     /// Simulated time between frames, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub every: Option<f64>,
     /// Fields of the particles.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub fields: Option<Vec<String>>,
-    /// Only water in this box is kept.
-    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    /// Only water in this box is written.
+    #[serde(rename = "box")]
     pub corners: Option<BoxConfig>,
 }
 
@@ -136,10 +134,8 @@ impl FramesConfig {
 #[serde(deny_unknown_fields, default)]
 pub struct CheckpointConfig {
     /// Simulated time between them, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub every: Option<f64>,
     /// Wall time between them, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub wall: Option<f64>,
 }
 

@@ -39,7 +39,7 @@ pub enum ShapeConfig {
         length: f64,
         /// Radius.
         radius: f64,
-        /// Direction of the straight part; upright if not said.
+        /// Direction of the straight part; by default upright.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         axis: Option<AxisName>,
     },
@@ -49,7 +49,7 @@ pub enum ShapeConfig {
         length: f64,
         /// Radius.
         radius: f64,
-        /// Direction of its axis; upright if not said.
+        /// Direction of its axis; by default upright.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         axis: Option<AxisName>,
     },
@@ -61,7 +61,7 @@ pub enum ShapeConfig {
     Tank {
         /// Inner edge lengths.
         size: Vec<f64>,
-        /// Thickness of bottom and walls; as many dp as the kernel reaches if not said.
+        /// Thickness of bottom and walls; by default as many dp as the kernel reaches.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         thickness: Option<f64>,
     },
@@ -77,17 +77,13 @@ pub enum ShapeConfig {
 pub struct MeshConfig {
     /// Name of the file.
     pub file: String,
-    /// Factor on its lengths, –; 1 if not said.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Factor on its lengths, –; by default 1.
     pub scale: Option<f64>,
-    /// LengthUnit of its lengths; m if not said.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Unit of its lengths; by default m.
     pub unit: Option<LengthUnit>,
-    /// `true`: its facets are turned round, for a surface that is inside out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// `true`: reverses the facets, for a surface that is inside out.
     pub flip: Option<bool>,
-    /// What other bodies touch; fitting if not said.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// The geometry that other bodies touch; by default the fitting one.
     pub contact: Option<ContactGeometry>,
 }
 
@@ -110,34 +106,26 @@ pub struct CompoundPartConfig {
     /// Its shape.
     pub shape: ShapeConfig,
     /// Its place in the compound's frame.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<PlacementConfig>,
 }
 
-/// A place and a turn. The height may instead be given by the lowest point or by the draft.
+/// A position and a rotation. The lowest point or the draft may give the height instead.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PlacementConfig {
     /// m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// m; the height in 2-D.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// m; the height in 3-D.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
     /// Height of the shape's lowest point, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub bottom: Option<f64>,
     /// Depth of the shape's lowest point below the highest still level.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub draft: Option<DraftChoice>,
     /// Counter-clockwise turn, degrees; 2-D.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
     /// Turn about the axis along this vector by its length in degrees; 3-D.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub turn_deg: Option<Vec<f64>>,
 }
 
@@ -332,7 +320,7 @@ fn verify_line(ctx: &Context, key: &str, words: &PolylineConfig) -> Result<()> {
     }
 }
 
-/// Refuses words of a drawing where there is none.
+/// Refuses keys of a drawing where there is none.
 fn verify_drawing(ctx: &Context, key: &str, words: &PolylineConfig) -> Result<()> {
     ctx.require_positive(&format!("{key}.scale"), words.scale)?;
     let words_of_one = [("id", words.id.is_some()), ("scale", words.scale.is_some()), ("unit", words.unit.is_some())];
@@ -374,7 +362,7 @@ impl PlacementConfig {
         Self { draft: Some(DraftChoice::Equilibrium), ..Self::point(x) }
     }
 
-    /// Refuses a place that has no meaning in the scene's dimension, or says the height twice.
+    /// Refuses a place that has no meaning in the scene's dimension, or gives the height twice.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, may_float: bool) -> Result<()> {
         let three = ctx.dimension == 3;
         let refuse =

@@ -35,32 +35,24 @@ const THIN_DENSITY: f64 = 0.2;
 pub struct SolidConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
-    /// The group that it belongs to, one word, of which `[[contact]]` speaks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Its group, a name for `[[contact]]`.
     pub group: Option<String>,
     /// Geometry in the solid's own frame.
     pub shape: ShapeConfig,
-    /// Where that frame is at the start; the origin if not said.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Pose of that frame at the start; by default at the origin.
     pub at: Option<PlacementConfig>,
-    /// `true`: nothing moves it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// `true`: it does not move.
     #[schemars(extend("const" = true))]
     pub fixed: Option<bool>,
-    /// A prescribed motion moves it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Its prescribed motion.
     pub driven: Option<DrivenConfig>,
-    /// Water, weight and contacts move it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Its mass, if water, weight and contacts move it.
     pub free: Option<FreeBodyConfig>,
     /// Coulomb friction coefficient, –.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f64>,
     /// Restitution coefficient, –.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
-    /// How far outside its faces others begin to touch it, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Distance from its faces at which contact begins, m.
     pub contact_skin: Option<f64>,
 }
 
@@ -69,28 +61,21 @@ pub struct SolidConfig {
 #[serde(deny_unknown_fields, default)]
 pub struct FreeBodyConfig {
     /// Density, kg/m³.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
     /// Mass, kg (kg per metre of width in 2-D), in place of a density.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
     /// Inertia about the centre of mass, kg m² (kg m²/m in 2-D): a number in 2-D; in 3-D the three
     /// about the solid's own axes, or the 3×3 tensor.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub inertia: Option<NumberOrArray>,
-    /// From the centroid to the centre of mass, in the solid's frame, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Vector from the centroid to the centre of mass, in the solid's frame, m.
     pub centre_offset: Option<Vec<f64>>,
     /// Velocity of the centre of mass at the start, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity: Option<Vec<f64>>,
     /// Spin at the start, rad/s: a number in 2-D, a vector in 3-D.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub spin: Option<NumberOrArray>,
-    /// When it is let go, s: until then it is held still.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Time of its release, s; until then it is held at rest.
     pub release: Option<f64>,
-    /// Motions that are locked.
+    /// Locked modes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub locked: Vec<MotionMode>,
 }
@@ -116,7 +101,7 @@ pub enum MotionMode {
 }
 
 impl MotionMode {
-    /// Its number among those of this dimension: translations, then turns; none if there is no such motion.
+    /// Its number among the modes of this dimension, translations first; `None` if there is no such mode.
     pub(crate) fn index(self, dimension: usize) -> Option<usize> {
         match (self, dimension == 3) {
             (Self::X, _) => Some(0),

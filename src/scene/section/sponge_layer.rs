@@ -28,10 +28,8 @@ pub struct SpongeLayerConfig {
     /// A point of the plane where the layer reaches full strength, m.
     pub to: Vec<f64>,
     /// Damping rate at full strength, 1/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<f64>,
     /// Growth of the damping rate from `from` to `to`, as a power of the distance: 1 is linear, a larger power is gentler at first.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub power: Option<f64>,
 }
 

@@ -21,31 +21,26 @@ const FARTHEST: f64 = 1e8;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaterConfig {
-    /// What it fills, minus the solids.
+    /// Its region, minus the solids.
     pub fill: FillConfig,
-    /// Height of its surface, m, where that lies below the top of `fill`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Height of its surface, m, if that lies below the top of `fill`.
     pub level: Option<f64>,
-    /// Velocity at the start, m/s: a formula in the place or a number for each axis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Velocity at the start, m/s: for each axis a formula in the position or a number.
     pub velocity: Option<Vec<FieldFormulaConfig>>,
-    /// Pressure at the start beyond that of water at rest, Pa: a formula in the place or a number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Pressure at the start beyond the hydrostatic one, Pa: a formula in the position or a number.
     pub pressure: Option<FieldFormulaConfig>,
 }
 
-/// What a body of water fills: a box by its corners, or any shape somewhere.
+/// The region of a body of water: a box by its corners, or a shape at a place.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FillConfig {
     /// A box by its corners.
-    #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box")]
     pub corners: Option<BoxConfig>,
     /// Any shape.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<ShapeConfig>,
-    /// Where that shape is.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Place of that shape.
     pub at: Option<PlacementConfig>,
 }
 

@@ -19,37 +19,26 @@ use crate::{
 #[serde(deny_unknown_fields, default)]
 pub struct WaveConfig {
     /// One height and one period.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub regular: Option<RegularWaveConfig>,
     /// A sea of JONSWAP's spectrum.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub jonswap: Option<IrregularWaveConfig>,
     /// A sea of Bretschneider's spectrum.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub bretschneider: Option<IrregularWaveConfig>,
-    /// A fully grown sea: its height says its period.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// A fully developed sea: the height determines the period.
     pub pierson_moskowitz: Option<IrregularWaveConfig>,
-    /// A group with its crest at one place and time.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// A focused group.
     pub focused: Option<FocusedWaveConfig>,
-    /// One crest.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// A solitary wave.
     pub solitary: Option<SolitaryWaveConfig>,
     /// A sum of components from a table.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub components: Option<WaveComponentsConfig>,
-    /// The surface that was measured somewhere.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// A measured elevation.
     pub elevation: Option<MeasuredElevationConfig>,
-    /// How long the paddle takes to its full motion, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Duration of the ramp to the full motion of the paddle, s.
     pub ramp: Option<f64>,
     /// Depth of the still water at the paddle, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<f64>,
-    /// Whether the paddle takes the waves that come back to it.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Whether the paddle absorbs waves that come back to it.
     pub absorb: Option<AbsorbChoice>,
 }
 
@@ -62,10 +51,8 @@ pub struct RegularWaveConfig {
     /// s.
     pub period: f64,
     /// Order of the paddle's theory, 1 or 2.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<usize>,
     /// Phase of the surface at the paddle, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase_deg: Option<f64>,
 }
 
@@ -76,16 +63,12 @@ pub struct IrregularWaveConfig {
     /// Significant height, 4 √m₀, m.
     pub height: f64,
     /// Period at the spectrum's peak, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_period: Option<f64>,
     /// JONSWAP's peakedness, –.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gamma: Option<f64>,
-    /// Which of the seas of this spectrum.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Seed of the random phases.
     pub seed: Option<u64>,
-    /// How many components.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Number of components.
     pub components: Option<usize>,
 }
 
@@ -97,15 +80,13 @@ pub struct FocusedWaveConfig {
     pub crest: f64,
     /// Period at the spectrum's peak, s.
     pub peak_period: f64,
-    /// Where the crest stands: distance from the paddle's face at rest, m.
+    /// Distance of the crest from the paddle's face at rest, m.
     pub distance: f64,
-    /// When, s.
+    /// Time of the crest, s.
     pub time: f64,
     /// JONSWAP's peakedness, –.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gamma: Option<f64>,
-    /// How many components.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Number of components.
     pub components: Option<usize>,
 }
 
@@ -115,8 +96,7 @@ pub struct FocusedWaveConfig {
 pub struct SolitaryWaveConfig {
     /// Of its crest over the still level, m.
     pub height: f64,
-    /// Whose theory.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Theory of the paddle.
     pub theory: Option<Theory>,
 }
 
@@ -137,16 +117,12 @@ pub struct MeasuredElevationConfig {
     /// Its column of elevations, m.
     pub column: String,
     /// Its column of times, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
     /// Factor on the elevations, –.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
     /// Where it was measured: distance from the paddle's face at rest, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distance: Option<f64>,
     /// Added to its times, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delay: Option<f64>,
 }
 
@@ -154,9 +130,9 @@ pub struct MeasuredElevationConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum AbsorbChoice {
-    /// As usual, or not at all.
+    /// With the default parameters, or not at all.
     Switch(bool),
-    /// As these words say.
+    /// With these parameters.
     Parameters(AbsorptionConfig),
 }
 
@@ -164,14 +140,11 @@ pub enum AbsorbChoice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AbsorptionConfig {
-    /// Period whose waves it takes whole, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Period of the waves that it absorbs completely, s.
     pub period: Option<f64>,
-    /// How far it may go from end to end, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Largest stroke from end to end, m.
     pub stroke: Option<f64>,
-    /// How fast it may go, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Largest speed, m/s.
     pub speed: Option<f64>,
 }
 
@@ -217,7 +190,7 @@ impl WaveConfig {
         Self { jonswap: Some(sea), ..Self::default() }
     }
 
-    /// The group whose crest of `crest` (m) stands `distance` (m) from the paddle at `time` (s).
+    /// The focused group with its crest of `crest` (m) at `distance` (m) from the paddle at `time` (s).
     pub fn focused(crest: f64, peak_period: f64, distance: f64, time: f64) -> Self {
         let group = FocusedWaveConfig { crest, peak_period, distance, time, ..Default::default() };
         Self { focused: Some(group), ..Self::default() }
@@ -228,18 +201,18 @@ impl WaveConfig {
         Self { solitary: Some(SolitaryWaveConfig { height, theory: None }), ..Self::default() }
     }
 
-    /// No wave: a paddle that takes those of `period` (s) that come to it.
+    /// No wave: a paddle that absorbs waves of `period` (s).
     pub fn absorber(period: f64) -> Self {
         let words = AbsorptionConfig { period: Some(period), ..AbsorptionConfig::default() };
         Self { absorb: Some(AbsorbChoice::Parameters(words)), ..Self::default() }
     }
 
-    /// The same wave of a paddle that takes what comes back to it.
+    /// The same wave of a paddle that absorbs waves which come back.
     pub fn absorbing(self) -> Self {
         Self { absorb: Some(AbsorbChoice::Switch(true)), ..self }
     }
 
-    /// The kinds that it names.
+    /// The keys that give its kind.
     fn named_kinds(&self) -> Vec<&'static str> {
         set_keys([
             ("regular", self.regular.is_some()),

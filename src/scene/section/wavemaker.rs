@@ -64,7 +64,7 @@ pub(super) fn build<const D: usize>(
     }
 }
 
-/// The motion of a piston that goes `along`; `own` is the box around it.
+/// The motion of a piston in the direction `along`; `own` is the box around it.
 fn piston_motion<const D: usize>(
     ctx: &Context,
     key: &str,
@@ -127,7 +127,7 @@ fn flap_motion<const D: usize>(
     with_absorption(ctx, &key, wave, &maker, &site, Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
 }
 
-/// The `motion` of a paddle, which absorbs if its words say so.
+/// The `motion` of a paddle, with its absorption if it has one.
 fn with_absorption<const D: usize>(
     ctx: &Context,
     key: &str,
@@ -142,7 +142,7 @@ fn with_absorption<const D: usize>(
     }
 }
 
-/// The `motion` of the paddle of `maker` at this `site`, which absorbs as `words` say.
+/// The `motion` of the paddle of `maker` at this `site`, with absorption.
 fn absorbing<const D: usize>(
     ctx: &Context,
     key: &str,
