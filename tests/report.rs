@@ -278,7 +278,7 @@ fn a_deep_tank_turns_and_is_cut() {
 #[test]
 fn a_contact_skin_in_space_is_dashed_in_the_whole_and_dotted_in_a_cut() {
     let desk = desk("skin");
-    let run = ran(&desk, "tub", &DEEP.replace("free  = {", "skin  = 0.03\nfree  = {"), &[]);
+    let run = ran(&desk, "tub", &DEEP.replace("free  = {", "contact_skin = 0.03\nfree  = {"), &[]);
     if chromium().is_none() {
         return;
     }

@@ -61,7 +61,7 @@ pub struct RenamedName {
 impl fmt::Display for RenamedName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { key, old, new, source } = self;
-        write!(f, "\"{old}\" is called \"{new}\" now ({key}, {source})")
+        write!(f, "{key} ({source}): \"{old}\" is called \"{new}\" now")
     }
 }
 

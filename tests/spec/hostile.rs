@@ -14,7 +14,7 @@ const SCENE: &str = r#"dimension = 2
 dp        = 0.1
 until     = 1.0
 gravity   = [0.0, -9.81]
-scatter   = 0.01
+jitter    = 0.01
 
 [domain]
 min = [-3.0, -2.0]

@@ -202,11 +202,14 @@ fn a_skin_is_half_of_the_smallest_extent_at_most_and_inspect_lists_it() -> Resul
         let scene = Scene::parse(&scene(skin), Path::new(""), &[])?;
         scene.build::<2>().map(|_| scene)
     };
-    let values = built("skin = 0.05")?.resolve()?;
-    assert!(values.iter().any(|value| value.key == "solid.box.skin" && value.value == "0.05"), "it is in force");
-    assert!(!built("")?.resolve()?.iter().any(|value| value.key.ends_with(".skin")), "none is none");
+    let values = built("contact_skin = 0.05")?.resolve()?;
+    assert!(
+        values.iter().any(|value| value.key == "solid.box.contact_skin" && value.value == "0.05"),
+        "it is in force"
+    );
+    assert!(!built("")?.resolve()?.iter().any(|value| value.key.ends_with("skin")), "none is none");
     for skin in ["-0.001", "0.051"] {
-        let error = built(&format!("skin = {skin}")).err().unwrap_or_else(|| panic!("{skin} passes"));
+        let error = built(&format!("contact_skin = {skin}")).err().unwrap_or_else(|| panic!("{skin} passes"));
         let (text, help) = (error.to_string(), error.help.clone().unwrap_or_default());
         assert!(text.contains("\"box\": its contact skin is"), "{text}");
         assert!(help.contains("0.0500 m, half of its smallest extent"), "{help}");
@@ -224,7 +227,7 @@ fn the_page_and_the_picture_show_the_skin_outside_the_face() {
         let options = RunOptions { out: Some(home.join(name)), threads: Some(1), ..RunOptions::default() };
         run::run(&home.join("scene.toml"), &options, &mut |_: &Progress| true).unwrap().folder
     };
-    let (padded, bare) = (ran("padded", "skin = 0.02"), ran("bare", ""));
+    let (padded, bare) = (ran("padded", "contact_skin = 0.02"), ran("bare", ""));
     let page = fs::read_to_string(report::write(&padded).unwrap().path).unwrap();
     let (_, told) = page.split_once("id=\"told\">").unwrap();
     let told: Value = serde_json::from_str(told.split_once("</script>").unwrap().0).unwrap();
