@@ -12,8 +12,8 @@ use super::{Scene, build_waves::AbsorberSite};
 use crate::{
     error::Result,
     math::Vector,
-    solid::Motion,
-    wavemaker::{Absorber, Tuning, Wave, Wavemaker},
+    solid::PrescribedMotion,
+    wavemaker::{Absorber, AbsorptionSettings, PaddleMotion, Wavemaker},
 };
 
 /// From the paddle's face to its gauge, in smoothing lengths: so far the kernel sees.
@@ -94,20 +94,31 @@ impl Scene {
         words: &AbsorptionConfig,
         maker: &Wavemaker,
         site: &AbsorberSite<D>,
-        motion: Motion<D>,
-    ) -> Result<Motion<D>> {
+        motion: PrescribedMotion<D>,
+    ) -> Result<PrescribedMotion<D>> {
         let Some(wave) = motion.wave() else { return Ok(motion) };
         let AbsorptionConfig { period, stroke, speed } = *words;
-        let tuning = Tuning { period, gauge: GAUGE * self.smoothing_length(), level: site.level, stroke, speed };
+        let tuning = AbsorptionSettings {
+            period,
+            gauge_distance: GAUGE * self.smoothing_length(),
+            water_level: site.level,
+            max_stroke: stroke,
+            max_speed: speed,
+        };
         let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| self.origin.with_location(e, key))?;
-        let gauge: Vector<D> = site.face + site.direction * absorber.gauge();
-        Ok(motion.absorbing(absorber, gauge, site.direction))
+        let gauge: Vector<D> = site.face + site.direction * absorber.gauge_distance();
+        Ok(motion.with_absorber(absorber, gauge, site.direction))
     }
 
     /// The still paddle's own wave: none, before those that it absorbs.
-    pub(super) fn zero_wave(&self, key: &str, words: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<Wave> {
+    pub(super) fn zero_wave(
+        &self,
+        key: &str,
+        words: Option<AbsorptionConfig>,
+        maker: &Wavemaker,
+    ) -> Result<PaddleMotion> {
         match words.and_then(|words| words.period) {
-            Some(period) => maker.silent(period).map_err(|e| self.origin.with_location(e, key)),
+            Some(period) => maker.at_rest(period).map_err(|e| self.origin.with_location(e, key)),
             None => Err(self.error_at(key, "which wave?")),
         }
     }

@@ -122,7 +122,7 @@ impl Scene {
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // A driven solid starts where its law says.
-        let starts: Vec<Pose<D>> = solids.iter().map(|s| s.start().pose).collect();
+        let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
         let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| scene.origin.with_location(e, "water"))?;

@@ -9,8 +9,8 @@ use super::{
 use crate::{
     error::{Error, Result},
     solid::{
-        Constraints, ContactSpec, End, ForceSpec, FreeMode, Hold, JointKind, JointSpec, Law, Motor, RopeSpec,
-        SolidSpec, SpringSpec,
+        Constraints, ContactSpec, ForceSpec, FreeMode, InitialHold, JointKind, JointSpec, LineEnd, Motor, RopeSpec,
+        SolidSpec, SpringSpec, TimeFunction,
         constraint::links::{check_force, check_rope, check_spring},
     },
 };
@@ -20,7 +20,7 @@ impl Scene {
     pub(super) fn build_constraints<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let ends = |between: &[String], from: &[f64], to: &[f64]| {
-            [(0, from), (1, to)].map(|(k, at)| End { solid: between.get(k).and_then(number), at: vector(at) })
+            [(0, from), (1, to)].map(|(k, at)| LineEnd { solid: between.get(k).and_then(number), at: vector(at) })
         };
         let place = |kind: &str, i: usize| {
             let key = format!("{kind}.{i}");
@@ -42,7 +42,7 @@ impl Scene {
                 ends: ends(&words.between, &words.from, &words.to),
                 stiffness: words.stiffness,
                 damping: words.damping.unwrap_or_default(),
-                length: words.length,
+                rest_length: words.length,
                 tension_only: words.tension_only.unwrap_or_default(),
             };
             check_spring(&spring, solids).map_err(place("spring", i))?;
@@ -50,7 +50,7 @@ impl Scene {
         }
         for (i, words) in self.rope.iter().enumerate() {
             let (name, ends) = (words.name.clone(), ends(&words.between, &words.from, &words.to));
-            let rope = RopeSpec { name, ends, length: words.length };
+            let rope = RopeSpec { name, ends, max_length: words.length };
             check_rope(&rope, solids).map_err(place("rope", i))?;
             links.ropes.push(rope);
         }
@@ -62,11 +62,11 @@ impl Scene {
         for words in &self.contact {
             let touch = words.touch.unwrap_or(true);
             let (friction, restitution) = (words.friction, words.restitution);
-            let spec = |between| ContactSpec { between, touch, friction, restitution };
+            let spec = |between| ContactSpec { between, can_touch: touch, friction, restitution };
             links.contacts.extend(self.contact_pairs(words).into_iter().map(spec));
         }
         let release =
-            |(solid, words): (usize, &SolidConfig)| Some(Hold { solid, until: words.free.as_ref()?.release? });
+            |(solid, words): (usize, &SolidConfig)| Some(InitialHold { solid, until: words.free.as_ref()?.release? });
         links.holds = self.solid.iter().enumerate().filter_map(release).collect();
         Ok(links)
     }
@@ -103,7 +103,7 @@ impl Scene {
         };
         let axis = vector(words.axis.as_ref().or(words.along.as_ref()).map_or(&[], |x| x));
         let mut joint = JointSpec::new(&words.name, kind, between, vector(&words.at), axis);
-        joint.contacts = words.contacts.unwrap_or_default();
+        joint.contacts_enabled = words.contacts.unwrap_or_default();
         let stops = [(&words.limits, 1.0), (&words.limits_deg, 1f64.to_radians())];
         let stop = |mode: Option<&MotionMode>| {
             stops.iter().find_map(|(limits, unit)| match (limits, mode) {
@@ -116,13 +116,13 @@ impl Scene {
         };
         joint.limits = stop(None);
         let number = |mode: &MotionMode| Some(FreeMode { mode: mode.index(D)?, limits: stop(Some(mode)) });
-        joint.free = words.free.iter().flatten().filter_map(number).collect();
+        joint.free_modes = words.free.iter().flatten().filter_map(number).collect();
         joint.motor = words.motor.as_ref().map(|motor| self.motor(&format!("{key}.motor"), motor)).transpose()?;
         Ok(joint)
     }
 
     fn motor(&self, key: &str, words: &MotorConfig) -> Result<Motor> {
-        let mut motor = Motor { strongest: words.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
+        let mut motor = Motor { max_force: words.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
         for (word, value) in words.time_values() {
             let unit = match word {
                 "position_deg" => CoordinateUnit::Degrees,
@@ -142,7 +142,7 @@ impl Scene {
     }
 
     fn force_spec<const D: usize>(&self, key: &str, words: &ForceConfig, solid: usize) -> Result<ForceSpec<D>> {
-        let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<Law>> {
+        let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<TimeFunction>> {
             values
                 .iter()
                 .map(|value| self.time_function(&format!("{key}.{word}"), &value.0, CoordinateUnit::Metres))
@@ -154,7 +154,7 @@ impl Scene {
             at: words.at.as_ref().map(|at| vector(at)),
             force: laws("force", words.force.as_ref().map_or(&[], |values| values.components()))?,
             torque: laws("torque", words.torque.as_ref().map_or(&[], |values| values.components()))?,
-            turns: words.frame == Some(ForceFrame::Body),
+            rotates_with_solid: words.frame == Some(ForceFrame::Body),
         })
     }
 }

@@ -10,7 +10,7 @@ use crate::{
     error::{Error, Result},
     geometry::Shape,
     math::{Bivector, Matrix, Pose, Vector, expression::Formula, time_series::TimeSeries},
-    solid::{FreeBody, Law, Role, SolidSpec, hydrostatics::equilibrium_height},
+    solid::{FreeBody, Role, SolidSpec, TimeFunction, hydrostatics::equilibrium_height},
 };
 
 /// Largest extent, dp, of bodies that must weigh half a water particle.
@@ -77,7 +77,7 @@ impl Scene {
             restitution: words.restitution.unwrap_or_default(),
             contact_skin: words.skin.unwrap_or_default(),
         };
-        let blamed = if spec.skin_fits() { key.to_string() } else { format!("{key}.skin") };
+        let blamed = if spec.has_valid_contact_skin() { key.to_string() } else { format!("{key}.skin") };
         spec.check().map_err(|e| self.origin.with_location(e, &blamed))?;
         self.require_mass(key, &spec)?;
         self.require_thickness(key, &spec)?;
@@ -127,11 +127,16 @@ impl Scene {
     }
 
     /// The law that `words` say in this unit.
-    pub(super) fn time_function(&self, key: &str, words: &TimeFunctionConfig, unit: CoordinateUnit) -> Result<Law> {
+    pub(super) fn time_function(
+        &self,
+        key: &str,
+        words: &TimeFunctionConfig,
+        unit: CoordinateUnit,
+    ) -> Result<TimeFunction> {
         let place = |word: &str, e: Error| self.origin.with_location(e, &format!("{key}.{word}"));
         if let Some(text) = &words.formula {
             let formula = Formula::parse(text).map_err(|e| place("formula", e))?;
-            return Ok(Law::Formula(match unit {
+            return Ok(TimeFunction::Formula(match unit {
                 CoordinateUnit::Degrees => {
                     Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?
                 }
@@ -146,7 +151,7 @@ impl Scene {
         let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
         let factor = words.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
         let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
-        TimeSeries::new(series.times(), values).map(Law::Table).map_err(|e| place("scale", e))
+        TimeSeries::new(series.times(), values).map(TimeFunction::Table).map_err(|e| place("scale", e))
     }
 }
 

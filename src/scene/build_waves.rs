@@ -13,8 +13,8 @@ use crate::{
     error::{Error, Result},
     geometry::Shape,
     math::{Bivector, Bounds, Pose, Vector, time_series::TimeSeries},
-    solid::{Law, Motion},
-    wavemaker::{Component, Paddle, Spectrum, Wave, Wavemaker},
+    solid::{PrescribedMotion, TimeFunction},
+    wavemaker::{Paddle, PaddleMotion, WaveComponent, WaveSpectrum, Wavemaker},
 };
 
 /// The water at rest: what drafts and waves are measured in.
@@ -67,7 +67,7 @@ impl Scene {
         words: &DrivenConfig,
         (shape, pose): (&Shape<D>, &Pose<D>),
         pool: &StillWater<D>,
-    ) -> Result<Option<Motion<D>>> {
+    ) -> Result<Option<PrescribedMotion<D>>> {
         let Some(wave) = &words.wave else { return Ok(None) };
         let own = world_bounds(shape, pose);
         let depth = wave.depth.unwrap_or(pool.level.depth);
@@ -88,7 +88,7 @@ impl Scene {
         along: Vector<D>,
         maker: &Wavemaker,
         (own, pool): (&Bounds<D>, &StillWater<D>),
-    ) -> Result<Motion<D>> {
+    ) -> Result<PrescribedMotion<D>> {
         let refuse = |what: &str, help: &str| Err(self.error_with_help(&format!("{key}.along"), what, help));
         if along[D - 1].abs() > 1e-6 {
             return refuse("a piston that makes waves slides level", "write  along = [1.0, 0.0]");
@@ -108,7 +108,13 @@ impl Scene {
             return Err(self.error_with_help(&key, what, help));
         }
         let site = AbsorberSite::of(own, along, pool.level.level);
-        self.with_absorption_if_asked(&key, wave, maker, &site, Motion::slide(along, Law::Wave(Box::new(law))))
+        self.with_absorption_if_asked(
+            &key,
+            wave,
+            maker,
+            &site,
+            PrescribedMotion::slide(along, TimeFunction::Wave(Box::new(law))),
+        )
     }
 
     /// The motion of a flap; `own` is the box around it.
@@ -119,7 +125,7 @@ impl Scene {
         wave: &WaveConfig,
         maker: &Wavemaker,
         (own, pool): (&Bounds<D>, &StillWater<D>),
-    ) -> Result<Motion<D>> {
+    ) -> Result<PrescribedMotion<D>> {
         let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
         let arm = pool.level.level - hinge[D - 1];
         if arm <= 0.0 {
@@ -146,7 +152,13 @@ impl Scene {
         let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
         let law = self.wave_from_config(&key, wave, &maker)?;
         let site = AbsorberSite::of(own, way.normalize() * sense, pool.level.level);
-        self.with_absorption_if_asked(&key, wave, &maker, &site, Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
+        self.with_absorption_if_asked(
+            &key,
+            wave,
+            &maker,
+            &site,
+            PrescribedMotion::hinge(hinge, &axis, TimeFunction::Wave(Box::new(law))),
+        )
     }
 
     /// The `motion` of a paddle, which absorbs if its words say so.
@@ -156,8 +168,8 @@ impl Scene {
         words: &WaveConfig,
         maker: &Wavemaker,
         site: &AbsorberSite<D>,
-        motion: Motion<D>,
-    ) -> Result<Motion<D>> {
+        motion: PrescribedMotion<D>,
+    ) -> Result<PrescribedMotion<D>> {
         match words.absorb.and_then(AbsorbChoice::parameters) {
             Some(words) => self.with_absorption(&format!("{key}.absorb"), &words, maker, site, motion),
             None => Ok(motion),
@@ -165,7 +177,7 @@ impl Scene {
     }
 
     /// The wave that a paddle is to make.
-    fn wave_from_config(&self, key: &str, words: &WaveConfig, maker: &Wavemaker) -> Result<Wave> {
+    fn wave_from_config(&self, key: &str, words: &WaveConfig, maker: &Wavemaker) -> Result<PaddleMotion> {
         let place = |word: &str| {
             let key = format!("{key}.{word}");
             move |e: Error| self.origin.with_location(e, &key)
@@ -177,19 +189,19 @@ impl Scene {
                 maker.regular(words.height, words.period, phase, order).map_err(place("regular.height"))?
             }
             WaveConfig { jonswap: Some(sea), .. } => {
-                let spectrum = Spectrum::jonswap(sea.peak_period.unwrap_or_default(), gamma(sea.gamma));
+                let spectrum = WaveSpectrum::jonswap(sea.peak_period.unwrap_or_default(), gamma(sea.gamma));
                 irregular_wave(sea, &spectrum, maker).map_err(place("jonswap.height"))?
             }
             WaveConfig { bretschneider: Some(sea), .. } => {
-                let spectrum = Spectrum::bretschneider(sea.peak_period.unwrap_or_default());
+                let spectrum = WaveSpectrum::bretschneider(sea.peak_period.unwrap_or_default());
                 irregular_wave(sea, &spectrum, maker).map_err(place("bretschneider.height"))?
             }
             WaveConfig { pierson_moskowitz: Some(sea), .. } => {
-                let spectrum = Spectrum::pierson_moskowitz(sea.height, maker.g);
+                let spectrum = WaveSpectrum::pierson_moskowitz(sea.height, maker.g);
                 irregular_wave(sea, &spectrum, maker).map_err(place("pierson_moskowitz.height"))?
             }
             WaveConfig { focused: Some(words), .. } => {
-                let spectrum = Spectrum::jonswap(words.peak_period, gamma(words.gamma));
+                let spectrum = WaveSpectrum::jonswap(words.peak_period, gamma(words.gamma));
                 let count = words.components.unwrap_or_default();
                 let made = maker.focused(words.crest, &spectrum, words.distance, words.time, count);
                 made.map_err(place("focused.crest"))?
@@ -205,18 +217,18 @@ impl Scene {
             WaveConfig { elevation: Some(words), .. } => {
                 let series = self.read_elevation(words).map_err(place("elevation.column"))?;
                 let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
-                maker.recorded(&series, distance, delay).map_err(place("elevation"))?
+                maker.measured(&series, distance, delay).map_err(place("elevation"))?
             }
             _ => self.zero_wave(key, words.absorb.and_then(AbsorbChoice::parameters), maker)?,
         };
         Ok(match words.ramp {
-            Some(ramp) => wave.ramp(ramp),
+            Some(ramp) => wave.with_ramp(ramp),
             None => wave,
         })
     }
 
     /// The components of a table.
-    fn read_components(&self, words: &WaveComponentsConfig) -> Result<Vec<Component>> {
+    fn read_components(&self, words: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
         let path = table::path_beside(&self.origin.folder, &words.file)?;
         let names = table::read_header(&path)?;
         let either = |one: &'static str, other: &'static str| {
@@ -237,7 +249,7 @@ impl Scene {
             }
             let omega = if is_period { TAU / x } else { TAU * x };
             let phase = if in_degrees { phase.to_radians() } else { phase };
-            Ok(Component { amplitude: columns[0][i], omega, phase })
+            Ok(WaveComponent { amplitude: columns[0][i], omega, phase })
         };
         (0..columns[0].len()).map(component).collect()
     }
@@ -251,6 +263,6 @@ impl Scene {
     }
 }
 
-fn irregular_wave(words: &IrregularWaveConfig, spectrum: &Spectrum, maker: &Wavemaker) -> Result<Wave> {
-    maker.sea(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
+fn irregular_wave(words: &IrregularWaveConfig, spectrum: &WaveSpectrum, maker: &Wavemaker) -> Result<PaddleMotion> {
+    maker.irregular(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
 }

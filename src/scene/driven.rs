@@ -7,7 +7,7 @@ use super::{
     resolve::{Defaults, fill_time_function},
     verify::quoted_list,
 };
-use crate::{error::Result, solid::Motion};
+use crate::{error::Result, solid::PrescribedMotion};
 
 impl DrivenConfig {
     /// Its laws with their words, as far as they are given.
@@ -107,14 +107,14 @@ impl Scene {
     }
 
     /// The motion that `words` say without a wave.
-    pub(super) fn motion<const D: usize>(&self, key: &str, words: &DrivenConfig) -> Result<Motion<D>> {
+    pub(super) fn motion<const D: usize>(&self, key: &str, words: &DrivenConfig) -> Result<PrescribedMotion<D>> {
         if let Some(motions) = &words.motions {
             let made = motions.iter().enumerate().map(|(i, words)| self.motion(&format!("{key}.motions.{i}"), words));
-            return Ok(Motion::chain(made.collect::<Result<Vec<_>>>()?));
+            return Ok(PrescribedMotion::chain(made.collect::<Result<Vec<_>>>()?));
         }
         let unit = |x: &[f64]| vector::<D>(x).normalize();
         if let (Some(along), Some(distance)) = (&words.along, &words.distance) {
-            return Ok(Motion::slide(
+            return Ok(PrescribedMotion::slide(
                 unit(along),
                 self.time_function(&format!("{key}.distance"), distance, CoordinateUnit::Metres)?,
             ));
@@ -126,6 +126,6 @@ impl Scene {
             (None, Some(law)) => self.time_function(&format!("{key}.angle_deg"), law, CoordinateUnit::Degrees)?,
             (None, None) => return Err(self.error_at(key, "this does not say one motion")),
         };
-        Ok(Motion::hinge(centre, &axis, law))
+        Ok(PrescribedMotion::hinge(centre, &axis, law))
     }
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{AbsorbChoice, AbsorptionConfig, DrivenConfig, Scene, resolve::Defaults, verify::quoted_list};
 use crate::{
     error::Result,
-    wavemaker::{COMPONENTS, Theory},
+    wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
 };
 
 /// A wave by name: exactly one kind; none of a paddle that only absorbs.
@@ -112,7 +112,7 @@ pub struct SolitaryWaveConfig {
     pub height: f64,
     /// Whose theory.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub theory: Option<Theory>,
+    pub theory: Option<SolitaryTheory>,
 }
 
 /// A table of components.
@@ -210,15 +210,15 @@ impl WaveConfig {
                 filler.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
             }
             filler.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
-            filler.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS, many);
+            filler.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(words) = &mut self.focused {
             filler.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
-            filler.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS, many);
+            filler.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(words) = &mut self.solitary {
             let why = "its wave keeps its height better than Boussinesq's";
-            filler.fill(format!("{key}.solitary.theory"), &mut words.theory, Theory::Rayleigh, why);
+            filler.fill(format!("{key}.solitary.theory"), &mut words.theory, SolitaryTheory::Rayleigh, why);
         }
         if let Some(words) = &mut self.elevation {
             let key = format!("{key}.elevation");

@@ -98,7 +98,7 @@ fn a_crate_on_a_raft_is_borne_by_it_and_both_by_the_water() -> Result<()> {
     let mut sim = afloat(60.0, 16.0, words)?;
     let borne = |sim: &Simulation<2>| {
         let pair = sim.contacts().into_iter().find(|pair| pair.between == [1, 2]);
-        [height(sim, 1), height(sim, 2), pair.map_or(0.0, |pair| pair.pressing)]
+        [height(sim, 1), height(sim, 2), pair.map_or(0.0, |pair| pair.normal_force)]
     };
     let [raft, load, force] = mean(&mut sim, 4.0, 2.0, borne)?;
     // The level in the closed tank stays where it was filled, as both start at their draft; 24 kg over 0.4 m.
@@ -196,7 +196,7 @@ fn the_fixing_of_a_gate_carries_the_water_behind_it() -> Result<()> {
                  [[joint]]\nname = \"foot\"\nkind = \"fixed\"\nbetween = [\"tank\", \"gate\"]\nat = [0.5, 0.0]";
     let mut sim = pool("box = { min = [0, 0], max = [0.5, 0.4] }", [1.0, 0.6], words)?;
     let carried = |sim: &Simulation<2>| {
-        let (joint, load) = (sim.joint(0), &sim.system().solids()[1].load);
+        let (joint, load) = (sim.joint_reading(0), &sim.system().solids()[1].load);
         [joint.force[0], joint.torque.axial()[0], joint.force[1], load.force[0]]
     };
     let [across, torque, up, load] = mean(&mut sim, 3.0, 1.5, carried)?;

@@ -138,7 +138,7 @@ fn a_light_body_held_down_weighs_what_archimedes_says() {
     while sim.time() < 1.5 {
         sim.step().unwrap();
         if sim.time() > 0.5 {
-            sum += sim.contacts().iter().map(|contact| contact.pressing).sum::<f64>();
+            sum += sim.contacts().iter().map(|contact| contact.normal_force).sum::<f64>();
             count += 1;
         }
     }
