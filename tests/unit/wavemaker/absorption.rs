@@ -57,7 +57,7 @@ fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
     assert!((far / size - 1.0).abs() < 0.01, "{far} against {size}: the step is a hundredth of T");
     // Thirty times as much is more than it may: it stays within its stroke and its speed, and e^−4 of that is left at the end.
     let ((far, fast), left) = run(30.0 * amplitude, 60.0 + 4.0 * taker.home);
-    let (stroke, speed) = taker.allowed_motion();
+    let (stroke, speed) = taker.motion_limits();
     assert!(far <= 0.5 * stroke * 1.001 && fast <= speed * 1.001, "{far} {fast} of {stroke} {speed}");
     assert!(left.abs() < 0.02 * 0.5 * stroke, "{left}");
     // Nothing to see: no water, no haste.
