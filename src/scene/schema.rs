@@ -9,19 +9,28 @@ use serde_json::{Map, Value, json};
 use super::Scene;
 
 /// Types whose choices may be written as bare words, as `viscosity = "artificial"`.
-const CHOICES: [&str; 9] =
-    ["Kernel", "Gradient", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "Sweeping", "Scheme"];
+const CHOICES: [&str; 9] = [
+    "KernelKind",
+    "PressureGradient",
+    "Viscosity",
+    "Diffusion",
+    "Shifting",
+    "Walls",
+    "Slip",
+    "PairLoopKind",
+    "TimeScheme",
+];
 
 /// A type, and which of its keys are those of which exactly one is said.
 type Kinds = (&'static str, fn(&str) -> bool);
 
 /// What a solid, a body's weight, a water's room, a probe and a statistic are.
 const KINDS: [Kinds; 5] = [
-    ("SolidWords", |key| matches!(key, "fixed" | "driven" | "free")),
-    ("FreeWords", |key| matches!(key, "density" | "mass")),
-    ("FillWords", |key| matches!(key, "box" | "shape")),
-    ("ProbeEntry", |key| !matches!(key, "name" | "every" | "average")),
-    ("StatisticEntry", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
+    ("SolidConfig", |key| matches!(key, "fixed" | "driven" | "free")),
+    ("FreeBodyConfig", |key| matches!(key, "density" | "mass")),
+    ("FillConfig", |key| matches!(key, "box" | "shape")),
+    ("ProbeConfig", |key| !matches!(key, "name" | "every" | "average")),
+    ("StatisticConfig", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
 ];
 
 /// The JSON schema (draft 2020-12) of a scene.

@@ -241,13 +241,13 @@ mod tests {
         let folders = ["out/runs/dp-0.05", "out/runs/dp-0.05_repeat-2", "out/runs/dp-0.05_repeat-3"];
         assert_eq!(jobs.iter().map(|job| job.folder.as_path()).collect::<Vec<_>>(), folders.map(Path::new));
         assert_eq!(distinguishing_labels(&jobs), ["repeat 1", "repeat 2", "repeat 3"]);
-        let starts = |jobs: &[Job]| jobs.iter().map(|job| Ok(job.read_scene()?.scatter)).collect::<Result<Vec<_>>>();
+        let starts = |jobs: &[Job]| jobs.iter().map(|job| Ok(job.read_scene()?.jitter)).collect::<Result<Vec<_>>>();
         // The first is what it would be without repeats, so that a study that has been run can be repeated.
         assert_eq!(starts(&jobs)?, [None, Some(1e-6), Some(2e-6)]);
-        assert_eq!(starts(&thrice(&[("scatter", "1e-3")])?)?, [1e-3, 1e-3 + 1e-6, 1e-3 + 2e-6].map(Some));
+        assert_eq!(starts(&thrice(&[("jitter", "1e-3")])?)?, [1e-3, 1e-3 + 1e-6, 1e-3 + 2e-6].map(Some));
         let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
         assert_eq!(refused(ParameterGrid { repeat: 0, ..grid(&[0.05], &[]) }), Some(ErrorKind::Usage));
-        let varied = grid(&[0.05], &[("scatter", &["1e-7", "1e-6"])]);
+        let varied = grid(&[0.05], &[("jitter", &["1e-7", "1e-6"])]);
         assert_eq!(refused(ParameterGrid { repeat: 2, ..varied }), Some(ErrorKind::Usage));
         Ok(())
     }

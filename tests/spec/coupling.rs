@@ -11,7 +11,7 @@ use pontoon::{
 use crate::rig;
 
 /// Both sweeps and what they may lose of what they add up in 500 to 1,000 steps: rounding of f64; and of single precision,
-/// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/performance.md).
+/// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/explanation/performance.md).
 const SWEEPS: [(PairLoopKind, f64); 2] = [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)];
 
 /// Speed of sound in a drop, m/s: so fast that 1,000 steps end before the drop has flown apart.

@@ -240,7 +240,7 @@ fn a_barge_capsizes_when_its_metacentre_sinks_below_its_centre() -> Result<()> {
     // Wall-sided, the righting arm is (GM + ½ BM tan² φ) sin φ: with GM = −0.05 BM it lies at 18°, with −0.02 BM at 11°, with more than
     // nothing upright. All start at 3°. At 5 % one has come back from there, the other is at more than twice that and on its way; at the
     // project's 2 % one is nearer to upright than it was, the other half as far again from it and stays there: which is what border
-    // means. That it lies at 5° and not at 11° is missed (docs/validation.md).
+    // means. That it lies at 5° and not at 11° is missed (docs/explanation/validation.md).
     let [upright, less, more, over] = [0.05, 0.02, -0.02, -0.05].map(tilts);
     let (upright, less, more, over) = (upright?, less?, more?, over?);
     assert!(upright < 3.0, "GM = 0.05 BM: {upright}°");

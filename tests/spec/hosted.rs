@@ -98,7 +98,7 @@ fn a_push_at_the_handover_is_a_push() -> Result<()> {
     Ok(())
 }
 
-/// The floats of the pool in a world of rapier's, set up as anybody would who reads docs/coupling.md.
+/// The floats of the pool in a world of rapier's, set up as anybody would who reads docs/how-to/use-from-rust.md.
 fn world(sim: &Simulation<2>) -> (rapier::PhysicsWorld, Vec<rapier::RigidBodyHandle>) {
     let mut world =
         rapier::PhysicsWorld { gravity: rapier::Vector::new(0.0, -9.81), ..rapier::PhysicsWorld::default() };

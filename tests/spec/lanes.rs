@@ -83,7 +83,7 @@ where
     for (i, size) in sizes.iter().enumerate() {
         let dv = (with.fluid_acceleration(i) - of.fluid_acceleration(i)).norm();
         let drho = (with.fluid_density_rate(i) - of.fluid_density_rate(i)).abs();
-        // The bounds of docs/performance.md: a particle's own terms, and the largest for one at the rim.
+        // The bounds of docs/explanation/performance.md: a particle's own terms, and the largest for one at the rim.
         assert!(dv <= 2e-5 * size.0 + 2e-6 * most.0, "{name}: dv {i} off by {dv}");
         assert!(drho <= 2e-5 * size.1 + 2e-6 * most.1, "{name}: drho {i} off by {drho}");
     }

@@ -69,7 +69,7 @@ fn a_body_heavier_than_a_kernel_of_water_is_left_as_it_is() {
 #[test]
 fn a_sheet_of_foam_comes_to_rest_on_the_water() {
     // Let fall 1 dp on water it is at rest after a second: 5 mm/s, a third of a per cent of √(g depth). It should not hop at
-    // all, and hops by a dp (docs/stability.md): 2 dp. A tenth of a dp of draft cannot be seen by particles: within 1.5 dp of it.
+    // all, and hops by a dp (docs/explanation/stability.md): 2 dp. A tenth of a dp of draft cannot be seen by particles: within 1.5 dp of it.
     let (dp, thick) = (0.01, 0.02);
     let water = rig::lattice([0.0, 0.0], [0.8, 0.3], dp);
     let float = rig::float(Shape::Box { size: Vector::from([0.16, thick]) }, [0.4, 0.3 + dp + 0.5 * thick], 10.0);

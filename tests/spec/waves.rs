@@ -7,7 +7,7 @@ use pontoon::{
     math::Vector,
     model::{Dimension, Model, TimeScheme, Viscosity},
     preflight::{self, Finding, GeneratedWave, Preflight},
-    scene::{BuiltScene, DampingConfig, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, WaveConfig},
+    scene::{BuiltScene, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, SpongeLayerConfig, WaveConfig},
     simulation::{Setup, Simulation},
     solid::Dim,
     system::SpongeLayer,
@@ -144,7 +144,7 @@ fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
     let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
     assert_eq!(piston, again);
     let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
-        .with_damping(DampingConfig::between([4.0, 0.0], [5.0, 0.0]))
+        .with_damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
         .probe(ProbeConfig::motion("paddle"));
     assert_eq!(look(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
 }

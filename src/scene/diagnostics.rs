@@ -1,4 +1,4 @@
-//! Our wording of the parser's messages: what is wrong, the nearest valid word, what to write instead.
+//! Errors of the parser in the words of a user: the fault, the nearest valid name, an example.
 
 use crate::error::{Error, nearest_name};
 
@@ -9,7 +9,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("dp", "dp = 0.01          # particle spacing, m"),
     ("until", "until = 10.0       # s"),
     ("gravity", "gravity = [0.0, -9.81]"),
-    ("scatter", "scatter = 1e-7     # of dp"),
+    ("jitter", "jitter = 1e-7      # of dp"),
     ("domain", "domain = { min = [0.0, 0.0], max = [2.0, 1.0] }"),
     ("periodic", "periodic = { x = [0.0, 1.0] }        # m"),
     ("periodic.x", "periodic = { x = [0.0, 1.0] }        # m"),
@@ -74,7 +74,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("inertia", "free = { density = 500.0, inertia = 0.005 }        # kg m²/m; three numbers in 3-D"),
     ("release", "free = { density = 500.0, release = 1.0 }        # s"),
     ("locked", "free = { density = 500.0, locked = [\"x\", \"turn\"] }"),
-    ("skin", "skin = 0.005        # m"),
+    ("contact_skin", "contact_skin = 0.005        # m"),
     (
         "joint",
         "[[joint]]\nname    = \"hinge\"\nkind    = \"hinge\"\nbetween = [\"fore\", \"aft\"]\nat      = [2.0, 0.5]",
@@ -114,7 +114,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("viscosity.sps", "viscosity = { sps = { nu0 = 1e-6 } }"),
     ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
     ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
-    ("walls", "walls = \"settling\"      # or \"dbc\""),
+    ("walls", "walls = \"relaxed_adami\" # or \"dbc\""),
     ("gradient", "gradient = \"corrected\"    # or \"plain\""),
     ("slip", "slip = \"none\"         # or \"free\", \"partial\""),
     ("sweep", "sweep = \"fast\""),

@@ -1,4 +1,4 @@
-//! The scenes that come with the program, for a binary that stands alone.
+//! The scenes that are compiled into the program.
 
 /// A scene of the program's own: the name of its folder, its `scene.toml`, and the other files of the folder
 /// by name.

@@ -1,4 +1,4 @@
-//! Values in time as words: a number, a formula in t, or a law's table; one, or one for each component.
+//! Values that depend on time: a formula, a column of a table, a number.
 
 use std::fmt;
 
@@ -8,7 +8,91 @@ use serde::{
     de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer},
 };
 
-use super::bodies::TimeFunctionConfig;
+use crate::{
+    error,
+    math::{expression::Formula, time_series::TimeSeries},
+    scene::{
+        context::{Context, Defaults},
+        table,
+    },
+    solid::TimeFunction,
+};
+
+/// The unit in which a law is written.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum CoordinateUnit {
+    /// SI, whatever the quantity.
+    Si,
+    /// Radians, or degrees in a column whose name ends in `_deg`.
+    Radians,
+    /// Degrees.
+    Degrees,
+}
+
+/// How a driven coordinate moves: `formula`, or `file` with `column`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TimeFunctionConfig {
+    /// A formula in t (s), with sin, cos, exp, …, and pi.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
+    /// A table, beside the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Its column of values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub column: Option<String>,
+    /// Its column of times, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
+    /// Factor on the values of the table, –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+}
+
+impl TimeFunctionConfig {
+    /// Refuses a law that is not either a formula or a column of a file.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str) -> error::Result<()> {
+        match (&self.formula, &self.file) {
+            (Some(_), None) if self.column.is_none() && self.scale.is_none() && self.time.is_none() => Ok(()),
+            (Some(_), None) => Err(ctx.error_at(key, "column, time and scale belong to a file, not to a formula")),
+            (None, Some(_)) if self.column.is_some() => Ok(()),
+            (None, Some(_)) => Err(ctx.error_at(key, "which column of the file?")),
+            _ => Err(ctx.error_at(key, "a law is either a formula or a file with a column")),
+        }
+    }
+
+    /// Fills in the defaults of a law from a table.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
+        if self.file.is_some() {
+            defaults.fill(format!("{key}.time"), &mut self.time, "t_s".into(), "the name our own tables have");
+            defaults.fill(format!("{key}.scale"), &mut self.scale, 1.0, "as in the table");
+        }
+    }
+
+    /// The law, with the values in SI units.
+    pub(crate) fn build(&self, ctx: &Context, key: &str, unit: CoordinateUnit) -> error::Result<TimeFunction> {
+        let place = |word: &str, e: error::Error| ctx.with_location(e, &format!("{key}.{word}"));
+        if let Some(text) = &self.formula {
+            let formula = Formula::parse(text).map_err(|e| place("formula", e))?;
+            return Ok(TimeFunction::Formula(match unit {
+                CoordinateUnit::Degrees => {
+                    Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?
+                }
+                CoordinateUnit::Si | CoordinateUnit::Radians => formula,
+            }));
+        }
+        let file = self.file.as_deref().unwrap_or("");
+        let path = table::path_beside(ctx.folder(), file).map_err(|e| place("file", e))?;
+        let column = self.column.as_deref().unwrap_or("");
+        let time = self.time.as_deref().unwrap_or("");
+        let series = table::read_series(&path, time, column).map_err(|e| place("column", e))?;
+        let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
+        let factor = self.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
+        let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
+        TimeSeries::new(series.times(), values).map(TimeFunction::Table).map_err(|e| place("scale", e))
+    }
+}
 
 /// A value in time: a number, a formula in t, or a law's table.
 #[derive(Clone, Debug, Default, PartialEq, JsonSchema)]
@@ -33,8 +117,17 @@ impl TimeValueConfig {
         Self(TimeFunctionConfig { formula: Some(text.into()), ..TimeFunctionConfig::default() })
     }
 
+    /// Refuses a value that cannot be read.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str) -> error::Result<()> {
+        self.0.verify(ctx, key)?;
+        match &self.0.formula {
+            Some(text) => Formula::parse(text).map(|_| ()).map_err(|e| ctx.with_location(e, key)),
+            None => Ok(()),
+        }
+    }
+
     /// The number, if it is one.
-    pub(super) fn number(&self) -> Option<f64> {
+    pub(crate) fn number(&self) -> Option<f64> {
         self.0.formula.as_ref().and_then(|text| text.parse().ok()).filter(|x: &f64| x.is_finite())
     }
 }
@@ -90,7 +183,7 @@ impl TimeVectorConfig {
     }
 
     /// The components, to be filled in.
-    pub(super) fn components_mut(&mut self) -> &mut [TimeValueConfig] {
+    pub(crate) fn components_mut(&mut self) -> &mut [TimeValueConfig] {
         match &mut self.0 {
             TimeVectorForm::One(one) => std::slice::from_mut(one),
             TimeVectorForm::Many(many) => many,
@@ -109,8 +202,8 @@ impl Serialize for TimeVectorConfig {
 
 impl<'de> Deserialize<'de> for TimeVectorConfig {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
-        struct Words;
-        impl<'de> Visitor<'de> for Words {
+        struct Form;
+        impl<'de> Visitor<'de> for Form {
             type Value = TimeVectorConfig;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a number, a formula such as \"20*sin(2*pi*t)\", or a table with `file` and `column`")
@@ -137,6 +230,6 @@ impl<'de> Deserialize<'de> for TimeVectorConfig {
                 Ok(TimeVectorConfig(TimeVectorForm::Many(many)))
             }
         }
-        deserializer.deserialize_any(Words)
+        deserializer.deserialize_any(Form)
     }
 }

@@ -1,5 +1,4 @@
-//! From text to words: parses TOML, applies `--set`, and remembers where every word was written, so that
-//! each error can point at it.
+//! Reads TOML, applies `--set`, and records where every key was written, so that each error names its place.
 //!
 //! A choice written as a bare word, `viscosity = "artificial"`, is read as the choice with nothing set,
 //! `viscosity = { artificial = {} }`.
@@ -7,18 +6,19 @@
 use std::{
     borrow::Cow,
     collections::BTreeMap,
+    fmt,
     ops::Range,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
 };
 
-use super::{Scene, sets, wording};
+use super::{diagnostics, overrides};
 use crate::error::{Error, Result};
 
 /// Keys whose value is one choice out of several laws.
@@ -34,7 +34,7 @@ pub(super) const CHOICES: [&str; 9] = [
     "time.scheme",
 ];
 
-/// Where the words of a scene were written. Two scenes that say the same are equal wherever it was written.
+/// Where the keys of a scene were written. Scenes of equal content are equal wherever they were written.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SceneSource {
     /// The file as the user named it; empty if a program built the scene.
@@ -48,10 +48,38 @@ pub(super) struct SceneSource {
     /// Where every key begins in it.
     places: BTreeMap<String, usize>,
     /// Keys set on the command line.
-    overrides: Vec<String>,
+    sets: Vec<String>,
     /// Names of the solids, in order, so that a key can say `solid.box` for `solid.2`.
-    solid_names: Vec<String>,
+    names: Vec<String>,
+    /// Keys and values that are written with an old name.
+    pub renamed: Vec<Renamed>,
 }
+
+/// A key or a value that is written with an old name, which still works.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Renamed {
+    /// The key, with the names of solids.
+    pub key: String,
+    /// The old name.
+    pub old: &'static str,
+    /// The name that replaces it.
+    pub new: &'static str,
+    /// Where it is written.
+    pub source: ValueSource,
+}
+
+impl fmt::Display for Renamed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { key, old, new, source } = self;
+        write!(f, "\"{old}\" is called \"{new}\" now ({key}, {source})")
+    }
+}
+
+/// Old names of keys: their section, empty at the top level, the old key, the new one.
+const RENAMED_KEYS: [(&str, &str, &str); 2] = [("", "scatter", "jitter"), ("solid", "skin", "contact_skin")];
+
+/// Old names of values: the key, the old value, the new one.
+const RENAMED_VALUES: [(&str, &str, &str); 1] = [("model.walls", "settling", "relaxed_adami")];
 
 impl PartialEq for SceneSource {
     fn eq(&self, _: &Self) -> bool {
@@ -59,10 +87,10 @@ impl PartialEq for SceneSource {
     }
 }
 
-/// Who said it.
+/// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ValueSource {
-    /// Nobody: the default, with its reason.
+    /// The default, with its reason.
     Default(String),
     /// This line of the scene.
     Line(usize),
@@ -70,6 +98,17 @@ pub enum ValueSource {
     Set,
     /// The program that built the scene.
     Program,
+}
+
+impl fmt::Display for ValueSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Default(reason) => write!(f, "default: {reason}"),
+            Self::Line(line) => write!(f, "scene line {line}"),
+            Self::Set => write!(f, "--set"),
+            Self::Program => write!(f, "program"),
+        }
+    }
 }
 
 impl SceneSource {
@@ -89,7 +128,7 @@ impl SceneSource {
         error.at(self.file.clone(), at, self.key_with_names(key))
     }
 
-    /// Who said `key`; `None` if nobody did.
+    /// The source of `key`; `None` if it is not written.
     pub fn source(&self, key: &str) -> Option<ValueSource> {
         if self.is_set(key) {
             return Some(ValueSource::Set);
@@ -100,16 +139,25 @@ impl SceneSource {
         self.places.get(key).map(|start| ValueSource::Line(self.lines.partition_point(|line| line <= start)))
     }
 
+    /// Notes that `old` stands at the byte `start` of the text, or in an override, in place of `new`.
+    fn note(&mut self, key: &str, old: &'static str, new: &'static str, start: usize) {
+        let source = match start < self.text.len() {
+            true => ValueSource::Line(line_column(&self.text, start).0),
+            false => ValueSource::Set,
+        };
+        self.renamed.push(Renamed { key: key.into(), old, new, source });
+    }
+
     /// Whether `key`, or one above it, was set on the command line.
     fn is_set(&self, key: &str) -> bool {
-        self.overrides.iter().any(|set| key == set || key.starts_with(&format!("{set}.")))
+        self.sets.iter().any(|set| key == set || key.starts_with(&format!("{set}.")))
     }
 
     /// `key` with the names of solids in place of their numbers.
     pub fn key_with_names(&self, key: &str) -> String {
         let mut parts: Vec<&str> = key.split('.').collect();
         if let ["solid", number, ..] = parts[..]
-            && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.solid_names.get(i))
+            && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.names.get(i))
             && !name.contains(['.', '/'])
         {
             parts[1] = name;
@@ -118,43 +166,53 @@ impl SceneSource {
     }
 }
 
-/// Reads the words of a scene from `text`; `file` is its name for messages, `sets` the keys and values of
-/// `--set`, which win over the text.
-pub(super) fn read(text: &str, file: &str, folder: &Path, sets: &[(String, String)]) -> Result<Scene> {
+/// Reads a `T` and the places of its keys from `text`; `file` is its name for messages, `sets` the keys and values of
+/// `--set`, which replace those of the text.
+pub(super) fn read<T: DeserializeOwned>(
+    text: &str,
+    file: &str,
+    folder: &Path,
+    sets: &[(String, String)],
+) -> Result<(T, SceneSource)> {
+    let mut origin = SceneSource { file: file.into(), folder: folder.into(), ..SceneSource::default() };
+    let sets = current_names(sets, &mut origin);
     let mut root = DeTable::parse(text).map_err(|e| {
         let at = e.span().map(|span| line_column(text, span.start));
         Error::scene(format!("this is not TOML: {}", e.message()))
             .at(file, at, "")
-            .help(wording::toml_help(e.message()))
+            .help(diagnostics::toml_help(e.message()))
     })?;
-    let mut entries = Vec::new();
-    walk(root.get_ref(), "", &mut entries);
-    let mut origin = SceneSource { file: file.into(), folder: folder.into(), ..SceneSource::default() };
-    origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
     origin.text = text.into();
     origin.lines = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
+    rename(root.get_mut(), &mut origin)?;
+    let mut entries = Vec::new();
+    walk(root.get_ref(), "", &mut entries);
+    origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
     expand_bare_choices(root.get_mut());
     let mut marks = OverrideLocations { first: text.len() + 1, keys: Vec::new() };
-    for (key, value) in sets {
-        let key = sets::apply_override(root.get_mut(), key, value, &mut marks)
+    for (key, value) in &sets {
+        let key = overrides::apply_override(root.get_mut(), key, value, &mut marks)
             .map_err(|e| e.at("--set", None, key.clone()))?;
-        origin.overrides.push(key);
+        origin.sets.push(key);
     }
+    rename(root.get_mut(), &mut origin)?;
     expand_bare_choices(root.get_mut());
-    origin.solid_names = solid_names(root.get_ref());
+    origin.names = solid_names(root.get_ref());
+    for i in 0..origin.renamed.len() {
+        origin.renamed[i].key = origin.key_with_names(&origin.renamed[i].key);
+    }
     require_finite(root.get_ref(), "", &origin)?;
-    let mut scene = Scene::deserialize(toml::Deserializer::from(root)).map_err(|e| {
+    let scene = T::deserialize(toml::Deserializer::from(root)).map_err(|e| {
         let start = e.span().map_or(0, |span| span.start);
         let key = marks.key(start).unwrap_or_else(|| key_at(&entries, &e.span().unwrap_or(0..0)));
-        let (error, key) = wording::explain(e.message(), &key);
+        let (error, key) = diagnostics::explain(e.message(), &key);
         let shown = origin.key_with_names(&key);
         match start > text.len() {
             true => error.at("--set", None, shown),
             false => error.at(file, Some(line_column(text, start)), shown),
         }
     })?;
-    scene.origin = origin;
-    Ok(scene)
+    Ok((scene, origin))
 }
 
 /// Where the words of `--set` stand: beyond the text, each key at a place of its own.
@@ -256,6 +314,99 @@ fn expand_bare_choices(root: &mut DeTable) {
         table.insert(Spanned::new(span, Cow::Owned(word.to_string())), nothing);
         *value.get_mut() = DeValue::Table(table);
     }
+}
+
+/// The overrides with the current names of their keys and values.
+fn current_names(sets: &[(String, String)], origin: &mut SceneSource) -> Vec<(String, String)> {
+    let current = |(key, value): &(String, String)| {
+        let mut note = |key: &str, old, new| {
+            origin.renamed.push(Renamed { key: key.into(), old, new, source: ValueSource::Set });
+        };
+        if let Some((old, new)) = renamed_key(key) {
+            note(key, old, new);
+        }
+        let plain = value.trim().trim_matches(['"', '\'']);
+        match RENAMED_VALUES.into_iter().find(|(of, old, _)| key == of && plain == *old) {
+            Some((_, old, new)) => {
+                note(key, old, new);
+                (key.clone(), new.into())
+            }
+            None => (current_key(key), value.clone()),
+        }
+    };
+    sets.iter().map(current).collect()
+}
+
+/// The old and the current name of the last part of `key`; `None` if it was not renamed.
+fn renamed_key(key: &str) -> Option<(&'static str, &'static str)> {
+    let parts: Vec<&str> = key.split('.').collect();
+    let renamed = RENAMED_KEYS.into_iter().find(|(section, old, _)| match parts[..] {
+        [word] => section.is_empty() && word == *old,
+        [first, _, word] => first == *section && word == *old,
+        _ => false,
+    });
+    renamed.map(|(_, old, new)| (old, new))
+}
+
+/// `key`, an override's, with the current name of its last part.
+pub fn current_key(key: &str) -> String {
+    match renamed_key(key) {
+        Some((old, new)) => format!("{}{new}", key.strip_suffix(old).unwrap_or(key)),
+        None => key.into(),
+    }
+}
+
+/// Puts the current names of keys and values in place of old ones, and notes each.
+fn rename(root: &mut DeTable, origin: &mut SceneSource) -> Result<()> {
+    for (section, old, new) in RENAMED_KEYS {
+        if section.is_empty() {
+            rename_key(root, section, old, new, origin)?;
+        } else if let Some(DeValue::Array(items)) = root.get_mut(section).map(Spanned::get_mut) {
+            for (i, item) in items.as_mut().iter_mut().enumerate() {
+                if let DeValue::Table(table) = item.get_mut() {
+                    rename_key(table, &subkey(section, i), old, new, origin)?;
+                }
+            }
+        }
+    }
+    for (key, old, new) in RENAMED_VALUES {
+        let Some((section, word)) = key.split_once('.') else { continue };
+        let Some(DeValue::Table(section)) = root.get_mut(section).map(Spanned::get_mut) else { continue };
+        let Some(value) = section.get_mut(word) else { continue };
+        let start = value.span().start;
+        match value.get_mut() {
+            DeValue::String(text) if text.as_ref() == old => {
+                *text = Cow::Borrowed(new);
+                origin.note(key, old, new, start);
+            }
+            DeValue::Table(choice) => rename_key(choice, key, old, new, origin)?,
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Renames the key `old` of the table at `path` to `new`.
+fn rename_key(
+    table: &mut DeTable,
+    path: &str,
+    old: &'static str,
+    new: &'static str,
+    origin: &mut SceneSource,
+) -> Result<()> {
+    let Some(span) = table.keys().find(|key| key.get_ref() == old).map(Spanned::span) else { return Ok(()) };
+    let start = span.start;
+    if table.contains_key(new) {
+        let what = format!("{old} and {new} say the same thing twice");
+        let help = format!("{old} is the old name of {new}: remove it");
+        let at = (start < origin.text.len()).then(|| line_column(&origin.text, start));
+        return Err(Error::scene(what).help(help).at(origin.file.clone(), at, subkey(path, old)));
+    }
+    if let Some(value) = table.remove(old) {
+        table.insert(Spanned::new(span, Cow::Borrowed(new)), value);
+        origin.note(&subkey(path, old), old, new, start);
+    }
+    Ok(())
 }
 
 /// Refuses numbers that are not numbers.

@@ -1,11 +1,16 @@
-//! The words of waves that a paddle makes, and what holds them against one another.
+//! `wave`: the waves that a paddle makes, and its absorption of waves that come back.
+
+use std::fmt;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{
+    Deserialize, Deserializer, Serialize,
+    de::{self, MapAccess, Visitor, value::MapAccessDeserializer},
+};
 
-use super::{AbsorbChoice, AbsorptionConfig, DrivenConfig, Scene, resolve::Defaults, verify::quoted_list};
 use crate::{
     error::Result,
+    scene::context::{Context, Defaults, quoted_list, set_keys},
     wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
 };
 
@@ -145,6 +150,60 @@ pub struct MeasuredElevationConfig {
     pub delay: Option<f64>,
 }
 
+/// Whether a paddle absorbs: `true`, or how.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum AbsorbChoice {
+    /// As usual, or not at all.
+    Switch(bool),
+    /// As these words say.
+    Parameters(AbsorptionConfig),
+}
+
+/// How a paddle absorbs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct AbsorptionConfig {
+    /// Period whose waves it takes whole, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period: Option<f64>,
+    /// How far it may go from end to end, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stroke: Option<f64>,
+    /// How fast it may go, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+}
+
+impl AbsorbChoice {
+    /// The settings of the absorption; `None` if the paddle does not absorb.
+    pub(crate) fn settings(self) -> Option<AbsorptionConfig> {
+        match self {
+            Self::Switch(absorbs) => absorbs.then(AbsorptionConfig::default),
+            Self::Parameters(words) => Some(words),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for AbsorbChoice {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> std::result::Result<Self, De::Error> {
+        struct Form;
+        impl<'de> Visitor<'de> for Form {
+            type Value = AbsorbChoice;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "true, or a table with `period`, `stroke`, `speed`")
+            }
+            fn visit_bool<E: de::Error>(self, absorbs: bool) -> std::result::Result<AbsorbChoice, E> {
+                Ok(AbsorbChoice::Switch(absorbs))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<AbsorbChoice, A::Error> {
+                AbsorptionConfig::deserialize(MapAccessDeserializer::new(map)).map(AbsorbChoice::Parameters)
+            }
+        }
+        deserializer.deserialize_any(Form)
+    }
+}
+
 impl WaveConfig {
     /// A regular wave of `height` (m) and `period` (s).
     pub fn regular(height: f64, period: f64) -> Self {
@@ -176,13 +235,13 @@ impl WaveConfig {
     }
 
     /// The same wave of a paddle that takes what comes back to it.
-    pub fn with_absorption(self) -> Self {
+    pub fn absorbing(self) -> Self {
         Self { absorb: Some(AbsorbChoice::Switch(true)), ..self }
     }
 
     /// The kinds that it names.
     fn named_kinds(&self) -> Vec<&'static str> {
-        let all = [
+        set_keys([
             ("regular", self.regular.is_some()),
             ("jonswap", self.jonswap.is_some()),
             ("bretschneider", self.bretschneider.is_some()),
@@ -191,41 +250,45 @@ impl WaveConfig {
             ("solitary", self.solitary.is_some()),
             ("components", self.components.is_some()),
             ("elevation", self.elevation.is_some()),
-        ];
-        all.into_iter().filter(|(_, given)| *given).map(|(word, _)| word).collect()
+        ])
     }
 
-    /// Fills in what a wave does not say.
-    pub(super) fn fill_defaults(&mut self, filler: &mut Defaults, key: &str) {
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let peaked = "JONSWAP's mean";
         let many = "the spectrum's form, and a sea that does not repeat";
         if let Some(words) = &mut self.regular {
             let why = "without the free wave of twice the frequency that a plain paddle makes";
-            filler.fill(format!("{key}.regular.order"), &mut words.order, 2, why);
-            filler.fill(format!("{key}.regular.phase_deg"), &mut words.phase_deg, 0.0, "the paddle sets out forwards");
+            defaults.fill(format!("{key}.regular.order"), &mut words.order, 2, why);
+            defaults.fill(
+                format!("{key}.regular.phase_deg"),
+                &mut words.phase_deg,
+                0.0,
+                "the paddle sets out forwards",
+            );
         }
         for (word, sea) in self.spectra_mut() {
             let Some(sea) = sea else { continue };
             if word == "jonswap" {
-                filler.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
+                defaults.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
             }
-            filler.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
-            filler.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS_DEFAULT, many);
+            defaults.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
+            defaults.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(words) = &mut self.focused {
-            filler.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
-            filler.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS_DEFAULT, many);
+            defaults.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
+            defaults.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(words) = &mut self.solitary {
             let why = "its wave keeps its height better than Boussinesq's";
-            filler.fill(format!("{key}.solitary.theory"), &mut words.theory, SolitaryTheory::Rayleigh, why);
+            defaults.fill(format!("{key}.solitary.theory"), &mut words.theory, SolitaryTheory::Rayleigh, why);
         }
         if let Some(words) = &mut self.elevation {
             let key = format!("{key}.elevation");
-            filler.fill(format!("{key}.time"), &mut words.time, "t_s".into(), "the name our own tables have");
-            filler.fill(format!("{key}.scale"), &mut words.scale, 1.0, "as in the table");
-            filler.fill(format!("{key}.distance"), &mut words.distance, 0.0, "measured at the paddle");
-            filler.fill(format!("{key}.delay"), &mut words.delay, 0.0, "the clocks agree");
+            defaults.fill(format!("{key}.time"), &mut words.time, "t_s".into(), "the name our own tables have");
+            defaults.fill(format!("{key}.scale"), &mut words.scale, 1.0, "as in the table");
+            defaults.fill(format!("{key}.distance"), &mut words.distance, 0.0, "measured at the paddle");
+            defaults.fill(format!("{key}.delay"), &mut words.delay, 0.0, "the clocks agree");
         }
     }
 
@@ -236,88 +299,92 @@ impl WaveConfig {
             ("pierson_moskowitz", &mut self.pierson_moskowitz),
         ]
     }
-}
 
-impl DrivenConfig {
-    /// A piston that makes `wave` in the direction `along`.
-    pub fn piston(along: impl Into<Vec<f64>>, wave: WaveConfig) -> Self {
-        Self { along: Some(along.into()), wave: Some(wave), ..Self::default() }
-    }
-
-    /// A flap hinged at the world point `hinge` (m) that makes `wave`; 2-D, in 3-D it needs an `axis` too.
-    pub fn flap(hinge: impl Into<Vec<f64>>, wave: WaveConfig) -> Self {
-        Self { hinge: Some(hinge.into()), wave: Some(wave), ..Self::default() }
-    }
-}
-
-impl Scene {
-    pub(super) fn verify_wave(&self, key: &str, words: &WaveConfig) -> Result<()> {
-        let kinds = words.named_kinds();
-        let absorb = words.absorb.and_then(AbsorbChoice::parameters);
+    /// Refuses a wave that is not of exactly one kind, or whose numbers are out of range.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        let kinds = self.named_kinds();
+        let absorb = self.absorb.and_then(AbsorbChoice::settings);
         if let Some(words) = &absorb {
-            self.verify_absorb(&format!("{key}.absorb"), words, !kinds.is_empty())?;
+            words.verify(ctx, &format!("{key}.absorb"), !kinds.is_empty())?;
         }
         if kinds.len() > 1 || (kinds.is_empty() && absorb.is_none()) {
             let what = match kinds.len() {
                 0 => "which wave?".to_string(),
                 _ => format!("a paddle makes one kind of wave; this one {}", quoted_list(&kinds)),
             };
-            return Err(self.error_at(key, what));
+            return Err(ctx.error_at(key, what));
         }
-        let gravity = self.gravity.as_ref().is_none_or(|g| {
+        let gravity = ctx.gravity.is_none_or(|g| {
             let (up, rest) = g.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
             up < 0.0 && rest.iter().all(|x| *x == 0.0)
         });
         if !gravity {
-            return Err(self.error_with_help(
+            return Err(ctx.error_with_help(
                 "gravity",
                 "waves need gravity straight down",
                 "write  gravity = [0.0, -9.81]",
             ));
         }
-        self.require_positive(&format!("{key}.ramp"), words.ramp)?;
-        self.require_positive(&format!("{key}.depth"), words.depth)?;
+        ctx.require_positive(&format!("{key}.ramp"), self.ramp)?;
+        ctx.require_positive(&format!("{key}.depth"), self.depth)?;
         let Some(kind) = kinds.first() else { return Ok(()) };
         let key = &format!("{key}.{kind}");
         let mut numbers = Vec::new();
-        if let Some(words) = &words.regular {
+        if let Some(words) = &self.regular {
             numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
             if let Some(order) = words.order.filter(|order| !(1..=2).contains(order)) {
                 let help = "order = 1, or  order = 2  without free waves of twice the frequency";
-                return Err(self.error_with_help(
+                return Err(ctx.error_with_help(
                     &format!("{key}.order"),
                     format!("order is 1 or 2, not {order}"),
                     help,
                 ));
             }
         }
-        for sea in [&words.jonswap, &words.bretschneider, &words.pierson_moskowitz].into_iter().flatten() {
+        for sea in [&self.jonswap, &self.bretschneider, &self.pierson_moskowitz].into_iter().flatten() {
             numbers.extend([("height", Some(sea.height)), ("peak_period", sea.peak_period), ("gamma", sea.gamma)]);
-            self.verify_sea(key, sea)?;
+            sea.verify(ctx, key)?;
         }
-        if let Some(words) = &words.focused {
+        if let Some(words) = &self.focused {
             numbers.extend([("crest", Some(words.crest)), ("peak_period", Some(words.peak_period))]);
             numbers.extend([("distance", Some(words.distance)), ("time", Some(words.time)), ("gamma", words.gamma)]);
         }
-        numbers.extend(words.solitary.iter().map(|words| ("height", Some(words.height))));
-        numbers.into_iter().try_for_each(|(word, x)| self.require_positive(&format!("{key}.{word}"), x))
+        numbers.extend(self.solitary.iter().map(|words| ("height", Some(words.height))));
+        numbers.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))
     }
+}
 
-    /// What belongs to which spectrum.
-    fn verify_sea(&self, key: &str, sea: &IrregularWaveConfig) -> Result<()> {
+impl IrregularWaveConfig {
+    /// Refuses keys that do not belong to the spectrum.
+    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         let grown = key.ends_with("pierson_moskowitz");
         let place = |word: &str| format!("{key}.{word}");
-        if grown && sea.peak_period.is_some() {
+        if grown && self.peak_period.is_some() {
             let what = "the height of a fully grown sea says its period: 5 s √(height in m)";
             let help = "leave it out, or write  bretschneider = { height = 0.1, peak_period = 1.4 }";
-            return Err(self.error_with_help(&place("peak_period"), what, help));
+            return Err(ctx.error_with_help(&place("peak_period"), what, help));
         }
-        if !grown && sea.peak_period.is_none() {
-            return Err(self.error_at(&place("peak_period"), "peak_period is missing"));
+        if !grown && self.peak_period.is_none() {
+            return Err(ctx.error_at(&place("peak_period"), "peak_period is missing"));
         }
-        if sea.gamma.is_some() && !key.ends_with("jonswap") {
-            return Err(self.error_with_help(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
+        if self.gamma.is_some() && !key.ends_with("jonswap") {
+            return Err(ctx.error_with_help(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
         }
         Ok(())
+    }
+}
+
+impl AbsorptionConfig {
+    /// Refuses numbers that are not positive, and a paddle without a wave and without a period.
+    fn verify(&self, ctx: &Context, key: &str, makes_waves: bool) -> Result<()> {
+        let all = [("period", self.period), ("stroke", self.stroke), ("speed", self.speed)];
+        all.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))?;
+        match makes_waves || self.period.is_some() {
+            true => Ok(()),
+            false => {
+                let what = "a paddle that makes no wave of its own absorbs those of a period, and none is said";
+                Err(ctx.error_with_help(key, what, "write  wave = { absorb = { period = 1.2 } }"))
+            }
+        }
     }
 }

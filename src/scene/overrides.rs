@@ -1,4 +1,4 @@
-//! `--set key=value`: puts a value into a scene that was read, before its words are understood.
+//! `--set key=value`: puts a value into the TOML of a scene before it is deserialised.
 
 use std::borrow::Cow;
 
@@ -7,7 +7,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use super::document::{CHOICES, OverrideLocations, subkey};
+use super::toml_source::{CHOICES, OverrideLocations, subkey};
 use crate::error::{Error, Result, nearest_name};
 
 /// Puts the value written as `text` at `key`, every word of it at a place of `marks`; what is no TOML value is a word.
