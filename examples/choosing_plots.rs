@@ -1,4 +1,4 @@
-//! Draws the plots of docs/choosing.md and docs/stability.md from the figures in docs/plots/choosing.toml, beside which it puts them.
+//! Draws the plots of docs/how-to/choosing-parameters.md and docs/explanation/stability.md from the figures in docs/plots/choosing.toml, beside which it puts them.
 //!
 //! `cargo run --release --example choosing_plots`, at once.
 
@@ -22,7 +22,7 @@ pub struct Sheet {
 pub struct Plot {
     /// Its file in [`FOLDER`].
     pub file: String,
-    /// The page that shows it; docs/choosing.md unless it is said.
+    /// The page that shows it; docs/how-to/choosing-parameters.md unless it is said.
     #[serde(default = "choosing")]
     pub page: String,
     /// The page that has its figures.

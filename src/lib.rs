@@ -40,6 +40,6 @@ pub use error::{Error, Result};
 
 /// The programs of the book, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../docs/coupling.md")]
-#[doc = include_str!("../docs/scene.md")]
+#[doc = include_str!("../docs/how-to/use-from-rust.md")]
+#[doc = include_str!("../docs/reference/scene.md")]
 pub struct DocumentedPrograms;

@@ -12,9 +12,9 @@ pub use crate::{
     coupling::BodyStep,
     system::{Escape, ParticleLimits, RemovedParticle, Setup},
 };
-pub use change::Added;
+pub use change::AddedSolid;
 pub use rescue::Rollback;
-pub(crate) use tied::find;
+pub(crate) use tied::find_by_name;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -28,7 +28,7 @@ use crate::{
     math::{Bivector, Vector},
     model::Dimension,
     solid::{
-        Contact, Dim, HasEngine as _, Role, SolidSpec,
+        ContactForce, Dim, HasEngine as _, Role, SolidSpec,
         constraint::assembly::{Assembly, AssemblyState},
     },
     system::{System, SystemState},
@@ -118,7 +118,7 @@ impl<const D: usize> Simulation<D> {
             solid.check()?;
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
-        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+        let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
         let engine = if !external && solids.iter().any(|s| free(&s)) {
             Some(Dim::<D>::engine(solids, &start, &setup.constraints, &medium.gravity, dp)?)
         } else {
@@ -127,7 +127,7 @@ impl<const D: usize> Simulation<D> {
         let rig = Assembly::new(&setup.constraints, start);
         let stepper = Stepper::new(&setup.model);
         let mut system = System::new(setup, pair_loop)?;
-        let bodies = Bodies::new(engine, AcousticAddedMass::find(&mut system), rig, external);
+        let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rollback: rescue, removed: lost, stepping };
@@ -156,7 +156,7 @@ impl<const D: usize> Simulation<D> {
     fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         let start = Instant::now();
         if self.needs_rollback_state() {
-            self.rollback.make_room();
+            self.rollback.drop_oldest_state();
             self.rollback.store(self.clock.steps, self.clock.time, self.save()?);
         }
         let outcome = self.advance(end, hook).or_else(|error| self.roll_back(error));
@@ -182,7 +182,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Never goes back: the first alarm ends the run.
     pub fn without_rollback(mut self) -> Self {
-        self.rollback = RollbackControl::off();
+        self.rollback = RollbackControl::disabled();
         self
     }
 
@@ -236,8 +236,8 @@ impl<const D: usize> Simulation<D> {
     /// The longest step (s) that the present rates, the springs and the model allow.
     pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
-        let water = step_size::water(&self.system.step_limits(), self.system.properties(), model.cfl);
-        let ties = self.spring_limit().min(self.bodies.constraints().next_release(self.clock.time));
+        let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
+        let ties = self.spring_step_limit().min(self.bodies.constraints().next_release(self.clock.time));
         water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
             * self.rollback.step_factor(self.clock.time)
     }
@@ -278,7 +278,7 @@ impl<const D: usize> Simulation<D> {
     /// Where the time went; what is left of the steps went into moving particles and packing them.
     pub fn time_spent(&self) -> TimeSpent {
         let (lists, pairs) = self.system.time_spent();
-        TimeSpent { steps: self.stepping, lists, pairs, bodies: self.bodies.spent() }
+        TimeSpent { steps: self.stepping, lists, pairs, bodies: self.bodies.engine_time() }
     }
 
     /// Simulated time, s.
@@ -297,7 +297,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Force passes so far.
-    pub fn passes(&self) -> u64 {
+    pub fn force_passes(&self) -> u64 {
         self.system.force_passes()
     }
 
@@ -338,7 +338,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// How the solids pressed on one another in the last step, pair by pair.
-    pub fn contacts(&self) -> Vec<Contact<D>> {
+    pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|e| e.contacts()).unwrap_or_default()
     }
 

@@ -9,7 +9,7 @@ use std::{
 };
 
 use pontoon::{
-    error::{Error, Fault, Kind},
+    error::{Error, ErrorKind, Fault},
     output::{Manifest, manifest::RunStatus},
     report,
 };
@@ -475,7 +475,7 @@ fn fault() -> Error {
         density: Some(1010.0),
         cause: "too long a step: shorten the step".into(),
     };
-    Error { fault: Some(Box::new(fault)), ..Error::new(Kind::Fault, "the water has left the domain") }
+    Error { fault: Some(Box::new(fault)), ..Error::new(ErrorKind::Fault, "the water has left the domain") }
 }
 
 #[test]

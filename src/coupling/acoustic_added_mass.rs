@@ -66,12 +66,12 @@ pub struct AddedMassState {
 
 impl<const D: usize> AcousticAddedMass<D> {
     /// Those of the free solids that need one when they are submerged.
-    pub(crate) fn find(system: &mut System<D>) -> Vec<Self> {
-        (0..system.solids().len()).filter_map(|i| Self::of(system, i)).collect()
+    pub(crate) fn find_all(system: &mut System<D>) -> Vec<Self> {
+        (0..system.solids().len()).filter_map(|i| Self::for_solid(system, i)).collect()
     }
 
     /// That of free solid number `i`, if it needs one when it is submerged.
-    pub(crate) fn of(system: &mut System<D>, i: usize) -> Option<Self> {
+    pub(crate) fn for_solid(system: &mut System<D>, i: usize) -> Option<Self> {
         let found = Self::if_light(system, i);
         if found.is_some() {
             system.boundary.wetness.get_or_insert_default();

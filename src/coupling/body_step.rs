@@ -12,7 +12,7 @@ use crate::{
     error::{Error, ErrorKind, Fault, Result},
     math::{Bivector, Pose, Vector},
     solid::{
-        Contact, Engine, EngineFault, Kinematics, Load, Role, Solid,
+        ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
         constraint::assembly::{Assembly, ConstraintLoads},
     },
     system::{MomentumTransfer, System},
@@ -43,7 +43,7 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// Whether an external program moves the free bodies.
-    pub(crate) fn external(&self) -> bool {
+    pub(crate) fn has_external_bodies(&self) -> bool {
         self.external
     }
 
@@ -110,7 +110,7 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// Time spent in the engine so far.
-    pub(crate) fn spent(&self) -> Duration {
+    pub(crate) fn engine_time(&self) -> Duration {
         self.spent
     }
 
@@ -218,7 +218,7 @@ impl<const D: usize> BodyStep<'_, D> {
     }
 
     /// Contact forces, pair by pair: of this step after [`BodyStep::advance_bodies`], of the last step before it.
-    pub fn contacts(&self) -> Vec<Contact<D>> {
+    pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|engine| engine.contacts()).unwrap_or_default()
     }
 
@@ -279,7 +279,7 @@ impl<const D: usize> BodyStep<'_, D> {
             added_mass.update_contacts(self.system, dt, before, &self.solids[added_mass.solid]);
         }
         let contacts = if accounted { contact_sums(&engine.contacts(), start.len()) } else { Vec::new() };
-        let iterated = engine.iterations() > 1;
+        let iterated = engine.solver_iterations() > 1;
         let body_loads = |i: usize, constraints: ConstraintLoads<D>| BodyLoads {
             water: self.loads[i],
             pushes: pushes[i],

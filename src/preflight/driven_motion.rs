@@ -3,7 +3,7 @@
 use super::PreflightContext;
 use crate::{
     math::{Bounds, Vector},
-    solid::{Motion, Solid},
+    solid::{PrescribedMotion, Solid},
 };
 
 /// Times at which a driven solid is looked at.
@@ -28,13 +28,13 @@ impl<const D: usize> PreflightContext<'_, D> {
     pub(super) fn driven_stroke(
         &self,
         solid: &Solid<D>,
-        motion: &Motion<D>,
+        motion: &PrescribedMotion<D>,
         bounds: &Bounds<D>,
     ) -> Option<DrivenStroke<D>> {
         let mut mark = 0.5 * (bounds.min + bounds.max);
         mark[D - 1] = self.still_water.level;
         if let Some(law) = motion.wave() {
-            let (way, speed): (Vec<f64>, Vec<f64>) = law.course(self.end_time()).into_iter().unzip();
+            let (way, speed): (Vec<f64>, Vec<f64>) = law.sample_motion(self.end_time()).into_iter().unzip();
             let stroke = largest_stroke(&way).map_or_else(|| range(&way), |(stroke, _)| stroke);
             let speed = speed.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             return Some(DrivenStroke { direction: wave_direction(motion, &mark)?, stroke, half_period: None, speed });
@@ -60,8 +60,8 @@ impl<const D: usize> PreflightContext<'_, D> {
 }
 
 /// Where the waves of a paddle by name go, whose point at `mark` (m) is in the still level; level, a unit vector.
-pub(super) fn wave_direction<const D: usize>(motion: &Motion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
-    let mut way = *motion.headings(mark).first()?;
+pub(super) fn wave_direction<const D: usize>(motion: &PrescribedMotion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
+    let mut way = *motion.directions_at(mark).first()?;
     way[D - 1] = 0.0;
     way.try_normalize(0.0)
 }

@@ -162,7 +162,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
         self.system.constraints().joints.iter().any(|joint| {
             let [one, other] = joint.between;
-            (0..D).all(|mode| joint.locks(mode))
+            (0..D).all(|mode| joint.is_locked(mode))
                 && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
         })
     }

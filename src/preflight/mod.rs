@@ -166,7 +166,7 @@ pub fn preflight<const D: usize>(
     let look = PreflightContext { system, plan, still_water: still, g, surface_samples: faces };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
-    let step = look.step_size_limits(sim.spring_limit(), &mut findings);
+    let step = look.step_size_limits(sim.spring_step_limit(), &mut findings);
     let size = look.size(&step, columns, overlapped, &mut findings);
     let gaps = look.gaps(&mut findings);
     let bodies = look.bodies(&gaps.touching, &mut findings);

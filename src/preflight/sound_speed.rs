@@ -157,7 +157,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                 "springs or motors are so stiff that the run takes {} times as many steps",
                 three_digits(slower)
             );
-            // What swings so fast in the water is beyond the sound that particles carry: docs/stability.md.
+            // What swings so fast in the water is beyond the sound that particles carry: docs/explanation/stability.md.
             let damped =
                 "in water a spring whose body swings as fast has a hundredth of the critical damping, 2 √(k m)";
             let soft = two_digits_down(slower.powi(-2));

@@ -1,7 +1,7 @@
 //! How solids press on each other: two of them, or all that touch.
 
 use super::{Probe, axes, find_solid};
-use crate::{error::Result, math::Vector, simulation::Simulation, solid::Contact, system::System};
+use crate::{error::Result, math::Vector, simulation::Simulation, solid::ContactForce, system::System};
 
 /// Watches the contact of two solids in the last step: the sum of the normal forces (N), the force on the second, friction
 /// included (N), and where it acts (m); NaN there while they do not touch.
@@ -47,7 +47,7 @@ impl ContactList {
     /// The names of the two solids of each pair and its numbers, in the order of the scene.
     pub fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> {
         let solids = sim.system().solids();
-        let row = |contact: Contact<D>| {
+        let row = |contact: ContactForce<D>| {
             let names = contact.between.map(|i| solids[i].spec.name.as_str());
             (names, contact_values(&contact, &contact.loads[1].force))
         };
@@ -64,6 +64,6 @@ fn columns<const D: usize>() -> impl Iterator<Item = String> {
 }
 
 /// What is told of a contact with such a `force` (N) on one of the two.
-fn contact_values<const D: usize>(contact: &Contact<D>, force: &Vector<D>) -> Vec<f64> {
-    [contact.pressing].into_iter().chain(force.iter().copied()).chain(contact.at.iter().copied()).collect()
+fn contact_values<const D: usize>(contact: &ContactForce<D>, force: &Vector<D>) -> Vec<f64> {
+    [contact.normal_force].into_iter().chain(force.iter().copied()).chain(contact.at.iter().copied()).collect()
 }

@@ -3,7 +3,7 @@
 use super::Probe;
 use crate::{
     error::Result,
-    simulation::{Simulation, find},
+    simulation::{Simulation, find_by_name},
     system::System,
 };
 
@@ -20,7 +20,7 @@ impl LineProbe {
     /// `Scene` if there is no such spring.
     pub fn spring<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
         let springs = system.constraints().springs.iter();
-        Ok(Self { line: find("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
+        Ok(Self { line: find_by_name("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
     }
 
     /// The probe of the rope called `name`.
@@ -29,7 +29,7 @@ impl LineProbe {
     /// `Scene` if there is no such rope.
     pub fn rope<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
         let ropes = system.constraints().ropes.iter();
-        Ok(Self { line: find("rope", name, ropes.map(|rope| rope.name.as_str()))?, rope: true })
+        Ok(Self { line: find_by_name("rope", name, ropes.map(|rope| rope.name.as_str()))?, rope: true })
     }
 }
 
@@ -39,7 +39,7 @@ impl<const D: usize> Probe<D> for LineProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let now = if self.rope { sim.rope(self.line) } else { sim.spring(self.line) };
+        let now = if self.rope { sim.rope_reading(self.line) } else { sim.spring_reading(self.line) };
         vec![now.length, now.tension]
     }
 }

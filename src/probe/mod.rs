@@ -40,7 +40,7 @@ pub use velocity::VelocityProbe;
 use crate::{
     error::{Error, ErrorKind, Result},
     math::Vector,
-    simulation::{Simulation, find},
+    simulation::{Simulation, find_by_name},
     system::System,
 };
 
@@ -77,7 +77,7 @@ const fn axes<const D: usize>() -> &'static [&'static str] {
 /// # Errors
 /// `Scene` if there is none: says the nearest name, or all of them.
 pub fn find_solid<const D: usize>(system: &System<D>, name: &str) -> Result<usize> {
-    find("solid", name, system.solids().iter().map(|s| s.spec.name.as_str()))
+    find_by_name("solid", name, system.solids().iter().map(|s| s.spec.name.as_str()))
 }
 
 /// A point of `D` components from as many numbers.

@@ -198,7 +198,7 @@ impl SceneGeometry {
             },
             lines: outlines(&spec.shape),
             contact_skin: ContactSkinOutline::of_shape(&spec.shape, spec.contact_skin, scene.dp),
-            start: Placement::from_pose(&spec.start().pose),
+            start: Placement::from_pose(&spec.initial_kinematics().pose),
         });
         let solids = solids.collect();
         let (down, beside) =

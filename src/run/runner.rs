@@ -157,13 +157,13 @@ impl<const D: usize> Runner<D> {
                 self.rollback_positions.retain(|(time, _)| self.sim.has_rollback_state(*time));
                 self.rollback_positions.push((self.sim.time(), self.outputs.positions()));
             }
-            let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rollbacks().len());
+            let (clock, passes, rescued) = (Instant::now(), self.sim.force_passes(), self.sim.rollbacks().len());
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not moved on and do not count.
             let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
             // A run that went back has made fewer passes than before.
-            self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
+            self.checkpoint.particle_steps += moved as u64 * self.sim.force_passes().saturating_sub(passes);
             stepped?;
             self.follow_rollback(rescued, watch)?;
             let mut written = self.outputs.write_due(&self.sim)?;

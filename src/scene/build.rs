@@ -22,7 +22,7 @@ use crate::{
     plan::Plan,
     simulation::Setup,
     solid::{
-        Constraints, Hold, Role, SolidSpec,
+        Constraints, InitialHold, Role, SolidSpec,
         constraint::links::{check_force, check_rope, check_spring},
     },
     system::periodic,
@@ -109,7 +109,7 @@ impl Scene {
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // A driven solid starts where its motion puts it.
-        let starts: Vec<Pose<D>> = solids.iter().map(|s| s.start().pose).collect();
+        let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
         let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
@@ -259,7 +259,8 @@ impl Scene {
             constraints.forces.push(force);
         }
         constraints.contacts = self.contact.iter().flat_map(|contact| contact.build(&self.solid)).collect();
-        let hold = |(solid, body): (usize, &SolidConfig)| Some(Hold { solid, until: body.free.as_ref()?.release? });
+        let hold =
+            |(solid, body): (usize, &SolidConfig)| Some(InitialHold { solid, until: body.free.as_ref()?.release? });
         constraints.holds = self.solid.iter().enumerate().filter_map(hold).collect();
         Ok(constraints)
     }

@@ -5,7 +5,7 @@
 //! and `build` put the sections together.
 //!
 //! An absent key is `None`; [`resolve`](Scene::resolve) names its default and the reason. A vector is a list of as many numbers as
-//! the scene has dimensions. Units are SI; keys that end in `_deg` are in degrees. `docs/scene.md` explains every key.
+//! the scene has dimensions. Units are SI; keys that end in `_deg` are in degrees. `docs/reference/scene.md` explains every key.
 
 mod build;
 mod bundled;

@@ -154,7 +154,7 @@ impl Scene {
         Ok((scene, defaults))
     }
 
-    /// Every value in force and its source, in the order of `docs/scene.md`.
+    /// Every value in force and its source, in the order of `docs/reference/scene.md`.
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, or a file that gives a shape is missing or wrong.
@@ -236,9 +236,9 @@ impl Scene {
         match key.rsplit_once('.') {
             Some((parent, "points")) => written(parent).unwrap_or(ValueSource::Program),
             Some((parent, _)) if written(parent).is_some() => {
-                ValueSource::Default("of this choice, see docs/scene.md".into())
+                ValueSource::Default("of this choice, see docs/reference/scene.md".into())
             }
-            _ => ValueSource::Default("see docs/scene.md".into()),
+            _ => ValueSource::Default("see docs/reference/scene.md".into()),
         }
     }
 }

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     error,
     math::{expression::Formula, time_series::TimeSeries},
-    solid::Law,
+    solid::TimeFunction,
 };
 
 /// A number, a list of numbers, or a list of rows.
@@ -305,11 +305,11 @@ impl TimeFunctionConfig {
     }
 
     /// The law, with the values in SI units.
-    pub(crate) fn build(&self, ctx: &Context, key: &str, unit: CoordinateUnit) -> error::Result<Law> {
+    pub(crate) fn build(&self, ctx: &Context, key: &str, unit: CoordinateUnit) -> error::Result<TimeFunction> {
         let place = |word: &str, e: error::Error| ctx.with_location(e, &format!("{key}.{word}"));
         if let Some(text) = &self.formula {
             let formula = Formula::parse(text).map_err(|e| place("formula", e))?;
-            return Ok(Law::Formula(match unit {
+            return Ok(TimeFunction::Formula(match unit {
                 CoordinateUnit::Degrees => {
                     Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?
                 }
@@ -324,7 +324,7 @@ impl TimeFunctionConfig {
         let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
         let factor = self.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
         let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
-        TimeSeries::new(series.times(), values).map(Law::Table).map_err(|e| place("scale", e))
+        TimeSeries::new(series.times(), values).map(TimeFunction::Table).map_err(|e| place("scale", e))
     }
 }
 

@@ -36,7 +36,7 @@ impl<const D: usize> Simulation<D> {
     /// Whether the energy budget is kept already, and the interval of power breakdowns.
     fn accounted(&self) -> (bool, Option<u32>) {
         let accounting = self.bodies.accounting.as_ref();
-        accounting.map_or((false, None), |accounting| (accounting.has_energy(), accounting.interval()))
+        accounting.map_or((false, None), |accounting| (accounting.has_energy_budget(), accounting.power_interval()))
     }
 
     fn account(&mut self, energy: bool, interval: Option<u32>)

@@ -14,7 +14,7 @@ const OVERLAP_MAX: f64 = 0.05;
 
 /// What came of adding a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Added {
+pub struct AddedSolid {
     /// Its number.
     pub solid: usize,
     /// Water particles that were in its place and have been taken out.
@@ -33,7 +33,7 @@ where
     /// # Errors
     /// `Scene` if the solid cannot be meant, has a name that another has or had, or lies deeper than 0.05 dp inside another:
     /// says which and how deep. Nothing has changed then.
-    pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<Added> {
+    pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<AddedSolid> {
         spec.check()?;
         if self.system.find_solid(&spec.name).is_some() {
             return Err(Error::scene(format!("a solid is or was called {:?} already", spec.name))
@@ -46,7 +46,7 @@ where
         }
         let start = match &spec.role {
             Role::Driven(motion) => motion.kinematics(&spec.pose, self.clock.time),
-            Role::Fixed | Role::Free(_) => spec.start(),
+            Role::Fixed | Role::Free(_) => spec.initial_kinematics(),
         };
         self.refuse_overlap(&spec, &start)?;
         self.insert_solid(spec, start)?;
@@ -57,7 +57,7 @@ where
             accounting.add_solid_energy(self.system.solids()[solid].energy(&self.system.gravity()));
         }
         self.finish_change(reordering);
-        Ok(Added { solid, displaced })
+        Ok(AddedSolid { solid, displaced })
     }
 
     /// Takes solid number `solid` out between two steps; the water closes over its place. It keeps its number and its name, stands
@@ -72,7 +72,7 @@ where
                 "they are numbered from 0, and there are {last}; find_solid tells the number of a name"
             )));
         };
-        if let Some(tie) = self.system.constraints().of(solid) {
+        if let Some(tie) = self.system.constraints().constraint_on(solid) {
             return Err(Error::new(ErrorKind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
                 .help("only what nothing is tied to can be removed"));
         }
@@ -96,9 +96,9 @@ where
     ///
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup, or other solids had been added.
-    pub fn restore_with(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
+    pub fn restore_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
         for spec in added {
-            let start = spec.start();
+            let start = spec.initial_kinematics();
             self.insert_solid(spec, start)?;
         }
         for solid in Self::read(bytes)?.removed_solids {
@@ -118,7 +118,7 @@ where
     fn refuse_overlap(&self, spec: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         let Some(engine) = self.bodies.engine() else { return Ok(()) };
         let allowed = OVERLAP_MAX * self.system.model().dp;
-        let touched = engine.overlap(spec, start)?.into_iter();
+        let touched = engine.deepest_overlap(spec, start)?.into_iter();
         match touched.chain(self.overlap_inside_mesh(spec, start, allowed)).max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((other, depth)) if depth > allowed => {
                 let other = &self.system.solids()[other].spec;
@@ -147,7 +147,7 @@ where
     /// Lets a solid come into water and world, unchecked and without making room for it.
     fn insert_solid(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
         let free = matches!(spec.role, Role::Free(_));
-        let founding = free && !self.bodies.external();
+        let founding = free && !self.bodies.has_external_bodies();
         match self.bodies.engine_mut() {
             Some(engine) => engine.add_body(&spec, &start)?,
             None if founding => {
@@ -161,7 +161,7 @@ where
         }
         self.system.add_body(spec, start)?;
         let last = self.system.solids().len() - 1;
-        self.bodies.add_body(AcousticAddedMass::of(&mut self.system, last), start);
+        self.bodies.add_body(AcousticAddedMass::for_solid(&mut self.system, last), start);
         Ok(())
     }
 

@@ -66,6 +66,6 @@ impl<const D: usize> Simulation<D> {
 
     /// Whether an external program moves the free solids.
     pub fn has_external_bodies(&self) -> bool {
-        self.bodies.external()
+        self.bodies.has_external_bodies()
     }
 }

@@ -48,7 +48,7 @@ pub(super) struct RollbackControl {
 
 impl RollbackControl {
     /// None, ever.
-    pub(super) fn off() -> Self {
+    pub(super) fn disabled() -> Self {
         Self { off: true, ..Self::default() }
     }
 
@@ -68,7 +68,7 @@ impl RollbackControl {
     }
 
     /// Makes room for another state: at most two are in memory at a time.
-    pub(super) fn make_room(&mut self) {
+    pub(super) fn drop_oldest_state(&mut self) {
         if self.states.len() == 2 {
             self.states.remove(0);
         }
@@ -110,7 +110,7 @@ mod tests {
         let mut rescue = RollbackControl::default();
         assert!(rescue.needs_state(0));
         for step in [0, 500, 1000] {
-            rescue.make_room();
+            rescue.drop_oldest_state();
             rescue.store(step, step as f64 * 1e-3, vec![(step / 500) as u8]);
         }
         assert!(rescue.needs_state(1500) && !rescue.needs_state(1501));
@@ -123,6 +123,6 @@ mod tests {
         rescue.store(900, 0.9, vec![9]);
         assert_eq!(rescue.state_before("speed", 1200, 1.2), None, "it returned while the step was halved");
         assert!(rescue.state_before("speed", 9000, 9.0).is_some(), "later trouble is other trouble");
-        assert_eq!(RollbackControl::off().state_before("speed", 9000, 9.0), None);
+        assert_eq!(RollbackControl::disabled().state_before("speed", 9000, 9.0), None);
     }
 }

@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::{
     error::{Error, Result, nearest_name},
-    solid::{Drive, Elastic, JointReading, JointSpec, LineReading},
+    solid::{JointReading, JointSpec, LineReading, MotorCommand, SpringParameters},
 };
 
 impl<const D: usize> Simulation<D> {
@@ -12,7 +12,7 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Scene` if there is none: says the nearest name, or all of them.
     pub fn find_joint(&self, name: &str) -> Result<usize> {
-        find("joint", name, self.system.constraints().joints.iter().map(|joint| joint.name.as_str()))
+        find_by_name("joint", name, self.system.constraints().joints.iter().map(|joint| joint.name.as_str()))
     }
 
     /// Number of the spring called `name`.
@@ -20,17 +20,17 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::find_joint`].
     pub fn find_spring(&self, name: &str) -> Result<usize> {
-        find("spring", name, self.system.constraints().springs.iter().map(|spring| spring.name.as_str()))
+        find_by_name("spring", name, self.system.constraints().springs.iter().map(|spring| spring.name.as_str()))
     }
 
     /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
-    pub fn spring_limit(&self) -> f64 {
+    pub fn spring_step_limit(&self) -> f64 {
         self.bodies.step_limit(&self.system, self.clock.time)
     }
 
     /// What joint number `joint` felt in the last step.
-    pub fn joint(&self, joint: usize) -> JointReading<D> {
-        self.bodies.constraints().joint(joint)
+    pub fn joint_reading(&self, joint: usize) -> JointReading<D> {
+        self.bodies.constraints().joint_reading(joint)
     }
 
     /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
@@ -51,35 +51,35 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.
-    pub fn coordinates(&self, joint: usize) -> Vec<f64> {
+    pub fn joint_coordinates(&self, joint: usize) -> Vec<f64> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
-        self.bodies.constraints().coordinates(joint, &solids)
+        self.bodies.constraints().joint_coordinates(joint, &solids)
     }
 
     /// What spring number `spring` felt in the last step.
-    pub fn spring(&self, spring: usize) -> LineReading {
-        self.bodies.constraints().spring(spring)
+    pub fn spring_reading(&self, spring: usize) -> LineReading {
+        self.bodies.constraints().spring_reading(spring)
     }
 
     /// What rope number `rope` felt in the last step.
-    pub fn rope(&self, rope: usize) -> LineReading {
-        self.bodies.constraints().rope(rope)
+    pub fn rope_reading(&self, rope: usize) -> LineReading {
+        self.bodies.constraints().rope_reading(rope)
     }
 
     /// Drives joint number `joint`, a hinge or a slider, from now on, in place of the motor that it was made with; `None` gives
     /// it back to that. A checkpoint keeps it.
-    pub fn set_motor(&mut self, joint: usize, drive: Option<Drive>) {
-        self.bodies.constraints_mut().drive(joint, drive);
+    pub fn set_motor(&mut self, joint: usize, drive: Option<MotorCommand>) {
+        self.bodies.constraints_mut().set_motor(joint, drive);
     }
 
     /// Stiffness, damping and rest length of spring number `spring`, to be read or changed from now on. A checkpoint keeps them.
-    pub fn elastic(&mut self, spring: usize) -> &mut Elastic {
-        self.bodies.constraints_mut().elastic(spring)
+    pub fn spring_parameters(&mut self, spring: usize) -> &mut SpringParameters {
+        self.bodies.constraints_mut().spring_parameters(spring)
     }
 }
 
 /// The number of `name` among `names` of a `kind` of things.
-pub(crate) fn find<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Result<usize> {
+pub(crate) fn find_by_name<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Result<usize> {
     names.clone().position(|known| known == name).ok_or_else(|| {
         let help = match nearest_name(name, names.clone()) {
             Some(near) => format!("did you mean {near:?}?"),

@@ -14,7 +14,7 @@ impl<const D: usize> SolidSpec<D> {
     /// Where the solid is at t = 0, and how it moves there.
     ///
     /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
-    pub fn start(&self) -> Kinematics<D> {
+    pub fn initial_kinematics(&self) -> Kinematics<D> {
         let still = Kinematics {
             pose: self.pose,
             centre: self.pose.position,
@@ -61,13 +61,13 @@ impl<const D: usize> SolidSpec<D> {
             require((0.0..=1.0).contains(&bounce), || format!("restitution is {bounce}"), "0 (stays) … 1 (bounces)")?;
             let (skin, most) = (self.contact_skin, self.thickest_skin());
             let right = format!("0 to {most:.4} m, half of its smallest extent");
-            require(self.skin_fits(), || format!("its contact skin is {skin} m"), &right)
+            require(self.has_valid_contact_skin(), || format!("its contact skin is {skin} m"), &right)
         })
         .map_err(|e| self.named(e))
     }
 
     /// Whether it has no contact skin, or one that is not thicker than half of its smallest extent.
-    pub(crate) fn skin_fits(&self) -> bool {
+    pub(crate) fn has_valid_contact_skin(&self) -> bool {
         self.contact_skin == 0.0 || (0.0..=self.thickest_skin()).contains(&self.contact_skin)
     }
 
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_free_solid_starts_about_its_centre_of_mass() {
-        let centre = spec(1.0, [1.0; 3]).start().centre;
+        let centre = spec(1.0, [1.0; 3]).initial_kinematics().centre;
         assert!((centre - Vector::from([1.0, 0.1, 0.0])).norm() < 1e-15);
     }
 

@@ -11,7 +11,7 @@ use crate::solid::Kinematics;
 /// the same order; all three have the same length.
 ///
 /// Source: [@pirkhalili2023], eq. (25).
-pub fn place<const D: usize>(
+pub fn place_boundary_particles<const D: usize>(
     kinematics: &Kinematics<D>,
     local: &[Vector<D>],
     r: &mut [Vector<D>],
@@ -39,7 +39,7 @@ mod tests {
             spin: Bivector::from_axial(&[2.0]),
         };
         let (mut r, mut v) = (vec![Vector::zeros()], vec![Vector::zeros()]);
-        place(&kinematics, &[Vector::from([3.0, 0.0])], &mut r, &mut v);
+        place_boundary_particles(&kinematics, &[Vector::from([3.0, 0.0])], &mut r, &mut v);
         // The arm (3, 0) is turned to (0, 3); a counter-clockwise spin of 2 rad/s moves it to −x at 6 m/s.
         assert!((r[0] - Vector::from([1.0, 5.0])).norm() < 1e-15);
         assert!((v[0] - Vector::from([-5.5, 0.0])).norm() < 1e-14);

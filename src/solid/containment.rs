@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// A solid and where it is.
-pub(crate) type Placed<'a, const D: usize> = (&'a SolidSpec<D>, &'a Pose<D>);
+pub(crate) type PlacedSolid<'a, const D: usize> = (&'a SolidSpec<D>, &'a Pose<D>);
 
 /// The single shapes of a posed shape that others touch.
 fn touchable<'a, const D: usize>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut Vec<(&'a Shape<D>, Pose<D>)>) {
@@ -21,8 +21,8 @@ fn touchable<'a, const D: usize>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut
 /// How deep (m) a place of one solid, more than `allowed` (m) inside, lies in a mesh of the other that is touched by its
 /// surface only: what is wholly inside is in touch with nothing there.
 pub(crate) fn depth_inside_mesh<const D: usize>(
-    (one, here): Placed<D>,
-    (other, there): Placed<D>,
+    (one, here): PlacedSolid<D>,
+    (other, there): PlacedSolid<D>,
     allowed: f64,
 ) -> Option<f64> {
     let (mut inner, mut outer) = (Vec::new(), Vec::new());

@@ -23,7 +23,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// `force` (N) alone, at the arm `r` (m) from the centre.
-    pub fn at(r: &Vector<D>, force: Vector<D>) -> Self {
+    pub fn from_force_at(r: &Vector<D>, force: Vector<D>) -> Self {
         Self { force, torque: Bivector::torque(r, &force) }
     }
 
@@ -40,7 +40,7 @@ pub(crate) struct LoadContext<const D: usize> {
     /// Whether there is water at it.
     pub(crate) wet: Vec<bool>,
     /// How long sound takes to cross a smoothing length, h/c₀, s.
-    pub(crate) crossing: f64,
+    pub(crate) sound_crossing_time: f64,
 }
 
 impl<const D: usize> Add for Load<D> {

@@ -14,18 +14,18 @@ pub mod rapier;
 mod tests;
 
 pub use constraint::{
-    Constraints, ContactSpec, Contacts, Drive, Elastic, End, FreeMode, Hold, JointKind, JointReading, JointSpec,
-    LineReading, Mobility, Motor, RopeSpec, SpringSpec,
+    Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind, JointReading, JointSpec, LineEnd,
+    LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters, SpringSpec,
 };
 pub use force::ForceSpec;
 pub use load::Load;
 pub(crate) use load::LoadContext;
-pub use prescribed_motion::{Law, Motion};
+pub use prescribed_motion::{PrescribedMotion, TimeFunction};
 #[cfg(feature = "dim2")]
 pub use rapier::rapier2d;
 #[cfg(feature = "dim3")]
 pub use rapier::rapier3d;
-pub use rapier::{Contact, Dim, Engine, EngineFault, HasEngine};
+pub use rapier::{ContactForce, Dim, Engine, EngineFault, HasEngine};
 
 use std::ops::Range;
 
@@ -62,7 +62,7 @@ pub enum Role<const D: usize> {
     /// Nothing.
     Fixed,
     /// A prescribed motion.
-    Driven(Motion<D>),
+    Driven(PrescribedMotion<D>),
     /// Water, weight, contacts: rapier.
     Free(FreeBody<D>),
 }
@@ -136,7 +136,7 @@ impl<const D: usize> Solid<D> {
     }
 
     /// Where its `motion` has it at time `t` (s).
-    pub(crate) fn prescribed_kinematics(&self, motion: &Motion<D>, t: f64) -> Kinematics<D> {
+    pub(crate) fn prescribed_kinematics(&self, motion: &PrescribedMotion<D>, t: f64) -> Kinematics<D> {
         motion.kinematics_with_absorption(&self.spec.pose, t, &self.absorption)
     }
 

@@ -10,39 +10,39 @@ use crate::{
     math::{Bivector, Pose, Vector},
     math::{expression::Formula, time_series::TimeSeries},
     solid::Kinematics,
-    wavemaker::{Absorber, AbsorptionState, Wave},
+    wavemaker::{Absorber, AbsorptionState, PaddleMotion},
 };
 
 /// How a driven coordinate moves in time: a length (m) or an angle (rad) at a time (s).
 #[derive(Clone, Debug)]
-pub enum Law {
+pub enum TimeFunction {
     /// The smooth curve through measured samples; at rest before the first and after the last.
     Table(TimeSeries),
     /// A formula.
     Formula(Formula),
     /// A paddle's, that makes a wave of theory.
-    Wave(Box<Wave>),
+    Wave(Box<PaddleMotion>),
 }
 
-impl Law {
+impl TimeFunction {
     /// The law that is `x` at all times.
     pub fn constant(x: f64) -> Self {
         Self::Formula(Formula::constant(x))
     }
 
     /// Value (m or rad) and its rate (m/s or rad/s) at time `t` (s).
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         match self {
             Self::Table(series) => series.value_and_rate(t),
             Self::Formula(formula) => formula.value_and_rate(t),
-            Self::Wave(wave) => wave.at(t),
+            Self::Wave(wave) => wave.coordinate_and_rate(t),
         }
     }
 }
 
 /// A prescribed motion.
 #[derive(Clone, Debug)]
-pub struct Motion<const D: usize> {
+pub struct PrescribedMotion<const D: usize> {
     /// From the ground up; most have one.
     stages: Vec<Stage<D>>,
     absorbing: Option<Box<Absorbing<D>>>,
@@ -52,7 +52,7 @@ pub struct Motion<const D: usize> {
 #[derive(Clone, Debug)]
 struct Stage<const D: usize> {
     path: Path<D>,
-    law: Law,
+    law: TimeFunction,
 }
 
 /// What makes a paddle absorb, and where its gauge is.
@@ -73,9 +73,9 @@ enum Path<const D: usize> {
     Hinge { centre: Vector<D>, axis: Bivector<D> },
 }
 
-impl<const D: usize> Motion<D> {
+impl<const D: usize> PrescribedMotion<D> {
     /// Sliding along `direction` (any length but zero) by the law's value (m).
-    pub fn slide(direction: Vector<D>, law: Law) -> Self {
+    pub fn slide(direction: Vector<D>, law: TimeFunction) -> Self {
         Self::of(Path::Slide(direction.normalize()), law)
     }
 
@@ -83,13 +83,13 @@ impl<const D: usize> Motion<D> {
     ///
     /// `axis`: axial components of any length but zero: `[1.0]` in 2-D, where positive angles turn
     /// counter-clockwise (`[-1.0]`: clockwise); the three of the axis in 3-D, right-handed.
-    pub fn hinge(centre: Vector<D>, axis: &[f64], law: Law) -> Self {
+    pub fn hinge(centre: Vector<D>, axis: &[f64], law: TimeFunction) -> Self {
         let axis = Bivector::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
         Self::of(Path::Hinge { centre, axis: axis * (1.0 / length) }, law)
     }
 
-    fn of(path: Path<D>, law: Law) -> Self {
+    fn of(path: Path<D>, law: TimeFunction) -> Self {
         Self { stages: vec![Stage { path, law }], absorbing: None }
     }
 
@@ -101,7 +101,7 @@ impl<const D: usize> Motion<D> {
 
     /// The same motion, of a paddle that absorbs: its gauge is above `gauge` (m) when it is at rest, and goes with it along
     /// `way`, a unit vector. Without effect on a law that is no wave's.
-    pub fn absorbing(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
+    pub fn with_absorber(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
         Self { absorbing: Some(Box::new(Absorbing { absorber, gauge, way })), ..self }
     }
 
@@ -111,17 +111,17 @@ impl<const D: usize> Motion<D> {
     }
 
     /// The wave that it makes, if it is a paddle that makes one by name.
-    pub fn wave(&self) -> Option<&Wave> {
+    pub fn wave(&self) -> Option<&PaddleMotion> {
         match &self.stages[..] {
-            [Stage { law: Law::Wave(wave), .. }] => Some(wave),
+            [Stage { law: TimeFunction::Wave(wave), .. }] => Some(wave),
             _ => None,
         }
     }
 
     /// Where the gauge of a paddle that absorbs is at time `t` (s); nowhere if it does not.
-    pub(crate) fn gauge(&self, yielding: &AbsorptionState, t: f64) -> Option<Vector<D>> {
+    pub(crate) fn gauge_position(&self, yielding: &AbsorptionState, t: f64) -> Option<Vector<D>> {
         let (own, wave) = (self.absorbing.as_ref()?, self.wave()?);
-        Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.at(t).0))
+        Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.offset_and_rate(t).0))
     }
 
     /// How it goes on yielding from time `t` (s), when the water at its gauge stands at `level` (m), if there is any.
@@ -147,9 +147,9 @@ impl<const D: usize> Motion<D> {
 
     /// Which way its point that is at `x` (m) at the start goes as the value of each of its laws grows: unit vectors, from the ground
     /// up; zero on the axis of a hinge.
-    pub fn headings(&self, x: &Vector<D>) -> Vec<Vector<D>> {
+    pub fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> {
         let way = |k: usize| {
-            let alone = |i: usize, law: &Law| (law.at(0.0).0, if i == k { 1.0 } else { 0.0 });
+            let alone = |i: usize, law: &TimeFunction| (law.value_and_rate(0.0).0, if i == k { 1.0 } else { 0.0 });
             let now = self.moved(&Pose::identity(), alone);
             (now.velocity + now.spin.velocity_at(&(x - now.centre))).try_normalize(0.0).unwrap_or_else(Vector::zeros)
         };
@@ -160,7 +160,7 @@ impl<const D: usize> Motion<D> {
     ///
     /// The `centre` of the result is the hinge of what turns about one and does nothing else, or the frame's origin.
     pub fn kinematics(&self, start: &Pose<D>, t: f64) -> Kinematics<D> {
-        self.moved(start, |_, law| law.at(t))
+        self.moved(start, |_, law| law.value_and_rate(t))
     }
 
     /// As [`Motion::kinematics`], of a paddle that has yielded.
@@ -171,13 +171,13 @@ impl<const D: usize> Motion<D> {
         yielding: &AbsorptionState,
     ) -> Kinematics<D> {
         match (&self.absorbing, self.wave()) {
-            (Some(_), Some(wave)) => self.moved(start, |_, _| wave.beside(t, yielding.at(t))),
+            (Some(_), Some(wave)) => self.moved(start, |_, _| wave.with_offset(t, yielding.offset_and_rate(t))),
             _ => self.kinematics(start, t),
         }
     }
 
     /// Where a solid that starts at `start` is when the law of each stage has a value and a rate.
-    fn moved(&self, start: &Pose<D>, values: impl Fn(usize, &Law) -> (f64, f64)) -> Kinematics<D> {
+    fn moved(&self, start: &Pose<D>, values: impl Fn(usize, &TimeFunction) -> (f64, f64)) -> Kinematics<D> {
         let still =
             Kinematics { pose: *start, centre: start.position, velocity: Vector::zeros(), spin: Bivector::zero() };
         let stages = self.stages.iter().enumerate().rev();
@@ -197,7 +197,7 @@ impl<const D: usize> Motion<D> {
         if self.stages.is_empty() {
             return Err(Error::scene("its list of motions is empty").help("give one or more, or make the solid fixed"));
         }
-        if several && self.stages.iter().any(|stage| matches!(stage.law, Law::Wave(_))) {
+        if several && self.stages.iter().any(|stage| matches!(stage.law, TimeFunction::Wave(_))) {
             return Err(Error::scene("one of its several motions makes a wave")
                 .help("a paddle that makes waves by name has no other motion beside it"));
         }
@@ -246,7 +246,7 @@ impl<const D: usize> Stage<D> {
             return Err(Error::scene(format!("the {what} is zero or not finite"))
                 .help("give finite numbers; a direction and an axis need a length"));
         }
-        let (value, rate) = self.law.at(0.0);
+        let (value, rate) = self.law.value_and_rate(0.0);
         if !(value.is_finite() && rate.is_finite()) {
             return Err(Error::scene(format!("the law of motion gives {value} at the rate {rate} at t = 0"))
                 .help("use a law that is finite and smooth where the run starts"));
@@ -261,14 +261,14 @@ mod tests {
 
     use super::*;
 
-    fn formula(text: &str) -> Law {
-        Law::Formula(Formula::parse(text).unwrap())
+    fn formula(text: &str) -> TimeFunction {
+        TimeFunction::Formula(Formula::parse(text).unwrap())
     }
 
     #[test]
     fn a_slide_starts_where_its_law_says_and_moves_at_its_rate() {
         let table = TimeSeries::new([0.0, 0.5, 1.0, 2.0], [0.1, 0.2, 0.15, 0.3]).unwrap();
-        let motion = Motion::slide(Vector::from([2.0, 0.0]), Law::Table(table));
+        let motion = PrescribedMotion::slide(Vector::from([2.0, 0.0]), TimeFunction::Table(table));
         let start = Pose::at(Vector::from([1.0, 1.0]));
         assert_eq!(motion.kinematics(&start, 0.0).pose.position, Vector::from([1.1, 1.0]));
         let (t, step) = (0.8, 1e-6);
@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn a_hinge_keeps_its_centre_and_turns_at_its_rate() {
         let centre = Vector::from([0.2, 0.0, -0.1]);
-        let motion = Motion::hinge(centre, &[0.0, 3.0, 4.0], formula("0.3*sin(2*t)"));
+        let motion = PrescribedMotion::hinge(centre, &[0.0, 3.0, 4.0], formula("0.3*sin(2*t)"));
         let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
         let (t, step) = (0.6, 1e-6);
         let now = motion.kinematics(&start, t);
@@ -298,13 +298,13 @@ mod tests {
 
     #[test]
     fn a_positive_angle_turns_counter_clockwise_in_two_dimensions() {
-        let motion = Motion::hinge(Vector::zeros(), &[1.0], formula("t"));
+        let motion = PrescribedMotion::hinge(Vector::zeros(), &[1.0], formula("t"));
         let now = motion.kinematics(&Pose::at(Vector::from([1.0, 0.0])), 0.5);
         assert!(now.pose.position[1] > 0.4 && now.spin.axial()[0] == 1.0);
     }
 
     /// The largest distance (m) of the velocities of some points from the central difference of where they are.
-    fn off<const D: usize>(motion: &Motion<D>, start: &Pose<D>, t: f64) -> f64 {
+    fn off<const D: usize>(motion: &PrescribedMotion<D>, start: &Pose<D>, t: f64) -> f64 {
         let step = 1e-6;
         let [a, now, b] = [t - step, t, t + step].map(|t| motion.kinematics(start, t));
         let point = |i: usize| {
@@ -317,12 +317,12 @@ mod tests {
 
     #[test]
     fn each_motion_of_several_goes_in_the_frame_that_those_before_it_have_moved() {
-        let turn = || Motion::hinge(Vector::from([1.0, 0.0]), &[1.0], formula("0.5*pi*t"));
-        let slide = || Motion::slide(Vector::from([1.0, 0.0]), formula("2*t"));
+        let turn = || PrescribedMotion::hinge(Vector::from([1.0, 0.0]), &[1.0], formula("0.5*pi*t"));
+        let slide = || PrescribedMotion::slide(Vector::from([1.0, 0.0]), formula("2*t"));
         let start = Pose::at(Vector::from([1.0, 1.0]));
-        let at = |motion: &Motion<2>| motion.kinematics(&start, 1.0);
+        let at = |motion: &PrescribedMotion<2>| motion.kinematics(&start, 1.0);
         // A rail on the turntable points up by then; a turntable on the rail is 2 m further on. Round-off of cos π/2.
-        let (railed, carted) = (Motion::chain([turn(), slide()]), Motion::chain([slide(), turn()]));
+        let (railed, carted) = (PrescribedMotion::chain([turn(), slide()]), PrescribedMotion::chain([slide(), turn()]));
         assert!((at(&railed).pose.position - Vector::from([0.0, 2.0])).norm() < 1e-15);
         assert!((at(&carted).pose.position - Vector::from([2.0, 0.0])).norm() < 1e-15);
         assert!((at(&railed).velocity - Vector::from([-PI, 2.0 - 0.5 * PI])).norm() < 1e-14, "{:?}", at(&railed));
@@ -330,7 +330,7 @@ mod tests {
         assert_eq!(at(&carted).centre, at(&carted).pose.position, "the origin of its frame");
         // Truncation and round-off of the difference, as above.
         assert!(off(&railed, &start, 0.3) < 1e-8 && off(&carted, &start, 0.3) < 1e-8);
-        let one = Motion::chain([turn()]);
+        let one = PrescribedMotion::chain([turn()]);
         assert_eq!(at(&one), at(&turn()), "of one it is that one");
         assert!(one.hinge_height().is_some() && carted.hinge_height().is_none());
     }
@@ -338,28 +338,28 @@ mod tests {
     #[test]
     fn several_motions_in_space_have_their_exact_rates() {
         let centre = |x: f64| Vector::from([x, 0.2, -0.1]);
-        let motion = Motion::chain([
-            Motion::slide(Vector::from([1.0, 0.0, 0.2]), formula("0.1*sin(3*t)")),
-            Motion::hinge(centre(0.0), &[0.0, 1.0, 0.0], formula("0.4*sin(2*t)")),
-            Motion::hinge(centre(0.3), &[0.2, 0.0, 1.0], formula("0.3*t")),
-            Motion::slide(Vector::from([0.0, 1.0, 0.0]), formula("0.2*cos(t)")),
+        let motion = PrescribedMotion::chain([
+            PrescribedMotion::slide(Vector::from([1.0, 0.0, 0.2]), formula("0.1*sin(3*t)")),
+            PrescribedMotion::hinge(centre(0.0), &[0.0, 1.0, 0.0], formula("0.4*sin(2*t)")),
+            PrescribedMotion::hinge(centre(0.3), &[0.2, 0.0, 1.0], formula("0.3*t")),
+            PrescribedMotion::slide(Vector::from([0.0, 1.0, 0.0]), formula("0.2*cos(t)")),
         ]);
         let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
         assert!(off(&motion, &start, 0.7) < 1e-8);
-        let ways = motion.headings(&Vector::from([0.4, 0.5, 0.3]));
+        let ways = motion.directions_at(&Vector::from([0.4, 0.5, 0.3]));
         assert!(ways.len() == 4 && ways.iter().all(|way| (way.norm() - 1.0).abs() < 1e-14), "{ways:?}");
         assert!((ways[0] - Vector::from([1.0, 0.0, 0.2]).normalize()).norm() < 1e-15);
     }
 
     #[test]
     fn a_motion_without_direction_is_refused() {
-        assert!(Motion::slide(Vector::<2>::zeros(), formula("t")).check().is_err());
-        assert!(Motion::hinge(Vector::<3>::zeros(), &[0.0; 3], formula("t")).check().is_err());
-        assert!(Motion::slide(Vector::from([1.0, 0.0]), formula("1/t")).check().is_err());
-        let slide = |law: &str| Motion::slide(Vector::from([1.0, 0.0]), formula(law));
+        assert!(PrescribedMotion::slide(Vector::<2>::zeros(), formula("t")).check().is_err());
+        assert!(PrescribedMotion::hinge(Vector::<3>::zeros(), &[0.0; 3], formula("t")).check().is_err());
+        assert!(PrescribedMotion::slide(Vector::from([1.0, 0.0]), formula("1/t")).check().is_err());
+        let slide = |law: &str| PrescribedMotion::slide(Vector::from([1.0, 0.0]), formula(law));
         assert!(slide("t").check().is_ok());
-        let second = Motion::chain([slide("t"), slide("1/t")]).check().unwrap_err();
+        let second = PrescribedMotion::chain([slide("t"), slide("1/t")]).check().unwrap_err();
         assert!(second.to_string().contains("motion 2: the law of motion gives"), "{second}");
-        assert!(Motion::<2>::chain([]).check().is_err());
+        assert!(PrescribedMotion::<2>::chain([]).check().is_err());
     }
 }

@@ -126,7 +126,7 @@ impl<const D: usize> Boundary<D> {
     /// Places the boundary particles of `solid` where its kinematics say.
     pub(super) fn place(&mut self, solid: &Solid<D>) {
         let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
-        boundary_motion::place(
+        boundary_motion::place_boundary_particles(
             &solid.kinematics,
             &self.local_positions[range.clone()],
             &mut r[range.clone()],

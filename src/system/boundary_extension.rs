@@ -31,7 +31,7 @@ pub(super) fn extension_particles<const D: usize>(
     specs: &[SolidSpec<D>],
     model: &Model,
 ) -> Vec<ExtensionParticle<D>> {
-    let (spec, pose) = (&specs[i], specs[i].start().pose);
+    let (spec, pose) = (&specs[i], specs[i].initial_kinematics().pose);
     let Role::Driven(motion) = &spec.role else { return Vec::new() };
     let fixed: Vec<&SolidSpec<D>> = specs.iter().filter(|other| matches!(other.role, Role::Fixed)).collect();
     let (dp, outside) = (model.dp, |r: &Vector<D>| spec.shape.signed_distance(r));
@@ -42,14 +42,14 @@ pub(super) fn extension_particles<const D: usize>(
     for point in spec.shape.boundary_points(dp, model.boundary_layers()) {
         let x = pose.point(&point.r);
         for other in &fixed {
-            let at = other.start().pose;
+            let at = other.initial_kinematics().pose;
             let apart = other.shape.signed_distance(&at.local(&x));
             // Half a dp for a solid that stands on the other.
             if (apart - 0.5 * dp).abs() > 0.25 * dp || (apart + outside(&point.r)).abs() > TOUCH * dp {
                 continue;
             }
             let out = at.rotation * other.shape.outward_normal(&at.local(&x), 0.05 * dp);
-            if motion.headings(&x).iter().any(|way| way.dot(&out).abs() > ALONG) {
+            if motion.directions_at(&x).iter().any(|way| way.dot(&out).abs() > ALONG) {
                 continue;
             }
             let high = pose.local(&(x + out * (model.boundary_layers() as f64 * dp)));
@@ -68,11 +68,11 @@ mod tests {
     use crate::{
         geometry::Shape,
         math::Pose,
-        solid::{Law, Motion},
+        solid::{PrescribedMotion, TimeFunction},
     };
 
     /// A bed, its face at y = 0, and on it at dp = 0.1 a paddle 0.4 m thick, its foot at `foot` (m), that moves so.
-    fn paddle(foot: f64, motion: Motion<2>) -> Vec<ExtensionParticle<2>> {
+    fn paddle(foot: f64, motion: PrescribedMotion<2>) -> Vec<ExtensionParticle<2>> {
         let solid = |name: &str, size: [f64; 2], y: f64, role| SolidSpec {
             name: name.into(),
             shape: Shape::Box { size: Vector::from(size) },
@@ -91,8 +91,8 @@ mod tests {
         extension_particles(1, &specs, &model)
     }
 
-    fn along(direction: [f64; 2]) -> Motion<2> {
-        Motion::slide(Vector::from(direction), Law::constant(0.0))
+    fn along(direction: [f64; 2]) -> PrescribedMotion<2> {
+        PrescribedMotion::slide(Vector::from(direction), TimeFunction::constant(0.0))
     }
 
     #[test]
@@ -111,10 +111,10 @@ mod tests {
     #[test]
     fn what_opens_or_stands_apart_or_reaches_into_the_bed_has_none() {
         assert!(paddle(0.0, along([0.0, 1.0])).is_empty(), "a gate that is lifted");
-        let about = |y: f64| Motion::hinge(Vector::from([0.0, y]), &[1.0], Law::constant(0.0));
+        let about = |y: f64| PrescribedMotion::hinge(Vector::from([0.0, y]), &[1.0], TimeFunction::constant(0.0));
         assert!(paddle(0.0, about(0.0)).is_empty(), "a flap hinged at the bed turns there");
         assert!(!paddle(0.0, about(-1.0)).is_empty(), "one hinged far below slides");
-        let both = |other: Motion<2>| Motion::chain([along([1.0, 0.0]), other]);
+        let both = |other: PrescribedMotion<2>| PrescribedMotion::chain([along([1.0, 0.0]), other]);
         assert!(!paddle(0.0, both(about(-1.0))).is_empty(), "one that slides in both its motions");
         assert!(paddle(0.0, both(along([0.0, 1.0]))).is_empty(), "a piston that is lifted, too");
         assert!(paddle(0.3, along([1.0, 0.0])).is_empty(), "a gap of 3 dp");

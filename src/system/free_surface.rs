@@ -32,7 +32,7 @@ impl<const D: usize> System<D> {
         for i in 0..self.solids.len() {
             let solid = &self.solids[i];
             let Role::Driven(motion) = &solid.spec.role else { continue };
-            let Some(gauge) = motion.gauge(&solid.absorption, t) else { continue };
+            let Some(gauge) = motion.gauge_position(&solid.absorption, t) else { continue };
             let level = self.surface_heights(&gauge).next();
             self.solids[i].absorption = motion.update_absorption(&solid.absorption, t, level);
         }

@@ -176,7 +176,7 @@ impl<const D: usize> System<D> {
         let extensions: Vec<_> =
             (0..specs.len()).map(|i| boundary_extension::extension_particles(i, &specs, &system.model)).collect();
         for (spec, extension) in specs.into_iter().zip(&extensions) {
-            let kinematics = spec.start();
+            let kinematics = spec.initial_kinematics();
             system.append_solid(spec, kinematics, extension)?;
         }
         system.update_shifting_suppression();
@@ -334,7 +334,7 @@ impl<const D: usize> System<D> {
                 // Beyond a periodic side the water is an image, and its load has been counted.
                 let own = wet.iter().map(|&i| &r[i as usize]).zip(sums);
                 let own = own.filter(|(r, _)| self.fluid.images.is_inside(r));
-                own.map(|(r, s)| Load::at(&(r - centre), s.acceleration * mass)).sum()
+                own.map(|(r, s)| Load::from_force_at(&(r - centre), s.acceleration * mass)).sum()
             };
             let parts: Vec<Load<D>> = chunks.map(part).collect();
             parts.into_iter().sum()

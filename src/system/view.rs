@@ -128,7 +128,7 @@ impl<const D: usize> System<D> {
         };
         let loads = loads.iter().zip(&self.solids).map(with_weight).collect();
         let wet = self.solids.iter().map(|solid| solid.load != Load::zero()).collect();
-        LoadContext { loads, wet, crossing: self.properties.h / self.properties.c0 }
+        LoadContext { loads, wet, sound_crossing_time: self.properties.h / self.properties.c0 }
     }
 
     /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).

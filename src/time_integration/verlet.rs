@@ -59,7 +59,7 @@ impl<const D: usize> Verlet<D> {
     }
 
     /// The velocities (m/s) from which the next step goes on.
-    pub(crate) fn before_mut(&mut self) -> &mut [Vector<D>] {
+    pub(crate) fn previous_velocities_mut(&mut self) -> &mut [Vector<D>] {
         &mut self.v_before
     }
 

@@ -21,14 +21,14 @@ const ALPHA: f64 = 0.0081;
 
 /// The form of a spectrum; its height is said elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spectrum {
+pub struct WaveSpectrum {
     /// 1/f_p, s.
     pub peak_period: f64,
     /// γ, –.
     pub gamma: f64,
 }
 
-impl Spectrum {
+impl WaveSpectrum {
     /// JONSWAP's.
     pub fn jonswap(peak_period: f64, gamma: f64) -> Self {
         Self { peak_period, gamma }
@@ -53,7 +53,7 @@ impl Spectrum {
     }
 
     /// ω (rad/s) of `count` components of equal energy.
-    pub(super) fn frequencies(&self, count: usize) -> Vec<f64> {
+    pub(super) fn equal_energy_frequencies(&self, count: usize) -> Vec<f64> {
         let step = (BAND.1 - BAND.0) / POINTS as f64;
         let mut energy = vec![0.0];
         for i in 0..POINTS {
@@ -71,7 +71,7 @@ impl Spectrum {
 }
 
 /// Phases (rad) without end, by the generator splitmix64 [@steele2014] from `seed`.
-pub(super) fn phases(seed: u64) -> impl Iterator<Item = f64> {
+pub(super) fn random_phases(seed: u64) -> impl Iterator<Item = f64> {
     (1u64..).map(move |n| {
         let mut z = seed.wrapping_add(n.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

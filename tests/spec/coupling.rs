@@ -5,13 +5,13 @@ use pontoon::{
     math::{Bivector, Bounds, Pose, Vector, expression::Formula},
     model::{Diffusion, Dimension, Model, PairLoopKind, TimeScheme, Viscosity, Walls},
     simulation::{Setup, Simulation},
-    solid::{Dim, Law, Motion, Role},
+    solid::{Dim, PrescribedMotion, Role, TimeFunction},
 };
 
 use crate::rig;
 
 /// Both sweeps and what they may lose of what they add up in 500 to 1,000 steps: rounding of f64; and of single precision,
-/// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/performance.md).
+/// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/explanation/performance.md).
 const SWEEPS: [(PairLoopKind, f64); 2] = [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)];
 
 /// Speed of sound in a drop, m/s: so fast that 1,000 steps end before the drop has flown apart.
@@ -166,7 +166,7 @@ fn a_piston_gives_the_water_the_work_that_it_records() {
 /// Water of this size (m) before a piston `thick` and `high` (m) on the bed of a tank, which goes as `law` (m) says.
 fn before_a_piston(model: Model, [long, deep]: [f64; 2], law: &str, [thick, high]: [f64; 2]) -> Simulation<2> {
     let (dp, behind) = (model.dp, 0.4);
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse(law).unwrap()));
+    let motion = PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse(law).unwrap()));
     let shape = Shape::Box { size: Vector::from([thick, high]) };
     let start = Pose::at(Vector::from([-0.5 * thick, 0.5 * high]));
     let piston = rig::solid("piston", shape, start, Role::Driven(motion));

@@ -5,7 +5,7 @@ use pontoon::{
     math::{Pose, Vector, expression::Formula},
     model::{Model, PressureGradient, Shifting, TimeScheme, Viscosity, Walls},
     simulation::Simulation,
-    solid::{Law, Motion, Role},
+    solid::{PrescribedMotion, Role, TimeFunction},
     sph::{particle_shifting::Shift, viscosity::Sps},
 };
 
@@ -32,7 +32,10 @@ fn scene((scheme, walls, gradient): (TimeScheme, Walls, PressureGradient)) -> Si
     water.extend(rig::lattice([0.6, 0.0], [0.8, 0.1], dp));
     let mut second = rig::float(Shape::Ball { radius: 0.06 }, [1.16, 0.17], 30.0);
     second.name = "second".into();
-    let paddle = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.02*sin(9*t)").unwrap()));
+    let paddle = PrescribedMotion::slide(
+        Vector::from([1.0, 0.0]),
+        TimeFunction::Formula(Formula::parse("0.02*sin(9*t)").unwrap()),
+    );
     let paddle_shape = Shape::Box { size: Vector::from([0.08, 0.6]) };
     let solids = vec![
         rig::tank([1.4, 0.6], dp),

@@ -115,7 +115,7 @@ fn left(gradient: PressureGradient) -> f64 {
 #[test]
 fn a_standing_wave_loses_less_of_its_height() {
     let (plain, corrected) = (left(PressureGradient::Plain), left(PressureGradient::Corrected));
-    // What is lost is the kernel's: by a fifth less at least (by nearly a half in a wave of 90 dp, docs/validation.md).
+    // What is lost is the kernel's: by a fifth less at least (by nearly a half in a wave of 90 dp, docs/explanation/validation.md).
     assert!(1.0 - corrected < 0.8 * (1.0 - plain), "left: {plain} plain, {corrected} corrected");
     assert!(corrected < 1.0, "no energy is made: {corrected}");
 }

@@ -11,7 +11,7 @@ use pontoon::{
     neighbours::NeighbourLists,
     particles::Particles,
     simulation::{Setup, Simulation},
-    solid::{Dim, Law, Motion, Role},
+    solid::{Dim, PrescribedMotion, Role, TimeFunction},
     sph::{
         Units,
         continuity::Continuity,
@@ -83,7 +83,7 @@ where
     for (i, size) in sizes.iter().enumerate() {
         let dv = (with.fluid_acceleration(i) - of.fluid_acceleration(i)).norm();
         let drho = (with.fluid_density_rate(i) - of.fluid_density_rate(i)).abs();
-        // The bounds of docs/performance.md: a particle's own terms, and the largest for one at the rim.
+        // The bounds of docs/explanation/performance.md: a particle's own terms, and the largest for one at the rim.
         assert!(dv <= 2e-5 * size.0 + 2e-6 * most.0, "{name}: dv {i} off by {dv}");
         assert!(drho <= 2e-5 * size.1 + 2e-6 * most.1, "{name}: drho {i} off by {drho}");
     }
@@ -190,7 +190,10 @@ fn a_body_that_crosses_the_blocks() {
     setup.water = rig::lattice([0.0, 0.0], [1.2, 0.3], 0.02);
     setup.water.retain(|r| (r[0] - 0.3).abs() > 0.06 || (r[1] - 0.15).abs() > 0.06);
     setup.surface_levels = vec![0.3; setup.water.len()];
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("4*t*t").expect("a formula")));
+    let motion = PrescribedMotion::slide(
+        Vector::from([1.0, 0.0]),
+        TimeFunction::Formula(Formula::parse("4*t*t").expect("a formula")),
+    );
     let shape = Shape::Box { size: Vector::from([0.12, 0.12]) };
     setup.solids.push(rig::solid("box", shape, Pose::at(Vector::from([0.3, 0.15])), Role::Driven(motion)));
     agrees("crossing", &setup, &run(&setup, 0.26));

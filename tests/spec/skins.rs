@@ -52,7 +52,7 @@ fn engine<const D: usize>(solids: &[SolidSpec<D>], g: f64) -> Result<Box<dyn Eng
 where
     Dim<D>: HasEngine<D>,
 {
-    let start: Vec<Kinematics<D>> = solids.iter().map(SolidSpec::start).collect();
+    let start: Vec<Kinematics<D>> = solids.iter().map(SolidSpec::initial_kinematics).collect();
     let gravity = Vector::from_fn(|i, _| if i == D - 1 { -g } else { 0.0 });
     Dim::<D>::engine(solids, &start, &Constraints::default(), &gravity, 0.01)
 }
@@ -86,7 +86,7 @@ where
     // Each bears what is above it; where it does is where the skins meet: on the bare floor, and in the middle between two skins.
     let weights = [mass(&solids[1]) + mass(&solids[2]), mass(&solids[2])].map(|mass| mass * G);
     for ((contact, weight), place) in contacts.iter().zip(weights).zip([0.0, 0.1 + 2.0 * SKIN]) {
-        assert!((contact.pressing / weight - 1.0).abs() < 1e-3, "{contact:?} for {weight} N");
+        assert!((contact.normal_force / weight - 1.0).abs() < 1e-3, "{contact:?} for {weight} N");
         assert!((contact.at[D - 1] - place).abs() < 1e-4, "{contact:?} at {place} m");
     }
 }
@@ -157,10 +157,10 @@ where
     // What comes later is held to the same.
     let there = engine(&near(0.06), G).unwrap();
     let late = free("late", cube(), 0.16, SKIN);
-    let (who, depth) = there.overlap(&late, &late.start()).unwrap().unwrap();
+    let (who, depth) = there.deepest_overlap(&late, &late.initial_kinematics()).unwrap().unwrap();
     assert!(who == 1 && (depth - 2.0 * SKIN).abs() < 1e-6, "{who}: {depth} m");
     let late = free("late", cube(), 0.1701, SKIN);
-    assert_eq!(there.overlap(&late, &late.start()).unwrap(), None);
+    assert_eq!(there.deepest_overlap(&late, &late.initial_kinematics()).unwrap(), None);
 }
 
 #[test]

@@ -79,10 +79,10 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
     let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
     assert_eq!(thick.viscosity.step_limit(model.h), model.h * model.h / 4.0);
     let peaks = pontoon::system::StepLimits { acceleration: 1e7, approach_rate: 0.0 };
-    assert_eq!(step_size::water(&peaks, sim.system().properties(), 0.2), 0.2 * (model.h / 1e7).sqrt());
+    assert_eq!(step_size::fluid_step_limit(&peaks, sim.system().properties(), 0.2), 0.2 * (model.h / 1e7).sqrt());
     let peaks = pontoon::system::StepLimits { acceleration: 0.0, approach_rate: 100.0 };
     assert_eq!(
-        step_size::water(&peaks, sim.system().properties(), 0.2),
+        step_size::fluid_step_limit(&peaks, sim.system().properties(), 0.2),
         0.2 * (model.h / (model.c0 + model.h * 100.0))
     );
 }

@@ -1,5 +1,5 @@
 //! That the water makes the waves that were ordered: height, crests and harmonics of regular ones, height and speed of a
-//! solitary one, place and time of a group. Coarse, so that they take seconds; finer runs stand in docs/validation.md,
+//! solitary one, place and time of a group. Coarse, so that they take seconds; finer runs stand in docs/explanation/validation.md,
 //! "Waves by name".
 
 use std::{f64::consts::TAU, path::Path};
@@ -17,7 +17,7 @@ use pontoon::{
 const EVERY: f64 = 0.01;
 
 /// Water `length` (m) long and `depth` (m) deep, at rest, with a solid at its left end that is `driven`, and what is `more` in
-/// the scene. As long as a wave travels the water's own viscosity and h = 2 dp are what docs/waves.md advises.
+/// the scene. As long as a wave travels the water's own viscosity and h = 2 dp are what docs/how-to/waves.md advises.
 fn flume(dp: f64, [length, depth]: [f64; 2], driven: &str, more: &str) -> Simulation<2> {
     let text = format!(
         "dimension = 2\ndp = {dp}\nuntil = 9.0\nframes = \"off\"\nmodel = {{ h_over_dp = 2.0, viscosity = {{ laminar = {{ nu0 = \

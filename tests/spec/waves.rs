@@ -11,7 +11,7 @@ use pontoon::{
     simulation::{Setup, Simulation},
     solid::Dim,
     system::SpongeLayer,
-    wavemaker::Region,
+    wavemaker::TheoryRegion,
 };
 
 use crate::rig;
@@ -160,14 +160,14 @@ fn what_is_told_of_a_wave_is_what_the_books_say() {
     assert!((wave.group_mps - group).abs() < 1e-9);
     // 5 m of water less the half dp to the last particle, there and back.
     assert!((wave.back_s - 2.0 * 4.99 / group).abs() < 1e-3, "{wave:?}");
-    assert!((wave.height_dp - 5.0).abs() < 1e-9 && wave.region == Region::Stokes5 && wave.order == 2);
+    assert!((wave.height_dp - 5.0).abs() < 1e-9 && wave.region == TheoryRegion::Stokes5 && wave.order == 2);
     // S = H (sinh 2kd + 2kd)/2(cosh 2kd − 1), and a tenth of a per cent of the second order's.
     let stroke = 0.1 * ((2.0 * kd).sinh() + 2.0 * kd) / (2.0 * ((2.0 * kd).cosh() - 1.0));
     assert!((wave.stroke_m / stroke - 1.0).abs() < 0.02, "{} against {stroke}", wave.stroke_m);
     assert!((wave.paddle_mps / (0.5 * stroke * TAU / 1.2) - 1.0).abs() < 0.2);
     let lone = self::wave("along = [1.0, 0.0], wave = { solitary = { height = 0.1 } }");
     assert!((lone.celerity_mps - (9.81_f64 * 0.4).sqrt()).abs() < 1e-12 && lone.period_s.is_none());
-    assert_eq!(lone.region, Region::Solitary);
+    assert_eq!(lone.region, TheoryRegion::Solitary);
 }
 
 #[test]

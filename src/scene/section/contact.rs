@@ -94,7 +94,7 @@ impl ContactConfig {
     pub(crate) fn build(&self, solids: &[SolidConfig]) -> Vec<ContactSpec> {
         let touch = self.touch.unwrap_or(true);
         let (friction, restitution) = (self.friction, self.restitution);
-        let spec = |between| ContactSpec { between, touch, friction, restitution };
+        let spec = |between| ContactSpec { between, can_touch: touch, friction, restitution };
         self.pairs(solids).into_iter().map(spec).collect()
     }
 }

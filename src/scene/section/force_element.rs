@@ -14,7 +14,7 @@ use crate::{
         context::{Context, Defaults},
         untagged::{CoordinateUnit, TimeValueConfig, TimeVectorConfig},
     },
-    solid::{End, ForceSpec, Law, RopeSpec, SpringSpec},
+    solid::{ForceSpec, LineEnd, RopeSpec, SpringSpec, TimeFunction},
 };
 
 /// One `[[spring]]`: a spring, or a mooring line if it bears tension only.
@@ -80,7 +80,7 @@ pub enum ForceFrame {
     /// Those of the world.
     World,
     /// Those of the world at the start, turning with the solid.
-    WaterBody,
+    Body,
 }
 
 impl SpringConfig {
@@ -127,7 +127,7 @@ impl SpringConfig {
             ends: ends(solids, &self.between, &self.from, &self.to),
             stiffness: self.stiffness,
             damping: self.damping.unwrap_or_default(),
-            length: self.length,
+            rest_length: self.length,
             tension_only: self.tension_only.unwrap_or_default(),
         }
     }
@@ -151,7 +151,7 @@ impl RopeConfig {
     /// The rope between the points of `solids`.
     pub(crate) fn build<const D: usize>(&self, solids: &[SolidConfig]) -> RopeSpec<D> {
         let ends = ends(solids, &self.between, &self.from, &self.to);
-        RopeSpec { name: self.name.clone(), ends, length: self.length }
+        RopeSpec { name: self.name.clone(), ends, max_length: self.length }
     }
 }
 
@@ -195,7 +195,7 @@ impl ForceConfig {
 
     /// The force on the solid with this number.
     pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, solid: usize) -> Result<ForceSpec<D>> {
-        let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<Law>> {
+        let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<TimeFunction>> {
             values.iter().map(|value| value.0.build(ctx, &format!("{key}.{word}"), CoordinateUnit::Si)).collect()
         };
         Ok(ForceSpec {
@@ -204,7 +204,7 @@ impl ForceConfig {
             at: self.at.as_ref().map(|at| vector(at)),
             force: laws("force", self.force.as_ref().map_or(&[], |values| values.components()))?,
             torque: laws("torque", self.torque.as_ref().map_or(&[], |values| values.components()))?,
-            turns: self.frame == Some(ForceFrame::WaterBody),
+            rotates_with_solid: self.frame == Some(ForceFrame::Body),
         })
     }
 }
@@ -215,7 +215,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The two ends of a line; one without a solid is fixed in the world.
-fn ends<const D: usize>(solids: &[SolidConfig], between: &[String], from: &[f64], to: &[f64]) -> [End<D>; 2] {
+fn ends<const D: usize>(solids: &[SolidConfig], between: &[String], from: &[f64], to: &[f64]) -> [LineEnd<D>; 2] {
     let number = |name: &String| solids.iter().position(|solid| solid.name == *name);
-    [(0, from), (1, to)].map(|(k, at)| End { solid: between.get(k).and_then(number), at: vector(at) })
+    [(0, from), (1, to)].map(|(k, at)| LineEnd { solid: between.get(k).and_then(number), at: vector(at) })
 }

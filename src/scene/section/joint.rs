@@ -275,7 +275,7 @@ impl JointConfig {
         };
         let axis = vector(self.axis.as_ref().or(self.along.as_ref()).map_or(&[], |x| x));
         let mut joint = JointSpec::new(&self.name, kind, between, vector(&self.at), axis);
-        joint.contacts = self.contacts.unwrap_or_default();
+        joint.contacts_enabled = self.contacts.unwrap_or_default();
         let stops = [(&self.limits, 1.0), (&self.limits_deg, 1f64.to_radians())];
         let stop = |mode: Option<&MotionMode>| {
             stops.iter().find_map(|(limits, unit)| match (limits, mode) {
@@ -288,7 +288,7 @@ impl JointConfig {
         };
         joint.limits = stop(None);
         let number = |mode: &MotionMode| Some(FreeMode { mode: mode.index(D)?, limits: stop(Some(mode)) });
-        joint.free = self.free.iter().flatten().filter_map(number).collect();
+        joint.free_modes = self.free.iter().flatten().filter_map(number).collect();
         joint.motor = self.motor.as_ref().map(|motor| motor.build(ctx, &format!("{key}.motor"))).transpose()?;
         Ok(joint)
     }
@@ -358,7 +358,7 @@ impl MotorConfig {
     }
 
     fn build(&self, ctx: &Context, key: &str) -> Result<Motor> {
-        let mut motor = Motor { strongest: self.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
+        let mut motor = Motor { max_force: self.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
         for (word, value) in self.time_values() {
             let unit = match word {
                 "position_deg" => CoordinateUnit::Degrees,

@@ -17,18 +17,18 @@ use crate::{
 const CFL_MAX: f64 = 0.8;
 
 /// Least stiffness μ of the lattice, –: below, still water around a float reached 0.07 to 0.13 √(g depth) within a second,
-/// above at most 0.08 (docs/stability.md).
+/// above at most 0.08 (docs/explanation/stability.md).
 const MIN_LATTICE_STIFFNESS: f64 = -0.07;
 
 /// Least depth of still water over the radius of the kernel, –: at 0.67 the water rises by some per cent of dp, at 0.75 not
-/// at all (docs/stability.md).
+/// at all (docs/explanation/stability.md).
 const MIN_DEPTH_RATIO: f64 = 0.75;
 
 /// The chosen laws.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ModelConfig {
-    /// KernelKind.
+    /// Kernel.
     pub kernel: Option<KernelKind>,
     /// Smoothing length over particle spacing, –.
     pub h_over_dp: Option<f64>,
@@ -62,7 +62,7 @@ pub struct ModelConfig {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TimeSteppingConfig {
-    /// TimeScheme.
+    /// Scheme.
     pub scheme: Option<TimeScheme>,
     /// Courant number, –.
     pub cfl: Option<f64>,

@@ -10,7 +10,7 @@ use crate::{
         context::{Context, Defaults, quoted_list},
         untagged::{CoordinateUnit, TimeFunctionConfig},
     },
-    solid::Motion,
+    solid::PrescribedMotion,
 };
 
 /// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`; either with a `wave` instead; or `motions`.
@@ -144,14 +144,14 @@ impl DrivenConfig {
     }
 
     /// The motion, if it makes no wave.
-    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<Motion<D>> {
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<PrescribedMotion<D>> {
         if let Some(motions) = &self.motions {
             let made = motions.iter().enumerate().map(|(i, motion)| motion.build(ctx, &format!("{key}.motions.{i}")));
-            return Ok(Motion::chain(made.collect::<Result<Vec<_>>>()?));
+            return Ok(PrescribedMotion::chain(made.collect::<Result<Vec<_>>>()?));
         }
         let unit = |x: &[f64]| vector::<D>(x).normalize();
         if let (Some(along), Some(distance)) = (&self.along, &self.distance) {
-            return Ok(Motion::slide(
+            return Ok(PrescribedMotion::slide(
                 unit(along),
                 distance.build(ctx, &format!("{key}.distance"), CoordinateUnit::Si)?,
             ));
@@ -163,6 +163,6 @@ impl DrivenConfig {
             (None, Some(law)) => law.build(ctx, &format!("{key}.angle_deg"), CoordinateUnit::Degrees)?,
             (None, None) => return Err(ctx.error_at(key, "this does not say one motion")),
         };
-        Ok(Motion::hinge(centre, &axis, law))
+        Ok(PrescribedMotion::hinge(centre, &axis, law))
     }
 }

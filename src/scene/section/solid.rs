@@ -266,7 +266,7 @@ impl SolidConfig {
             restitution: self.restitution.unwrap_or_default(),
             contact_skin: self.contact_skin.unwrap_or_default(),
         };
-        let blamed = if spec.skin_fits() { key.to_string() } else { format!("{key}.contact_skin") };
+        let blamed = if spec.has_valid_contact_skin() { key.to_string() } else { format!("{key}.contact_skin") };
         spec.check().map_err(|e| ctx.with_location(e, &blamed))?;
         verify_weight(ctx, key, &spec)?;
         verify_thickness(ctx, key, &spec)?;

@@ -11,7 +11,7 @@ use serde::{
 use crate::{
     error::Result,
     scene::context::{Context, Defaults, quoted_list, set_keys},
-    wavemaker::{COMPONENTS, Theory},
+    wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
 };
 
 /// A wave by name: exactly one kind; none of a paddle that only absorbs.
@@ -97,7 +97,7 @@ pub struct SolitaryWaveConfig {
     /// Of its crest over the still level, m.
     pub height: f64,
     /// Theory of the paddle.
-    pub theory: Option<Theory>,
+    pub theory: Option<SolitaryTheory>,
 }
 
 /// A table of components.
@@ -246,15 +246,15 @@ impl WaveConfig {
                 defaults.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
             }
             defaults.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
-            defaults.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS, many);
+            defaults.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(words) = &mut self.focused {
             defaults.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
-            defaults.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS, many);
+            defaults.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(words) = &mut self.solitary {
             let why = "its wave keeps its height better than Boussinesq's";
-            defaults.fill(format!("{key}.solitary.theory"), &mut words.theory, Theory::Rayleigh, why);
+            defaults.fill(format!("{key}.solitary.theory"), &mut words.theory, SolitaryTheory::Rayleigh, why);
         }
         if let Some(words) = &mut self.elevation {
             let key = format!("{key}.elevation");

@@ -15,8 +15,8 @@ use crate::{
     geometry::Shape,
     math::{Bivector, Bounds, Pose, Vector, time_series::TimeSeries},
     scene::{context::Context, table},
-    solid::{Law, Motion},
-    wavemaker::{Absorber, Component, Paddle, Spectrum, Tuning, Wave, Wavemaker},
+    solid::{PrescribedMotion, TimeFunction},
+    wavemaker::{Absorber, AbsorptionSettings, Paddle, PaddleMotion, WaveComponent, WaveSpectrum, Wavemaker},
 };
 
 /// Distance of the absorption gauge from the face of the paddle, in smoothing lengths: the radius of the kernel.
@@ -53,7 +53,7 @@ pub(super) fn build<const D: usize>(
     wave: &WaveConfig,
     (shape, pose): (&Shape<D>, &Pose<D>),
     pool: &StillWater<D>,
-) -> Result<Motion<D>> {
+) -> Result<PrescribedMotion<D>> {
     let own = world_bounds(shape, pose);
     let depth = wave.depth.unwrap_or(pool.still.depth);
     let g = ctx.gravity.and_then(|g| g.last()).map_or(0.0, |g| -g);
@@ -72,7 +72,7 @@ fn piston_motion<const D: usize>(
     along: Vector<D>,
     maker: &Wavemaker,
     (own, pool): (&Bounds<D>, &StillWater<D>),
-) -> Result<Motion<D>> {
+) -> Result<PrescribedMotion<D>> {
     let refuse = |what: &str, help: &str| Err(ctx.error_with_help(&format!("{key}.along"), what, help));
     if along[D - 1].abs() > 1e-6 {
         return refuse("a piston that makes waves slides level", "write  along = [1.0, 0.0]");
@@ -90,7 +90,7 @@ fn piston_motion<const D: usize>(
         return Err(ctx.error_with_help(&key, what, help));
     }
     let site = AbsorberSite::of(own, along, pool.still.level);
-    with_absorption(ctx, &key, wave, maker, &site, Motion::slide(along, Law::Wave(Box::new(law))))
+    with_absorption(ctx, &key, wave, maker, &site, PrescribedMotion::slide(along, TimeFunction::Wave(Box::new(law))))
 }
 
 /// The motion of a flap; `own` is the box around it.
@@ -101,7 +101,7 @@ fn flap_motion<const D: usize>(
     wave: &WaveConfig,
     maker: &Wavemaker,
     (own, pool): (&Bounds<D>, &StillWater<D>),
-) -> Result<Motion<D>> {
+) -> Result<PrescribedMotion<D>> {
     let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
     let arm = pool.still.level - hinge[D - 1];
     if arm <= 0.0 {
@@ -124,7 +124,14 @@ fn flap_motion<const D: usize>(
     let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
     let law = wave_from_config(ctx, &key, wave, &maker)?;
     let site = AbsorberSite::of(own, way.normalize() * sense, pool.still.level);
-    with_absorption(ctx, &key, wave, &maker, &site, Motion::hinge(hinge, &axis, Law::Wave(Box::new(law))))
+    with_absorption(
+        ctx,
+        &key,
+        wave,
+        &maker,
+        &site,
+        PrescribedMotion::hinge(hinge, &axis, TimeFunction::Wave(Box::new(law))),
+    )
 }
 
 /// The `motion` of a paddle, with its absorption if it has one.
@@ -134,8 +141,8 @@ fn with_absorption<const D: usize>(
     words: &WaveConfig,
     maker: &Wavemaker,
     site: &AbsorberSite<D>,
-    motion: Motion<D>,
-) -> Result<Motion<D>> {
+    motion: PrescribedMotion<D>,
+) -> Result<PrescribedMotion<D>> {
     match words.absorb.and_then(AbsorbChoice::settings) {
         Some(words) => absorbing(ctx, &format!("{key}.absorb"), &words, maker, site, motion),
         None => Ok(motion),
@@ -149,26 +156,32 @@ fn absorbing<const D: usize>(
     words: &AbsorptionConfig,
     maker: &Wavemaker,
     site: &AbsorberSite<D>,
-    motion: Motion<D>,
-) -> Result<Motion<D>> {
+    motion: PrescribedMotion<D>,
+) -> Result<PrescribedMotion<D>> {
     let Some(wave) = motion.wave() else { return Ok(motion) };
     let AbsorptionConfig { period, stroke, speed } = *words;
-    let tuning = Tuning { period, gauge: GAUGE_DISTANCE * ctx.h, level: site.level, stroke, speed };
+    let tuning = AbsorptionSettings {
+        period,
+        gauge_distance: GAUGE_DISTANCE * ctx.h,
+        water_level: site.level,
+        max_stroke: stroke,
+        max_speed: speed,
+    };
     let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| ctx.with_location(e, key))?;
-    let gauge: Vector<D> = site.face + site.way * absorber.gauge();
-    Ok(motion.absorbing(absorber, gauge, site.way))
+    let gauge: Vector<D> = site.face + site.way * absorber.gauge_distance();
+    Ok(motion.with_absorber(absorber, gauge, site.way))
 }
 
 /// The still paddle's own wave: none, before those that it absorbs.
-fn zero_wave(ctx: &Context, key: &str, words: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<Wave> {
+fn zero_wave(ctx: &Context, key: &str, words: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<PaddleMotion> {
     match words.and_then(|words| words.period) {
-        Some(period) => maker.silent(period).map_err(|e| ctx.with_location(e, key)),
+        Some(period) => maker.at_rest(period).map_err(|e| ctx.with_location(e, key)),
         None => Err(ctx.error_at(key, "which wave?")),
     }
 }
 
 /// The wave that a paddle is to make.
-fn wave_from_config(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> Result<Wave> {
+fn wave_from_config(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> Result<PaddleMotion> {
     let place = |word: &str| {
         let key = format!("{key}.{word}");
         move |e: Error| ctx.with_location(e, &key)
@@ -180,19 +193,19 @@ fn wave_from_config(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavema
             maker.regular(words.height, words.period, phase, order).map_err(place("regular.height"))?
         }
         WaveConfig { jonswap: Some(config), .. } => {
-            let spectrum = Spectrum::jonswap(config.peak_period.unwrap_or_default(), gamma(config.gamma));
+            let spectrum = WaveSpectrum::jonswap(config.peak_period.unwrap_or_default(), gamma(config.gamma));
             irregular_wave(config, &spectrum, maker).map_err(place("jonswap.height"))?
         }
         WaveConfig { bretschneider: Some(config), .. } => {
-            let spectrum = Spectrum::bretschneider(config.peak_period.unwrap_or_default());
+            let spectrum = WaveSpectrum::bretschneider(config.peak_period.unwrap_or_default());
             irregular_wave(config, &spectrum, maker).map_err(place("bretschneider.height"))?
         }
         WaveConfig { pierson_moskowitz: Some(config), .. } => {
-            let spectrum = Spectrum::pierson_moskowitz(config.height, maker.g);
+            let spectrum = WaveSpectrum::pierson_moskowitz(config.height, maker.g);
             irregular_wave(config, &spectrum, maker).map_err(place("pierson_moskowitz.height"))?
         }
         WaveConfig { focused: Some(words), .. } => {
-            let spectrum = Spectrum::jonswap(words.peak_period, gamma(words.gamma));
+            let spectrum = WaveSpectrum::jonswap(words.peak_period, gamma(words.gamma));
             let count = words.components.unwrap_or_default();
             let made = maker.focused(words.crest, &spectrum, words.distance, words.time, count);
             made.map_err(place("focused.crest"))?
@@ -208,18 +221,18 @@ fn wave_from_config(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavema
         WaveConfig { elevation: Some(words), .. } => {
             let series = read_elevation(ctx, words).map_err(place("elevation.column"))?;
             let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
-            maker.recorded(&series, distance, delay).map_err(place("elevation"))?
+            maker.measured(&series, distance, delay).map_err(place("elevation"))?
         }
         _ => zero_wave(ctx, key, words.absorb.and_then(AbsorbChoice::settings), maker)?,
     };
     Ok(match words.ramp {
-        Some(ramp) => wave.ramp(ramp),
+        Some(ramp) => wave.with_ramp(ramp),
         None => wave,
     })
 }
 
 /// The components of a table.
-fn read_components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<Component>> {
+fn read_components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
     let path = table::path_beside(ctx.folder(), &words.file)?;
     let names = table::read_header(&path)?;
     let either = |one: &'static str, other: &'static str| {
@@ -240,7 +253,7 @@ fn read_components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<Co
         }
         let omega = if is_period { TAU / x } else { TAU * x };
         let phase = if in_degrees { phase.to_radians() } else { phase };
-        Ok(Component { amplitude: columns[0][i], omega, phase })
+        Ok(WaveComponent { amplitude: columns[0][i], omega, phase })
     };
     (0..columns[0].len()).map(component).collect()
 }
@@ -254,6 +267,6 @@ fn read_elevation(ctx: &Context, words: &MeasuredElevationConfig) -> Result<Time
 }
 
 /// An irregular sea of this spectrum.
-fn irregular_wave(words: &IrregularWaveConfig, spectrum: &Spectrum, maker: &Wavemaker) -> Result<Wave> {
-    maker.sea(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
+fn irregular_wave(words: &IrregularWaveConfig, spectrum: &WaveSpectrum, maker: &Wavemaker) -> Result<PaddleMotion> {
+    maker.irregular(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
 }

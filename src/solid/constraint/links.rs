@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{
-    joint::{JointKind, JointSpec, modes},
-    lines::{End, RopeSpec, SpringSpec, start_length},
+    joint::{JointKind, JointSpec, mode_count},
+    lines::{LineEnd, RopeSpec, SpringSpec, start_length},
 };
 use crate::{
     error::{Error, Result},
@@ -23,23 +23,23 @@ pub struct Constraints<const D: usize> {
     /// Forces and torques after a law of time.
     pub forces: Vec<ForceSpec<D>>,
     /// Free solids that are held still at first.
-    pub holds: Vec<Hold>,
+    pub holds: Vec<InitialHold>,
     /// Pairs of solids that touch otherwise than their own friction and restitution say, or not at all.
-    pub contacts: Contacts,
+    pub contacts: ContactPairs,
 }
 
 /// A free solid that is held still, whatever pushes it, until it is let go.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
+pub struct InitialHold {
     /// Number of the solid.
     pub solid: usize,
     /// When it is let go, s.
     pub until: f64,
 }
 
-impl Hold {
+impl InitialHold {
     /// Whether it still holds at time `t` (s); a few last bits too early count as let go.
-    pub(in crate::solid) fn holds(&self, t: f64) -> bool {
+    pub(in crate::solid) fn is_active(&self, t: f64) -> bool {
         t < self.until * (1.0 - 1e-12)
     }
 }
@@ -50,7 +50,7 @@ pub struct ContactSpec {
     /// Numbers of the two.
     pub between: [usize; 2],
     /// Whether they touch at all, or pass through one another.
-    pub touch: bool,
+    pub can_touch: bool,
     /// Coulomb friction coefficient, –; by default the mean of both solids'.
     pub friction: Option<f64>,
     /// Restitution coefficient, –; by default the mean of both solids'.
@@ -59,9 +59,9 @@ pub struct ContactSpec {
 
 /// Contacts of pairs, found by the numbers of both in either order; of several of the same pair the last counts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Contacts(BTreeMap<[usize; 2], ContactSpec>);
+pub struct ContactPairs(BTreeMap<[usize; 2], ContactSpec>);
 
-impl Contacts {
+impl ContactPairs {
     /// How many pairs there are.
     pub fn len(&self) -> usize {
         self.0.len()
@@ -78,7 +78,7 @@ impl Contacts {
     }
 }
 
-impl Extend<ContactSpec> for Contacts {
+impl Extend<ContactSpec> for ContactPairs {
     fn extend<T: IntoIterator<Item = ContactSpec>>(&mut self, specs: T) {
         let keyed = |spec: ContactSpec| {
             let [a, b] = spec.between;
@@ -88,7 +88,7 @@ impl Extend<ContactSpec> for Contacts {
     }
 }
 
-impl FromIterator<ContactSpec> for Contacts {
+impl FromIterator<ContactSpec> for ContactPairs {
     fn from_iter<T: IntoIterator<Item = ContactSpec>>(specs: T) -> Self {
         let mut contacts = Self::default();
         contacts.extend(specs);
@@ -108,15 +108,15 @@ impl<const D: usize> Constraints<D> {
     }
 
     /// Whether solids `a` and `b` may touch: not if a joint holds them without contacts, or a pair is told not to.
-    pub fn touch(&self, a: usize, b: usize) -> bool {
-        let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts;
-        self.contacts.find(a, b).is_none_or(|pair| pair.touch) && !self.joints.iter().any(jointed)
+    pub fn can_touch(&self, a: usize, b: usize) -> bool {
+        let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts_enabled;
+        self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }
 
     /// The name of a tie of solid number `solid`, if it has one.
-    pub(crate) fn of(&self, solid: usize) -> Option<String> {
+    pub(crate) fn constraint_on(&self, solid: usize) -> Option<String> {
         let joints = self.joints.iter().map(|joint| (&joint.name, joint.between));
-        let ends = |ends: &[End<D>; 2]| ends.map(|end| end.solid);
+        let ends = |ends: &[LineEnd<D>; 2]| ends.map(|end| end.solid);
         let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends)));
         let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends)));
         let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None]));
@@ -162,17 +162,18 @@ impl<const D: usize> Constraints<D> {
         if D == 2 && joint.kind == JointKind::Ball {
             return refuse("is a ball joint, and a plane has none", "in 2-D a hinge turns freely about its point");
         }
-        if joint.own().is_none() && (joint.limits.is_some() || joint.motor.is_some()) {
+        if joint.coordinate_mode().is_none() && (joint.limits.is_some() || joint.motor.is_some()) {
             return refuse("has no coordinate to limit or to drive", "only a hinge or a slider has limits and a motor");
         }
         let generic = joint.kind == JointKind::Generic;
-        let known =
-            |mode: usize| mode < modes::<D>() && joint.free.iter().filter(|free| free.mode == mode).count() == 1;
-        if generic == joint.free.is_empty() || !joint.free.iter().all(|free| known(free.mode)) {
+        let known = |mode: usize| {
+            mode < mode_count::<D>() && joint.free_modes.iter().filter(|free| free.mode == mode).count() == 1
+        };
+        if generic == joint.free_modes.is_empty() || !joint.free_modes.iter().all(|free| known(free.mode)) {
             let help = "a generic joint leaves some modes free, each named once; no other joint has a list of them";
             return refuse("has modes that cannot be left free", help);
         }
-        if let Some((_, [min, max])) = joint.stops().into_iter().find(|(mode, stop)| !reaches(stop, *mode >= D)) {
+        if let Some((_, [min, max])) = joint.end_stops().into_iter().find(|(mode, stop)| !reaches(stop, *mode >= D)) {
             let help = "from 0 or less to 0 or more: 0 is where it starts; a turn less than a whole one";
             return refuse(&format!("has limits {min} to {max}"), help);
         }
@@ -199,7 +200,7 @@ pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<
     let who = format!("spring \"{}\"", spring.name);
     check_line(&who, &spring.ends, solids)?;
     let numbers = [("stiffness", spring.stiffness, 0.0), ("damping", spring.damping, 0.0)];
-    for (word, x, least) in numbers.into_iter().chain(spring.length.map(|l| ("length", l, 0.0))) {
+    for (word, x, least) in numbers.into_iter().chain(spring.rest_length.map(|l| ("length", l, 0.0))) {
         if !(x >= least && x.is_finite()) {
             return Err(Error::scene(format!("{who} has a {word} of {x}")).help(format!("its {word} is 0 or more")));
         }
@@ -219,7 +220,7 @@ pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -
     let who = format!("rope \"{}\"", rope.name);
     check_line(&who, &rope.ends, solids)?;
     let start = start_length(&rope.ends);
-    let length = rope.length.unwrap_or(start);
+    let length = rope.max_length.unwrap_or(start);
     if !(length > 0.0 && length.is_finite()) {
         return Err(Error::scene(format!("{who} is {length} m long")).help("give it a length above 0, m"));
     }
@@ -238,14 +239,14 @@ pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -
 pub fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("force \"{}\"", force.name);
     check_ends(&who, [Some(force.solid), None], solids)?;
-    let finite = |laws: &[crate::solid::Law]| laws.iter().all(|law| law.at(0.0).0.is_finite());
+    let finite = |laws: &[crate::solid::TimeFunction]| laws.iter().all(|law| law.value_and_rate(0.0).0.is_finite());
     if !finite(&force.force) || !finite(&force.torque) {
         return Err(Error::scene(format!("{who} is not finite at t = 0")).help("check its formula or table"));
     }
     Ok(())
 }
 
-fn check_hold<const D: usize>(hold: &Hold, solids: &[SolidSpec<D>]) -> Result<()> {
+fn check_hold<const D: usize>(hold: &InitialHold, solids: &[SolidSpec<D>]) -> Result<()> {
     check_ends("a hold", [Some(hold.solid), None], solids)?;
     let still = |body: &crate::solid::FreeBody<D>| body.velocity.norm() == 0.0 && body.spin.0.norm() == 0.0;
     let fine = matches!(&solids[hold.solid].role, Role::Free(body) if still(body));
@@ -271,7 +272,7 @@ fn check_contact<const D: usize>(pair: &ContactSpec, solids: &[SolidSpec<D>]) ->
     Ok(())
 }
 
-fn check_line<const D: usize>(who: &str, ends: &[End<D>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
+fn check_line<const D: usize>(who: &str, ends: &[LineEnd<D>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
     check_ends(who, ends.map(|end| end.solid), solids)?;
     match ends.iter().all(|end| end.at.norm().is_finite()) {
         true => Ok(()),

@@ -17,7 +17,7 @@ const SWEEPS: usize = 200;
 pub(in crate::solid) struct Reaction<const D: usize> {
     /// Their numbers; `None` is the world.
     pub(in crate::solid) between: [Option<usize>; 2],
-    pub(in crate::solid) row: ConstraintJacobian<D>,
+    pub(in crate::solid) jacobian: ConstraintJacobian<D>,
     pub(in crate::solid) mobility: [Mobility<D>; 2],
     /// On the second, along the row, N or N m.
     pub(in crate::solid) force: f64,
@@ -26,7 +26,7 @@ pub(in crate::solid) struct Reaction<const D: usize> {
 impl<const D: usize> Reaction<D> {
     /// The loads of it on both.
     pub(in crate::solid) fn loads(&self) -> [Load<D>; 2] {
-        self.row.loads(self.force)
+        self.jacobian.loads(self.force)
     }
 
     /// Takes `loads` from what is `left` of both.
@@ -44,10 +44,15 @@ impl<const D: usize> Reaction<D> {
             let load = self.between[k].map_or_else(Load::zero, |solid| left[solid]);
             let mobility = &self.mobility[k];
             let velocity = mobility.linear.component_mul(&load.force);
-            Kinematics { pose: Pose::identity(), centre: Vector::zeros(), velocity, spin: mobility.spin(&load.torque) }
+            Kinematics {
+                pose: Pose::identity(),
+                centre: Vector::zeros(),
+                velocity,
+                spin: mobility.spin_change(&load.torque),
+            }
         });
-        let ease = self.row.with(&self.row, &self.mobility);
-        if ease > 0.0 { self.row.rate(&ends) / ease } else { 0.0 }
+        let ease = self.jacobian.inverse_effective_mass(&self.jacobian, &self.mobility);
+        if ease > 0.0 { self.jacobian.rate(&ends) / ease } else { 0.0 }
     }
 }
 
@@ -60,7 +65,7 @@ pub(in crate::solid) fn project<const D: usize>(pulls: &mut [Reaction<D>], told:
         for pull in pulls.iter_mut() {
             let more = pull.lacks(&left);
             pull.force += more;
-            pull.take(pull.row.loads(more), &mut left);
+            pull.take(pull.jacobian.loads(more), &mut left);
             (change, largest) = (change.max(more.abs()), largest.max(pull.force.abs()));
         }
         if change <= 1e-14 * largest {
@@ -91,9 +96,9 @@ mod tests {
         };
         let (a, b, ground) = (mobility(2.0, 0.1), mobility(3.0, 0.2), Mobility::none());
         let row = |n: [f64; 2], at: [f64; 2], ends: [f64; 2]| {
-            ConstraintJacobian::along(Vector::from(n), &Vector::from(at), &ends.map(body))
+            ConstraintJacobian::at_point(Vector::from(n), &Vector::from(at), &ends.map(body))
         };
-        let pull = |between, row, mobility, force| Reaction { between, row, mobility, force };
+        let pull = |between, row, mobility, force| Reaction { between, jacobian: row, mobility, force };
         let mut pulls = [
             pull([Some(0), Some(1)], row([0.8, 0.6], [0.3, 0.1], [0.0, 1.0]), [a, b], 40.0),
             pull([Some(1), None], row([0.0, 1.0], [1.1, 0.0], [1.0, 0.0]), [b, ground], -7.0),

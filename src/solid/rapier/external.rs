@@ -21,7 +21,7 @@ use crate::{
 /// # Errors
 /// `Scene` if there is no such body, it has no collider, one with a shape that water cannot feel (a half-space, a height field, a cone,
 /// a round shape: make the solid's shape by hand then), it is kinematic, or has no mass yet.
-pub fn solid(
+pub fn solid_from_body(
     name: impl Into<String>,
     body: RigidBodyHandle,
     bodies: &RigidBodySet,
@@ -130,7 +130,7 @@ fn shape(geometry: &dyn Geometry) -> Result<Shape<D>> {
 }
 
 /// The error of a shape that water cannot feel.
-pub(super) fn unfelt(what: &TypedShape) -> Error {
+pub(super) fn unsupported_shape(what: &TypedShape) -> Error {
     let name = format!("{what:?}");
     let name = name.split(['(', ' ']).next().unwrap_or_default();
     Error::scene(format!("a collider of the kind {name} has no shape that the water can feel"))

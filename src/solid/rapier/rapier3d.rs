@@ -25,8 +25,8 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::{apply_load, kinematics, set_kinematic, solid};
-pub(super) use world::World;
+pub use external::{apply_load, kinematics, set_kinematic, solid_from_body};
+pub(super) use world::RapierWorld;
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -260,7 +260,7 @@ fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
             let (points, facets) = hull.to_trimesh();
             mesh(&points, &facets)
         }
-        other => Err(external::unfelt(other)),
+        other => Err(external::unsupported_shape(other)),
     }
 }
 

@@ -127,7 +127,7 @@ impl CaseRun {
         }
         self.water = sim.system().fluid().len();
         let mut measure = Measurements::new(case, &sim, level)?;
-        let (mut spent, mut passes) = (0.0, sim.passes());
+        let (mut spent, mut passes) = (0.0, sim.force_passes());
         let end = loop {
             if sim.time() >= case.scene.until {
                 break Ok(CaseEnd::Reached);
@@ -140,8 +140,9 @@ impl CaseRun {
                 break Err(error);
             }
             measure.step(&sim, sim.time() - before)?;
-            spent += ((sim.passes() - passes) as f64) * (self.water + sim.system().boundary_near_fluid_count()) as f64;
-            passes = sim.passes();
+            spent +=
+                ((sim.force_passes() - passes) as f64) * (self.water + sim.system().boundary_near_fluid_count()) as f64;
+            passes = sim.force_passes();
         };
         (self.time_s, self.steps) = (sim.time(), sim.steps());
         self.figures = measure.figures();

@@ -5,7 +5,9 @@ use std::sync::Arc;
 #[path = "contact.rs"]
 mod contact;
 
-use super::{Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Law, Load, Motion, Role, SolidSpec};
+use super::{
+    Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Load, PrescribedMotion, Role, SolidSpec, TimeFunction,
+};
 use crate::{
     error::{ErrorKind, Result},
     geometry::{ContactGeometry, Mesh, Shape},
@@ -60,7 +62,7 @@ fn engine<const D: usize>(solids: &[SolidSpec<D>], gravity: Vector<D>) -> Result
 where
     Dim<D>: HasEngine<D>,
 {
-    let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+    let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
     Dim::<D>::engine(solids, &start, &Constraints::default(), &gravity, 0.01)
 }
 
@@ -147,7 +149,7 @@ where
 {
     rests_on(floor::<D>());
     // A driven floor that stands is no other floor.
-    let stands = Motion::slide(at_height(1.0).into(), Law::constant(0.0));
+    let stands = PrescribedMotion::slide(at_height(1.0).into(), TimeFunction::constant(0.0));
     rests_on(SolidSpec { role: Role::Driven(stands), ..floor::<D>() });
 }
 
@@ -155,7 +157,7 @@ fn rests_on<const D: usize>(floor: SolidSpec<D>)
 where
     Dim<D>: HasEngine<D>,
 {
-    let driven = matches!(floor.role, Role::Driven(_)).then(|| floor.start());
+    let driven = matches!(floor.role, Role::Driven(_)).then(|| floor.initial_kinematics());
     let solids = [floor, solid("box", cube(0.1), at_height(0.05), Role::Free(light()))];
     let mut engine = engine(&solids, down()).unwrap();
     for _ in 0..5000 {
@@ -166,7 +168,7 @@ where
     assert!((0.0..50e-6).contains(&sink), "sinks {sink} m");
     let contacts = engine.contacts();
     assert_eq!((contacts.len(), contacts[0].between), (1, [0, 1]));
-    assert!((contacts[0].pressing / (2.0 * G) - 1.0).abs() < 1e-3, "{contacts:?}");
+    assert!((contacts[0].normal_force / (2.0 * G) - 1.0).abs() < 1e-3, "{contacts:?}");
     // Between the faces in the middle of the box, within what it sinks and creeps; the floor's centre is half a metre below.
     assert!(contacts[0].at.norm() < 1e-3, "{contacts:?}");
     // So the floor, whose centre is straight below, feels the weight and no moment.
@@ -184,7 +186,8 @@ fn a_box_at_rest_weighs_on_the_floor() {
 
 #[test]
 fn a_paddle_pushes_what_it_meets() {
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.5*t").unwrap()));
+    let motion =
+        PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse("0.5*t").unwrap()));
     let paddle = solid("paddle", cube(0.1), [-0.101, 0.0], Role::Driven(motion.clone()));
     let solids = [paddle, solid("box", cube(0.1), [0.0, 0.0], Role::Free(light()))];
     let mut engine = engine(&solids, Vector::zeros()).unwrap();
@@ -222,7 +225,7 @@ where
     let unbroken: Vec<_> = (1..3).map(|i| engine.kinematics(i)).collect();
     let contacts = engine.contacts();
     assert!(contacts.len() == 2, "both contacts last: {contacts:?}");
-    let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+    let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
     let mut other = Dim::<D>::engine(&solids, &start, &Constraints::default(), &down(), 0.01).unwrap();
     other.restore(&saved).unwrap();
     run(&mut *other, 400);
