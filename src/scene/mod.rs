@@ -1,6 +1,6 @@
 //! Scenes: reading, checking, filling in the defaults, building.
 //!
-//! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` words the errors of
+//! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` explains the errors of
 //! the parser. A file of `section` holds a section of the scene: configuration, validation, defaults, construction. `resolve`
 //! and `build` put the sections together.
 //!
@@ -90,7 +90,7 @@ pub use untagged::{
 const MOST_TEXT: u64 = 1 << 20;
 
 /// A scene, as `scene.toml` describes it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Caption.
@@ -162,33 +162,7 @@ pub struct Scene {
 impl Scene {
     /// A scene of `dimension` 2 or 3, particle spacing `dp` (m), that ends at `until` (s).
     pub fn new(dimension: usize, dp: f64, until: f64) -> Self {
-        Self {
-            title: None,
-            dimension,
-            dp,
-            until,
-            gravity: None,
-            jitter: None,
-            domain: None,
-            periodic: None,
-            guard: None,
-            water: Vec::new(),
-            damping: Vec::new(),
-            solid: Vec::new(),
-            joint: Vec::new(),
-            spring: Vec::new(),
-            rope: Vec::new(),
-            force: Vec::new(),
-            contact: Vec::new(),
-            model: ModelConfig::default(),
-            time: TimeSteppingConfig::default(),
-            probe: Vec::new(),
-            frames: None,
-            checkpoint: None,
-            check: Vec::new(),
-            statistic: Vec::new(),
-            origin: SceneSource::default(),
-        }
+        Self { dimension, dp, until, ..Self::default() }
     }
 
     /// The same scene with a caption.

@@ -1,7 +1,7 @@
-//! The words of a scene as a JSON schema, for editors: made from the types that read them, so that it cannot drift.
+//! The keys of a scene as a JSON schema, for editors, generated from the types that read them.
 //!
 //! Where exactly one key of several is to be said (`fixed`, `driven`, `free` of a solid), it says so, and where only `true` can
-//! be meant (`fixed`). It is coarser than the program where words depend on one another otherwise (as many numbers as dimensions).
+//! be meant (`fixed`). It is coarser than the program where keys depend on one another otherwise (as many numbers as dimensions).
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
@@ -21,10 +21,10 @@ const CHOICES: [&str; 9] = [
     "TimeScheme",
 ];
 
-/// A type, and which of its keys are those of which exactly one is said.
+/// A type, and which of its keys are alternatives, of which exactly one is given.
 type Kinds = (&'static str, fn(&str) -> bool);
 
-/// What a solid, a body's weight, a water's room, a probe and a statistic are.
+/// The alternatives of a solid, of the mass of a body, of the region of water, of a probe and of a statistic.
 const KINDS: [Kinds; 5] = [
     ("SolidConfig", |key| matches!(key, "fixed" | "driven" | "free")),
     ("FreeBodyConfig", |key| matches!(key, "density" | "mass")),

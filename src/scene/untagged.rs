@@ -377,7 +377,7 @@ impl Serialize for TimeValueConfig {
         match (self.number(), &self.0) {
             (Some(x), _) => serializer.serialize_f64(x),
             (None, TimeFunctionConfig { formula: Some(text), .. }) => serializer.serialize_str(text),
-            (None, words) => words.serialize(serializer),
+            (None, config) => config.serialize(serializer),
         }
     }
 }
@@ -443,8 +443,8 @@ impl<'de> Deserialize<'de> for TimeVectorConfig {
                 write!(f, "a number, a formula such as \"20*sin(2*pi*t)\", or a table with `file` and `column`")
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<TimeVectorConfig, E> {
-                let words = TimeValueConfig::formula(text);
-                Ok(TimeVectorConfig(TimeVectorForm::One(words.number().map_or(words, TimeValueConfig::from))))
+                let config = TimeValueConfig::formula(text);
+                Ok(TimeVectorConfig(TimeVectorForm::One(config.number().map_or(config, TimeValueConfig::from))))
             }
             fn visit_f64<E: de::Error>(self, x: f64) -> Result<TimeVectorConfig, E> {
                 Ok(TimeVectorConfig(TimeVectorForm::One(x.into())))
@@ -453,8 +453,8 @@ impl<'de> Deserialize<'de> for TimeVectorConfig {
                 Ok(TimeVectorConfig(TimeVectorForm::One((x as f64).into())))
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<TimeVectorConfig, A::Error> {
-                let words = TimeFunctionConfig::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(TimeVectorConfig(TimeVectorForm::One(TimeValueConfig(words))))
+                let config = TimeFunctionConfig::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(TimeVectorConfig(TimeVectorForm::One(TimeValueConfig(config))))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<TimeVectorConfig, A::Error> {
                 let mut many = Vec::new();

@@ -325,10 +325,10 @@ impl StatisticConfig {
             StatisticConfig { waves: Some(word), .. } => {
                 Ok(StatisticKind::Waves { series: plain(series.find(ctx, &format!("{key}.waves"), word)?) })
             }
-            StatisticConfig { reflection: Some(words), .. } => {
+            StatisticConfig { reflection: Some(config), .. } => {
                 let key = format!("{key}.reflection");
                 let mut gauges = Vec::new();
-                for word in words {
+                for word in config {
                     gauges.extend(series.find(ctx, &key, word)?);
                 }
                 Ok(StatisticKind::Reflection { gauges: gauge_positions(ctx, &key, gauges)?, depth, g, period })

@@ -197,8 +197,8 @@ impl ModelConfig {
         }
         let key = self.smoothing_key();
         let what = format!(
-            "with this kernel at h = {h:.2} dp still water does not stay still: the lattice on which it starts gives way in shear \
-             (its stiffness over its pressure is {stiffness:.3}, and {MIN_LATTICE_STIFFNESS} the least)"
+            "h = {h:.2} dp is unstable with this kernel: the initial particle lattice has a shear instability, and still water does \
+             not stay still (its stiffness over its pressure is {stiffness:.3}, and {MIN_LATTICE_STIFFNESS} the least)"
         );
         Err(ctx.error_with_help(key, what, "write  h_over_dp = 1.7  and  kernel = \"wendland\""))
     }

@@ -56,7 +56,7 @@ impl Serialize for FramesChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Off => serializer.serialize_str("off"),
-            Self::On(words) => words.serialize(serializer),
+            Self::On(config) => config.serialize(serializer),
         }
     }
 }
@@ -97,20 +97,20 @@ impl FramesChoice {
 
     /// Fills in the defaults of a run with so many `water_particles`.
     pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, water_particles: f64) {
-        let Self::On(words) = self else { return };
-        let (count, why) = words.default_count(water_particles);
-        defaults.fill("frames.every", &mut words.every, ctx.until / count, why);
+        let Self::On(config) = self else { return };
+        let (count, why) = config.default_count(water_particles);
+        defaults.fill("frames.every", &mut config.every, ctx.until / count, why);
         let fields = FIELDS.map(String::from).to_vec();
-        defaults.fill("frames.fields", &mut words.fields, fields, "all that there are");
+        defaults.fill("frames.fields", &mut config.fields, fields, "all that there are");
     }
 
     /// The frames of the run; `None` if it writes none.
     pub(crate) fn build(&self, ctx: &Context) -> Option<FramesPlan> {
-        let Self::On(words) = self else { return None };
+        let Self::On(config) = self else { return None };
         Some(FramesPlan {
-            every: words.every.unwrap_or(ctx.until),
-            fields: words.fields.clone().unwrap_or_default(),
-            crop: words.corners.as_ref().map(|corners| [corners.min.clone(), corners.max.clone()]),
+            every: config.every.unwrap_or(ctx.until),
+            fields: config.fields.clone().unwrap_or_default(),
+            crop: config.corners.as_ref().map(|corners| [corners.min.clone(), corners.max.clone()]),
         })
     }
 }

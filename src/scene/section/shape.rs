@@ -188,32 +188,32 @@ impl ShapeConfig {
                 ctx.require_positive(&format!("{key}.cylinder.length"), Some(*length))?;
                 ctx.require_positive(&format!("{key}.cylinder.radius"), Some(*radius))
             }
-            ShapeConfig::Polygon(words) => {
+            ShapeConfig::Polygon(config) => {
                 only(2, "polygon", "in 3-D, boxes, balls, cylinders and capsules can be put together as a compound")?;
-                verify_line(ctx, &format!("{key}.polygon"), words)?;
-                verify_drawing(ctx, &format!("{key}.polygon"), words)?;
-                match words.thickness {
+                verify_line(ctx, &format!("{key}.polygon"), config)?;
+                verify_drawing(ctx, &format!("{key}.polygon"), config)?;
+                match config.thickness {
                     Some(_) => Err(ctx.error_at(&format!("{key}.polygon"), "a polygon is solid: it has no thickness")),
                     None => Ok(()),
                 }
             }
-            ShapeConfig::Polyline(words) => {
+            ShapeConfig::Polyline(config) => {
                 only(2, "polyline", "in 3-D, walls are boxes or a tank")?;
-                verify_line(ctx, &format!("{key}.polyline"), words)?;
-                match words.is_drawing() {
+                verify_line(ctx, &format!("{key}.polyline"), config)?;
+                match config.is_drawing() {
                     true => {
                         Err(ctx.error_at(&format!("{key}.polyline.file"), "a drawing is a closed outline: a polygon"))
                     }
-                    false => verify_drawing(ctx, &format!("{key}.polyline"), words),
+                    false => verify_drawing(ctx, &format!("{key}.polyline"), config),
                 }
             }
             ShapeConfig::Tank { size, thickness } => {
                 ctx.require_positive(&format!("{key}.tank.thickness"), *thickness)?;
                 sizes(&format!("{key}.tank"), size)
             }
-            ShapeConfig::Mesh(words) => {
+            ShapeConfig::Mesh(config) => {
                 only(3, "mesh", "in 2-D an outline is a polygon:  shape = { polygon = { file = \"hull.svg\" } }")?;
-                ctx.require_positive(&format!("{key}.mesh.scale"), words.scale)
+                ctx.require_positive(&format!("{key}.mesh.scale"), config.scale)
             }
             ShapeConfig::Compound(parts) => {
                 let key = format!("{key}.compound");
@@ -245,24 +245,24 @@ impl ShapeConfig {
             ShapeConfig::Tank { thickness, .. } => {
                 defaults.fill(format!("{key}.tank.thickness"), thickness, ctx.layers() as f64 * ctx.dp, thick);
             }
-            ShapeConfig::Mesh(words) => {
+            ShapeConfig::Mesh(config) => {
                 let key = format!("{key}.mesh");
-                defaults.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the file's own size");
+                defaults.fill(format!("{key}.scale"), &mut config.scale, 1.0, "the file's own size");
                 defaults.fill(
                     format!("{key}.unit"),
-                    &mut words.unit,
+                    &mut config.unit,
                     LengthUnit::M,
                     "neither STL nor OBJ tells its unit",
                 );
                 let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
-                defaults.fill(format!("{key}.contact"), &mut words.contact, ContactGeometry::Fitting, why);
+                defaults.fill(format!("{key}.contact"), &mut config.contact, ContactGeometry::Fitting, why);
             }
-            ShapeConfig::Polygon(words) if words.is_drawing() => {
+            ShapeConfig::Polygon(config) if config.is_drawing() => {
                 let key = format!("{key}.polygon");
-                defaults.fill(format!("{key}.scale"), &mut words.scale, 1.0, "the drawing's own size");
+                defaults.fill(format!("{key}.scale"), &mut config.scale, 1.0, "the drawing's own size");
                 defaults.fill(
                     format!("{key}.unit"),
-                    &mut words.unit,
+                    &mut config.unit,
                     LengthUnit::M,
                     "a unit of the drawing is a metre",
                 );
@@ -289,14 +289,14 @@ impl ShapeConfig {
             ShapeConfig::Cylinder { length, radius, axis } => {
                 Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
             }
-            ShapeConfig::Polygon(words) => Shape::Polygon { points: points(ctx, words)? },
-            ShapeConfig::Polyline(words) => {
-                Shape::Polyline { points: points(ctx, words)?, thickness: thickness(words.thickness) }
+            ShapeConfig::Polygon(config) => Shape::Polygon { points: points(ctx, config)? },
+            ShapeConfig::Polyline(config) => {
+                Shape::Polyline { points: points(ctx, config)?, thickness: thickness(config.thickness) }
             }
             ShapeConfig::Tank { size, thickness: given } => {
                 Shape::Tank { size: vector(size), thickness: thickness(*given) }
             }
-            ShapeConfig::Mesh(words) => mesh_shape(ctx, words)?,
+            ShapeConfig::Mesh(config) => mesh_shape(ctx, config)?,
             ShapeConfig::Compound(parts) => {
                 let part = |part: &CompoundPartConfig| {
                     let inner = part.shape.build(ctx)?;
@@ -311,9 +311,9 @@ impl ShapeConfig {
     }
 }
 
-fn verify_line(ctx: &Context, key: &str, words: &PolylineConfig) -> Result<()> {
-    ctx.require_positive(&format!("{key}.thickness"), words.thickness)?;
-    match (&words.points, &words.file) {
+fn verify_line(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
+    ctx.require_positive(&format!("{key}.thickness"), config.thickness)?;
+    match (&config.points, &config.file) {
         (Some(points), None) => points.iter().try_for_each(|p| ctx.require_dimension(key, p)),
         (None, Some(_)) => Ok(()),
         _ => Err(ctx.error_at(key, format!("a {} has either points or a file of points", last_part(key)))),
@@ -321,30 +321,31 @@ fn verify_line(ctx: &Context, key: &str, words: &PolylineConfig) -> Result<()> {
 }
 
 /// Refuses keys of a drawing where there is none.
-fn verify_drawing(ctx: &Context, key: &str, words: &PolylineConfig) -> Result<()> {
-    ctx.require_positive(&format!("{key}.scale"), words.scale)?;
-    let words_of_one = [("id", words.id.is_some()), ("scale", words.scale.is_some()), ("unit", words.unit.is_some())];
-    match words_of_one.iter().find(|(_, given)| *given && !words.is_drawing()) {
+fn verify_drawing(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
+    ctx.require_positive(&format!("{key}.scale"), config.scale)?;
+    let words_of_one =
+        [("id", config.id.is_some()), ("scale", config.scale.is_some()), ("unit", config.unit.is_some())];
+    match words_of_one.iter().find(|(_, given)| *given && !config.is_drawing()) {
         Some((word, _)) => Err(ctx.error_at(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"))),
         None => Ok(()),
     }
 }
 
-fn mesh_shape<const D: usize>(ctx: &Context, words: &MeshConfig) -> Result<Shape<D>> {
-    let path = table::path_beside(ctx.folder(), &words.file)?;
-    let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
-    let mesh = mesh::read(&path, unit, words.flip.unwrap_or(false))?;
-    Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: words.contact.unwrap_or_default() })
+fn mesh_shape<const D: usize>(ctx: &Context, config: &MeshConfig) -> Result<Shape<D>> {
+    let path = table::path_beside(ctx.folder(), &config.file)?;
+    let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
+    let mesh = mesh::read(&path, unit, config.flip.unwrap_or(false))?;
+    Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: config.contact.unwrap_or_default() })
 }
 
-fn points<const D: usize>(ctx: &Context, words: &PolylineConfig) -> Result<Vec<Vector<D>>> {
-    if let Some(points) = &words.points {
+fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
+    if let Some(points) = &config.points {
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let path = table::path_beside(ctx.folder(), words.file.as_deref().unwrap_or(""))?;
-    if words.is_drawing() {
-        let unit = words.scale.unwrap_or(1.0) * words.unit.unwrap_or_default().metres();
-        let points = svg::outline(&path, words.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
+    let path = table::path_beside(ctx.folder(), config.file.as_deref().unwrap_or(""))?;
+    if config.is_drawing() {
+        let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
+        let points = svg::outline(&path, config.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
     let columns = table::read_columns(&path, &["x_m", "y_m"])?;

@@ -207,11 +207,11 @@ impl SolidConfig {
             let help = "a solid that is not fixed is driven = { ... } or free = { ... }";
             return Err(ctx.error_with_help(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
         }
-        if let Some(words) = &self.driven {
-            words.verify(ctx, &format!("{key}.driven"))?;
+        if let Some(config) = &self.driven {
+            config.verify(ctx, &format!("{key}.driven"))?;
         }
-        if let Some(words) = &self.free {
-            words.verify(ctx, &format!("{key}.free"))?;
+        if let Some(config) = &self.free {
+            config.verify(ctx, &format!("{key}.free"))?;
         }
         Ok(())
     }
@@ -227,16 +227,16 @@ impl SolidConfig {
         let (name, at) = (&self.name, self.at.clone().unwrap_or_default());
         let mut pose = at.build(&shape, level);
         let role = match (&self.driven, &self.free) {
-            (Some(words), _) => {
+            (Some(config), _) => {
                 let key = format!("{key}.driven");
-                Role::Driven(match &words.wave {
-                    Some(wave) => wavemaker::build(ctx, &key, words, wave, (&shape, &pose), pool)?,
-                    None => words.build(ctx, &key)?,
+                Role::Driven(match &config.wave {
+                    Some(wave) => wavemaker::build(ctx, &key, config, wave, (&shape, &pose), pool)?,
+                    None => config.build(ctx, &key)?,
                 })
             }
-            (None, Some(words)) => {
-                let body = words.build(&shape);
-                let part = if words.inertia.is_some() { "free.inertia" } else { "free" };
+            (None, Some(config)) => {
+                let body = config.build(&shape);
+                let part = if config.inertia.is_some() { "free.inertia" } else { "free" };
                 body.check()
                     .map_err(|e| Error { message: format!("solid \"{}\": {}", name, e.message), ..e })
                     .map_err(place(part))?;

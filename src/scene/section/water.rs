@@ -109,7 +109,7 @@ impl WaterConfig {
             }
             None => None,
         };
-        let pressure = self.pressure.as_ref().map(|words| field(&format!("{key}.pressure"), words)).transpose()?;
+        let pressure = self.pressure.as_ref().map(|config| field(&format!("{key}.pressure"), config)).transpose()?;
         Ok(InitialFlow { velocity, pressure })
     }
 }

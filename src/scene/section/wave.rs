@@ -153,7 +153,7 @@ impl AbsorbChoice {
     pub(crate) fn settings(self) -> Option<AbsorptionConfig> {
         match self {
             Self::Switch(absorbs) => absorbs.then(AbsorptionConfig::default),
-            Self::Parameters(words) => Some(words),
+            Self::Parameters(config) => Some(config),
         }
     }
 }
@@ -203,8 +203,8 @@ impl WaveConfig {
 
     /// No wave: a paddle that absorbs waves of `period` (s).
     pub fn absorber(period: f64) -> Self {
-        let words = AbsorptionConfig { period: Some(period), ..AbsorptionConfig::default() };
-        Self { absorb: Some(AbsorbChoice::Parameters(words)), ..Self::default() }
+        let config = AbsorptionConfig { period: Some(period), ..AbsorptionConfig::default() };
+        Self { absorb: Some(AbsorbChoice::Parameters(config)), ..Self::default() }
     }
 
     /// The same wave of a paddle that absorbs waves which come back.
@@ -230,12 +230,12 @@ impl WaveConfig {
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let peaked = "JONSWAP's mean";
         let many = "the spectrum's form, and a sea that does not repeat";
-        if let Some(words) = &mut self.regular {
+        if let Some(config) = &mut self.regular {
             let why = "without the free wave of twice the frequency that a plain paddle makes";
-            defaults.fill(format!("{key}.regular.order"), &mut words.order, 2, why);
+            defaults.fill(format!("{key}.regular.order"), &mut config.order, 2, why);
             defaults.fill(
                 format!("{key}.regular.phase_deg"),
-                &mut words.phase_deg,
+                &mut config.phase_deg,
                 0.0,
                 "the paddle sets out forwards",
             );
@@ -248,20 +248,20 @@ impl WaveConfig {
             defaults.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
             defaults.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS_DEFAULT, many);
         }
-        if let Some(words) = &mut self.focused {
-            defaults.fill(format!("{key}.focused.gamma"), &mut words.gamma, 3.3, peaked);
-            defaults.fill(format!("{key}.focused.components"), &mut words.components, COMPONENTS_DEFAULT, many);
+        if let Some(config) = &mut self.focused {
+            defaults.fill(format!("{key}.focused.gamma"), &mut config.gamma, 3.3, peaked);
+            defaults.fill(format!("{key}.focused.components"), &mut config.components, COMPONENTS_DEFAULT, many);
         }
-        if let Some(words) = &mut self.solitary {
+        if let Some(config) = &mut self.solitary {
             let why = "its wave keeps its height better than Boussinesq's";
-            defaults.fill(format!("{key}.solitary.theory"), &mut words.theory, SolitaryTheory::Rayleigh, why);
+            defaults.fill(format!("{key}.solitary.theory"), &mut config.theory, SolitaryTheory::Rayleigh, why);
         }
-        if let Some(words) = &mut self.elevation {
+        if let Some(config) = &mut self.elevation {
             let key = format!("{key}.elevation");
-            defaults.fill(format!("{key}.time"), &mut words.time, "t_s".into(), "the name our own tables have");
-            defaults.fill(format!("{key}.scale"), &mut words.scale, 1.0, "as in the table");
-            defaults.fill(format!("{key}.distance"), &mut words.distance, 0.0, "measured at the paddle");
-            defaults.fill(format!("{key}.delay"), &mut words.delay, 0.0, "the clocks agree");
+            defaults.fill(format!("{key}.time"), &mut config.time, "t_s".into(), "the name our own tables have");
+            defaults.fill(format!("{key}.scale"), &mut config.scale, 1.0, "as in the table");
+            defaults.fill(format!("{key}.distance"), &mut config.distance, 0.0, "measured at the paddle");
+            defaults.fill(format!("{key}.delay"), &mut config.delay, 0.0, "the clocks agree");
         }
     }
 
@@ -277,8 +277,8 @@ impl WaveConfig {
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         let kinds = self.named_kinds();
         let absorb = self.absorb.and_then(AbsorbChoice::settings);
-        if let Some(words) = &absorb {
-            words.verify(ctx, &format!("{key}.absorb"), !kinds.is_empty())?;
+        if let Some(config) = &absorb {
+            config.verify(ctx, &format!("{key}.absorb"), !kinds.is_empty())?;
         }
         if kinds.len() > 1 || (kinds.is_empty() && absorb.is_none()) {
             let what = match kinds.len() {
@@ -303,9 +303,9 @@ impl WaveConfig {
         let Some(kind) = kinds.first() else { return Ok(()) };
         let key = &format!("{key}.{kind}");
         let mut numbers = Vec::new();
-        if let Some(words) = &self.regular {
-            numbers.extend([("height", Some(words.height)), ("period", Some(words.period))]);
-            if let Some(order) = words.order.filter(|order| !(1..=2).contains(order)) {
+        if let Some(config) = &self.regular {
+            numbers.extend([("height", Some(config.height)), ("period", Some(config.period))]);
+            if let Some(order) = config.order.filter(|order| !(1..=2).contains(order)) {
                 let help = "order = 1, or  order = 2  without free waves of twice the frequency";
                 return Err(ctx.error_with_help(
                     &format!("{key}.order"),
@@ -318,11 +318,11 @@ impl WaveConfig {
             numbers.extend([("height", Some(sea.height)), ("peak_period", sea.peak_period), ("gamma", sea.gamma)]);
             sea.verify(ctx, key)?;
         }
-        if let Some(words) = &self.focused {
-            numbers.extend([("crest", Some(words.crest)), ("peak_period", Some(words.peak_period))]);
-            numbers.extend([("distance", Some(words.distance)), ("time", Some(words.time)), ("gamma", words.gamma)]);
+        if let Some(config) = &self.focused {
+            numbers.extend([("crest", Some(config.crest)), ("peak_period", Some(config.peak_period))]);
+            numbers.extend([("distance", Some(config.distance)), ("time", Some(config.time)), ("gamma", config.gamma)]);
         }
-        numbers.extend(self.solitary.iter().map(|words| ("height", Some(words.height))));
+        numbers.extend(self.solitary.iter().map(|config| ("height", Some(config.height))));
         numbers.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))
     }
 }

@@ -49,7 +49,7 @@ fn support<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
 pub(super) fn build<const D: usize>(
     ctx: &Context,
     key: &str,
-    words: &DrivenConfig,
+    config: &DrivenConfig,
     wave: &WaveConfig,
     (shape, pose): (&Shape<D>, &Pose<D>),
     pool: &StillWater<D>,
@@ -58,9 +58,9 @@ pub(super) fn build<const D: usize>(
     let depth = wave.depth.unwrap_or(pool.still.depth);
     let g = ctx.gravity.and_then(|g| g.last()).map_or(0.0, |g| -g);
     let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
-    match &words.along {
+    match &config.along {
         Some(along) => piston_motion(ctx, key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
-        None => flap_motion(ctx, key, words, wave, &maker, (&own, pool)),
+        None => flap_motion(ctx, key, config, wave, &maker, (&own, pool)),
     }
 }
 
@@ -97,12 +97,12 @@ fn piston_motion<const D: usize>(
 fn flap_motion<const D: usize>(
     ctx: &Context,
     key: &str,
-    words: &DrivenConfig,
+    config: &DrivenConfig,
     wave: &WaveConfig,
     maker: &Wavemaker,
     (own, pool): (&Bounds<D>, &StillWater<D>),
 ) -> Result<PrescribedMotion<D>> {
-    let hinge: Vector<D> = vector(words.hinge.as_deref().unwrap_or(&[]));
+    let hinge: Vector<D> = vector(config.hinge.as_deref().unwrap_or(&[]));
     let arm = pool.still.level - hinge[D - 1];
     if arm <= 0.0 {
         let what = format!("the hinge is {:.3} m above the still level: such a flap makes no wave by theory", -arm);
@@ -110,7 +110,7 @@ fn flap_motion<const D: usize>(
         return Err(ctx.error_with_help(&format!("{key}.hinge"), what, help));
     }
     let unit = |x: &Vec<f64>| vector::<D>(x).normalize().iter().copied().collect();
-    let axis: Vec<f64> = words.axis.as_ref().map_or_else(|| vec![1.0], unit);
+    let axis: Vec<f64> = config.axis.as_ref().map_or_else(|| vec![1.0], unit);
     if axis.get(2).is_some_and(|x| x.abs() > 1e-6) {
         let help = "write  axis = [0.0, 1.0, 0.0]";
         return Err(ctx.error_with_help(&format!("{key}.axis"), "the axis of a flap that makes waves is level", help));
@@ -138,13 +138,13 @@ fn flap_motion<const D: usize>(
 fn with_absorption<const D: usize>(
     ctx: &Context,
     key: &str,
-    words: &WaveConfig,
+    config: &WaveConfig,
     maker: &Wavemaker,
     site: &AbsorberSite<D>,
     motion: PrescribedMotion<D>,
 ) -> Result<PrescribedMotion<D>> {
-    match words.absorb.and_then(AbsorbChoice::settings) {
-        Some(words) => absorbing(ctx, &format!("{key}.absorb"), &words, maker, site, motion),
+    match config.absorb.and_then(AbsorbChoice::settings) {
+        Some(config) => absorbing(ctx, &format!("{key}.absorb"), &config, maker, site, motion),
         None => Ok(motion),
     }
 }
@@ -153,13 +153,13 @@ fn with_absorption<const D: usize>(
 fn absorbing<const D: usize>(
     ctx: &Context,
     key: &str,
-    words: &AbsorptionConfig,
+    config: &AbsorptionConfig,
     maker: &Wavemaker,
     site: &AbsorberSite<D>,
     motion: PrescribedMotion<D>,
 ) -> Result<PrescribedMotion<D>> {
     let Some(wave) = motion.wave() else { return Ok(motion) };
-    let AbsorptionConfig { period, stroke, speed } = *words;
+    let AbsorptionConfig { period, stroke, speed } = *config;
     let tuning = AbsorptionSettings {
         period,
         gauge_distance: GAUGE_DISTANCE * ctx.h,
@@ -173,24 +173,24 @@ fn absorbing<const D: usize>(
 }
 
 /// The still paddle's own wave: none, before those that it absorbs.
-fn zero_wave(ctx: &Context, key: &str, words: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<PaddleMotion> {
-    match words.and_then(|words| words.period) {
+fn zero_wave(ctx: &Context, key: &str, config: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<PaddleMotion> {
+    match config.and_then(|config| config.period) {
         Some(period) => maker.at_rest(period).map_err(|e| ctx.with_location(e, key)),
         None => Err(ctx.error_at(key, "which wave?")),
     }
 }
 
 /// The wave that a paddle is to make.
-fn wave_from_config(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavemaker) -> Result<PaddleMotion> {
+fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavemaker) -> Result<PaddleMotion> {
     let place = |word: &str| {
         let key = format!("{key}.{word}");
         move |e: Error| ctx.with_location(e, &key)
     };
     let gamma = |gamma: Option<f64>| gamma.unwrap_or(3.3);
-    let wave = match words {
-        WaveConfig { regular: Some(words), .. } => {
-            let (order, phase) = (words.order.unwrap_or(2), words.phase_deg.unwrap_or(0.0).to_radians());
-            maker.regular(words.height, words.period, phase, order).map_err(place("regular.height"))?
+    let wave = match config {
+        WaveConfig { regular: Some(config), .. } => {
+            let (order, phase) = (config.order.unwrap_or(2), config.phase_deg.unwrap_or(0.0).to_radians());
+            maker.regular(config.height, config.period, phase, order).map_err(place("regular.height"))?
         }
         WaveConfig { jonswap: Some(config), .. } => {
             let spectrum = WaveSpectrum::jonswap(config.peak_period.unwrap_or_default(), gamma(config.gamma));
@@ -204,36 +204,36 @@ fn wave_from_config(ctx: &Context, key: &str, words: &WaveConfig, maker: &Wavema
             let spectrum = WaveSpectrum::pierson_moskowitz(config.height, maker.g);
             irregular_wave(config, &spectrum, maker).map_err(place("pierson_moskowitz.height"))?
         }
-        WaveConfig { focused: Some(words), .. } => {
-            let spectrum = WaveSpectrum::jonswap(words.peak_period, gamma(words.gamma));
-            let count = words.components.unwrap_or_default();
-            let made = maker.focused(words.crest, &spectrum, words.distance, words.time, count);
+        WaveConfig { focused: Some(config), .. } => {
+            let spectrum = WaveSpectrum::jonswap(config.peak_period, gamma(config.gamma));
+            let count = config.components.unwrap_or_default();
+            let made = maker.focused(config.crest, &spectrum, config.distance, config.time, count);
             made.map_err(place("focused.crest"))?
         }
-        WaveConfig { solitary: Some(words), .. } => {
-            let made = maker.solitary(words.height, words.theory.unwrap_or_default());
+        WaveConfig { solitary: Some(config), .. } => {
+            let made = maker.solitary(config.height, config.theory.unwrap_or_default());
             made.map_err(place("solitary.height"))?
         }
-        WaveConfig { components: Some(words), .. } => {
-            let components = read_components(ctx, words).map_err(place("components.file"))?;
+        WaveConfig { components: Some(config), .. } => {
+            let components = read_components(ctx, config).map_err(place("components.file"))?;
             maker.components(&components).map_err(place("components"))?
         }
-        WaveConfig { elevation: Some(words), .. } => {
-            let series = read_elevation(ctx, words).map_err(place("elevation.column"))?;
-            let (distance, delay) = (words.distance.unwrap_or_default(), words.delay.unwrap_or_default());
+        WaveConfig { elevation: Some(config), .. } => {
+            let series = read_elevation(ctx, config).map_err(place("elevation.column"))?;
+            let (distance, delay) = (config.distance.unwrap_or_default(), config.delay.unwrap_or_default());
             maker.measured(&series, distance, delay).map_err(place("elevation"))?
         }
-        _ => zero_wave(ctx, key, words.absorb.and_then(AbsorbChoice::settings), maker)?,
+        _ => zero_wave(ctx, key, config.absorb.and_then(AbsorbChoice::settings), maker)?,
     };
-    Ok(match words.ramp {
+    Ok(match config.ramp {
         Some(ramp) => wave.with_ramp(ramp),
         None => wave,
     })
 }
 
 /// The components of a table.
-fn read_components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
-    let path = table::path_beside(ctx.folder(), &words.file)?;
+fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
+    let path = table::path_beside(ctx.folder(), &config.file)?;
     let names = table::read_header(&path)?;
     let either = |one: &'static str, other: &'static str| {
         let given = [(one, true), (other, false)].into_iter().find(|(column, _)| names.iter().any(|n| n == column));
@@ -259,14 +259,14 @@ fn read_components(ctx: &Context, words: &WaveComponentsConfig) -> Result<Vec<Wa
 }
 
 /// The elevation of a table.
-fn read_elevation(ctx: &Context, words: &MeasuredElevationConfig) -> Result<TimeSeries> {
-    let path = table::path_beside(ctx.folder(), &words.file)?;
-    let series = table::read_series(&path, words.time.as_deref().unwrap_or("t_s"), &words.column)?;
-    let scale = words.scale.unwrap_or(1.0);
+fn read_elevation(ctx: &Context, config: &MeasuredElevationConfig) -> Result<TimeSeries> {
+    let path = table::path_beside(ctx.folder(), &config.file)?;
+    let series = table::read_series(&path, config.time.as_deref().unwrap_or("t_s"), &config.column)?;
+    let scale = config.scale.unwrap_or(1.0);
     TimeSeries::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
 }
 
 /// An irregular sea of this spectrum.
-fn irregular_wave(words: &IrregularWaveConfig, spectrum: &WaveSpectrum, maker: &Wavemaker) -> Result<PaddleMotion> {
-    maker.irregular(words.height, spectrum, words.seed.unwrap_or_default(), words.components.unwrap_or_default())
+fn irregular_wave(config: &IrregularWaveConfig, spectrum: &WaveSpectrum, maker: &Wavemaker) -> Result<PaddleMotion> {
+    maker.irregular(config.height, spectrum, config.seed.unwrap_or_default(), config.components.unwrap_or_default())
 }
