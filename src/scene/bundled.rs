@@ -1,10 +1,9 @@
 //! The scenes that are compiled into the program.
 
-/// A scene of the program's own: the name of its folder, its `scene.toml`, and the other files of the folder
-/// by name.
+/// A bundled scene: the name of its folder, its `scene.toml`, and the names and texts of the other files.
 pub type BundledScene = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
-/// Text of a file of the folder of a scene.
+/// Text of a file in the folder of a scene.
 macro_rules! text {
     ($scene:literal, $file:literal) => {
         include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $scene, "/", $file))
@@ -21,7 +20,7 @@ macro_rules! scene {
     };
 }
 
-/// All of them.
+/// All bundled scenes.
 pub fn bundled_scenes() -> &'static [BundledScene] {
     &[
         scene!("raft"),

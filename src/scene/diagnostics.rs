@@ -2,7 +2,7 @@
 
 use crate::error::{Error, nearest_name};
 
-/// What to write, by key: the longest entry that the key ends with is shown.
+/// Examples by key; the entry with the longest match of the end of the key is shown.
 const EXAMPLES: &[(&str, &str)] = &[
     ("title", "title = \"Box in a wave train\""),
     ("dimension", "dimension = 2"),
@@ -163,7 +163,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("paper", "paper = { N = 0.355, M = 1.115 }"),
 ];
 
-/// What to write at `key`, for the user to copy.
+/// An example for `key`, for the user to copy.
 pub(super) fn example(key: &str) -> Option<String> {
     let parts: Vec<&str> = key.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
     let tail = |from: usize| parts[from..].join(".");
@@ -176,7 +176,7 @@ fn example_help(example: &str) -> String {
     format!("write  {}", example.replace('\n', "\n       "))
 }
 
-/// The words in backticks in the parser's `message`.
+/// The names in backticks in the `message` of the parser.
 fn quoted(message: &str) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).collect()
 }
@@ -240,7 +240,7 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     (with(error, example(key).into_iter().collect()), key.to_string())
 }
 
-/// What the parser found, in our words.
+/// The value that the parser found, in plain words.
 fn translated_found(found: &str) -> String {
     let (kind, rest) = found.split_once(' ').unwrap_or((found, ""));
     let rest = rest.trim_start_matches("point ").replace('`', "");
@@ -253,7 +253,7 @@ fn translated_found(found: &str) -> String {
     }
 }
 
-/// The parser's word for a type, in ours.
+/// A type that the parser expects, in plain words.
 fn translated_type(wanted: &str) -> &str {
     match wanted {
         "f64" => "a number",

@@ -1,7 +1,7 @@
 //! The keys of a scene as a JSON schema, for editors, generated from the types that read them.
 //!
-//! Where exactly one key of several is to be said (`fixed`, `driven`, `free` of a solid), it says so, and where only `true` can
-//! be meant (`fixed`). It is coarser than the program where keys depend on one another otherwise (as many numbers as dimensions).
+//! It states where exactly one key of several is required (`fixed`, `driven`, `free` of a solid) and where only `true` is valid
+//! (`fixed`). It does not state other dependences between keys (as many numbers as dimensions).
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
@@ -52,14 +52,14 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Says of a type that exactly one of the keys that are its kinds is there.
+/// Requires exactly one of the keys of a type that are alternatives.
 fn require_one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
     let keys = words["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
     let kinds: Value = keys.filter(|key| is_kind(key)).map(|key| json!({ "required": [key] })).collect();
     words["oneOf"] = kinds;
 }
 
-/// Takes out that a key may be null: TOML has none.
+/// Removes null as a value of a key: TOML has none.
 fn required_only(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -88,7 +88,7 @@ fn required_only(schema: &mut Value) {
     }
 }
 
-/// Takes a word's second name, which its type has noted as `also` beside its alias, for as good as its first.
+/// Accepts the alias of a word, which its type states as `also`, beside the word.
 fn expand_aliases(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -104,7 +104,7 @@ fn expand_aliases(schema: &mut Value) {
     }
 }
 
-/// Adds to a choice of several that each of them may be written as a bare word, or as a table of nothing.
+/// Accepts each alternative of a choice as a bare word or as an empty table.
 fn allow_bare_words(choice: &mut Value) {
     let mut tables = Map::new();
     let kinds = choice.get("oneOf").and_then(Value::as_array).into_iter().flatten().chain([&*choice]);

@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 
 /// Most elements of a drawing.
 const MOST_NODES: u32 = 100_000;
-/// Most points that are kept of an outline: more than a polygon may have.
+/// Most points of an outline: more than a polygon may have.
 const MOST_POINTS: usize = 100_000;
-/// The largest outline, in tolerances: finer steps are a slip of the pen.
+/// Size of the largest outline, in tolerances: larger coordinates are mistakes.
 const LARGEST: f64 = 1e9;
 
 /// The points of the outline in the drawing at `path`, the one called `id` if there are several: times `unit` (m per
@@ -59,7 +59,7 @@ pub fn outline(path: &Path, id: Option<&str>, unit: f64, tolerance: f64) -> Resu
     Ok(points)
 }
 
-/// The transforms of the element and all above it, as one.
+/// The product of the transforms of the element and of its ancestors.
 fn full_transform(node: &roxmltree::Node) -> std::result::Result<Affine, String> {
     let mut all = Affine::IDENTITY;
     for transform in node.ancestors().filter_map(|above| above.attribute("transform")) {
@@ -69,7 +69,7 @@ fn full_transform(node: &roxmltree::Node) -> std::result::Result<Affine, String>
     Ok(all)
 }
 
-/// What the element draws.
+/// The path of the element.
 fn element_path(node: &roxmltree::Node) -> std::result::Result<BezPath, String> {
     if let Some(points) = node.attribute("points") {
         let mut path = BezPath::new();
@@ -82,7 +82,7 @@ fn element_path(node: &roxmltree::Node) -> std::result::Result<BezPath, String> 
     BezPath::from_svg(node.attribute("d").unwrap_or("")).map_err(|why| why.to_string())
 }
 
-/// The corners of the closed path within `tolerance`, no two neighbours the same.
+/// The corners of the closed path within `tolerance`, without repeated points.
 fn flattened(path: &BezPath, tolerance: f64) -> std::result::Result<Vec<[f64; 2]>, String> {
     let (mut points, mut starts, mut closed) = (Vec::new(), 0, false);
     kurbo::flatten(path, tolerance, |element| match element {

@@ -7,7 +7,7 @@ use crate::{
     math::time_series::TimeSeries,
 };
 
-/// Largest table, B.
+/// Size of the largest table, B.
 const MOST_BYTES: u64 = 256 << 20;
 
 /// The file `name` beside the scene in `folder`.
@@ -39,7 +39,7 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     Ok(full)
 }
 
-/// Whether what is at `full`, links followed, lies in `folder`; of what is not there, nothing leads out.
+/// Whether the file at `full`, links followed, lies in `folder`; true if there is no such file.
 pub fn is_within(folder: &Path, full: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     match (folder.canonicalize(), full.canonicalize()) {
@@ -48,7 +48,7 @@ pub fn is_within(folder: &Path, full: &Path) -> bool {
     }
 }
 
-/// Names of the files in `folder` that are of the same kind as `path`.
+/// Names of the files in `folder` with the extension of `path`.
 fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -77,11 +77,11 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
     builder.comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(|e| Error::file(path, e))
 }
 
-/// The columns `names` of the table at `path`, one list each; rows in which one of them is blank are left
-/// out.
+/// The columns `names` of the table at `path`, one list each; rows with a blank cell among
+/// them are skipped.
 ///
 /// # Errors
-/// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number: says which.
+/// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number.
 pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let mut reader = reader(path)?;
     let file = path.display().to_string();
@@ -117,7 +117,7 @@ pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
 /// The series of `column` over `time` of the table at `path`.
 ///
 /// # Errors
-/// As [`columns`], and as [`Series::new`].
+/// As [`columns`], and as [`TimeSeries::new`].
 pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> {
     let mut both = read_columns(path, &[time, column])?;
     let x = both.pop().unwrap_or_default();
