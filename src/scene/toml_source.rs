@@ -103,14 +103,17 @@ impl fmt::Display for ValueSource {
 
 impl SceneSource {
     /// The place of `key`, or of the nearest key above it that was written, put on `error`.
-    pub fn with_location(&self, error: Error, key: &str) -> Error {
+    /// A check of the domain may have named a part of `key`.
+    pub fn with_location(&self, mut error: Error, key: &str) -> Error {
+        let part = error.location.take_if(|location| location.file.is_empty());
+        let key = &part.map_or(key.to_string(), |part| subkey(key, &part.key));
         if self.is_set(key) {
             return error.at("--set", None, self.key_with_names(key));
         }
         if self.file.is_empty() {
             return error.at("a scene built by a program", None, self.key_with_names(key));
         }
-        let mut above = key;
+        let mut above = key.as_str();
         while !self.places.contains_key(above) && above.contains('.') {
             above = above.rsplit_once('.').map_or("", |(parent, _)| parent);
         }

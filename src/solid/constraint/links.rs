@@ -202,7 +202,8 @@ pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<
     let numbers = [("stiffness", spring.stiffness, 0.0), ("damping", spring.damping, 0.0)];
     for (word, x, least) in numbers.into_iter().chain(spring.rest_length.map(|l| ("length", l, 0.0))) {
         if !(x >= least && x.is_finite()) {
-            return Err(Error::scene(format!("{who} has a {word} of {x}")).help(format!("its {word} is 0 or more")));
+            let error = Error::scene(format!("{who} has a {word} of {x}"));
+            return Err(error.help(format!("its {word} is 0 or more")).at("", None, word));
         }
     }
     if spring.stiffness == 0.0 && spring.damping == 0.0 {
