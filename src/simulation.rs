@@ -136,7 +136,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Goes one step on, as long as water and bodies allow. At the first alarm of a guard it goes back to a good state
-    /// instead, some hundred steps, and takes half the step for a while: see [`Simulation::rescued`].
+    /// instead, some hundred steps, and takes half the step for a while: see [`Simulation::rollbacks`].
     ///
     /// # Errors
     /// `Fault` if a particle or body leaves the valid range again: names it, its place and the usual cause.
