@@ -1,10 +1,10 @@
 //! A running simulation: limit, step, check; no files.
 
-mod booked;
-mod change;
-mod hosted;
-mod rescue;
-mod tied;
+mod accounting;
+mod add_remove;
+mod external_bodies;
+mod rollback;
+mod constraints;
 
 use std::time::{Duration, Instant};
 
@@ -12,14 +12,14 @@ pub use crate::{
     coupling::BodyStep,
     system::{Escape, ParticleLimits, RemovedParticle, Setup},
 };
-pub use change::AddedSolid;
-pub use rescue::Rollback;
-pub(crate) use tied::find_by_name;
+pub use add_remove::AddedSolid;
+pub use rollback::Rollback;
+pub(crate) use constraints::find_by_name;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use rescue::RollbackControl;
+use rollback::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
