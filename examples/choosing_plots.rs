@@ -2,6 +2,14 @@
 //!
 //! `cargo run --release --example choosing_plots`, at once.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::{error::Error, fs, path::Path};
 
 use pontoon::study::{LineStyle, PlotLine, line_plot, log_log_plot};

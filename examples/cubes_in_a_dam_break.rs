@@ -3,6 +3,14 @@
 //!
 //! `cargo run --release --example cubes_in_a_dam_break`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     probe::{EnergyProbe, Probe},

@@ -9,6 +9,14 @@
 //! draft is averaged over the last of them. The water level is sounded by volume: (particles × dpᴰ + displaced
 //! volume) ÷ area of the tank; beside it, by a gauge halfway between body and wall.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::f64::consts::TAU;
 
 use pontoon::{

@@ -3,6 +3,14 @@
 //!
 //! `cargo run --release --example moored_buoy`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig, SpringConfig},

@@ -4,6 +4,14 @@
 //!
 //! `cargo run --release --example own_setup`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::f64::consts::PI;
 
 use pontoon::{

@@ -338,7 +338,7 @@ pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> {
     works
 }
 
-/// A small work for counting instructions: so many steps of the work `name` of [`terms`] in 2-D and in 3-D on one
+/// A small work for counting instructions: so many steps of the work `name` of [`term_cases`] in 2-D and in 3-D on one
 /// thread, of 3,000 water particles each.
 ///
 /// # Errors
@@ -359,7 +359,7 @@ pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> {
     })
 }
 
-/// Largest memory of the program since [`forget_peak`], B, where the system tells.
+/// Largest memory of the program since [`reset_peak_memory`], B, where the system tells.
 fn peak_memory() -> f64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -300,7 +300,7 @@ fn interrupt_flag() -> Result<Arc<AtomicBool>> {
     interrupt_flag_with_message("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n")
 }
 
-/// As [`stopper`], in these words.
+/// As [`interrupt_flag`], in these words.
 fn interrupt_flag_with_message(words: &'static str) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = flag.clone();

@@ -66,7 +66,7 @@ pub struct Error {
     pub location: Option<Box<SourceLocation>>,
     /// What to do about it.
     pub help: Option<String>,
-    /// The failed particle or body, for [`Kind::Fault`].
+    /// The failed particle or body, for [`ErrorKind::Fault`].
     pub fault: Option<Box<Fault>>,
 }
 
@@ -76,17 +76,17 @@ impl Error {
         Self { kind, message: what.into(), location: None, help: None, fault: None }
     }
 
-    /// A [`Kind::Scene`] error.
+    /// A [`ErrorKind::Scene`] error.
     pub fn scene(what: impl Into<String>) -> Self {
         Self::new(ErrorKind::Scene, what)
     }
 
-    /// A [`Kind::File`] error about `path`, with the system's own words.
+    /// A [`ErrorKind::File`] error about `path`, with the system's own words.
     pub fn file(path: &std::path::Path, why: impl fmt::Display) -> Self {
         Self::new(ErrorKind::File, format!("{}: {why}", path.display()))
     }
 
-    /// A [`Kind::Fault`] error: a run that cannot go on.
+    /// A [`ErrorKind::Fault`] error: a run that cannot go on.
     pub fn fault(fault: Fault) -> Self {
         let at: Vec<String> = fault.position.iter().map(|x| format!("{x:.6}")).collect();
         let what = format!(

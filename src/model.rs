@@ -235,7 +235,7 @@ impl Model {
         }
     }
 
-    /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::stiffness`].
+    /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::lattice_stiffness`].
     pub fn lattice_stiffness<const D: usize>(&self) -> f64 {
         match self.kernel {
             KernelKind::Cubic { .. } => {

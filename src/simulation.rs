@@ -1,10 +1,10 @@
 //! A running simulation: limit, step, check; no files.
 
-mod booked;
-mod change;
-mod hosted;
-mod rescue;
-mod tied;
+mod accounting;
+mod add_remove;
+mod external_bodies;
+mod rollback;
+mod constraints;
 
 use std::time::{Duration, Instant};
 
@@ -12,14 +12,14 @@ pub use crate::{
     coupling::BodyStep,
     system::{Escape, ParticleLimits, RemovedParticle, Setup},
 };
-pub use change::AddedSolid;
-pub use rescue::Rollback;
-pub(crate) use tied::find_by_name;
+pub use add_remove::AddedSolid;
+pub(crate) use constraints::find_by_name;
+pub use rollback::Rollback;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use rescue::RollbackControl;
+use rollback::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
@@ -136,7 +136,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Goes one step on, as long as water and bodies allow. At the first alarm of a guard it goes back to a good state
-    /// instead, some hundred steps, and takes half the step for a while: see [`Simulation::rescued`].
+    /// instead, some hundred steps, and takes half the step for a while: see [`Simulation::rollbacks`].
     ///
     /// # Errors
     /// `Fault` if a particle or body leaves the valid range again: names it, its place and the usual cause.

@@ -1,6 +1,8 @@
 //! The documents against the program: their scenes and commands run, and their links and plots are right.
 //! Their Rust programs are compiled and run by `cargo test` as documentation tests (src/lib.rs).
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
+
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,

@@ -1,5 +1,7 @@
 //! The program as a stranger meets it: commands, exit codes, messages, files. All through the binary.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
+
 use std::{
     fs,
     path::{Path, PathBuf},

@@ -10,13 +10,13 @@ use crate::{
 ///   N = √( Σ (sim_i − ref_i)² / Σ ref_i² )
 ///
 /// `sim`, `reference`: values over time (s), same unit, any lengths ≥ 2: `sim` is interpolated
-/// linearly to the reference's times. Returns N (–). Its companion [`amplitude`] judges size alone.
+/// linearly to the reference's times. Returns N (–). Its companion [`amplitude_ratio`] judges size alone.
 ///
 /// # Errors
 /// `Scene` if the reference leaves the simulated span (names both spans; shorten the reference or lengthen
-/// the run), or is zero throughout (use [`amplitude`] of the two the other way round).
+/// the run), or is zero throughout (use [`amplitude_ratio`] of the two the other way round).
 ///
-/// Source: [@pirkhalili2023], eq. (26).
+/// Source: @pirkhalili2023, eq. (26).
 /// ```
 /// # use pontoon::{analysis::deviation, math::time_series::Series};
 /// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
@@ -32,9 +32,9 @@ pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
 ///
 ///   M = √( Σ sim_i² / Σ ref_i² )
 ///
-/// Arguments and errors as for [`deviation`]. Returns M (–).
+/// Arguments and errors as for [`relative_l2`]. Returns M (–).
 ///
-/// Source: [@pirkhalili2023], eq. (27).
+/// Source: @pirkhalili2023, eq. (27).
 /// ```
 /// # use pontoon::{analysis::amplitude, math::time_series::Series};
 /// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
@@ -77,7 +77,7 @@ pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64>
 ///
 ///   max |sim_i − ref_i|
 ///
-/// Arguments as for [`deviation`]. Returns the distance, in the unit of the series.
+/// Arguments as for [`relative_l2`]. Returns the distance, in the unit of the series.
 ///
 /// # Errors
 /// `Scene` if the reference leaves the simulated span.

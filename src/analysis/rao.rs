@@ -70,7 +70,7 @@ pub struct RaoPoint {
 ///
 ///   H₁ = S_ax/S_aa,   γ² = |S_ax|²/(S_aa S_xx)
 ///
-/// by means over seven parts, quarters of the record and those that lie half over two ([@bendat2010], [@welch1967]). Only where
+/// by means over seven parts, quarters of the record and those that lie half over two (@bendat2010, @welch1967). Only where
 /// the waves have a fiftieth of the density at their peak or more. None of fewer than 32 waves, or where nothing moves.
 pub fn rao_over_frequency(motion: &TimeSeries, wave: &TimeSeries) -> Vec<RaoPoint> {
     let swings = zero_crossing_waves(motion).is_some()

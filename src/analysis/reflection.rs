@@ -2,7 +2,7 @@
 //!
 //!   η(x, t) = Re [ I e^{i(ωt − kx)} + R e^{i(ωt + kx)} ],   ω² = g k tanh kd
 //!
-//! I and R by least squares over the gauges, of three or more ([@mansard1980]; two will do where they are not half a wave
+//! I and R by least squares over the gauges, of three or more (@mansard1980; two will do where they are not half a wave
 //! length apart).
 
 use std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! Spectra by Welch's method: means of Hann-windowed periodograms of half-overlapping parts of a record. [@welch1967]
+//! Spectra by Welch's method: means of Hann-windowed periodograms of half-overlapping parts of a record. @welch1967
 
 use realfft::{RealFftPlanner, num_complex::Complex};
 

@@ -1,4 +1,4 @@
-//! Waves of a series, one by one: from one crossing of the mean upwards to the next. [@goda2010], ch. 10.
+//! Waves of a series, one by one: from one crossing of the mean upwards to the next. @goda2010, ch. 10.
 
 use super::moments;
 use crate::math::time_series::TimeSeries;

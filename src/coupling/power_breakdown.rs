@@ -1,7 +1,7 @@
 //! The power of each law on the water, by a second force pass with the pressure alone.
 //!
 //! With the pressure force (P_a + P_b)/(ρ_a ρ_b) and the volume form of continuity, a pair of water particles exchanges kinetic
-//! energy and energy of compression without a remainder [@colagrossi2003]. With e(ρ) the energy of compression and F·V, T·Ω the
+//! energy and energy of compression without a remainder @colagrossi2003. With e(ρ) the energy of compression and F·V, T·Ω the
 //! power on a solid, the powers are
 //!
 //!   Ė = Σ m (v·(a − g) + P/ρ² ρ̇)         of the water without its weight

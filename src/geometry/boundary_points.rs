@@ -58,7 +58,7 @@ pub(super) fn for_each_index<const D: usize>(low: &[i64; D], high: &[i64; D], mu
     }
 }
 
-/// As [`each_index`], but leaps over most of what lies `layers` or more cells inside the faces: of a large tank that
+/// As [`for_each_index`], but leaps over most of what lies `layers` or more cells inside the faces: of a large tank that
 /// is nearly all.
 fn each_outer<const D: usize>(low: &[i64; D], high: &[i64; D], layers: i64, mut visit: impl FnMut(&[i64; D])) {
     let mut rows = *high;

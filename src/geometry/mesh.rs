@@ -130,7 +130,7 @@ impl Mesh {
     /// Signed distance (m) of `x` (m) from the surface, negative inside, and the direction in which it grows, unit
     /// length.
     ///
-    /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. [@baerentzen2005]
+    /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. @baerentzen2005
     pub fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
         self.tree.distance_and_normal(x)
     }

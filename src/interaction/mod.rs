@@ -49,7 +49,7 @@ pub struct PairLoopInput<'a, const D: usize> {
 pub struct PairLoopOutput<'a, const D: usize> {
     /// One for each water particle; gravity is in it.
     pub fluid: &'a mut [PairSums<D>],
-    /// One for each wet boundary particle, in the order of [`Near::wet`].
+    /// One for each wet boundary particle, in the order of [`NeighbourLists::boundary_near_fluid`].
     pub boundary: &'a mut [PairSums<D>],
     /// One for each water particle, or none if no law needs it.
     pub auxiliary: &'a mut [AuxiliarySums<f64, D>],
@@ -83,14 +83,14 @@ pub struct StepLimits {
 /// A sweep with its laws compiled in. One call a pass goes through the trait object; inside there is no branch
 /// on a choice of law.
 pub trait PairLoop<const D: usize>: Send + Sync {
-    /// Whether [`Extra`] sums are made.
+    /// Whether [`AuxiliarySums`] sums are made.
     fn has_auxiliary_sums(&self) -> bool;
 
     /// Time spent on pairs so far.
     fn time_spent(&self) -> Duration;
 
     /// Sums of the wet boundary particles over the water, for walls that settle or that it sticks to (with its `flow`); the
-    /// lists must hold, and [`Sweep::rates`] comes next, with the same water.
+    /// lists must hold, and [`PairLoop::rates`] comes next, with the same water.
     fn extrapolate_to_boundary(
         &mut self,
         input: &PairLoopInput<'_, D>,

@@ -104,10 +104,10 @@ impl<const D: usize> SimdPairLoop<D> {
         let strain = strain.map(|row| row.map(|x| x / time));
         AuxiliarySums {
             concentration_gradient: concentration_gradient.map(|x| x / length),
-            position_divergence: position_divergence,
-            shifting_suppressed: shifting_suppressed,
+            position_divergence,
+            shifting_suppressed,
             strain,
-            renormalization: renormalization,
+            renormalization,
         }
     }
 

@@ -29,7 +29,7 @@ pub fn instruction_sets() -> Vec<Level> {
     }
 }
 
-/// The first of [`levels`].
+/// The first of [`instruction_sets`].
 pub fn best_instruction_set() -> Option<Level> {
     instruction_sets().first().copied()
 }
@@ -47,7 +47,7 @@ pub trait SimdTask {
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Does `work` with the instructions of `level`, one that [`levels`] gave.
+/// Does `work` with the instructions of `level`, one that [`instruction_sets`] gave.
 pub fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {

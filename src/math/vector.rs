@@ -1,6 +1,6 @@
 //! Space: vectors, turns, poses and boxes in two or three dimensions from one source.
 //!
-//! What turns is a [`Wedge`], an antisymmetric D×D matrix, so that no formula needs a cross product:
+//! What turns is a [`Bivector`], an antisymmetric D×D matrix, so that no formula needs a cross product:
 //! a spin Ω gives the velocity u = V + Ω r, and a force f at r about the centre gives the torque
 //! T = f rᵀ − r fᵀ. The power of the two is ½ T:Ω.
 
@@ -47,7 +47,7 @@ impl<const D: usize> Bivector<D> {
         }
     }
 
-    /// The inverse of [`Wedge::axial`]; missing components count as zero.
+    /// The inverse of [`Bivector::axial`]; missing components count as zero.
     pub fn from_axial(components: &[f64]) -> Self {
         let mut m = Matrix::zeros();
         let places: &[(usize, usize)] = if D == 2 { &[(1, 0)] } else { &[(2, 1), (0, 2), (1, 0)] };

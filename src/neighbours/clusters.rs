@@ -51,7 +51,7 @@ pub struct Clusters {
     pub slabs: Vec<Slab>,
     /// The slot of each water particle.
     pub fluid_slots: Vec<u32>,
-    /// The slot of each wet boundary particle, in the order of [`super::Near::wet`].
+    /// The slot of each wet boundary particle, in the order of [`super::NeighbourLists::boundary_near_fluid`].
     pub boundary_slots: Vec<u32>,
 }
 

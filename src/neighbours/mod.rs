@@ -2,7 +2,7 @@
 //!
 //! The lists look a margin further than the kernel's support and hold while nothing has moved by half the margin,
 //! so most steps search nothing. A sweep in lanes has lists of clusters ([`Clusters`]), the oracle of particles
-//! ([`Lists`]); both know which boundary particles are wet, and the others cost nothing until the next lists.
+//! ([`ParticleLists`]); both know which boundary particles are wet, and the others cost nothing until the next lists.
 
 mod clusters;
 mod columns;

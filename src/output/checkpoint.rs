@@ -51,7 +51,7 @@ pub struct OutputPositions {
 pub struct Checkpoint {
     /// Version of this crate that wrote it.
     pub version: String,
-    /// [`hash`] of the scene with every default filled in.
+    /// [`fnv1a`] of the scene with every default filled in.
     pub scene_hash: u64,
     /// Scene keys changed for this run, and their values.
     pub overrides: Vec<(String, String)>,
@@ -156,7 +156,7 @@ impl Checkpoint {
         })
     }
 
-    /// The checkpoint that lies in a file as `bytes`. Takes no more memory than [`MOST_UNFOLDED`] times theirs.
+    /// The checkpoint that lies in a file as `bytes`. Takes no more memory than `MAX_EXPANSION` times theirs.
     ///
     /// # Errors
     /// As [`Checkpoint::read`].

@@ -3,7 +3,7 @@
 //!   heave  T = 2π √((m + m_a)/(ρ₀ g A)),    roll  T = 2π √(I/(m g GM))
 //!
 //! A: area of the waterplane, m_a: the water that heaves along. For m_a stands half of that of a flat plate of the same
-//! waterplane: ½ π ρ₀ (A/2)² in 2-D, ½ (8/3) ρ₀ a³ with π a² = A in 3-D [@newman1977], ch. 4; half, for there is water on one
+//! waterplane: ½ π ρ₀ (A/2)² in 2-D, ½ (8/3) ρ₀ a³ with π a² = A in 3-D @newman1977, ch. 4; half, for there is water on one
 //! side only. Nothing is added to I: a real roll is slower.
 //!
 //! With Δt = C h/c₀ an explicit exchange carries a body whose mass per wetted area is above ½ C ρ₀ h. A lighter one answers

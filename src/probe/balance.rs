@@ -11,7 +11,7 @@ use crate::{
 
 /// Watches the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity, weight, contacts
 /// and ties, each kind that the scene has; their sum; the change of its momentum and angular momentum; and what is between
-/// the two. Nothing but NaN unless loads are kept ([`Simulation::keep_loads`]).
+/// the two. Nothing but NaN unless loads are kept ([`Simulation::enable_load_breakdown`]).
 pub struct LoadBalanceProbe {
     solid: usize,
     kinds: Vec<&'static str>,

@@ -5,13 +5,13 @@ use crate::{coupling::EnergyBudget, simulation::Simulation, system::System};
 
 /// Watches what water and bodies have stored since the start (J; J/m in 2-D): energy of motion, height and compression; every entry
 /// of the [`EnergyBudget`]; and what is stored beyond their sum. Nothing but NaN unless energy is booked
-/// ([`Simulation::keep_energy`]).
+/// ([`Simulation::enable_energy_budget`]).
 pub struct EnergyBudgetProbe {
     energy: EnergyProbe,
     start: f64,
 }
 
-/// What the residual of a row of a [`Budget`] is over all that was turned over, –; none before anything was.
+/// What the residual of a row of a [`EnergyBudgetProbe`] is over all that was turned over, –; none before anything was.
 pub fn relative_residual(row: &[f64]) -> Option<f64> {
     let (residual, rest) = row.split_last()?;
     let turned: f64 = rest.get(1..)?.iter().map(|energy| energy.abs()).sum();

@@ -34,7 +34,7 @@ impl<const D: usize> Probe<D> for ContactForceProbe {
     }
 }
 
-/// Lists all contacts in the last step: a row for each pair that presses on each other, with the columns of [`Press`] behind
+/// Lists all contacts in the last step: a row for each pair that presses on each other, with the columns of [`ContactForceProbe`] behind
 /// the names of the two. The force is that on the second.
 pub struct ContactList;
 

@@ -24,11 +24,11 @@ impl<const D: usize> ElevationProbe<D> {
         Self::with_surface(system, at, GaugeSurface::Highest)
     }
 
-    /// As [`Elevation::new`], of another surface: the lowest, as under a breaker's jet, or of all the highest and three
+    /// As [`ElevationProbe::new`], of another surface: the lowest, as under a breaker's jet, or of all the highest and three
     /// below it.
     ///
     /// # Errors
-    /// As [`Elevation::new`].
+    /// As [`ElevationProbe::new`].
     pub fn with_surface(system: &System<D>, at: &[f64], surface: GaugeSurface) -> Result<Self> {
         let mut gauge = Self { at: point(at, D - 1)?, surface, start: f64::NAN };
         gauge.start = gauge.surface_heights(system)[0];

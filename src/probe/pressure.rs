@@ -1,5 +1,5 @@
 //! The water's pressure at a point: P(x) = Σ V_b [P_b (ρ₀/ρ_b)² + ρ₀ g·(x − r_b)] W / Σ V_b W: what acts
-//! (see [`State::acting`](crate::sph::equation_of_state::State::acting)). What stands between the point and
+//! (see [`State::lattice_pressure`](crate::sph::equation_of_state::State::acting)). What stands between the point and
 //! the water that it sees is added as still water's weight, so that the point may lie on a wall.
 
 use super::{Probe, interpolate, point};

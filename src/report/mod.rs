@@ -68,7 +68,7 @@ pub fn write(folder: &Path) -> Result<Page> {
 /// Writes a page of the runs in `folders`, laid over one another, to `out`.
 ///
 /// # Errors
-/// `Usage` if there are fewer than two; else as [`write`].
+/// `Usage` if there are fewer than two; else as [`write()`].
 pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
     if folders.len() < 2 {
         return Err(Error::new(ErrorKind::Usage, "a comparison needs two runs or more")

@@ -24,12 +24,12 @@ impl Placement {
     }
 
     /// World position (m) of the local point `x` (m).
-    pub fn to_world(&self, x: &[f64; 3]) -> [f64; 3] {
+    pub fn to_world(self, x: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|i| self.at[i] + (0..3).map(|j| self.turn[i][j] * x[j]).sum::<f64>())
     }
 
     /// Local coordinates (m) of the world point `x` (m).
-    pub fn to_local(&self, x: &[f32; 3]) -> [f64; 3] {
+    pub fn to_local(self, x: &[f32; 3]) -> [f64; 3] {
         std::array::from_fn(|i| (0..3).map(|j| self.turn[j][i] * (f64::from(x[j]) - self.at[j])).sum())
     }
 

@@ -256,6 +256,6 @@ impl ProbeTable {
             ProbeKind::Contact { .. } => "contact",
             ProbeKind::Budget => "energy budget",
         });
-        Ok(Self { name: name.into(), what, columns, times: times, values: values })
+        Ok(Self { name: name.into(), what, columns, times, values })
     }
 }

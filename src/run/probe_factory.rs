@@ -81,7 +81,7 @@ fn unknown_series(series: &str, known: &[String]) -> Error {
 /// The checks that `plan` asks for, their references read.
 ///
 /// # Errors
-/// `Scene` if one, or a statistic, names no series of `probes`; else as [`Check::new`].
+/// `Scene` if one, or a statistic, names no series of `probes`; else as [`ReferenceCheck::new`].
 pub fn checks_from_plan<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Result<Vec<ReferenceCheck>> {
     let columns = plan.probes.iter().zip(probes);
     let known: Vec<String> =

@@ -117,7 +117,7 @@ pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
 /// The series of `column` over `time` of the table at `path`.
 ///
 /// # Errors
-/// As [`columns`], and as [`TimeSeries::new`].
+/// As `read_columns`, and as [`TimeSeries::new`].
 pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> {
     let mut both = read_columns(path, &[time, column])?;
     let x = both.pop().unwrap_or_default();

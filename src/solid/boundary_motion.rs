@@ -10,7 +10,7 @@ use crate::solid::Kinematics;
 /// `local`: positions in the solid's frame (m). Writes world positions `r` (m) and velocities `v` (m/s), in
 /// the same order; all three have the same length.
 ///
-/// Source: [@pirkhalili2023], eq. (25).
+/// Source: @pirkhalili2023, eq. (25).
 pub fn place_boundary_particles<const D: usize>(
     kinematics: &Kinematics<D>,
     local: &[Vector<D>],

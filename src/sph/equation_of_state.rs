@@ -24,7 +24,7 @@ impl EquationOfState {
         }
     }
 
-    /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`State::pressure`].
+    /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`EquationOfState::pressure`].
     pub fn compression(&self, p: f64) -> f64 {
         ((p / self.stiffness).ln_1p() / self.gamma).exp_m1()
     }

@@ -51,7 +51,7 @@ impl<const D: usize> FluidProperties<D> {
         self.dp.powi(D as i32)
     }
 
-    /// η² = 0.01 h² (m²), which keeps 1/(r² + η²) finite [@monaghan1992].
+    /// η² = 0.01 h² (m²), which keeps 1/(r² + η²) finite @monaghan1992.
     pub fn eta2(&self) -> f64 {
         0.01 * self.h * self.h
     }

@@ -2,15 +2,15 @@
 //!
 //!   M_a = −Σ V₀ r_ab ⊗ ∇_a W,   B_a = M_a⁻¹,
 //!
-//! B_a ∇_a W does, exactly [@bonet1999]. V₀ = dpᴰ and not m/ρ, so that water at rest on its lattice, however deep, has B = 1.
+//! B_a ∇_a W does, exactly @bonet1999. V₀ = dpᴰ and not m/ρ, so that water at rest on its lattice, however deep, has B = 1.
 //! The pressure force of a pair is then
 //!
 //!   dv_a/dt = −Σ m_b (P_a B_a + P_b B_b)/(ρ_a ρ_b) ∇_a W,
 //!
-//! which changes its sign when a and b swap, so that momentum is kept [@zhang2024]; angular momentum is no longer, to the extent to
+//! which changes its sign when a and b swap, so that momentum is kept @zhang2024; angular momentum is no longer, to the extent to
 //! which M differs from 1. It acts among water alone: at faces it would count boundary particles above a waterline as neighbours,
 //! and bodies would float a tenth of dp too deep. Where few neighbours are left, as in spray, the correction fades:
-//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) [@ren2023], by half at a flat free surface, where det M = 2⁻ᴰ. The B that acts is
+//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) @ren2023, by half at a flat free surface, where det M = 2⁻ᴰ. The B that acts is
 //! that of the pass before.
 
 use super::{AuxiliarySums, Num, Pair, Term};

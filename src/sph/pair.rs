@@ -64,12 +64,12 @@ pub struct PairSide<N, const D: usize> {
     pub specific_volume: N,
     /// Tensile repulsion, m²/s² (read by laws with [`Term::REPULSION`]).
     pub repulsion: N,
-    /// Whether water beside it is not shifted: 1 or 0 (read by laws with [`Term::MARK`]).
+    /// Whether water beside it is not shifted: 1 or 0 (read by laws with [`Term::SHIFTING_SUPPRESSION`]).
     pub shifting_suppressed: N,
     /// Sub-particle stress ρ₀ τ/ρ², m²/s²; symmetric, of which laws read `[i][j]` with j ≤ i (read by laws with
     /// [`Term::STRESS`]).
     pub stress: [[N; D]; D],
-    /// B − 1 of the corrected gradient, –; symmetric, as above (read by laws with [`Term::FORM`]).
+    /// B − 1 of the corrected gradient, –; symmetric, as above (read by laws with [`Term::GRADIENT_CORRECTION`]).
     pub gradient_correction: [[N; D]; D],
 }
 
@@ -138,11 +138,11 @@ pub struct AuxiliarySums<N, const D: usize> {
     pub concentration_gradient: [N; D],
     /// ∇·r = −Σ V_b r_ab·∇_a W, – ([`Term::SHIFT`]).
     pub position_divergence: N,
-    /// Above zero if a marked particle is within the support ([`Term::MARK`]).
+    /// Above zero if a marked particle is within the support ([`Term::SHIFTING_SUPPRESSION`]).
     pub shifting_suppressed: N,
     /// Strain rate S_ij, symmetric, of which `[i][j]` with j ≤ i is kept, 1/s ([`Term::STRESS`]).
     pub strain: [[N; D]; D],
-    /// Moment M_ij of the neighbours, symmetric, of which `[i][j]` with j ≤ i is kept, – ([`Term::MOMENT`]).
+    /// Moment M_ij of the neighbours, symmetric, of which `[i][j]` with j ≤ i is kept, – ([`Term::RENORMALIZATION`]).
     pub renormalization: [[N; D]; D],
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{AuxiliarySums, FluidProperties, Num, Pair, Term};
 use crate::math::Vector;
 
-/// Fickian shifting with a free-surface factor [@skillen2013], [@lee2008]; eqs. (16)–(22) of [@pirkhalili2023].
+/// Fickian shifting with a free-surface factor @skillen2013, @lee2008; eqs. (16)–(22) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Shift {

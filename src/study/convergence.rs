@@ -40,7 +40,7 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
 ///
 /// None with fewer than three spacings, or if f does not converge monotonically: then no order can be said.
 ///
-/// Source: [@roache1994].
+/// Source: @roache1994.
 /// ```
 /// # use pontoon::study::convergence;
 /// let points = [0.04, 0.02, 0.01].map(|dp| (dp, 0.2 + 3.0 * dp));

@@ -163,7 +163,7 @@ impl<const D: usize> System<D> {
             equation_of_state,
             fluid,
             solids: Vec::new(),
-            constraints: constraints,
+            constraints,
             fluid_domain: region,
             status: Status {
                 step_limits: StepLimits { acceleration: 0.0, approach_rate: 0.0 },
@@ -258,7 +258,7 @@ impl<const D: usize> System<D> {
         state: &'a EquationOfState,
     ) -> PairLoopInput<'a, D> {
         PairLoopInput {
-            neighbours: neighbours,
+            neighbours,
             fluid: &fluid.particles,
             boundary: &boundary.particles,
             boundary_velocity: boundary.extrapolated_velocity.as_ref().unwrap_or(&boundary.particles.v),
@@ -280,8 +280,7 @@ impl<const D: usize> System<D> {
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, .. } = self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         let Rates { fluid, boundary, auxiliary } = rates;
-        self.status.step_limits =
-            pair_loop.rates(&input, &mut PairLoopOutput { fluid: fluid, boundary: boundary, auxiliary: auxiliary });
+        self.status.step_limits = pair_loop.rates(&input, &mut PairLoopOutput { fluid, boundary, auxiliary });
         self.copy_to_images();
         self.update_fluid_tensors();
         let loads = self.loads(&self.rates.boundary);
@@ -318,7 +317,7 @@ impl<const D: usize> System<D> {
     ) -> Vec<Load<D>> {
         let (medium, state) = (&self.properties, &self.equation_of_state);
         let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
-        pair_loop.rates(&input, &mut PairLoopOutput { fluid: fluid, boundary: boundary, auxiliary: &mut [] });
+        pair_loop.rates(&input, &mut PairLoopOutput { fluid, boundary, auxiliary: &mut [] });
         self.loads(boundary)
     }
 

@@ -16,7 +16,7 @@ use crate::{
     system::{StepCheck, System},
 };
 
-/// The scheme [@dominguez2022]; it keeps no state between steps.
+/// The scheme @dominguez2022; it keeps no state between steps.
 pub struct Symplectic;
 
 impl Symplectic {

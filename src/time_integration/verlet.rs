@@ -28,7 +28,7 @@ use crate::{
 /// stands with 3.5 between Euler steps and is lost with 7.
 const FOLDINGS: f64 = 3.5;
 
-/// The scheme [@verlet1967], eqs. (12), (13) of [@pirkhalili2023], and the step before.
+/// The scheme @verlet1967, eqs. (12), (13) of @pirkhalili2023, and the step before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Verlet<const D: usize> {
     euler_every: u32,

@@ -11,7 +11,7 @@
 //! c is the paddle's transfer function, s = Σ sⱼ e^{−κⱼδ} that of the standing waves at its face. Nothing goes out if
 //! X = i η/(c e^{ikδ} + is), and F and T make that so at one period. τ brings the paddle home; it is the longer for not being
 //! seen at that period. The lag T stands for δ and s: so does the law hold back the gauge's noise. In shallow water it is that of
-//! long waves, x′ = −√(g/d) e. [@schaffer2000], [@altomare2017]
+//! long waves, x′ = −√(g/d) e. @schaffer2000, @altomare2017
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};

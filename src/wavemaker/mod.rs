@@ -1,6 +1,6 @@
 //! Waves by name: how a paddle has to move so that the waves of a theory leave it.
 //!
-//! A [`Maker`] knows the paddle and the water before it, and makes a [`Wave`]: the displacement of the paddle's face
+//! A [`Wavemaker`] knows the paddle and the water before it, and makes a [`PaddleMotion`]: the displacement of the paddle's face
 //! at the still level, positive where the waves go, with its exact rate. There is no state: a wave is rebuilt from the
 //! same words, and has the same bits at any time of any run. What a paddle yields to other waves is in `absorption`.
 //!
@@ -169,7 +169,7 @@ impl PaddleMotion {
         self.turned(self.displacement(t))
     }
 
-    /// As [`Wave::at`], the face having yielded by `aside` (m and m/s).
+    /// As [`Wave::coordinate_and_rate`], the face having yielded by `aside` (m and m/s).
     pub(super) fn with_offset(&self, t: f64, aside: (f64, f64)) -> (f64, f64) {
         let (x, v) = self.displacement(t);
         self.turned((x + aside.0, v + aside.1))
@@ -246,10 +246,10 @@ impl Wavemaker {
     }
 
     /// The group whose crest of `crest` (m) stands at `distance` (m) before the paddle at `time` (s), by linear
-    /// theory: of all groups of this spectrum the likeliest around a high crest (NewWave). [@tromans1991]
+    /// theory: of all groups of this spectrum the likeliest around a high crest (NewWave). @tromans1991
     ///
     /// # Errors
-    /// `Scene` as [`Maker::sea`], for a wave of height `crest`.
+    /// `Scene` as [`Wavemaker::irregular`], for a wave of height `crest`.
     pub fn focused(
         &self,
         crest: f64,
@@ -292,7 +292,7 @@ impl Wavemaker {
     /// says, to first order. Longer and shorter waves than those that hold the middle 99 % of its energy are left out.
     ///
     /// # Errors
-    /// `Scene` if it is too short or still, or as [`Maker::components`].
+    /// `Scene` if it is too short or still, or as [`Wavemaker::components`].
     pub fn measured(&self, elevation: &TimeSeries, distance: f64, delay: f64) -> Result<PaddleMotion> {
         let found = record::fourier_components(elevation)?;
         let early = |c: &WaveComponent| WaveComponent {

@@ -5,7 +5,7 @@
 //!   c = 4k sinh kd ∫ f cosh k(z + d) dz/(sinh 2kd + 2kd)
 //!
 //! A piston has f = 1, which gives 2 (cosh 2kd − 1)/(sinh 2kd + 2kd); a flap f = (z + l)/l above its hinge, l below the
-//! still level, and 0 under it. [@biesel1951], [@dean1991] ch. 6.
+//! still level, and 0 under it. @biesel1951, @dean1991 ch. 6.
 
 use nalgebra::Complex;
 

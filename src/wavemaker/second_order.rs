@@ -8,7 +8,7 @@
 //!
 //! The surface's forcing has the bound solution Σ Bⱼₗ cosh (kⱼ + kₗ)(z + d)/cosh (kⱼ + kₗ)d e^{−i(kⱼ + kₗ)x}; what it
 //! and the paddle's displacement leave over at x = 0, projected on the free wave of 2ω, has to be nothing, and that
-//! gives X₂. The problem is that of [@schaffer1996]; in shallow water the answer is that of [@madsen1971].
+//! gives X₂. The problem is that of @schaffer1996; in shallow water the answer is that of @madsen1971.
 
 use nalgebra::Complex;
 

@@ -3,8 +3,8 @@
 //!   X′ = c η/(d + η) at the piston's own place, so that with θ = κ(ct − X) the motion is known in closed form but for t:
 //!   X = (H/κd)(tanh θ − tanh θ₀),   κct = θ − θ₀ + (H/d)(tanh θ − tanh θ₀)
 //!
-//! c = √(g(d + H)). Boussinesq: κ² = 3H/4d³ [@goring1978]; Rayleigh: κ² = 3H/4d²(d + H), whose wave keeps its height
-//! better [@guizien2002].
+//! c = √(g(d + H)). Boussinesq: κ² = 3H/4d³ @goring1978; Rayleigh: κ² = 3H/4d²(d + H), whose wave keeps its height
+//! better @guizien2002.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -2,8 +2,8 @@
 //!
 //!   S(f) ∝ f⁻⁵ exp(−¼·5 (f_p/f)⁴) γ^exp(−(f/f_p − 1)²/2σ²),   σ = 0.07 below f_p, 0.09 above
 //!
-//! JONSWAP [@hasselmann1973]; with γ = 1 Bretschneider's two-parameter spectrum [@bretschneider1959], and with the peak
-//! that belongs to the height of a fully grown sea that of [@pierson1964].
+//! JONSWAP @hasselmann1973; with γ = 1 Bretschneider's two-parameter spectrum @bretschneider1959, and with the peak
+//! that belongs to the height of a fully grown sea that of @pierson1964.
 //!
 //! The band from ½ to 3 f_p is cut into parts of equal energy, each with one component at the frequency that halves its
 //! energy. No two frequencies have a simple ratio, so the sea does not repeat, and 4 √m₀ is the height to round-off.
@@ -70,7 +70,7 @@ impl WaveSpectrum {
     }
 }
 
-/// Phases (rad) without end, by the generator splitmix64 [@steele2014] from `seed`.
+/// Phases (rad) without end, by the generator splitmix64 @steele2014 from `seed`.
 pub(super) fn random_phases(seed: u64) -> impl Iterator<Item = f64> {
     (1u64..).map(move |n| {
         let mut z = seed.wrapping_add(n.wrapping_mul(0x9e37_79b9_7f4a_7c15));

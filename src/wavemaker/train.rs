@@ -4,13 +4,13 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
-/// Largest height of a wave over the depth [@mccowan1894].
+/// Largest height of a wave over the depth @mccowan1894.
 pub const MCCOWAN_LIMIT: f64 = 0.78;
 
-/// Largest height of a wave over its length in deep water [@miche1944].
+/// Largest height of a wave over its length in deep water @miche1944.
 const MICHE: f64 = 0.142;
 
-/// H L²/d³ above which waves are cnoidal, on the chart of [@lemehaute1976].
+/// H L²/d³ above which waves are cnoidal, on the chart of @lemehaute1976.
 const URSELL: f64 = 26.0;
 
 /// A wave of small height.
@@ -38,7 +38,7 @@ pub enum DepthRegime {
     Shallow,
 }
 
-/// Where a wave lies on the chart of [@lemehaute1976].
+/// Where a wave lies on the chart of @lemehaute1976.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum TheoryRegion {
     /// Stokes' second term is less than a hundredth of the first.

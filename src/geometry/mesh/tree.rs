@@ -36,7 +36,7 @@ mod with_parry {
                 .map_err(|why| Error::scene(format!("the mesh is no surface: {why}")))
         }
 
-        /// See [`Mesh::distance`].
+        /// See [`Mesh::distance_and_normal`].
         pub fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
             let at = Point::from_array((*x).into());
             let (foot, (facet, location)) = self.0.project_local_point_and_get_location(at, false);

@@ -9,7 +9,7 @@ use crate::{analysis::RaoPoint, error::Result, output::write_atomically};
 /// The file, in the run's folder.
 pub const RAO_FILE: &str = "rao.csv";
 
-/// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO`] for keys.
+/// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO_FILE`] for keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaoResult {
     /// Name of the `[[statistic]]`.

@@ -141,7 +141,7 @@ impl<const D: usize> Constraints<D> {
     /// Refuses joint number `i` if it cannot be meant.
     ///
     /// # Errors
-    /// `Scene`, as [`Links::check`].
+    /// `Scene`, as [`Constraints::check`].
     pub fn check_joint(&self, i: usize, solids: &[SolidSpec<D>]) -> Result<()> {
         let joint = &self.joints[i];
         let who = format!("joint \"{}\"", joint.name);
@@ -195,7 +195,7 @@ fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
 /// Refuses a spring that cannot be meant.
 ///
 /// # Errors
-/// `Scene`, as [`Links::check`].
+/// `Scene`, as [`Constraints::check`].
 pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("spring \"{}\"", spring.name);
     check_line(&who, &spring.ends, solids)?;
@@ -216,7 +216,7 @@ pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<
 /// Refuses a rope that cannot be meant.
 ///
 /// # Errors
-/// `Scene`, as [`Links::check`].
+/// `Scene`, as [`Constraints::check`].
 pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("rope \"{}\"", rope.name);
     check_line(&who, &rope.ends, solids)?;
@@ -236,7 +236,7 @@ pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -
 /// Refuses a force that cannot be meant.
 ///
 /// # Errors
-/// `Scene`, as [`Links::check`].
+/// `Scene`, as [`Constraints::check`].
 pub fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("force \"{}\"", force.name);
     check_ends(&who, [Some(force.solid), None], solids)?;

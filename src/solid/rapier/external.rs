@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// The solid that a body is: fixed if that is, else free, with its shape, place, mass, inertia, velocity and locks. Give it to a setup
-/// for [`Simulation::hosted`](crate::simulation::Simulation::hosted).
+/// for [`Simulation::with_external_bodies`](crate::simulation::Simulation::with_external_bodies).
 ///
 /// Its shape is that of the body's colliders, sensors left out. The water feels it at its true faces, whatever contact skin it has.
 ///

@@ -1,7 +1,7 @@
 //! Dynamic boundary particles: they obey continuity as water does, but not momentum, and their density is
 //! kept from falling below a least one, ρ₀ unless the wall settles, so that a wall never sucks.
 
-/// Dynamic boundary condition [@crespo2007].
+/// Dynamic boundary condition @crespo2007.
 #[derive(Clone, Copy, Debug)]
 pub struct DynamicBoundary;
 

@@ -7,14 +7,14 @@
 //! Water that strikes it meets the dynamic wall; water at rest, or carried along, presses on it as on more water, and no gap
 //! is remembered. P_w is never so low that the face itself would be sucked at, P_w ≥ min(0, ρ₀ g·n' d), d deep along n' from
 //! the water: a face that bears nothing has 0 there, and less behind it if it looks down. To more pressure a particle settles only with
-//! the part of its [`Cover`]: a particle of spray would leave with more energy than it brought, and so would a film.
+//! the part of its [`SupportCoverage`]: a particle of spray would leave with more energy than it brought, and so would a film.
 
 use crate::{math::Vector, sph::Num};
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
 const RELAXATION_TIME: f64 = 10.0;
 
-/// Depths at which [`Cover`] is tabled, less one.
+/// Depths at which [`SupportCoverage`] is tabled, less one.
 const DEPTHS: usize = 64;
 
 /// The parts of a full weight, –, up to which and from which on water is scanty or ample.
@@ -26,7 +26,7 @@ pub fn relaxation(dt: f64, h: f64, c0: f64) -> f64 {
     1.0 - (-dt * c0 / (RELAXATION_TIME * h)).exp()
 }
 
-/// The sums of a boundary particle over the water near it [@adami2012].
+/// The sums of a boundary particle over the water near it @adami2012.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallExtrapolation<N, const D: usize> {
     /// Σ V_f W_wf, –.
@@ -83,7 +83,7 @@ impl<const D: usize> WallExtrapolation<f64, D> {
     }
 }
 
-/// How far water fills what a boundary particle can see of it, as told by the weight of its [`Fit`].
+/// How far water fills what a boundary particle can see of it, as told by the weight of its [`WallExtrapolation`].
 #[derive(Clone, Debug)]
 pub struct SupportCoverage {
     /// Weights of boundary particles behind a flat face with water all before it, at depths from 0 on.

@@ -19,7 +19,7 @@ use crate::math::Vector;
 pub enum Slip {
     /// The water sticks to the boundary particles, half a dp and more behind the face.
     Partial,
-    /// The water sticks to the face [@morris1997].
+    /// The water sticks to the face @morris1997.
     None,
     /// Nothing holds it.
     Free,

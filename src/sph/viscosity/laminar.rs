@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sph::{Num, Pair, Term, Units};
 
-/// Laminar viscosity [@lo2002]; eqs. (6), (7) of [@pirkhalili2023].
+/// Laminar viscosity @lo2002; eqs. (6), (7) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Laminar {

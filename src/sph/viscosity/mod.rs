@@ -64,7 +64,7 @@ impl Viscosity {
         }
     }
 
-    /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity [@morris1997].
+    /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity @morris1997.
     pub fn step_limit(&self, h: f64) -> f64 {
         let nu0 = match self {
             Self::Laminar(law) => law.nu0,

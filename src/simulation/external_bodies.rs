@@ -56,7 +56,7 @@ impl<const D: usize> Simulation<D> {
     /// ```
     ///
     /// After an alarm the simulation may roll back to a good state, and what `hook` keeps does not: count in simulated time, or
-    /// switch the rollback off with [`without_rescue`](Simulation::without_rescue).
+    /// switch the rollback off with [`without_rollback`](Simulation::without_rollback).
     ///
     /// # Errors
     /// As [`Simulation::step`], the error that `hook` returns, and `Usage` if an external body was left without kinematics.

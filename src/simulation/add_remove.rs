@@ -28,7 +28,7 @@ where
     /// Lets a solid come between two steps. A driven one comes where its law is now.
     ///
     /// Water whose particles lie inside it goes, as at set-up, and with it its mass and momentum; that is told. A run with such
-    /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with`].
+    /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with_added_solids`].
     ///
     /// # Errors
     /// `Scene` if the solid cannot be meant, has a name that another has or had, or lies deeper than 0.05 dp inside another:
