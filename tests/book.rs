@@ -393,3 +393,22 @@ fn the_summary_lists_every_page() {
         pages().into_iter().filter(|page| page != "docs/SUMMARY.md" && !listed.contains(page)).collect();
     assert!(missing.is_empty(), "docs/SUMMARY.md does not list {missing:?}");
 }
+
+#[test]
+fn the_table_of_the_validation_equals_its_results() {
+    let results: toml::Table = toml::from_str(&read("docs/explanation/validation/results.toml")).unwrap();
+    let mut table = String::from(
+        "| case | reference | quantity | error | bound | pass | cost | commit |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for result in results["result"].as_array().unwrap() {
+        let text = |key: &str| result[key].as_str().unwrap().to_string();
+        let pass = if result["pass"].as_bool().unwrap() { "yes" } else { "**no**" };
+        let mut cells: Vec<String> = ["case", "reference", "quantity", "error", "bound"].map(text).into();
+        cells.extend([pass.into(), text("cost"), text("commit")]);
+        table += &format!("| {} |\n", cells.join(" | "));
+    }
+    let page = read("docs/explanation/validation.md");
+    let shown =
+        page.split("<!-- table: results.toml -->\n").nth(1).and_then(|rest| rest.split("<!-- end of table -->").next());
+    assert_eq!(shown.unwrap().trim(), table.trim(), "docs/explanation/validation.md");
+}
