@@ -1,4 +1,4 @@
-//! The chosen laws, as data; the one place where a name becomes a type.
+//! The chosen laws as data; the one place where a name becomes a type.
 
 pub use crate::sph::{boundary::Slip, density_diffusion::Diffusion, viscosity::Viscosity};
 
@@ -24,7 +24,7 @@ use crate::{
     },
 };
 
-/// Which kernel weighs the neighbours. Scene word `model.kernel`.
+/// The kernel. Scene key `model.kernel`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum KernelKind {
@@ -42,28 +42,28 @@ fn yes() -> bool {
     true
 }
 
-/// Which slope the pressure has. Scene word `model.gradient`.
+/// The pressure gradient. Scene key `model.gradient`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PressureGradient {
-    /// By the kernel's gradient as it is.
+    /// The plain kernel gradient.
     #[default]
     Plain,
-    /// Corrected by how the neighbours of each particle lie (Bonet & Lok 1999); with the Wendland kernel and no shifting.
+    /// Corrected for the arrangement of the neighbours (Bonet & Lok 1999); with the Wendland kernel and without shifting.
     Corrected,
 }
 
-/// Which particles are shifted. Scene word `model.shifting`.
+/// Particle shifting. Scene key `model.shifting`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Shifting {
     /// None (the paper's type 0).
     None,
-    /// Those that see no solid at all (type 1).
+    /// Particles without any solid within the kernel support (type 1).
     AwayFromSolids(Shift),
-    /// Those that see no fixed solid (type 2).
+    /// Particles without a fixed solid within the kernel support (type 2).
     AwayFromFixed(Shift),
-    /// All (type 3).
+    /// All particles (type 3).
     Everywhere(Shift),
 }
 
@@ -78,19 +78,19 @@ impl Shifting {
     }
 }
 
-/// Which sweep adds up the pairs. Scene word `model.sweep`.
+/// The pair loop. Scene key `model.sweep`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PairLoopKind {
-    /// Eight pairs at a time in single precision, where the processor can (x86-64 with AVX2, ARM); else the oracle.
+    /// SIMD in single precision where the processor supports it (x86-64 with AVX2, ARM); otherwise the reference.
     #[default]
     Fast,
-    /// The oracle: one after the other in double precision.
+    /// The reference in double precision.
     Reference,
 }
 
 impl PairLoopKind {
-    /// The instructions that its lanes use, if it has lanes.
+    /// The SIMD instructions that it uses, if any.
     pub fn instruction_set(self) -> Option<Level> {
         match self {
             Self::Fast => simd::best_instruction_set(),
@@ -99,19 +99,19 @@ impl PairLoopKind {
     }
 }
 
-/// How a solid's skin acts on the water. Scene word `model.walls`.
+/// How boundary particles act on the water. Scene key `model.walls`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Walls {
-    /// Dynamic boundary particles: they obey continuity, and their density never falls below ρ₀.
+    /// Dynamic boundary particles: they obey continuity, and their density does not fall below ρ₀.
     #[serde(rename = "dbc")]
     Dynamic,
-    /// The same, but their density settles to that of the pressure that the water near them would have at their place.
+    /// The same, and their density relaxes to that of the water's pressure extrapolated to them (Adami et al. 2012).
     #[serde(alias = "settling")]
     RelaxedAdami,
 }
 
-/// Which scheme advances time. Scene word `time.scheme`.
+/// The time integration scheme. Scene key `time.scheme`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TimeScheme {
@@ -129,7 +129,7 @@ fn fifty() -> u32 {
     50
 }
 
-/// Everything that the equations need to know, every default filled in.
+/// All parameters of the equations, with every default filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// Kernel.
@@ -159,7 +159,7 @@ pub struct Model {
     pub walls: Walls,
     /// How water slips along solids.
     pub slip: Slip,
-    /// Which sweep adds up the pairs.
+    /// The pair loop.
     #[serde(default)]
     pub pair_loop: PairLoopKind,
     /// Time scheme.
@@ -170,13 +170,13 @@ pub struct Model {
     pub dt_max: f64,
 }
 
-/// c₀ over √(g·depth) where nobody says it, –.
+/// Default of c₀ over √(g·depth), –.
 pub const C0_FACTOR: f64 = 10.0;
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
     /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
-    /// that settle and do not drag, symplectic at CFL 0.4. Change what you need.
+    /// relaxed Adami with free slip, symplectic at CFL 0.4. Change the fields that you need.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
         let mut gravity = vec![0.0; dimension];
@@ -247,7 +247,7 @@ impl Model {
         }
     }
 
-    /// What of the choices does not go together, if anything.
+    /// The choices that cannot be combined, if any.
     pub fn conflict(&self) -> Option<&'static str> {
         let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
@@ -314,9 +314,9 @@ impl Model {
     }
 }
 
-/// Dimensions in which sweeps are compiled, here and once.
+/// Dimensions for which the pair loop is compiled.
 pub trait Dimension<const D: usize>: HasEngine<D> {
-    /// The sweep that does what `model` names, and nothing else.
+    /// The pair loop with the terms that `model` names, and no others.
     fn pair_loop(model: &Model) -> Box<dyn PairLoop<D>>;
 }
 
@@ -334,7 +334,7 @@ impl Dimension<3> for Dim<3> {
     }
 }
 
-/// The making of a sweep, choice by choice, in the units in which it counts.
+/// Builds a pair loop choice by choice, in its units.
 struct PairLoopBuilder<'a, const D: usize> {
     model: &'a Model,
     properties: FluidProperties<D>,

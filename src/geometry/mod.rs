@@ -1,4 +1,4 @@
-//! Geometry: what a solid or a body of water looks like. No motion, no mass.
+//! Geometry of solids and water: shapes, volumes, distances, boundary points, filling. No motion, no mass.
 //!
 //! A [`Shape`] gives its exact volume properties, its signed distance, the part of it under water and its
 //! boundary particles; [`fill()`] puts water on a lattice and fits it to the solids.
@@ -63,7 +63,7 @@ pub struct VolumeProperties<const D: usize> {
     pub second_moment: Matrix<D>,
 }
 
-/// A boundary particle of a skin, in the shape's frame.
+/// A boundary particle, in the shape's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryPoint<const D: usize> {
     /// Position, m.

@@ -1,21 +1,21 @@
-//! Running sums, and in which rows they lie in memory.
+//! Running sums of the pair loop, and the rows in which they lie in memory.
 
 use crate::sph::{AuxiliarySums, Num, Term};
 
-/// What a set of laws reads and sums beside acceleration and density rate.
+/// Inputs and sums that a set of terms needs beside acceleration and density rate.
 #[derive(Clone, Copy, Debug)]
 pub struct RequiredSums {
     /// The sums of shifting.
     pub shift: bool,
     /// Tensile repulsions.
     pub repulsion: bool,
-    /// Marks, and the sum that holds shifting back.
+    /// Marks of boundary particles, and the sum that suppresses shifting.
     pub suppression: bool,
     /// Stress, and the sum of strain.
     pub stress: bool,
     /// Corrected gradients.
     pub gradient_correction: bool,
-    /// The moment of the neighbours.
+    /// The renormalization matrix of the neighbours.
     pub renormalization: bool,
 }
 
@@ -25,7 +25,7 @@ const fn entries(dimension: usize) -> usize {
 }
 
 impl RequiredSums {
-    /// Those of the laws `Y`.
+    /// The needs of the terms `Y`.
     pub const fn of_terms<Y: Term<D>, const D: usize>() -> Self {
         Self {
             shift: Y::SHIFT,
@@ -54,12 +54,12 @@ impl RequiredSums {
         self.strain_at(dimension) + if self.stress { entries(dimension) } else { 0 }
     }
 
-    /// Rows of sums: acceleration and density rate, then what the laws ask for.
+    /// Number of rows of sums: acceleration and density rate, then those that the terms need.
     pub(super) const fn sum_rows(self, dimension: usize) -> usize {
         self.moment_at(dimension) + if self.renormalization { entries(dimension) } else { 0 }
     }
 
-    /// The row of repulsion among the inputs beside places, velocities and densities; before it is the mark.
+    /// Row of the repulsion among the additional inputs; the mark comes before it.
     pub(super) const fn repulsion_row(self) -> usize {
         if self.suppression { 1 } else { 0 }
     }
@@ -74,7 +74,7 @@ impl RequiredSums {
         self.stress_row() + if self.stress { entries(dimension) } else { 0 }
     }
 
-    /// Rows of such inputs.
+    /// Number of rows of additional inputs.
     pub(super) const fn input_rows(self, dimension: usize) -> usize {
         self.gradient_correction_row(dimension) + if self.gradient_correction { entries(dimension) } else { 0 }
     }
@@ -95,7 +95,7 @@ impl<N: Num, const D: usize> Accumulators<N, D> {
         Self { acceleration: [zero; D], compression_rate: zero, auxiliary: AuxiliarySums::filled_with(zero) }
     }
 
-    /// Calls `visit` with each sum that laws of needs `own` make and its row, where laws of needs `all` share the rows.
+    /// Calls `visit` with each sum that the terms with needs `own` compute and its row; terms with needs `all` share the rows.
     #[inline(always)]
     pub(super) fn for_each_row(&mut self, own: RequiredSums, all: RequiredSums, mut visit: impl FnMut(usize, &mut N)) {
         for (k, dv) in self.acceleration.iter_mut().enumerate() {

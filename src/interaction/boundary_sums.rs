@@ -1,4 +1,4 @@
-//! Sums of boundary particles over the water near them, for walls that settle: one kernel and no laws.
+//! Extrapolation of the water to boundary particles, for relaxed Adami walls and no-slip faces: one kernel, no terms.
 
 use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
 
@@ -14,7 +14,7 @@ use crate::{
 
 /// The sums under one kernel.
 pub(super) trait BoundarySums<const D: usize>: Send + Sync {
-    /// By the oracle, of the boundary particles `wet`, whose neighbours `lists` hold; with the flow if `flow`.
+    /// By the reference: the sums of the boundary particles `wet`, whose neighbours are in `lists`; with the velocity if `flow`.
     fn sum_reference(
         &self,
         nodes: [&[ReferenceParticle<D>]; 2],
@@ -24,14 +24,14 @@ pub(super) trait BoundarySums<const D: usize>: Send + Sync {
         fits: &mut [WallExtrapolation<f64, D>],
     );
 
-    /// In lanes, of a slab and the one after it; with the flow if `flow`.
+    /// In SIMD lanes: the sums of a slab and of the next one; with the velocity if `flow`.
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]);
 }
 
-/// A kernel, weighed with a particle's volume at ρ₀.
+/// A kernel, multiplied by the volume of a particle at ρ₀.
 pub(super) struct KernelSums<K>(pub(super) K);
 
-/// Rows of sums, with the flow or without.
+/// Number of rows of sums, with the velocity or without.
 pub(super) const fn row_count(dimension: usize, flow: bool) -> usize {
     dimension + 2 + if flow { dimension } else { 0 }
 }
@@ -69,7 +69,7 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
     }
 }
 
-/// The sums in `rows` and as a fit.
+/// Calls `visit` with the row and the value of each sum.
 #[inline(always)]
 pub(super) fn for_each_row<N: Num, const D: usize>(
     fit: &mut WallExtrapolation<N, D>,
@@ -127,7 +127,7 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
                     }
                     let w = kernel.w(r2);
                     if is_water {
-                        // One water particle beside eight of a wall, which take it.
+                        // One water particle beside eight boundary particles, which receive its contribution.
                         let theirs = &mut sums[(j as usize - first) * rows..][..rows];
                         let mut fit = WallExtrapolation::filled_with(zero);
                         for_each_row(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));

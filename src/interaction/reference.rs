@@ -1,4 +1,4 @@
-//! The f64 oracle: each particle gathers its own neighbours in stored order, so that the bits depend on
+//! The f64 reference: each particle sums over its own neighbours in stored order, so that the result depends on
 //! neither threads nor chunks.
 
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ use crate::{
     sph::{AuxiliarySums, Pair, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel, pressure::repulsion},
 };
 
-/// The oracle with its laws.
+/// The reference with its terms.
 pub(super) struct ReferencePairLoop<const D: usize> {
     laws: Box<dyn PairTerms<D>>,
     fits: Box<dyn BoundarySums<D>>,
@@ -26,7 +26,7 @@ pub(super) struct ReferencePairLoop<const D: usize> {
     spent: Duration,
 }
 
-/// A particle as a pair needs it, packed together.
+/// The data of a particle that a pair needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReferenceParticle<const D: usize> {
     pub(super) r: [f64; D],
@@ -35,13 +35,13 @@ pub(super) struct ReferenceParticle<const D: usize> {
 }
 
 impl<const D: usize> ReferencePairLoop<D> {
-    /// The oracle of those laws, made in SI.
+    /// The reference with those terms, in SI.
     pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>) -> Self {
         Self { laws, fits, nodes: [Vec::new(), Vec::new()], spent: Duration::ZERO }
     }
 }
 
-/// Adds the share of neighbour `b` to `sum` by the law `law`; gives |v_ab·r_ab|/(r² + η²).
+/// Adds the contribution of neighbour `b` by `law` to `sum`; returns |v_ab·r_ab|/(r² + η²).
 #[inline(always)]
 fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
     laws: &CompiledTerms<K, T, W>,
@@ -53,7 +53,7 @@ fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
     let r_ab: [f64; D] = std::array::from_fn(|i| a.r[i] - b.r[i]);
     let v_ab: [f64; D] = std::array::from_fn(|i| a.v[i] - b.v[i]);
     let r2: f64 = r_ab.iter().map(|x| x * x).sum();
-    // The lists look further than the kernel: a quarter of their entries end here.
+    // The lists reach beyond the kernel support: a quarter of their entries are skipped here.
     if r2 >= laws.reach2 {
         return 0.0;
     }
@@ -123,7 +123,7 @@ fn rows<const D: usize>(m: &Matrix<D>) -> [[f64; D]; D] {
     std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
 }
 
-/// The particles as nodes.
+/// The particles as the reference reads them.
 fn nodes<const D: usize>(
     input: &PairLoopInput<'_, D>,
     particles: &Particles<D>,

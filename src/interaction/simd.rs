@@ -1,10 +1,10 @@
-//! Eight pairs at a time, each pair once: a particle meets later clusters, and what it gives them they take with
-//! the sign changed.
+//! The SIMD pair loop: eight pairs at a time, each pair once. A particle is paired with later clusters; the partners
+//! receive the opposite force.
 //!
-//! A thread takes a slab and writes its sums, and those of the slab after it, into rows of its own; then every particle
-//! adds what two slabs hold for it. So nothing depends on the threads and nobody waits. Positions are whole numbers,
-//! whose differences are exact; the rest is single precision in units of the kernel's support and the time sound
-//! takes through h.
+//! A thread computes one slab and writes its sums, and those of the next slab, into rows of its own. Every particle then
+//! adds two rows, so that the result does not depend on the threads and no thread waits. Positions are integers,
+//! whose differences are exact; all else is single precision in units of the kernel support and of the time in which sound
+//! crosses h.
 
 use std::time::{Duration, Instant};
 
@@ -26,30 +26,30 @@ use crate::{
     sph::{AuxiliarySums, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
-/// The sweep in lanes with its laws.
+/// The SIMD pair loop with its terms.
 pub(super) struct SimdPairLoop<const D: usize> {
     laws: Box<dyn PairTerms<D>>,
     fits: Box<dyn BoundarySums<D>>,
     units: Units,
     level: Level,
     packed: PackedParticles<D>,
-    /// Whether the water lies packed for this pass already.
+    /// Whether the water is packed for this pass already.
     has_water: bool,
     /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
     sums: Vec<LaneRow>,
-    /// Where in `sums` the rows of a cluster begin: its own slab's, and those of the slab before.
+    /// Where the rows of a cluster begin in `sums`: in its own slab and in the slab before.
     at: Vec<[u32; 2]>,
     spent: Duration,
 }
 
 impl<const D: usize> SimdPairLoop<D> {
-    /// The sweep of those laws, made in `units`.
+    /// The pair loop with those terms, in `units`.
     pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>, units: Units, level: Level) -> Self {
         let (packed, sums, at) = (PackedParticles::default(), Vec::new(), Vec::new());
         Self { laws, fits, units, level, packed, has_water: false, sums, at, spent: Duration::ZERO }
     }
 
-    /// Makes room for the sums of all slabs, `rows` a cluster; returns how many rows each slab writes.
+    /// Allocates the sums of all slabs, `rows` a cluster; returns the number of rows that each slab writes.
     fn lay_out(&mut self, clusters: &Clusters, rows: usize) -> Vec<usize> {
         self.at.resize(clusters.len(), [0; 2]);
         let mut lengths = Vec::with_capacity(clusters.slabs.len());
@@ -61,18 +61,18 @@ impl<const D: usize> SimdPairLoop<D> {
             }
             let last = clusters.slabs.get(s + 1).map_or(slab.end, |next| next.end);
             before = Some((offset, slab.first));
-            // And rows for what goes nowhere.
+            // And rows for discarded sums.
             lengths.push((last - slab.first + 1) * rows);
             offset += (last - slab.first + 1) * rows;
         }
-        // The first slab has none before it: rows of zeros stand for them.
+        // The first slab has no slab before it: rows of zeros replace it.
         self.at.iter_mut().take_while(|at| at[1] == u32::MAX).for_each(|at| at[1] = offset as u32);
         self.sums.resize(offset + rows, LaneRow::default());
         self.sums[offset..].fill(LaneRow::default());
         lengths
     }
 
-    /// The sums of the particle in `slot`, in the sweep's units, by their row among the first `rows`.
+    /// The sums of the particle in `slot`, in the units of the pair loop, by row among the first `rows`.
     #[inline(always)]
     fn of_slot(&self, slot: u32, rows: usize) -> impl Fn(usize) -> f64 {
         let (c, l) = (slot as usize / LANES, slot as usize % LANES);
@@ -94,7 +94,7 @@ impl<const D: usize> SimdPairLoop<D> {
         PairSums { acceleration: dv, compression_rate: sum(D) * rate }
     }
 
-    /// The extra sums of the particle in `slot`, in SI.
+    /// The auxiliary sums of the particle in `slot`, in SI.
     fn auxiliary_sums_of(&self, slot: u32, needs: RequiredSums) -> AuxiliarySums<f64, D> {
         let (sum, mut sums) = (self.of_slot(slot, needs.sum_rows(D)), Accumulators::filled_with(0.0));
         sums.for_each_row(needs, needs, |row, x| *x = sum(row));
@@ -111,7 +111,7 @@ impl<const D: usize> SimdPairLoop<D> {
         }
     }
 
-    /// Sums over all slabs; gives the largest |v_ab·r_ab|/(r² + η²), 1/s.
+    /// Computes the sums of all slabs; returns the largest |v_ab·r_ab|/(r² + η²), 1/s.
     fn sum_pairs(&mut self, clusters: &Clusters) -> f64 {
         let lengths = self.lay_out(clusters, self.laws.required_sums().sum_rows(D));
         let start = Instant::now();
@@ -204,7 +204,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
     }
 }
 
-/// The sums of a slab by the laws `laws`.
+/// Computes the sums of a slab by the terms `laws`.
 pub(super) fn sum_slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
     laws: &CompiledTerms<K, T, W>,
     level: Level,
@@ -216,7 +216,7 @@ pub(super) fn sum_slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
 }
 
 struct SlabTask<'a, K, T, W, const D: usize> {
-    /// By value: so the compiler sees that no sum written changes it.
+    /// By value: the compiler then knows that writing a sum does not change it.
     laws: CompiledTerms<K, T, W>,
     packed: &'a PackedParticles<D>,
     slab: &'a Slab,
@@ -231,7 +231,7 @@ struct BroadcastParticle<S: Simd, const D: usize> {
     side: PairSide<f32x8<S>, D>,
 }
 
-/// What every pair of a slab needs.
+/// Data that every pair of a slab needs.
 #[derive(Clone, Copy)]
 struct SlabInput<'a, S: Simd, K, const D: usize> {
     simd: S,
@@ -244,7 +244,7 @@ struct SlabInput<'a, S: Simd, K, const D: usize> {
     rows: &'a [LaneRow],
     /// The slab's first cluster.
     first: usize,
-    /// What all laws together need.
+    /// The needs of all terms together.
     needs: RequiredSums,
 }
 
@@ -276,7 +276,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
                 if start == end {
                     continue;
                 }
-                // Water meets water first; a boundary particle meets water only, by the laws of walls.
+                // First pairs of water particles; a boundary particle is paired with water only, by the wall terms.
                 let skin = if c < *middle { skin } else { start };
                 let (one, mut sum) = (given.particle_in_lane(c, l), Accumulators::filled_with(given.zero));
                 given.add_pairs(&laws.fluid, &one, &index[start..skin], sums, &mut sum, &mut closing);
@@ -308,7 +308,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         one
     }
 
-    /// A side of a pair from densities, pressure and volume `s` and what `read` makes of the rows beside cluster `c`.
+    /// A side of a pair from densities, pressure and volume `s`, and from the additional rows of cluster `c` as `read` reads them.
     #[inline(always)]
     fn pair_side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> PairSide<f32x8<S>, D> {
         let [x, low, p, s] = s;
@@ -347,8 +347,8 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         side
     }
 
-    /// Lets `one` meet `others` by the law `law`: adds its share to `sum` and theirs to their `sums`; its own cluster
-    /// comes to it lane by lane, so there its share goes nowhere, to the last rows.
+    /// Pairs `one` with `others` by the terms `law`: adds their contribution to `sum` and its contribution to their `sums`. Its own
+    /// cluster is paired lane by lane, so there its contribution is discarded into the last rows.
     #[inline(always)]
     fn add_pairs<L: Term<D>>(
         &self,

@@ -1,4 +1,4 @@
-//! Particles packed into lanes.
+//! Memory layout of the particles for the SIMD pair loop.
 
 use rayon::prelude::*;
 
@@ -10,15 +10,15 @@ use crate::{
     sph::{Units, pressure::repulsion},
 };
 
-/// Eight particles of one kind as a pair needs them, in the sweep's units.
+/// Eight particles of one kind, in the units of the pair loop.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct PackedCluster<const D: usize> {
-    /// Position in whole units.
+    /// Position in integer units.
     pub(super) x: [[i32; LANES]; D],
     /// Velocity.
     pub(super) v: [[f32; LANES]; D],
-    /// Excess density, what single precision cuts off it, pressure over ρ₀, specific volume.
+    /// Compression ρ/ρ₀ − 1, its remainder in single precision, pressure over ρ₀, specific volume.
     pub(super) s: [[f32; LANES]; 4],
 }
 
@@ -27,7 +27,7 @@ impl<const D: usize> PackedCluster<D> {
         Self { x: [[0; LANES]; D], v: [[0.0; LANES]; D], s: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]] };
 }
 
-/// What every cluster needs, and rows more where laws read a mark or a stress.
+/// The packed particles, with additional rows where terms read a mark or a tensor.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PackedParticles<const D: usize> {
     pub(super) clusters: Vec<PackedCluster<D>>,
@@ -35,7 +35,7 @@ pub(super) struct PackedParticles<const D: usize> {
 }
 
 impl<const D: usize> PackedParticles<D> {
-    /// Packs all particles that may meet; only the boundary particles if the water has not changed since.
+    /// Packs all particles that may have pairs; only the boundary particles if the water has not changed.
     pub(super) fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
         self.clusters.resize(clusters.len(), PackedCluster::EMPTY);
         let inv_unit = 1.0 / units.length;
@@ -54,7 +54,7 @@ impl<const D: usize> PackedParticles<D> {
         });
     }
 
-    /// Packs the rows of input that the laws need: marks of the skin, stress and corrected gradients of the water, repulsion of both.
+    /// Packs the additional rows: marks of boundary particles, stress and gradient correction of the water, repulsion of both.
     pub(super) fn pack_rows(
         &mut self,
         input: &PairLoopInput<'_, D>,

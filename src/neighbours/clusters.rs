@@ -1,4 +1,4 @@
-//! Particles of one kind in clusters of eight, and for each particle the later clusters that it must meet.
+//! Clusters of eight particles of one kind, and for each particle the later clusters with which it has pairs.
 //!
 //! A column is cut into runs of eight. The clusters of a slab follow one another, water first, then boundary
 //! particles. A list holds, for one particle, every cluster of its own slab or the next that comes later and has a
@@ -20,14 +20,14 @@ use crate::{
 /// No particle: a pad that fills up a cluster.
 pub const PAD: u32 = u32::MAX;
 
-/// Where a pad lies: half the range of whole numbers from its cluster, so far that no kernel reaches it and
+/// Position of a pad: half the integer range from its cluster, so far that no kernel support reaches it and
 /// so near that no difference overflows.
 pub const FAR_POSITION: i32 = 1 << 30;
 
 /// Widths of a column that a cluster may span.
 const SPAN: f64 = 2.0;
 
-/// Clusters that one thread takes, and their lists.
+/// The clusters of one slab and their lists; a thread computes whole slabs.
 #[derive(Clone, Debug, Default)]
 pub struct Slab {
     /// First cluster of water.
@@ -38,14 +38,14 @@ pub struct Slab {
     pub end: usize,
     /// For each slot of the slab: first entry in `index`, start of the clusters of boundary particles, end.
     pub spans: Vec<[u32; 3]>,
-    /// Clusters to meet.
+    /// Clusters with which there are pairs.
     pub index: Vec<u32>,
 }
 
 /// All clusters.
 #[derive(Clone, Debug, Default)]
 pub struct Clusters {
-    /// The particle in each slot, eight slots a cluster: an index among the water or the skin, or [`PAD`].
+    /// The particle in each slot, eight slots a cluster: an index of a water or boundary particle, or [`PAD`].
     pub source: Vec<u32>,
     /// The slabs in order.
     pub slabs: Vec<Slab>,
@@ -55,7 +55,7 @@ pub struct Clusters {
     pub boundary_slots: Vec<u32>,
 }
 
-/// What the search for pairs needs to know of a cluster besides its particles.
+/// The extent of a cluster, for the search for pairs.
 pub(super) struct ClusterExtent<const D: usize> {
     pub(super) column: u32,
     /// Lowest and highest particle along the columns, m.
@@ -122,7 +122,7 @@ impl Clusters {
         self.maps(water_r.len(), &touched)
     }
 
-    /// The places of all slots in whole units, and the boxes around the clusters.
+    /// The positions of all slots in integer units, and the boxes around the clusters.
     fn places<const D: usize>(
         &self,
         water: &[Vector<D>],
@@ -162,7 +162,7 @@ impl Clusters {
         parts
     }
 
-    /// Notes which slot each particle has; returns the wet boundary particles in ascending order.
+    /// Records the slot of each particle; returns the boundary particles near water in ascending order.
     fn maps(&mut self, water: usize, touched: &[u8]) -> Vec<u32> {
         self.fluid_slots.clear();
         self.fluid_slots.resize(water, 0);
@@ -185,7 +185,7 @@ impl Clusters {
     }
 }
 
-/// The places of a cluster in whole units, pads far away.
+/// The positions of a cluster in integer units, pads far away.
 #[inline(always)]
 pub fn fill_positions<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) {
     let n = occupied_lanes(source);

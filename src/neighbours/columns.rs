@@ -1,5 +1,5 @@
-//! Space cut into columns two particles wide, the columns gathered in slabs at least as thick as a neighbour is
-//! far, and particles sorted into them.
+//! Columns two particles wide, grouped into slabs at least as thick as the search radius, and particles sorted into
+//! them.
 //!
 //! Slabs follow one another along the longest axis of the water, columns stand along the second longest. A
 //! particle then finds its neighbours in its own slab and the two beside it, and a thread takes whole slabs.
@@ -14,7 +14,7 @@ use crate::{
 /// Most columns per particle: where particles lie far apart the columns are made wider.
 const COLUMNS_PER_PARTICLE: f64 = 4.0;
 
-/// The cut.
+/// The division of space into columns.
 #[derive(Clone, Debug)]
 pub(super) struct Columns<const D: usize> {
     /// Around all places within reach of the water.
@@ -47,7 +47,7 @@ pub(super) struct Sorted {
 }
 
 impl<const D: usize> Columns<D> {
-    /// Cuts the space that the water `r` (m) fills into columns at least `width` (m) wide, for neighbours
+    /// Divides the space of the water `r` (m) into columns at least `width` (m) wide, for neighbours
     /// within `reach` (m).
     pub(super) fn new(r: &[Vector<D>], width: f64, reach: f64) -> Self {
         let bounds =

@@ -1,4 +1,4 @@
-//! Neighbour lists in chunks of particles, for the oracle: each made and read by one thread at a time.
+//! Neighbour lists of single particles for the reference, in chunks that one thread builds and reads.
 
 use rayon::prelude::*;
 
@@ -40,7 +40,7 @@ impl ParticleListChunk {
 /// The lists of all particles.
 #[derive(Clone, Debug, Default)]
 pub struct ParticleLists {
-    /// For fluid: first kind water, second kind skin.
+    /// Of water particles: first kind water, second kind boundary.
     pub fluid: Vec<ParticleListChunk>,
     /// For the wet boundary particles: first kind water; no second.
     pub boundary: Vec<ParticleListChunk>,
@@ -53,7 +53,7 @@ impl ParticleLists {
         self.fluid.iter().chain(&self.boundary).map(chunk).sum()
     }
 
-    /// Lists all pairs nearer than `reach` (m) among water and of water with skin; returns which of the boundary
+    /// Lists all pairs of water with water and boundary nearer than `reach` (m); returns which of the boundary
     /// particles `near` have any.
     pub(super) fn build<const D: usize>(
         &mut self,

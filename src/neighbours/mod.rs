@@ -1,8 +1,8 @@
-//! Neighbours: positions in, indices out.
+//! Neighbour lists: positions in, indices out.
 //!
-//! The lists look a margin further than the kernel's support and hold while nothing has moved by half the margin,
-//! so most steps search nothing. A sweep in lanes has lists of clusters ([`Clusters`]), the oracle of particles
-//! ([`ParticleLists`]); both know which boundary particles are wet, and the others cost nothing until the next lists.
+//! The lists reach beyond the kernel support by a margin, and hold while no particle has moved by half the margin.
+//! Most steps therefore search nothing. The SIMD pair loop has lists of clusters ([`Clusters`]), the reference of particles
+//! ([`ParticleLists`]). Both record the boundary particles near water; the others cost nothing until the next rebuild.
 
 mod clusters;
 mod columns;
@@ -22,25 +22,25 @@ use crate::{
 };
 use columns::Columns;
 
-/// How far beyond the support the lists look, over the support: new lists every ten steps or so.
+/// Margin of the lists beyond the support, over the support: they are rebuilt about every ten steps.
 const MARGIN: f64 = 0.1;
 
 /// Width of a column over dp.
 const WIDTH: f64 = 2.0;
 
-/// Whole units in the kernel's support: a difference of two places within it is exact in single precision.
+/// Integer units in the kernel support: a difference of two positions within it is exact in single precision.
 const UNITS: f64 = (1 << 24) as f64;
 
-/// Which particles meet which.
+/// The pairs.
 #[derive(Clone, Debug)]
 pub enum PairLists {
-    /// Each with its list of single neighbours.
+    /// Lists of single neighbours.
     Lists(ParticleLists),
-    /// Each with its list of later clusters, searched with the instructions of that level.
+    /// Lists of later clusters, searched with those instructions.
     Clusters(Clusters, Level),
 }
 
-/// The neighbours of the water and of the skin, and the positions for which they were found.
+/// The neighbour lists of water and boundary particles, and the positions at which they were built.
 #[derive(Clone, Debug)]
 pub struct NeighbourLists<const D: usize> {
     /// Kernel support, m.
@@ -52,7 +52,7 @@ pub struct NeighbourLists<const D: usize> {
     boundary_near_fluid: Vec<u32>,
     /// Positions of water and skin at the last build, m.
     positions_at_build: (Vec<Vector<D>>, Vec<Vector<D>>),
-    /// The same in grids, for those who ask what is near a place; made when one asks.
+    /// The same in grids, for queries at a point; built at the first query.
     grids: OnceLock<(CellGrid<D>, CellGrid<D>)>,
 }
 
@@ -79,14 +79,14 @@ impl<const D: usize> NeighbourLists<D> {
         reach / UNITS
     }
 
-    /// Forgets the boundary particles `gone`, whose places the later ones take.
+    /// Removes the boundary particles `gone`; the later ones are renumbered.
     pub(crate) fn remove_boundary(&mut self, gone: std::ops::Range<usize>) {
         self.boundary_near_fluid.retain(|&i| !gone.contains(&(i as usize)));
         let later = self.boundary_near_fluid.partition_point(|&i| (i as usize) < gone.start);
         self.boundary_near_fluid[later..].iter_mut().for_each(|i| *i -= gone.len() as u32);
     }
 
-    /// How far the lists look beyond the support, m.
+    /// Margin of the lists beyond the support, m.
     pub fn margin(&self) -> f64 {
         MARGIN * self.support_radius
     }
@@ -97,12 +97,12 @@ impl<const D: usize> NeighbourLists<D> {
         columns.sort(r, &all_indices(r.len())).order
     }
 
-    /// How far the lists look, m.
+    /// Search radius of the lists, m.
     fn list_radius(&self) -> f64 {
         self.support_radius + self.margin()
     }
 
-    /// Makes the lists for these positions of water and skin.
+    /// Builds the lists for these positions of water and boundary particles.
     pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
         self.positions_at_build.0.clear();
         self.positions_at_build.0.extend_from_slice(water);
@@ -135,7 +135,7 @@ impl<const D: usize> NeighbourLists<D> {
         &self.positions_at_build.0
     }
 
-    /// Which particles meet which.
+    /// The pairs.
     pub fn pair_lists(&self) -> &PairLists {
         &self.pair_lists
     }
@@ -145,7 +145,7 @@ impl<const D: usize> NeighbourLists<D> {
         &self.boundary_near_fluid
     }
 
-    /// Memory of the lists, and of the particles as the sweep packs them, B.
+    /// Memory of the lists and of the packed particles, B.
     pub fn memory_bytes(&self) -> usize {
         match &self.pair_lists {
             PairLists::Lists(lists) => {
@@ -197,8 +197,8 @@ fn all_indices(n: usize) -> Vec<u32> {
     (0..n as u32).collect()
 }
 
-/// `x` (m) in whole units of which `inv_unit` are a metre, modulo 2³²: differences of places near one another are
-/// exact wherever they are, up to 2⁵¹ units from the origin.
+/// `x` (m) in integer units of which `inv_unit` are a metre, modulo 2³²: differences of near positions are
+/// exact up to 2⁵¹ units from the origin.
 #[inline(always)]
 pub fn to_integer(x: f64, inv_unit: f64) -> i32 {
     // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.

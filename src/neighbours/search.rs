@@ -12,7 +12,7 @@ use crate::math::simd::{self, LANES, Level, Simd, SimdTask, f32x8, i32x8};
 
 /// The sizes that a search needs.
 pub(super) struct SearchSizes {
-    /// How far the lists look, m.
+    /// Search radius of the lists, m.
     pub(super) reach: f64,
     /// Width of a column, m.
     pub(super) width: f64,
@@ -20,7 +20,7 @@ pub(super) struct SearchSizes {
     pub(super) inv_unit: f64,
 }
 
-/// What all slabs share in a search.
+/// Data that all slabs share in a search.
 struct Search<'a, const D: usize> {
     columns: &'a Columns<D>,
     bounds: &'a [[usize; 3]],

@@ -1,4 +1,4 @@
-//! Corrected gradients: where neighbours lie unevenly, or are missing, Σ V_b f_b ∇_a W does not tell the slope of a linear field. With
+//! Corrected gradients: where neighbours are unevenly arranged or missing, Σ V_b f_b ∇_a W is not the gradient of a linear field. With
 //!
 //!   M_a = −Σ V₀ r_ab ⊗ ∇_a W,   B_a = M_a⁻¹,
 //!

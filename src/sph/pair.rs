@@ -1,7 +1,7 @@
-//! What a law sees: a pair of particles and a number; and what it gives: a term.
+//! The input of a law, a pair of particles, and its output, a term; both generic over the number type.
 //!
 //! Densities enter as x = ρ/ρ₀ − 1, pressures as P/ρ₀, and the common factor V₀ ∇_a W (V₀ = m/ρ₀) is
-//! left to the sweep, so that single precision loses nothing and a force changes its sign *bit for bit*
+//! applied by the pair loop, so that single precision keeps all digits and a force changes its sign *bit for bit*
 //! when a and b swap.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -160,8 +160,8 @@ impl<N: Num, const D: usize> AuxiliarySums<N, D> {
     }
 }
 
-/// One neighbour's share, as a fold: each hook gets the sum of the laws before it and returns it with
-/// its own share added; a law that has nothing to say returns what came in and leaves no instruction.
+/// The contribution of one neighbour. Each method gets the sum of the terms before it and returns it with
+/// its own contribution added; a term without a contribution returns the sum and costs no instruction.
 ///
 /// The force per unit of mass on a is V₀ ∂W (`along_r` r_ab + `along_v` v_ab + `vector`), and the rate of
 /// x_a is V₀ ∂W times the first of `rate`, with ∂W = (dW/dr)/r, so that ∇_a W = ∂W r_ab.
@@ -200,12 +200,12 @@ pub trait Term<const D: usize>: Copy + Send + Sync {
     fn vector<N: Num>(&self, _ab: &Pair<N, D>, sum: [N; D]) -> [N; D] {
         sum
     }
-    /// LoadBreakdown of the rates of x_a and x_b, m²/s.
+    /// Contributions to the rates of x_a and x_b, m²/s.
     #[inline(always)]
     fn rate<N: Num>(&self, _ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
         sum
     }
-    /// LoadBreakdown of the extra sums of a and b, without the factor V₀ ∂W.
+    /// Contributions to the auxiliary sums of a and b, without the factor V₀ ∂W.
     #[inline(always)]
     fn auxiliary<N: Num>(
         &self,

@@ -1,7 +1,7 @@
 //! Particle shifting:  δr = −A h |v| Δt ∇C,  ∇C = Σ V_b ∇_a W, weakened near the free surface by
 //! A_FSC = (∇·r − A_FST)/(D − A_FST), ∇·r = −Σ V_b r_ab·∇_a W.
 //!
-//! What the paper's eqs. (19)–(21) mean: no shift where ∇·r < A_FST, A_FSC of it above, the whole in the interior.
+//! Reading of the paper's eqs. (19)–(21): no shift where ∇·r < A_FST, the factor A_FSC above it, the full shift inside.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,7 +61,7 @@ impl<const D: usize> Term<D> for ShiftTerm {
     }
 }
 
-/// Notes which particles have a marked one within the support: there shifting is held back.
+/// Sums the marked boundary particles within the support: there shifting is suppressed.
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftingSuppressionTerm;
 

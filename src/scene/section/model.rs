@@ -46,7 +46,7 @@ pub struct ModelConfig {
     pub walls: Option<Walls>,
     /// How water slips along solids.
     pub slip: Option<Slip>,
-    /// Which sweep adds up the pairs.
+    /// The pair loop.
     pub sweep: Option<PairLoopKind>,
     /// Speed of sound, m/s.
     pub c0: Option<f64>,

@@ -1,13 +1,13 @@
-//! Settling walls: a boundary particle obeys continuity as a dynamic one does, and its density settles to that of the
-//! pressure that the water near it would have at its place:
+//! Relaxed Adami walls: a boundary particle obeys continuity, and its density relaxes to that of the water's pressure
+//! extrapolated to it (Adami, Hu and Adams 2012):
 //!
 //!   P_w = [Σ_f V_f P_f W_wf + (g − a_w)·Σ_f m_f r_wf W_wf] / Σ_f V_f W_wf,   r_wf = r_w − r_f,
 //!   dρ_w/dt = continuity + (ρ(P_w) − ρ_w)/τ,   τ = 10 h/c₀.
 //!
-//! Water that strikes it meets the dynamic wall; water at rest, or carried along, presses on it as on more water, and no gap
-//! is remembered. P_w is never so low that the face itself would be sucked at, P_w ≥ min(0, ρ₀ g·n' d), d deep along n' from
-//! the water: a face that bears nothing has 0 there, and less behind it if it looks down. To more pressure a particle settles only with
-//! the part of its [`SupportCoverage`]: a particle of spray would leave with more energy than it brought, and so would a film.
+//! An impact meets the dynamic wall; water at rest or carried along has the pressure of continued water, and leaves no gap.
+//! P_w has a lower limit, so that the face exerts no suction: P_w ≥ min(0, ρ₀ g·n' d), with d the depth along n' from the
+//! water. Pressure may always decrease; an increase is scaled by the
+//! [`SupportCoverage`], since spray and thin films would otherwise gain energy.
 
 use crate::{math::Vector, sph::Num};
 
@@ -17,16 +17,16 @@ const RELAXATION_TIME: f64 = 10.0;
 /// Depths at which [`SupportCoverage`] is tabled, less one.
 const DEPTHS: usize = 64;
 
-/// The parts of a full weight, –, up to which and from which on water is scanty or ample.
+/// Shares of the full weight, –, below which no increase is applied and above which all of it is.
 const COVERAGE_MIN: f64 = 0.8;
 const COVERAGE_FULL: f64 = 1.0;
 
-/// The part of the way (–) to its goal that a boundary particle goes in `dt` (s), with h (m) and c₀ (m/s).
+/// Share (–) of the difference to its target that a boundary particle relaxes in `dt` (s), with h (m) and c₀ (m/s).
 pub fn relaxation(dt: f64, h: f64, c0: f64) -> f64 {
     1.0 - (-dt * c0 / (RELAXATION_TIME * h)).exp()
 }
 
-/// The sums of a boundary particle over the water near it @adami2012.
+/// The extrapolation sums of a boundary particle over the water near it @adami2012.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallExtrapolation<N, const D: usize> {
     /// Σ V_f W_wf, –.
@@ -83,10 +83,11 @@ impl<const D: usize> WallExtrapolation<f64, D> {
     }
 }
 
-/// How far water fills what a boundary particle can see of it, as told by the weight of its [`WallExtrapolation`].
+/// Share of a boundary particle's kernel support before the face that water fills, from the weight of its
+/// [`WallExtrapolation`].
 #[derive(Clone, Debug)]
 pub struct SupportCoverage {
-    /// Weights of boundary particles behind a flat face with water all before it, at depths from 0 on.
+    /// Weights of boundary particles behind a flat face under water, at depths from 0.
     full: Vec<f64>,
     /// From one depth to the next, m.
     step: f64,
@@ -112,7 +113,7 @@ impl SupportCoverage {
         Self { full: full.collect(), step }
     }
 
-    /// The part (0 to 1) with which a boundary particle `depth` (m) below the face may settle to more pressure, if its fit has
+    /// The factor (0 to 1) of an increase of pressure at a boundary particle `depth` (m) below the face whose extrapolation has
     /// `weight`: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
     pub fn fraction(&self, weight: f64, depth: f64) -> f64 {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);

@@ -1,11 +1,11 @@
-//! Slip: how the water is held along a face.
+//! Slip: the tangential velocity of the water at a face.
 //!
-//! Partial: boundary particles show the water their solid's velocity v_w. No slip: where the water near a boundary particle, which
-//! lies d below the face, moves on the mean with ⟨v⟩ at a height d̄ above it, the particle shows along the face
+//! Partial: boundary particles act with the velocity v_w of their solid. No slip: where the water near a boundary particle, which
+//! lies d below the face, has the mean velocity ⟨v⟩ at a height d̄ above it, the particle acts along the face with
 //!
 //!   u_t = v_w − (d/d̄)(⟨v⟩ − v_w)_t,
 //!
-//! which continues a shear that is linear from the face on exactly. Free slip: no viscous force between water and solid.
+//! which continues a linear shear exactly. Free slip: no viscous force between water and solid.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,15 +13,15 @@ use serde::{Deserialize, Serialize};
 use super::WallExtrapolation;
 use crate::math::Vector;
 
-/// How the water is held along solids. Scene word `model.slip`.
+/// Slip along solids. Scene key `model.slip`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Slip {
-    /// The water sticks to the boundary particles, half a dp and more behind the face.
+    /// No slip at the boundary particles, which lie half a dp and more behind the face.
     Partial,
-    /// The water sticks to the face @morris1997.
+    /// No slip at the face @morris1997.
     None,
-    /// Nothing holds it.
+    /// No tangential force.
     Free,
 }
 
