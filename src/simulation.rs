@@ -1,4 +1,4 @@
-//! A running simulation: limit, step, check; no files.
+//! A running simulation: step limit, step, checks. No files.
 
 mod accounting;
 mod add_remove;
@@ -42,12 +42,12 @@ pub struct Simulation<const D: usize> {
     bodies: Bodies<D>,
     clock: Clock,
     rollback: RollbackControl,
-    /// Particles taken out, and when, s.
+    /// Removed particles, and the times of removal, s.
     removed: Vec<(f64, RemovedParticle<D>)>,
     stepping: Duration,
 }
 
-/// Where the time went, since the start.
+/// Wall time by part, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TimeSpent {
     /// All steps.
@@ -67,7 +67,7 @@ struct Clock {
     steps: u64,
 }
 
-/// What of a simulation must be kept to go on to the same bits.
+/// The state of a simulation in a checkpoint.
 #[derive(Serialize, Deserialize)]
 struct SimulationState<const D: usize> {
     system: SystemState<D>,
@@ -84,7 +84,7 @@ struct SimulationState<const D: usize> {
 }
 
 impl<const D: usize> Simulation<D> {
-    /// Sets up a simulation at time 0 and makes its first force pass.
+    /// Sets up a simulation at time 0 and computes the first force pass.
     ///
     /// # Errors
     /// `Scene` if a constant has no valid value, a solid cannot be made, or bodies overlap: says which.
@@ -107,7 +107,7 @@ impl<const D: usize> Simulation<D> {
         Self::with_bodies(setup, pair_loop, false)
     }
 
-    /// Sets up a simulation whose free solids it moves itself, or lets be `hosted` by somebody else.
+    /// Sets up a simulation whose free solids the engine moves, or an `external` program.
     fn with_bodies(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
@@ -135,8 +135,8 @@ impl<const D: usize> Simulation<D> {
         Ok(simulation)
     }
 
-    /// Goes one step on, as long as water and bodies allow. At the first alarm of a guard it goes back to a good state
-    /// instead, some hundred steps, and takes half the step for a while: see [`Simulation::rollbacks`].
+    /// Advances by one step of the largest allowed length. At the first alarm of a guard it rolls back to a good state
+    /// some hundred steps earlier, and halves the step for a while: see [`Simulation::rollbacks`].
     ///
     /// # Errors
     /// `Fault` if a particle or body leaves the valid range again: names it, its place and the usual cause.
@@ -144,7 +144,7 @@ impl<const D: usize> Simulation<D> {
         self.step_to(f64::INFINITY)
     }
 
-    /// Goes one step on, and not past time `end` (s).
+    /// Advances by one step, not past time `end` (s).
     ///
     /// # Errors
     /// As [`Simulation::step`].
@@ -152,7 +152,7 @@ impl<const D: usize> Simulation<D> {
         self.step_with_hook(end, &mut |_| Ok(()))
     }
 
-    /// Goes one step on, calling `hook` when the water has moved and the bodies have not.
+    /// Advances by one step, calling `hook` when the water has moved and the bodies have not.
     fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         let start = Instant::now();
         if self.needs_rollback_state() {
@@ -164,7 +164,7 @@ impl<const D: usize> Simulation<D> {
         outcome
     }
 
-    /// Goes back to a good state after the alarm `error`, or gives it on if that is no use.
+    /// Rolls back to a good state after the alarm `error`, or returns it if there is none.
     fn roll_back(&mut self, error: Error) -> Result<()> {
         if error.kind != ErrorKind::Fault {
             return Err(error);
@@ -180,28 +180,28 @@ impl<const D: usize> Simulation<D> {
         }
     }
 
-    /// Never goes back: the first alarm ends the run.
+    /// Disables the rollback: the first alarm ends the run.
     pub fn without_rollback(mut self) -> Self {
         self.rollback = RollbackControl::disabled();
         self
     }
 
-    /// Whether the next step first keeps the state of now, to go back to after an alarm.
+    /// Whether the next step first stores the state for a rollback.
     pub(crate) fn needs_rollback_state(&self) -> bool {
         self.rollback.needs_state(self.clock.steps)
     }
 
-    /// Whether a state of `time` (s) is kept.
+    /// Whether a state of `time` (s) is stored.
     pub(crate) fn has_rollback_state(&self, time: f64) -> bool {
         self.rollback.has_state_at(time)
     }
 
-    /// When and why the run went back to a good state and took half the step for a while.
+    /// The rollbacks so far, with their causes and times.
     pub fn rollbacks(&self) -> &[Rollback] {
         &self.rollback.log
     }
 
-    /// The particles that left the domain and were taken out ([`Escape::Remove`]), and when that was seen (s).
+    /// The particles that left the domain and were removed ([`Escape::Remove`]), and the times of removal (s).
     pub fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] {
         &self.removed
     }
@@ -217,7 +217,7 @@ impl<const D: usize> Simulation<D> {
         self.system.update_rates();
         let allowed = self.step_limit();
         let left = end - self.clock.time;
-        // The last two steps share what is left, so that none is far shorter than the others.
+        // The last two steps have equal lengths, so that none is far shorter than the others.
         let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
         if dt.is_nan() || dt <= 0.0 {
             return Err(self.fault("time step of no length", NO_STEP, 0));
@@ -265,7 +265,7 @@ impl<const D: usize> Simulation<D> {
         })
     }
 
-    /// Makes the rates anew after the state was changed by hand.
+    /// Computes the rates after the state was changed by hand.
     pub fn update_rates(&mut self) {
         self.system.update_rates();
     }
@@ -275,7 +275,7 @@ impl<const D: usize> Simulation<D> {
         &self.system
     }
 
-    /// Where the time went; what is left of the steps went into moving particles and packing them.
+    /// Wall time by part; the remainder of the steps is moving and packing particles.
     pub fn time_spent(&self) -> TimeSpent {
         let (lists, pairs) = self.system.time_spent();
         TimeSpent { steps: self.stepping, lists, pairs, bodies: self.bodies.engine_time() }
@@ -309,8 +309,8 @@ impl<const D: usize> Simulation<D> {
         }
     }
 
-    /// Impulse (N s; N s/m in 2-D) that the water has given to free solid number `solid` and that it has yet to get: none but
-    /// of a body lighter than the water that sound sets moving while it crosses a kernel.
+    /// Impulse (N s; N s/m in 2-D) of the water not yet applied to free solid number `solid`. Non-zero only for bodies with
+    /// acoustic added mass.
     pub fn pending_impulse(&self, solid: usize) -> Vector<D> {
         self.bodies.pending_impulse(solid)
     }
@@ -337,12 +337,12 @@ impl<const D: usize> Simulation<D> {
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
     }
 
-    /// How the solids pressed on one another in the last step, pair by pair.
+    /// Contact forces in the last step, pair by pair.
     pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|e| e.contacts()).unwrap_or_default()
     }
 
-    /// Everything that [`Simulation::restore`] needs to go on to the same bits.
+    /// The state from which [`Simulation::restore`] continues with the same bits.
     ///
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
@@ -350,7 +350,7 @@ impl<const D: usize> Simulation<D> {
         self.save_with_rollbacks(self.rollback.log.len())
     }
 
-    /// As [`Simulation::save`], of a run that has been rescued the first `times` times only.
+    /// As [`Simulation::save`], with the first `times` rollbacks only.
     pub(crate) fn save_with_rollbacks(&self, times: usize) -> Result<Vec<u8>> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
@@ -384,7 +384,7 @@ impl<const D: usize> Simulation<D> {
             .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
     }
 
-    /// Goes back to a state that [`Simulation::save`] gave, in a simulation made from the same setup.
+    /// Returns to a state from [`Simulation::save`], in a simulation made from the same setup.
     ///
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup.

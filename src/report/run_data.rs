@@ -75,7 +75,7 @@ pub struct DrawnSolid {
     pub lines: Vec<Outline>,
     /// Where others touch it, if that is not at its faces, in its own frame.
     pub contact_skin: ContactSkinOutline,
-    /// Where that frame is at the start.
+    /// Pose of that frame at the start.
     pub start: Placement,
 }
 

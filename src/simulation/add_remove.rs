@@ -1,4 +1,4 @@
-//! Solids that come and go while a simulation runs.
+//! Adding and removing solids during a simulation.
 
 use super::Simulation;
 use crate::{
@@ -9,15 +9,15 @@ use crate::{
     system::Reordering,
 };
 
-/// Deepest overlap of a solid that comes, in dp.
+/// Largest overlap of a solid that is added, dp.
 const OVERLAP_MAX: f64 = 0.05;
 
-/// What came of adding a solid.
+/// The result of adding a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AddedSolid {
     /// Its number.
     pub solid: usize,
-    /// Water particles that were in its place and have been taken out.
+    /// Number of water particles that it displaced.
     pub displaced: usize,
 }
 
@@ -25,9 +25,9 @@ impl<const D: usize> Simulation<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Lets a solid come between two steps. A driven one comes where its law is now.
+    /// Adds a solid between two steps. A driven solid starts at the present value of its law.
     ///
-    /// Water whose particles lie inside it goes, as at set-up, and with it its mass and momentum; that is told. A run with such
+    /// Water particles inside it are removed, with their mass and momentum; their number is returned. A run with such
     /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with_added_solids`].
     ///
     /// # Errors

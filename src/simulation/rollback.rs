@@ -57,7 +57,7 @@ impl RollbackControl {
         !self.off && (self.states.is_empty() || steps.is_multiple_of(EVERY))
     }
 
-    /// Whether a state of `time` (s) is kept.
+    /// Whether a state of `time` (s) is stored.
     pub(super) fn has_state_at(&self, time: f64) -> bool {
         self.states.iter().any(|(_, at, _)| *at == time)
     }

@@ -1,4 +1,4 @@
-//! A solid's start, a free body's mass from its shape, and what is refused at set-up.
+//! The start of a solid, the mass of a free body from its shape, and the checks at set-up.
 
 use crate::{
     error::{Error, Result},
@@ -11,7 +11,7 @@ use crate::{
 const INERTIA_SLACK: f64 = 1e-9;
 
 impl<const D: usize> SolidSpec<D> {
-    /// Where the solid is at t = 0, and how it moves there.
+    /// Pose and velocity of the solid at t = 0.
     ///
     /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
     pub fn initial_kinematics(&self) -> Kinematics<D> {
@@ -30,7 +30,7 @@ impl<const D: usize> SolidSpec<D> {
         }
     }
 
-    /// Whether this solid can be meant: shape (of a free one without parts that overlap), pose, role, friction, restitution and
+    /// Checks shape (parts of a free solid may not overlap), pose, role, friction, restitution and
     /// contact skin.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl<const D: usize> FreeBody<D> {
         Self::from_density(shape, mass / shape.volume_properties().volume)
     }
 
-    /// Whether this body can exist.
+    /// Checks that mass and inertia are those of a body.
     ///
     /// # Errors
     /// `Scene` if a number is not finite, the mass is not positive, or the inertia is not that of any body.

@@ -1,4 +1,4 @@
-//! The skin follows its solid: r = pose · local, v = V + Ω (r − centre). Never integrated, so never adrift.
+//! Boundary particles follow their solid: r = pose · local, v = V + Ω (r − centre). They are not integrated, so they do not drift.
 
 use crate::math::Vector;
 use crate::solid::Kinematics;

@@ -1,4 +1,4 @@
-//! Who lies within whom where no contact would tell.
+//! Solids inside others, where contact detection finds nothing.
 
 use crate::{
     geometry::{ContactGeometry, Shape, overlap::find_overlap},
@@ -6,7 +6,7 @@ use crate::{
     solid::{Role, SolidSpec},
 };
 
-/// A solid and where it is.
+/// A solid and its pose.
 pub(crate) type PlacedSolid<'a, const D: usize> = (&'a SolidSpec<D>, &'a Pose<D>);
 
 /// The single shapes of a posed shape that others touch.

@@ -1,4 +1,4 @@
-//! Forces and torques that a law puts on a free solid: wind, a thruster, a hand.
+//! Prescribed forces and torques on a free solid, such as wind or a thruster.
 
 use crate::{
     math::{Bivector, Vector},

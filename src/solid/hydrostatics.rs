@@ -1,4 +1,4 @@
-//! Floating at rest: the height at which a body floats, and whether it stays upright. After Archimedes.
+//! Hydrostatics: the height at which a body floats, and its metacentric height.
 
 use crate::{
     error::{Error, Result},

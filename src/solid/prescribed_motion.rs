@@ -1,8 +1,8 @@
-//! Prescribed motions: a slide along a direction or a turn about a hinge, after a table or a formula; or several of them, each
-//! carried by those before it, as actuators that stand on one another.
+//! Prescribed motions: a slide along a direction or a rotation about a hinge, by a table or a formula; or several of them, each
+//! in the frame moved by those before it, as stacked actuators.
 //!
 //! Positions and velocities both come from the law itself, never from differences of poses, so that a slow
-//! start is as exact as a fast swing. At time t a driven solid is its start pose moved by the law's value
+//! start is as exact as a fast motion. At time t a driven solid has its start pose moved by the law's value
 //! at t: a table that starts at a non-zero value starts there.
 
 use crate::{
@@ -13,14 +13,14 @@ use crate::{
     wavemaker::{Absorber, AbsorptionState, PaddleMotion},
 };
 
-/// How a driven coordinate moves in time: a length (m) or an angle (rad) at a time (s).
+/// A driven coordinate over time: a length (m) or an angle (rad) at a time (s).
 #[derive(Clone, Debug)]
 pub enum TimeFunction {
     /// The smooth curve through measured samples; at rest before the first and after the last.
     Table(TimeSeries),
     /// A formula.
     Formula(Formula),
-    /// A paddle's, that makes a wave of theory.
+    /// The motion of a paddle that generates a wave by theory.
     Wave(Box<PaddleMotion>),
 }
 
@@ -43,25 +43,25 @@ impl TimeFunction {
 /// A prescribed motion.
 #[derive(Clone, Debug)]
 pub struct PrescribedMotion<const D: usize> {
-    /// From the ground up; most have one.
+    /// The stages from the ground up; most motions have one.
     stages: Vec<Stage<D>>,
     absorbing: Option<Box<Absorbing<D>>>,
 }
 
-/// One way to go, and how far.
+/// A path and the value along it.
 #[derive(Clone, Debug)]
 struct Stage<const D: usize> {
     path: Path<D>,
     law: TimeFunction,
 }
 
-/// What makes a paddle absorb, and where its gauge is.
+/// The absorber of a paddle, and its gauge.
 #[derive(Clone, Debug)]
 struct Absorbing<const D: usize> {
     absorber: Absorber,
     /// The gauge when the paddle is at rest, m.
     gauge: Vector<D>,
-    /// Where the waves go; a unit vector.
+    /// Direction of the waves; a unit vector.
     way: Vector<D>,
 }
 
@@ -105,12 +105,12 @@ impl<const D: usize> PrescribedMotion<D> {
         Self { absorbing: Some(Box::new(Absorbing { absorber, gauge, way })), ..self }
     }
 
-    /// What makes it absorb, if it does.
+    /// The absorber, if there is one.
     pub fn absorber(&self) -> Option<&Absorber> {
         self.absorbing.as_ref().map(|own| &own.absorber)
     }
 
-    /// The wave that it makes, if it is a paddle that makes one by name.
+    /// The wave that it generates, if it is a paddle with a wave by name.
     pub fn wave(&self) -> Option<&PaddleMotion> {
         match &self.stages[..] {
             [Stage { law: TimeFunction::Wave(wave), .. }] => Some(wave),
@@ -118,13 +118,13 @@ impl<const D: usize> PrescribedMotion<D> {
         }
     }
 
-    /// Where the gauge of a paddle that absorbs is at time `t` (s); nowhere if it does not.
+    /// Position of the gauge of an absorbing paddle at time `t` (s); `None` if it does not absorb.
     pub(crate) fn gauge_position(&self, yielding: &AbsorptionState, t: f64) -> Option<Vector<D>> {
         let (own, wave) = (self.absorbing.as_ref()?, self.wave()?);
         Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.offset_and_rate(t).0))
     }
 
-    /// How it goes on yielding from time `t` (s), when the water at its gauge stands at `level` (m), if there is any.
+    /// The absorption state from time `t` (s) on, with the water level `level` (m) at its gauge, if there is water.
     pub(crate) fn update_absorption(&self, before: &AbsorptionState, t: f64, level: Option<f64>) -> AbsorptionState {
         match (&self.absorbing, self.wave()) {
             (Some(own), Some(wave)) => own.absorber.update(wave, before, t, level),
@@ -156,7 +156,7 @@ impl<const D: usize> PrescribedMotion<D> {
         (0..self.stages.len()).map(way).collect()
     }
 
-    /// Where a solid that starts at `start` is at time `t` (s), and how it moves there: exact rates.
+    /// The kinematics at time `t` (s) of a solid that starts at `start`, with exact rates.
     ///
     /// The `centre` of the result is the hinge of what turns about one and does nothing else, or the frame's origin.
     pub fn kinematics(&self, start: &Pose<D>, t: f64) -> Kinematics<D> {
@@ -188,7 +188,7 @@ impl<const D: usize> PrescribedMotion<D> {
         }
     }
 
-    /// Whether the motion can be meant.
+    /// Checks the motion.
     ///
     /// # Errors
     /// `Scene` if there is none, one of several makes a wave, a direction or axis is zero or not finite, or a law is not finite at time 0.

@@ -53,7 +53,7 @@ pub struct JointConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JointKindConfig {
-    /// Turning about an axis.
+    /// Rotation about an axis.
     #[serde(alias = "revolute")]
     #[schemars(extend("also" = "revolute"))]
     Hinge,

@@ -1,4 +1,4 @@
-//! Joints, springs, ropes and forces in a running system: what they do in a step, and what they felt.
+//! All constraints of a running system: the loads that they apply in a step, and their readings.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,10 +18,10 @@ use crate::{
 /// Δt times the highest frequency of the springs, at most: their period is right within 0.2 %.
 const SPRING_STEP: f64 = 0.2;
 
-/// What a joint felt in the last step.
+/// Loads and coordinate of a joint in the last step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointReading<const D: usize> {
-    /// Force of its locks and end stops on the second solid, N (N/m in 2-D); the motor's is not in it.
+    /// Force of its locks and end stops on the second solid, N (N/m in 2-D), without the motor.
     pub force: Vector<D>,
     /// Their torque on it about the joint, N m (N m/m in 2-D).
     pub torque: Bivector<D>,
@@ -42,7 +42,7 @@ impl<const D: usize> JointReading<D> {
     }
 }
 
-/// What a spring or a rope felt in the last step.
+/// Tension and length of a spring or a rope in the last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LineReading {
     /// Its length, m.
@@ -51,7 +51,7 @@ pub struct LineReading {
     pub tension: f64,
 }
 
-/// What the ties did to a solid in the last step, by their kind.
+/// Loads of the constraints on a solid in the last step, by kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ConstraintLoads<const D: usize> {
     pub(crate) joints: Load<D>,
@@ -59,7 +59,7 @@ pub(crate) struct ConstraintLoads<const D: usize> {
     pub(crate) springs: Load<D>,
     pub(crate) motors: Load<D>,
     pub(crate) forces: Load<D>,
-    /// Whether it was held still.
+    /// Whether it was held at rest.
     pub(crate) is_held: bool,
 }
 
@@ -71,7 +71,7 @@ impl<const D: usize> ConstraintLoads<D> {
     }
 }
 
-/// What of it must be kept to go on to the same bits.
+/// Its state in a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct AssemblyState<const D: usize> {
     joints: Vec<(Option<MotorCommand>, JointReading<D>)>,
@@ -94,13 +94,13 @@ pub(crate) struct Assembly<const D: usize> {
     holds: Vec<InitialHold>,
     /// Rows of each joint's locks and of its coordinate in the present step.
     rows: Vec<Vec<ConstraintJacobian<D>>>,
-    /// What they did to each solid in the last step.
+    /// Loads on each solid in the last step.
     tied: Vec<ConstraintLoads<D>>,
     state: AssemblyState<D>,
 }
 
 impl<const D: usize> Assembly<D> {
-    /// The ties of solids that start as `start`.
+    /// The constraints of solids that start as `start`.
     pub(crate) fn new(links: &Constraints<D>, start: Vec<Kinematics<D>>) -> Self {
         let none = JointReading {
             force: Vector::zeros(),
@@ -139,13 +139,13 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
-    /// Takes up a solid that has come as `start`.
+    /// Adds a solid that starts as `start`.
     pub(crate) fn add_body(&mut self, start: Kinematics<D>) {
         self.start.push(start);
         self.tied.push(ConstraintLoads::zero());
     }
 
-    /// Whether there is nothing that acts.
+    /// Whether there is no constraint.
     pub(crate) fn is_empty(&self) -> bool {
         self.joints.is_empty()
             && self.springs.is_empty()
@@ -185,7 +185,7 @@ impl<const D: usize> Assembly<D> {
             engine.add_load(force.solid, &load);
             self.tied[force.solid].forces += load;
         }
-        // Last, so that they know of what the others do.
+        // Last, so that they include the loads of the others.
         self.rows.clear();
         for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
             let (ends, mobility) = (joint.end_kinematics(solids), joint.mobility(engine));
@@ -242,7 +242,7 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
-    /// The pulls of each joint and then of each rope in a step `dt` (s) long.
+    /// The reactions of each joint and then of each rope in a step `dt` (s) long.
     fn pulls(
         &self,
         engine: &dyn Engine<D>,
@@ -307,7 +307,7 @@ impl<const D: usize> Assembly<D> {
         SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt()
     }
 
-    /// How long (s) from time `t` (s) on until the next solid is let go; no step goes past that.
+    /// Time (s) from `t` (s) until the next held solid is released; no step extends past it.
     pub(crate) fn next_release(&self, t: f64) -> f64 {
         self.holds.iter().filter(|hold| hold.is_active(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
     }
@@ -317,12 +317,12 @@ impl<const D: usize> Assembly<D> {
         !(self.joints.is_empty() && self.ropes.is_empty())
     }
 
-    /// What the ties did to solid number `i` in the last step.
+    /// Loads of the constraints on solid number `i` in the last step.
     pub(crate) fn loads_on(&self, i: usize) -> ConstraintLoads<D> {
         self.tied[i]
     }
 
-    /// What joint number `i` felt in the last step.
+    /// Reading of joint number `i` in the last step.
     pub(crate) fn joint_reading(&self, i: usize) -> JointReading<D> {
         self.state.joints[i].1
     }
@@ -334,37 +334,37 @@ impl<const D: usize> Assembly<D> {
         joint.spec.free_modes.iter().map(|free| joint.coordinate(free.mode, &ends)).collect()
     }
 
-    /// How far (m) and by what angle (rad) joint number `i` is torn where the solids are.
+    /// Distance (m) and angle (rad) by which joint number `i` is violated.
     pub(crate) fn joint_gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
         self.joints[i].gap(&self.joints[i].end_kinematics(solids))
     }
 
-    /// What spring number `i` felt in the last step.
+    /// Reading of spring number `i` in the last step.
     pub(crate) fn spring_reading(&self, i: usize) -> LineReading {
         self.state.springs[i].1
     }
 
-    /// What rope number `i` felt in the last step.
+    /// Reading of rope number `i` in the last step.
     pub(crate) fn rope_reading(&self, i: usize) -> LineReading {
         self.state.ropes[i]
     }
 
-    /// What spring number `i` is made of, to be changed.
+    /// Parameters of spring number `i`, to be changed.
     pub(crate) fn spring_parameters(&mut self, i: usize) -> &mut SpringParameters {
         &mut self.state.springs[i].0
     }
 
-    /// Drives joint number `i` from now on, in place of its motor; `None` gives it back to that.
+    /// Sets the motor command of joint number `i` from now on; `None` restores its own motor.
     pub(crate) fn set_motor(&mut self, i: usize, drive: Option<MotorCommand>) {
         self.state.joints[i].0 = drive;
     }
 
-    /// What must be kept to go on to the same bits.
+    /// The state in a checkpoint.
     pub(crate) fn save(&self) -> AssemblyState<D> {
         self.state.clone()
     }
 
-    /// Goes back to what was kept; says whether it is of these ties.
+    /// Returns to a saved state; whether it belongs to these constraints.
     pub(crate) fn restore(&mut self, kept: AssemblyState<D>) -> bool {
         let same = kept.joints.len() == self.joints.len()
             && kept.springs.len() == self.springs.len()
@@ -376,7 +376,7 @@ impl<const D: usize> Assembly<D> {
     }
 }
 
-/// Gives a load each to the solids at both ends; what is not free does not care.
+/// Applies a load to the solid at each end; without effect on solids that are not free.
 fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], loads: &[Load<D>; 2]) {
     for (end, load) in ends.iter().zip(loads) {
         if let Some(solid) = end {
@@ -385,7 +385,7 @@ fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], lo
     }
 }
 
-/// Notes a load each for the solids at both ends.
+/// Records a load for the solid at each end.
 fn note<const D: usize>(
     tied: &mut [ConstraintLoads<D>],
     ends: [Option<usize>; 2],

@@ -1,7 +1,7 @@
-//! Rows of what ties two solids: directions in which one moves against the other, and the loads along them.
+//! Constraint rows between two solids: directions of relative motion, and the loads along them.
 //!
-//! A row J takes the velocities of two solids to a rate, ẋ = J v, and an impulse λ along it to a load on each, λ Jᵀ on the second
-//! and its opposite on the first. With M⁻¹ of both solids J M⁻¹ Jᵀ is how easily the pair gives way there, 1/kg or 1/(kg m²).
+//! A row J maps the velocities of two solids to a rate, ẋ = J v, and an impulse λ along it to a load on each, λ Jᵀ on the second
+//! and its opposite on the first. With M⁻¹ of both solids, J M⁻¹ Jᵀ is the inverse effective mass, 1/kg or 1/(kg m²).
 
 use nalgebra::SMatrix;
 
@@ -10,7 +10,7 @@ use crate::{
     solid::{Kinematics, Load},
 };
 
-/// How easily a solid is moved: zero where it is not free.
+/// Inverse mass and inertia of a solid: zero where it is not free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mobility<const D: usize> {
     /// One over the mass, along each axis, 1/kg.
@@ -20,7 +20,7 @@ pub struct Mobility<const D: usize> {
 }
 
 impl<const D: usize> Mobility<D> {
-    /// That of a solid that nothing moves.
+    /// The mobility of a solid that is not free.
     pub fn none() -> Self {
         Self { linear: Vector::zeros(), angular: SMatrix::zeros() }
     }
@@ -59,14 +59,14 @@ impl<const D: usize> ConstraintJacobian<D> {
         Self { along: Vector::zeros(), about: [a, a] }
     }
 
-    /// How fast the second moves against the first along it, m/s or rad/s.
+    /// Rate of the second solid relative to the first along it, m/s or rad/s.
     pub(in crate::solid) fn rate(&self, ends: &[Kinematics<D>; 2]) -> f64 {
         let [first, second] = ends;
         self.along.dot(&(second.velocity - first.velocity)) + self.about[1].power(&second.spin)
             - self.about[0].power(&first.spin)
     }
 
-    /// How its rate changes under a load on the first and one on the second, m/s² or rad/s².
+    /// Acceleration along it under a load on each solid, m/s² or rad/s².
     pub(in crate::solid) fn acceleration(&self, loads: &[Load<D>; 2], mobility: &[Mobility<D>; 2]) -> f64 {
         let [first, second] = [0, 1].map(|k| {
             let velocity = mobility[k].linear.component_mul(&loads[k].force);
@@ -87,7 +87,7 @@ impl<const D: usize> ConstraintJacobian<D> {
         each.map(|(m, (a, b))| self.along.dot(&m.linear.component_mul(&other.along)) + a.power(&m.spin_change(b))).sum()
     }
 
-    /// How easily each end alone gives way.
+    /// Inverse effective mass of each end alone.
     pub(in crate::solid) fn inverse_effective_mass_of_ends(&self, mobility: &[Mobility<D>; 2]) -> [f64; 2] {
         let still = Mobility::none();
         [[mobility[0], still], [still, mobility[1]]].map(|one| self.inverse_effective_mass(self, &one))
@@ -99,7 +99,7 @@ impl<const D: usize> ConstraintJacobian<D> {
     }
 }
 
-/// How the solid at an end moves; the world does not.
+/// Kinematics of the solid at an end; the world is at rest.
 pub(in crate::solid) fn kinematics_of_end<const D: usize>(
     end: Option<usize>,
     solids: &[Kinematics<D>],
@@ -113,8 +113,8 @@ pub(in crate::solid) fn kinematics_of_end<const D: usize>(
     end.and_then(|solid| solids.get(solid)).copied().unwrap_or(world)
 }
 
-/// Takes out of each row what those before it among the first `locks` do already (Gram and Schmidt): the rows along which the
-/// engine gives its impulses.
+/// Orthogonalises each row against those before it among the first `locks` (Gram–Schmidt): the rows along which the
+/// engine reports its impulses.
 pub(in crate::solid) fn orthogonalize<const D: usize>(
     rows: &mut [ConstraintJacobian<D>],
     locks: usize,

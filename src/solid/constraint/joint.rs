@@ -1,5 +1,5 @@
-//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, and end stops. The locks are the
-//! engine's, the motor on the coordinate is ours: see `motor`.
+//! Joints: locked modes between two solids, the free coordinate of a hinge or a slider, and end stops. The engine solves the
+//! locks; the motor on the coordinate is computed in `motor`.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
@@ -12,43 +12,43 @@ use crate::{
     solid::{Engine, Kinematics},
 };
 
-/// What a joint leaves free.
+/// The free motion of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turning about an axis.
+    /// Rotation about an axis.
     Hinge,
     /// Moving along a line.
     Slider,
     /// Nothing.
     Fixed,
-    /// Turning any way; 3-D.
+    /// Rotation about all axes; 3-D.
     Ball,
     /// All but moving along a line: the second solid is towed along it.
     Tow,
-    /// What its list of modes says.
+    /// The modes in its list.
     Generic,
 }
 
 /// A mode of motion that a generic joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeMode {
-    /// Its number: 0 to D − 1 along the axes of the joint's frame, from D on about them; in 2-D the one turn is 2.
+    /// Its number: 0 to D − 1 along the axes of the joint's frame, from D on about them; in 2-D the rotation is 2.
     pub mode: usize,
     /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
     pub limits: Option<[f64; 2]>,
 }
 
-/// How many modes of motion a pair of solids has.
+/// Number of modes of motion of a pair of solids.
 pub(crate) const fn mode_count<const D: usize>() -> usize {
     D + D * (D - 1) / 2
 }
 
-/// The modes in the order of the engine: turns first.
+/// The modes in the order of the engine: rotations first.
 pub(in crate::solid) fn modes_rotations_first<const D: usize>() -> impl Iterator<Item = usize> {
     (D..mode_count::<D>()).chain(0..D)
 }
 
-/// A joint as it is to be made.
+/// The specification of a joint.
 #[derive(Clone, Debug)]
 pub struct JointSpec<const D: usize> {
     /// Its name.
@@ -62,13 +62,13 @@ pub struct JointSpec<const D: usize> {
     /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero. Of a generic
     /// joint the first axis of its frame; zero for the world's axes.
     pub axis: Vector<D>,
-    /// What a generic joint leaves free; empty of any other.
+    /// The free modes of a generic joint; empty for any other kind.
     pub free_modes: Vec<FreeMode>,
     /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
     pub limits: Option<[f64; 2]>,
-    /// What moves or brakes it.
+    /// Its motor or brake.
     pub motor: Option<Motor>,
-    /// Whether the two solids touch one another.
+    /// Whether the two solids have contact with one another.
     pub contacts_enabled: bool,
 }
 
@@ -118,7 +118,7 @@ impl<const D: usize> JointSpec<D> {
 /// A joint in a running system.
 pub(in crate::solid) struct Joint<const D: usize> {
     pub(in crate::solid) spec: JointSpec<D>,
-    /// Where it sits in the two solids; x is its axis.
+    /// Its frames in the two solids; x is its axis.
     frames: [Pose<D>; 2],
 }
 
@@ -129,7 +129,7 @@ impl<const D: usize> Joint<D> {
         Self { spec, frames }
     }
 
-    /// How its two solids move.
+    /// Kinematics of its two solids.
     pub(in crate::solid) fn end_kinematics(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
         self.spec.between.map(|end| kinematics_of_end(end, solids))
     }
@@ -164,7 +164,7 @@ impl<const D: usize> Joint<D> {
         (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
     }
 
-    /// How far (m) and by what angle (rad) its ends are apart where it locks them together.
+    /// Distance (m) and angle (rad) between its ends along the locked modes.
     pub(in crate::solid) fn gap(&self, ends: &[Kinematics<D>; 2]) -> [f64; 2] {
         let locked = |modes: std::ops::Range<usize>| modes.filter(|&mode| self.spec.is_locked(mode));
         let off = |mode: usize| self.coordinate(mode, ends);
@@ -231,7 +231,7 @@ impl<const D: usize> Joint<D> {
         (rows, locks)
     }
 
-    /// What drives it at time `t` (s): a program's `set`, or its own motor.
+    /// The motor command at time `t` (s): a program's `set`, or its own motor.
     pub(in crate::solid) fn motor_command(&self, set: Option<MotorCommand>, t: f64) -> Option<MotorCommand> {
         set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.command_at(t)))
     }

@@ -1,4 +1,4 @@
-//! Lines between two points of solids or of the ground: springs, ours, and ropes, the engine's.
+//! Lines between two points of solids or of the ground: springs, computed here, and ropes, solved by the engine.
 //!
 //! A spring of length l pulls with  T = k (l − l₀) + c l̇,  a mooring line (`tension_only`) never pushes. As an explicit force it
 //! bounds the step: a mode of frequency ω is stable while Δt ω < 2 and runs (Δt ω)²/24 too fast. The damping is taken at the rate at
@@ -21,16 +21,16 @@ const SOUNDLESS: f64 = 2.0;
 /// What such a swing has of the critical damping, at least, –.
 const CALMED: f64 = 0.01;
 
-/// Where a line is made fast.
+/// The end of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineEnd<const D: usize> {
     /// Number of the solid; `None` is the ground.
     pub solid: Option<usize>,
-    /// The point of it that is here at the start, m.
+    /// World position of the attachment point at the start, m.
     pub at: Vector<D>,
 }
 
-/// A spring or a mooring line as it is to be made.
+/// The specification of a spring or a mooring line.
 #[derive(Clone, Debug)]
 pub struct SpringSpec<const D: usize> {
     /// Its name.
@@ -47,7 +47,7 @@ pub struct SpringSpec<const D: usize> {
     pub tension_only: bool,
 }
 
-/// A rope as it is to be made: it cannot be stretched.
+/// The specification of a rope, which cannot be stretched.
 #[derive(Clone, Debug)]
 pub struct RopeSpec<const D: usize> {
     /// Its name.
@@ -58,7 +58,7 @@ pub struct RopeSpec<const D: usize> {
     pub max_length: Option<f64>,
 }
 
-/// What a spring is made of; what a program may change during a run.
+/// Parameters of a spring, which a program may change during a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpringParameters {
     /// k, N/m.
@@ -77,7 +77,7 @@ pub(in crate::solid) struct AttachedLine<const D: usize> {
 }
 
 impl<const D: usize> AttachedLine<D> {
-    /// The line whose ends are made fast where the solids start.
+    /// The line between the starting points of its ends.
     pub(in crate::solid) fn new(ends: &[LineEnd<D>; 2], start: &[Kinematics<D>]) -> Self {
         Self {
             solids: ends.map(|end| end.solid),

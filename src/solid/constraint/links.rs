@@ -1,4 +1,4 @@
-//! What ties solids to one another and to the world: joints, springs, ropes, forces after a law, and who touches whom.
+//! The constraints of a simulation: joints, springs, ropes, prescribed forces, and contact pairs.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::{
     solid::{ForceSpec, Role, SolidSpec},
 };
 
-/// All ties of a simulation. Solids are numbered as in its list of solids.
+/// All constraints of a simulation. Solids are numbered as in its list of solids.
 #[derive(Clone, Debug, Default)]
 pub struct Constraints<const D: usize> {
     /// Joints.
@@ -20,36 +20,36 @@ pub struct Constraints<const D: usize> {
     pub springs: Vec<SpringSpec<D>>,
     /// Ropes.
     pub ropes: Vec<RopeSpec<D>>,
-    /// Forces and torques after a law of time.
+    /// Prescribed forces and torques.
     pub forces: Vec<ForceSpec<D>>,
-    /// Free solids that are held still at first.
+    /// Free solids that are held at rest at first.
     pub holds: Vec<InitialHold>,
-    /// Pairs of solids that touch otherwise than their own friction and restitution say, or not at all.
+    /// Pairs of solids with their own friction and restitution, or without contact.
     pub contacts: ContactPairs,
 }
 
-/// A free solid that is held still, whatever pushes it, until it is let go.
+/// A free solid that is held at rest until it is released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InitialHold {
     /// Number of the solid.
     pub solid: usize,
-    /// When it is let go, s.
+    /// Time of release, s.
     pub until: f64,
 }
 
 impl InitialHold {
-    /// Whether it still holds at time `t` (s); a few last bits too early count as let go.
+    /// Whether it is still held at time `t` (s), with room for round-off.
     pub(in crate::solid) fn is_active(&self, t: f64) -> bool {
         t < self.until * (1.0 - 1e-12)
     }
 }
 
-/// How two solids touch.
+/// Contact properties of a pair of solids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSpec {
     /// Numbers of the two.
     pub between: [usize; 2],
-    /// Whether they touch at all, or pass through one another.
+    /// Whether they have contact, or pass through one another.
     pub can_touch: bool,
     /// Coulomb friction coefficient, –; by default the mean of both solids'.
     pub friction: Option<f64>,
@@ -107,13 +107,13 @@ impl<const D: usize> Constraints<D> {
             && self.contacts.is_empty()
     }
 
-    /// Whether solids `a` and `b` may touch: not if a joint holds them without contacts, or a pair is told not to.
+    /// Whether solids `a` and `b` may have contact: not if a joint between them or a pair excludes it.
     pub fn can_touch(&self, a: usize, b: usize) -> bool {
         let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts_enabled;
         self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }
 
-    /// The name of a tie of solid number `solid`, if it has one.
+    /// The name of a constraint of solid number `solid`, if it has one.
     pub(crate) fn constraint_on(&self, solid: usize) -> Option<String> {
         let joints = self.joints.iter().map(|joint| (&joint.name, joint.between));
         let ends = |ends: &[LineEnd<D>; 2]| ends.map(|end| end.solid);
@@ -125,7 +125,7 @@ impl<const D: usize> Constraints<D> {
         named.filter(|(_, ends)| ends.contains(&Some(solid))).map(|(name, _)| format!("{name:?}")).next().or(held)
     }
 
-    /// Refuses what cannot be meant of these solids.
+    /// Checks all constraints between these solids.
     ///
     /// # Errors
     /// `Scene`: names the tie, what is wrong with it, and what would be right.
@@ -138,7 +138,7 @@ impl<const D: usize> Constraints<D> {
         self.contacts.0.values().try_for_each(|pair| check_contact(pair, solids))
     }
 
-    /// Refuses joint number `i` if it cannot be meant.
+    /// Checks joint number `i`.
     ///
     /// # Errors
     /// `Scene`, as [`Constraints::check`].
@@ -192,7 +192,7 @@ fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
     min <= 0.0 && 0.0 <= max && min < max && max.is_finite() && min.is_finite() && !wide
 }
 
-/// Refuses a spring that cannot be meant.
+/// Checks a spring.
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
@@ -213,7 +213,7 @@ pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<
     Ok(())
 }
 
-/// Refuses a rope that cannot be meant.
+/// Checks a rope.
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
@@ -233,7 +233,7 @@ pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -
     Ok(())
 }
 
-/// Refuses a force that cannot be meant.
+/// Checks a force.
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
@@ -281,7 +281,7 @@ fn check_line<const D: usize>(who: &str, ends: &[LineEnd<D>; 2], solids: &[Solid
     }
 }
 
-/// Refuses ends that are no solids, the same one, or none of them free.
+/// Refuses ends that are not solids, that are the same, or of which none is free.
 fn check_ends<const D: usize>(who: &str, ends: [Option<usize>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
     if ends.iter().flatten().any(|&i| i >= solids.len()) {
         return Err(Error::scene(format!("{who} names a solid that is not there")));

@@ -1,4 +1,4 @@
-//! The motor on a joint's coordinate, a load like any other on both solids:
+//! The motor on a joint's coordinate, a load on both solids:
 //!
 //!   F = F₀ + k (x* − x) + c (v* − ẋ)
 //!
@@ -35,7 +35,7 @@ pub struct Motor {
     pub stiffness: TimeFunction,
     /// c, N s/m or N m s/rad.
     pub damping: TimeFunction,
-    /// The strongest that it can be, N or N m.
+    /// Largest force, N or N m.
     pub max_force: f64,
 }
 
@@ -60,7 +60,7 @@ impl Motor {
         Self { damping: TimeFunction::constant(c), ..Self::default() }
     }
 
-    /// What it does at time `t` (s).
+    /// The command at time `t` (s).
     pub fn command_at(&self, t: f64) -> MotorCommand {
         let (position, rate) = self.position.value_and_rate(t);
         MotorCommand {
@@ -74,7 +74,7 @@ impl Motor {
     }
 }
 
-/// What a motor does at an instant; the names are those of [`Motor`].
+/// The command of a motor at an instant; the fields are those of [`Motor`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotorCommand {
     /// F₀, N or N m.
@@ -87,21 +87,21 @@ pub struct MotorCommand {
     pub stiffness: f64,
     /// c, N s/m or N m s/rad.
     pub damping: f64,
-    /// The strongest that it can be, N or N m.
+    /// Largest force, N or N m.
     pub max_force: f64,
 }
 
-/// How a joint's coordinate goes when a motor is asked for its force.
+/// State of a joint's coordinate for which a motor computes its force.
 pub(in crate::solid) struct MotorInput {
     /// Whether it is an angle: a difference is counted the short way round then.
     pub(in crate::solid) angle: bool,
-    /// Where it is, m or rad.
+    /// Its value, m or rad.
     pub(in crate::solid) position: f64,
     /// Its rate, m/s or rad/s.
     pub(in crate::solid) rate: f64,
-    /// What that gains by what is known to act, m/s² or rad/s².
+    /// Its acceleration by the known loads, m/s² or rad/s².
     pub(in crate::solid) free_acceleration: f64,
-    /// g: how easily the pair gives way, 1/kg or 1/(kg m²).
+    /// g, the inverse effective mass of the pair, 1/kg or 1/(kg m²).
     pub(in crate::solid) inverse_effective_mass: f64,
     /// The step, s.
     pub(in crate::solid) dt: f64,

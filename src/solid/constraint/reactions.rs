@@ -1,8 +1,8 @@
-//! The pull of a lock, an end stop or a rope along its row, where the engine does not tell all of it.
+//! Reactions of locks, end stops and ropes along their rows, where the engine reports only part of them.
 //!
-//! In a step of several iterations rapier keeps the impulse of the last one, and of one iteration it tells some 1e-6 too little where it
-//! mends places. What a joint gave is known from the momentum of the solids: with R what changed it and no other load explains, the pulls f are to give Σ f Jᵀ = R. From the last impulse times their
-//! number they are mended row after row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until nothing is left (Kaczmarz 1937).
+//! With several solver iterations rapier reports only the last impulse; with one, position correction leaves 1e-6 unreported.
+//! The momentum of the solids gives the rest: with R its unexplained change, the reactions f satisfy Σ f Jᵀ = R. Starting from the last impulse times the
+//! number of iterations they are corrected row by row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
 
 use super::jacobian::{ConstraintJacobian, Mobility};
 use crate::{
@@ -10,10 +10,10 @@ use crate::{
     solid::{Kinematics, Load},
 };
 
-/// Sweeps over all pulls, at most.
+/// Most iterations over all reactions.
 const SWEEPS: usize = 200;
 
-/// A pull along a row of two solids.
+/// A reaction along a row of two solids.
 pub(in crate::solid) struct Reaction<const D: usize> {
     /// Their numbers; `None` is the world.
     pub(in crate::solid) between: [Option<usize>; 2],
@@ -24,7 +24,7 @@ pub(in crate::solid) struct Reaction<const D: usize> {
 }
 
 impl<const D: usize> Reaction<D> {
-    /// The loads of it on both.
+    /// Its loads on both solids.
     pub(in crate::solid) fn loads(&self) -> [Load<D>; 2] {
         self.jacobian.loads(self.force)
     }
