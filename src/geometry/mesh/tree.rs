@@ -3,7 +3,7 @@
 #[cfg(feature = "dim3")]
 pub use with_parry::FacetTree;
 #[cfg(not(feature = "dim3"))]
-pub use without::Tree;
+pub use without::FacetTree;
 
 #[cfg(feature = "dim3")]
 mod with_parry {
@@ -87,7 +87,7 @@ mod without {
     #[derive(Clone)]
     pub enum FacetTree {}
 
-    impl Tree {
+    impl FacetTree {
         pub fn new(_: &[Vector<3>], _: &[[u32; 3]]) -> Result<Self> {
             Err(Error::scene("a mesh needs three dimensions, which this program was built without")
                 .help("build it with the feature dim3"))
