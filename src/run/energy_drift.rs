@@ -4,9 +4,9 @@ use std::fmt;
 
 use crate::{
     output::CsvTable,
-    plan::{Plan, ProbeKind},
+    plan::Plan,
     preflight::three_digits,
-    probe::relative_residual,
+    probe::{EnergyReading, relative_residual},
 };
 
 /// What became of the energy since the start, by the latest reading of a probe.
@@ -53,11 +53,11 @@ pub(super) struct DriftMonitor {
 impl DriftMonitor {
     /// The first budget of `plan`, else the first probe of the energy, of a run in so many dimensions.
     pub fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> {
-        let find = |what| plan.probes.iter().position(|words| words.what == what);
+        let find = |reading| plan.probes.iter().position(|probe| probe.kind.energy_reading() == Some(reading));
         let unit = if dimension == 2 { "J/m" } else { "J" };
         let of = |probe, budget| Self { probe, budget, unit };
-        let budget = find(ProbeKind::Budget).map(|probe| of(probe, true));
-        budget.or_else(|| find(ProbeKind::Energy).map(|probe| of(probe, false)))
+        let budget = find(EnergyReading::Budget).map(|probe| of(probe, true));
+        budget.or_else(|| find(EnergyReading::Total).map(|probe| of(probe, false)))
     }
 
     /// What the probe's `table` tells so far.

@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    flexible::{DraftChoice, LengthUnit, NumberOrArray, PolylineConfig},
+    NumberOrArray,
+    flexible::{DraftChoice, LengthUnit, PolylineConfig},
     waves::WaveConfig,
 };
 use crate::geometry::Touchable;

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
+    BoxConfig, ProbeConfig,
     bodies::{PlacementConfig, ShapeConfig, SolidConfig},
     damping::DampingConfig,
     document::SceneSource,
@@ -15,7 +16,6 @@ use super::{
     flow::PeriodicConfig,
     guard::GuardConfig,
     links::{ContactConfig, ForceConfig, JointConfig, RopeConfig, SpringConfig},
-    probes::ProbeConfig,
     statistics::StatisticConfig,
 };
 use crate::{
@@ -99,16 +99,6 @@ pub struct Scene {
     /// Where each word was written.
     #[serde(skip)]
     pub(super) origin: SceneSource,
-}
-
-/// A box given by two corners.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BoxConfig {
-    /// Lowest corner, m.
-    pub min: Vec<f64>,
-    /// Highest corner, m.
-    pub max: Vec<f64>,
 }
 
 /// A body of water.

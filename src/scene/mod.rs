@@ -21,7 +21,6 @@ mod geometry;
 mod guard;
 mod mesh;
 pub mod links;
-pub mod probes;
 pub mod resolve;
 mod schema;
 mod sets;
@@ -37,9 +36,13 @@ mod waves;
 mod verify_probes;
 mod wording;
 
-pub use crate::plan::{
-    Align, CheckPlan, FramesPlan, GaugeSurface, Plan, ProbeKind, ProbePlan, Reference, Score, StatisticKind,
-    StatisticPlan,
+pub use crate::plan::{Align, CheckPlan, FramesPlan, Plan, Reference, Score, StatisticKind, StatisticPlan};
+pub use crate::{
+    math::{BoxConfig, NumberOrArray},
+    probe::{
+        GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, ProbeKind, ProbePlan,
+        SectionConfig,
+    },
 };
 pub use absorb::{AbsorbChoice, AbsorptionConfig};
 pub use bodies::{
@@ -51,19 +54,15 @@ pub use build::{BuiltScene, StillWaterLevel};
 pub use damping::DampingConfig;
 pub use document::ValueSource;
 pub use flexible::{
-    DraftChoice, FieldFormulaConfig, FramesChoice, FramesConfig, LengthUnit, LimitsConfig, NumberOrArray,
-    PolylineConfig,
+    DraftChoice, FieldFormulaConfig, FramesChoice, FramesConfig, LengthUnit, LimitsConfig, PolylineConfig,
 };
 pub use flow::PeriodicConfig;
-pub use format::{
-    BoxConfig, CheckConfig, CheckpointConfig, FillConfig, ModelConfig, Scene, TimeSteppingConfig, WaterConfig,
-};
+pub use format::{CheckConfig, CheckpointConfig, FillConfig, ModelConfig, Scene, TimeSteppingConfig, WaterConfig};
 pub(crate) use geometry::world_bounds;
 pub use guard::GuardConfig;
 pub use links::{
     ContactConfig, ForceConfig, ForceFrame, JointConfig, JointKindConfig, MotorConfig, RopeConfig, SpringConfig,
 };
-pub use probes::{GaugeConfig, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, SectionConfig};
 pub use resolve::ResolvedValue;
 pub use schema::schema;
 pub use shipped::{BundledScene, bundled_scenes};

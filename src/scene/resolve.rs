@@ -10,7 +10,7 @@ use crate::{
     error::Result,
     geometry::Touchable,
     model::{C0_FACTOR, Model, Scheme},
-    plan::GaugeSurface,
+    probe::GaugeSurface,
 };
 
 /// A value in force and who said it.

@@ -20,7 +20,7 @@ const KINDS: [Kinds; 5] = [
     ("SolidWords", |key| matches!(key, "fixed" | "driven" | "free")),
     ("FreeWords", |key| matches!(key, "density" | "mass")),
     ("FillWords", |key| matches!(key, "box" | "shape")),
-    ("ProbeEntry", |key| !matches!(key, "name" | "every" | "average")),
+    ("ProbeConfig", |key| !matches!(key, "name" | "every" | "average")),
     ("StatisticEntry", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
 ];
 

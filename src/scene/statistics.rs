@@ -10,8 +10,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    plan::{ProbeKind, ProbePlan, StatisticKind, StatisticPlan},
-    probe,
+    plan::{StatisticKind, StatisticPlan},
 };
 
 /// One `[[statistic]]`: exactly one of waves, reflection and rao. A series is `probe.column`; the name of a probe alone
@@ -178,26 +177,11 @@ impl Scene {
             let what = format!("no probe is called \"{name}\"{}", suggestion(name, &names));
             return Err(self.error_with_help(key, what, format!("known: {}", names.join(", "))));
         };
-        let Some(ProbePlan { what: kind, .. }) = self.probe[i].to_plan(self.until) else {
+        let Some(plan) = self.probe[i].to_plan(self.until) else {
             return Err(self.list_has_no_series(key, name));
         };
-        let all: Vec<SeriesAtPlace> = match &kind {
-            ProbeKind::Elevation { places, .. } if places.len() == 1 => {
-                vec![(format!("{name}.eta_m"), Some(places[0].clone()))]
-            }
-            ProbeKind::Elevation { places, .. } => places
-                .iter()
-                .map(|at| (format!("{name}.{}", probe::column_at_place("eta_m", at)), Some(at.clone())))
-                .collect(),
-            ProbeKind::Motion { .. } => {
-                let columns: &[&str] = match self.dimension {
-                    2 => &["surge_m", "heave_m", "pitch_deg"],
-                    _ => &["surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg"],
-                };
-                columns.iter().map(|column| (format!("{name}.{column}"), None)).collect()
-            }
-            _ => Vec::new(),
-        };
+        let series = plan.kind.series(self.dimension).into_iter();
+        let all: Vec<SeriesAtPlace> = series.map(|(column, at)| (format!("{name}.{column}"), at)).collect();
         match column {
             Some(_) => Ok(vec![all.into_iter().find(|(series, _)| series == word).unwrap_or((word.into(), None))]),
             None if all.is_empty() => {

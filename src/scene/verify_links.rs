@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::{
-    ContactConfig, ForceConfig, JointConfig, JointKindConfig, LimitsConfig, MotionMode, MotorConfig, ProbeConfig,
-    Scene, SolidConfig, SpringConfig, TimeFunctionConfig, TimeValueConfig,
+    ContactConfig, ForceConfig, JointConfig, JointKindConfig, LimitsConfig, MotionMode, MotorConfig, Scene,
+    SolidConfig, SpringConfig, TimeFunctionConfig, TimeValueConfig,
     verify::{last_part, suggestion},
 };
 use crate::{error::Result, math::expression::Formula};
@@ -80,24 +80,6 @@ impl Scene {
             let what = format!("of \"{}\" no two solids can touch", names.join("\" and \""));
             let help = "it takes two, of which one at least must be  free = { density = 500.0 }";
             return Err(self.error_with_help(key, what, help));
-        }
-        Ok(())
-    }
-
-    /// Refuses a probe of a joint, spring or rope that there is not.
-    pub(super) fn require_constraint(&self, key: &str, probe: &ProbeConfig) -> Result<()> {
-        let joints = self.joint.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>();
-        let springs = self.spring.iter().map(|spring| spring.name.as_str()).collect();
-        let ropes = self.rope.iter().map(|rope| rope.name.as_str()).collect();
-        let ties = [("joint", &probe.joint, joints), ("spring", &probe.spring, springs), ("rope", &probe.rope, ropes)];
-        for (word, name, known) in ties {
-            let Some(name) = name.as_ref().filter(|name| !known.contains(&name.as_str())) else { continue };
-            let what = format!("no {word} is called \"{name}\"{}", suggestion(name, &known));
-            let help = match known.is_empty() {
-                true => format!("the scene has no {word}"),
-                false => format!("known: {}", known.join(", ")),
-            };
-            return Err(self.error_with_help(&format!("{key}.{word}"), what, help));
         }
         Ok(())
     }
