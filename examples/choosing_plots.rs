@@ -1,19 +1,27 @@
-//! Draws the plots of docs/choosing.md and docs/stability.md from the figures in docs/plots/choosing.toml, beside which it puts them.
+//! Draws plots of the documents from the figures in docs/plots/choosing.toml, into the same folder.
 //!
-//! `cargo run --release --example choosing_plots`, at once.
+//! `cargo run --release --example choosing_plots`
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
 
 use std::{error::Error, fs, path::Path};
 
 use pontoon::study::{LineStyle, PlotLine, line_plot, log_log_plot};
 use serde::Deserialize;
 
-/// Where the figures are, and the plots.
+/// Folder of the figures and of the plots.
 pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/plots");
 
 /// All plots.
 #[derive(Deserialize)]
 pub struct Sheet {
-    /// Each of them.
+    /// The plots in the order of the file.
     pub plot: Vec<Plot>,
 }
 
@@ -22,14 +30,14 @@ pub struct Sheet {
 pub struct Plot {
     /// Its file in [`FOLDER`].
     pub file: String,
-    /// The page that shows it; docs/choosing.md unless it is said.
+    /// The page that shows it, relative to `docs/`; by default how-to/choosing-parameters.md.
     #[serde(default = "choosing")]
     pub page: String,
-    /// The page that has its figures.
+    /// The page that holds its figures, relative to `docs/`.
     pub source: String,
-    /// What stands at its axes.
+    /// Titles of its axes.
     pub axes: [String; 2],
-    /// Whether they are logarithmic.
+    /// Whether the axes are logarithmic.
     #[serde(default)]
     pub log: bool,
     /// Its lines.
@@ -39,21 +47,21 @@ pub struct Plot {
 /// A line of a plot.
 #[derive(Deserialize)]
 pub struct Curve {
-    /// What it is called where the plot is shown.
+    /// Its name in the caption of the plot.
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
-    /// What stands beside each point; may be left out.
+    /// Labels of the points; may be omitted.
     #[serde(default)]
     pub labels: Vec<String>,
 }
 
 fn choosing() -> String {
-    "choosing.md".into()
+    "how-to/choosing-parameters.md".into()
 }
 
 impl Sheet {
-    /// The figures as they are kept.
+    /// Reads the figures.
     pub fn read() -> Result<Self, Box<dyn Error>> {
         Ok(toml::from_str(&fs::read_to_string(Path::new(FOLDER).join("choosing.toml"))?)?)
     }

@@ -3,6 +3,14 @@
 //!
 //! `cargo run --release --example cubes_in_a_dam_break`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     probe::{EnergyProbe, Probe},
@@ -47,7 +55,7 @@ fn main() -> Result<()> {
         let now = energy.sample(&sim)[column];
         least = least.min(now);
         made = made.max(now - least);
-        struck = sim.contacts().iter().map(|pair| pair.pressing).fold(struck, f64::max);
+        struck = sim.contacts().iter().map(|pair| pair.normal_force).fold(struck, f64::max);
         let cubes = &sim.system().solids()[1..];
         let top = cubes[CUBES - 1].kinematics.pose;
         if fell.is_none() && (top.position[0] - 1.0).abs() > 0.5 * EDGE {

@@ -9,11 +9,19 @@
 //! draft is averaged over the last of them. The water level is sounded by volume: (particles × dpᴰ + displaced
 //! volume) ÷ area of the tank; beside it, by a gauge halfway between body and wall.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::f64::consts::TAU;
 
 use pontoon::{
     error::{Error, Result},
-    geometry::{Region, Shape, fill},
+    geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
     model::{Dimension, Model, Walls},
     probe::{ElevationProbe, Probe},
@@ -87,7 +95,7 @@ where
         let mut size = self.pool;
         size[D - 1] += 0.5 * HEIGHT;
         let tank = Shape::Tank { size, thickness: 4.0 * dp };
-        let region = Region { shape: Shape::Box { size: self.pool }, pose: Pose::at(self.pool * 0.5) };
+        let region = WaterRegion { shape: Shape::Box { size: self.pool }, pose: Pose::at(self.pool * 0.5) };
         let water = fill(&[region], &[(&tank, &Pose::identity()), (&self.shape, &pose)], dp)?.r;
         let solid = |name: &str, shape, pose, role| {
             let name = name.into();
@@ -106,7 +114,7 @@ where
         let water = sim.system().fluid().len() as f64 * self.dp().powi(D as i32);
         let pose = &sim.system().solids()[1].kinematics.pose;
         // The body covers less than half of the tank: each round halves the error at least.
-        (0..40).fold(water / area, |level, _| (water + self.shape.submerged(pose, level).0) / area)
+        (0..40).fold(water / area, |level, _| (water + self.shape.submerged_volume(pose, level).0) / area)
     }
 
     /// By how much (dp) the body lies too deep on the mean of the last period, by volume and by gauge.

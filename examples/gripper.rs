@@ -3,6 +3,14 @@
 //!
 //! `cargo run --release --example gripper`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     scene::{
@@ -78,10 +86,10 @@ fn main() -> Result<()> {
     println!("{:>7} {:>11} {:>12} {:>14} {:>14}", "t (s)", "lift (mm)", "float (mm)", "lift (N/m)", "press (N/m)");
     while sim.time() < until {
         sim.step_to(until)?;
-        let (time, motor) = (sim.time(), sim.joint(lift).motor);
+        let (time, motor) = (sim.time(), sim.joint_reading(lift).motor_force);
         let float = sim.system().solids()[1].kinematics.centre[1] - DEPTH;
         if time >= next {
-            let (up, press) = (1e3 * sim.joint(lift).position, sim.joint(presser).motor);
+            let (up, press) = (1e3 * sim.joint_reading(lift).position, sim.joint_reading(presser).motor_force);
             println!("{time:7.2} {up:11.2} {:12.2} {motor:14.2} {press:14.2}", 1e3 * float);
             next += 0.25;
         }

@@ -3,6 +3,14 @@
 //!
 //! `cargo run --release --example hinged_raft`, a minute or two.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     scene::{
@@ -51,13 +59,13 @@ fn main() -> Result<()> {
             sim.step_to(from)?;
         }
         // Over the last two periods.
-        let before = sim.joint(hinge).absorbed;
+        let before = sim.joint_reading(hinge).absorbed_energy;
         let mut swing: f64 = 0.0;
         while sim.time() < until {
             sim.step_to(until)?;
-            swing = swing.max(sim.joint(hinge).position.abs());
+            swing = swing.max(sim.joint_reading(hinge).position.abs());
         }
-        let power = (sim.joint(hinge).absorbed - before) / (until - from);
+        let power = (sim.joint_reading(hinge).absorbed_energy - before) / (until - from);
         println!("{brake:22.1} {power:18.4} {:14.2}", swing.to_degrees());
         assert!(power > 0.0, "a brake only takes");
     }

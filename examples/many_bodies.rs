@@ -5,6 +5,14 @@
 //! `cargo run --release --example many_bodies` takes some seconds; `-- 100000 400 1000` says how many particles of water,
 //! how many steps, and how many bodies at most, and takes minutes.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use cpu_time::ProcessTime;
 use pontoon::{
     Result,

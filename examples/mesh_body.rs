@@ -4,6 +4,14 @@
 //!
 //! `cargo run --release --example mesh_body`, about a minute.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::path::Path;
 
 use pontoon::{
@@ -28,7 +36,7 @@ fn main() -> Result<()> {
     let hull = find(&sim).unwrap_or_default();
     let start = sim.system().solids()[hull].kinematics.pose.position[2];
     if let Shape::Mesh { mesh, .. } = &sim.system().solids()[hull].spec.shape {
-        let volume = mesh.volume();
+        let volume = mesh.volume_properties();
         println!(
             "{} facets, {:.6} m³, centroid {:.4} m above the waterline",
             mesh.facets().len(),

@@ -3,6 +3,14 @@
 //!
 //! `cargo run --release --example moored_buoy`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig, SpringConfig},
@@ -30,9 +38,9 @@ fn main() -> Result<()> {
     println!("{:>7} {:>12} {:>15}", "t (s)", "line (m)", "tension (N/m)");
     while sim.time() < 4.0 {
         // The winch takes in 0.2 m in 2 s, far enough for the water to close over the buoy.
-        sim.elastic(line).length = 0.35 - 0.1 * (sim.time() - 0.5).clamp(0.0, 2.0);
+        sim.spring_parameters(line).rest_length = 0.35 - 0.1 * (sim.time() - 0.5).clamp(0.0, 2.0);
         sim.step_to(4.0)?;
-        let now = sim.spring(line);
+        let now = sim.spring_reading(line);
         if sim.time() >= next {
             println!("{:7.2} {:12.4} {:15.2}", sim.time(), now.length, now.tension);
             next += 0.25;

@@ -5,11 +5,19 @@
 //!
 //! `cargo run --release --example own_law`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    geometry::{Region, Shape, fill},
+    geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
     model::Model,
     simulation::{Setup, Simulation},
@@ -34,7 +42,7 @@ struct RelativeDrag {
 }
 
 impl<const D: usize> Term<D> for RelativeDrag {
-    const DRAG: bool = true;
+    const ALONG_V: bool = true;
 
     #[inline(always)]
     fn along_v<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
@@ -82,7 +90,7 @@ fn setup() -> Result<Setup<2>> {
         contact_skin: 0.0,
     };
     let size = Vector::from(SIZE);
-    let region = Region { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
+    let region = WaterRegion { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
     let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
     let levels = vec![SIZE[1]; water.len()];
     Ok(Setup::new(Model::water(2, DP, SIZE[1]), water, levels, vec![tank]))

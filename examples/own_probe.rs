@@ -3,6 +3,14 @@
 //!
 //! `cargo run --release --example own_probe`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::path::Path;
 
 use pontoon::{Result, probe::Probe, scene::Scene, simulation::Simulation};

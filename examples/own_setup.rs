@@ -4,11 +4,19 @@
 //!
 //! `cargo run --release --example own_setup`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    geometry::{Region, Shape, fill},
+    geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
     model::{Model, Viscosity},
     probe::{ElevationProbe, Probe},
@@ -71,7 +79,7 @@ fn setup() -> Result<Setup<2>> {
     };
     // The frame of a box is its middle.
     let size = Vector::from(SIZE);
-    let region = Region { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
+    let region = WaterRegion { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
     let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
     let levels = vec![SIZE[1]; water.len()];
     Ok(Setup::new(model, water, levels, vec![tank]))

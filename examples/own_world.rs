@@ -4,6 +4,14 @@
 //!
 //! `cargo run --release --example own_world`, some seconds.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     probe::{ElevationProbe, Probe},
@@ -85,6 +93,6 @@ fn water(world: &PhysicsWorld, raft: RigidBodyHandle) -> Result<Simulation<2>> {
     scene.model.c0_factor = Some(12.0);
     let mut water = Simulation::with_external_bodies(scene.build::<2>()?.setup)?;
     // The raft gets number 1, after the tank; the water in its place goes.
-    water.add_solid(rapier2d::solid("raft", raft, &world.bodies, &world.colliders)?)?;
+    water.add_solid(rapier2d::solid_from_body("raft", raft, &world.bodies, &world.colliders)?)?;
     Ok(water)
 }

@@ -4,6 +4,14 @@
 //!
 //! `cargo run --release --example several_floats`, half a minute.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     geometry::Shape,

@@ -3,11 +3,19 @@
 //!
 //! `cargo run --release --example wheel_boat`, half a minute.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program prints and a demonstration may panic"
+)]
+
 use pontoon::{
     Result,
     scene::{CompoundPartConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
-    solid::{Law, Motor},
+    solid::{Motor, TimeFunction},
 };
 
 /// Particle spacing, depth of the water and length of the pool, m.
@@ -75,11 +83,14 @@ fn main() -> Result<()> {
         while sim.time() < UNTIL {
             // The motor is run up within half a second.
             let wanted = turning * (2.0 * sim.time()).min(1.0);
-            let motor =
-                Motor { velocity: Some(Law::constant(wanted)), damping: Law::constant(20.0), ..Motor::default() };
-            sim.set_motor(axle, Some(motor.at(0.0)));
+            let motor = Motor {
+                velocity: Some(TimeFunction::constant(wanted)),
+                damping: TimeFunction::constant(20.0),
+                ..Motor::default()
+            };
+            sim.set_motor(axle, Some(motor.command_at(0.0)));
             sim.step_to(UNTIL)?;
-            work -= sim.joint(axle).power() * sim.dt();
+            work -= sim.joint_reading(axle).absorbed_power() * sim.dt();
             if sim.time() > UNTIL - 1.0 {
                 speed += sim.system().solids()[1].kinematics.velocity[0] * sim.dt();
             }

@@ -13,7 +13,7 @@ use cpu_time::ProcessTime;
 use serde::Serialize;
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     run::{outputs, probe_factory, thread_pool},
     scene::{BuiltScene, Scene},
@@ -187,7 +187,7 @@ fn prepare(work: &BenchCase) -> Result<Box<dyn TimedCase>> {
         2 => Ok(Box::new(PreparedCase::<2>::new(work)?)),
         #[cfg(feature = "dim3")]
         3 => Ok(Box::new(PreparedCase::<3>::new(work)?)),
-        n => Err(Error::new(Kind::Usage, format!("this program was built without {n}-D"))),
+        n => Err(Error::new(ErrorKind::Usage, format!("this program was built without {n}-D"))),
     }
 }
 
@@ -243,9 +243,9 @@ where
         let system = sim.system();
         let mut pairs = 0usize;
         for (i, r) in system.fluid().r.iter().enumerate() {
-            system.water_near(r, &mut |j, _, _| pairs += usize::from(j != i));
+            system.visit_fluid_near(r, &mut |j, _, _| pairs += usize::from(j != i));
             // A pair with a boundary particle is seen from it as well.
-            system.boundary_near(r, &mut |_, _, _| pairs += 2);
+            system.visit_boundary_near(r, &mut |_, _, _| pairs += 2);
         }
         let pairs = pairs as f64 / (system.fluid().len() + system.boundary_near_fluid_count()) as f64;
         Ok(Self { sim, outputs, name: work.name.clone(), setup_s, peak, pairs })
@@ -338,7 +338,7 @@ pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> {
     works
 }
 
-/// A small work for counting instructions: so many steps of the work `name` of [`terms`] in 2-D and in 3-D on one
+/// A small work for counting instructions: so many steps of the work `name` of [`term_cases`] in 2-D and in 3-D on one
 /// thread, of 3,000 water particles each.
 ///
 /// # Errors
@@ -347,7 +347,7 @@ pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> {
     let work = |dimension| term_cases(dimension, 3000).into_iter().find(|w| w.name == name);
     let (Some(plane), Some(space)) = (work(2), work(3)) else {
         let names: Vec<String> = term_cases(2, 3000).into_iter().map(|w| w.name).collect();
-        return Err(Error::new(Kind::Usage, format!("no work {name:?}; there are {}", names.join("; "))));
+        return Err(Error::new(ErrorKind::Usage, format!("no work {name:?}; there are {}", names.join("; "))));
     };
     thread_pool(Some(1))?.install(|| {
         let mut plane = prepare(&plane)?;
@@ -359,7 +359,7 @@ pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> {
     })
 }
 
-/// Largest memory of the program since [`forget_peak`], B, where the system tells.
+/// Largest memory of the program since [`reset_peak_memory`], B, where the system tells.
 fn peak_memory() -> f64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -29,7 +29,7 @@ use std::{
 };
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use pontoon::error::{Error, Kind, Result};
+use pontoon::error::{Error, ErrorKind, Result};
 
 /// Rigid bodies that float, collide and are driven in water.
 #[derive(Parser)]
@@ -242,7 +242,7 @@ pub fn main() -> ExitCode {
 
 /// The exit code of an error.
 fn exit_code(error: &Error) -> u8 {
-    if error.kind == Kind::Fault { 1 } else { 2 }
+    if error.kind == ErrorKind::Fault { 1 } else { 2 }
 }
 
 fn dispatch(command: Command) -> Result<u8> {
@@ -300,7 +300,7 @@ fn interrupt_flag() -> Result<Arc<AtomicBool>> {
     interrupt_flag_with_message("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n")
 }
 
-/// As [`stopper`], in these words.
+/// As [`interrupt_flag`], in these words.
 fn interrupt_flag_with_message(words: &'static str) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = flag.clone();
@@ -310,7 +310,8 @@ fn interrupt_flag_with_message(words: &'static str) -> Result<Arc<AtomicBool>> {
         }
         print_error(words);
     };
-    ctrlc::set_handler(handler).map_err(|why| Error::new(Kind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
+    ctrlc::set_handler(handler)
+        .map_err(|why| Error::new(ErrorKind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
     Ok(flag)
 }
 

@@ -10,7 +10,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// What sort of trouble it is; decides the exit code and which report is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Kind {
+pub enum ErrorKind {
     /// The scene, or a file that it names, says something that cannot be meant.
     Scene,
     /// A command line or call asks for something that is not there.
@@ -25,7 +25,7 @@ pub enum Kind {
 
 /// Where in a text file the trouble lies.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct SourceLocation {
     /// The file, as the user named it; empty where only the key is known yet.
     pub file: String,
     /// Line and column, both from 1, if known.
@@ -59,34 +59,34 @@ pub struct Fault {
 #[derive(Clone, PartialEq)]
 pub struct Error {
     /// Sort of trouble.
-    pub kind: Kind,
+    pub kind: ErrorKind,
     /// One sentence: what is wrong.
-    pub what: String,
+    pub message: String,
     /// Where it is wrong, if in a file.
-    pub place: Option<Box<Place>>,
+    pub location: Option<Box<SourceLocation>>,
     /// What to do about it.
     pub help: Option<String>,
-    /// The failed particle or body, for [`Kind::Fault`].
+    /// The failed particle or body, for [`ErrorKind::Fault`].
     pub fault: Option<Box<Fault>>,
 }
 
 impl Error {
     /// An error of `kind` saying `what`.
-    pub fn new(kind: Kind, what: impl Into<String>) -> Self {
-        Self { kind, what: what.into(), place: None, help: None, fault: None }
+    pub fn new(kind: ErrorKind, what: impl Into<String>) -> Self {
+        Self { kind, message: what.into(), location: None, help: None, fault: None }
     }
 
-    /// A [`Kind::Scene`] error.
+    /// A [`ErrorKind::Scene`] error.
     pub fn scene(what: impl Into<String>) -> Self {
-        Self::new(Kind::Scene, what)
+        Self::new(ErrorKind::Scene, what)
     }
 
-    /// A [`Kind::File`] error about `path`, with the system's own words.
+    /// A [`ErrorKind::File`] error about `path`, with the system's own words.
     pub fn file(path: &std::path::Path, why: impl fmt::Display) -> Self {
-        Self::new(Kind::File, format!("{}: {why}", path.display()))
+        Self::new(ErrorKind::File, format!("{}: {why}", path.display()))
     }
 
-    /// A [`Kind::Fault`] error: a run that cannot go on.
+    /// A [`ErrorKind::Fault`] error: a run that cannot go on.
     pub fn fault(fault: Fault) -> Self {
         let at: Vec<String> = fault.position.iter().map(|x| format!("{x:.6}")).collect();
         let what = format!(
@@ -98,7 +98,7 @@ impl Error {
             fault.time
         );
         let help = Some(fault.cause.clone());
-        Self { kind: Kind::Fault, what, place: None, help, fault: Some(Box::new(fault)) }
+        Self { kind: ErrorKind::Fault, message: what, location: None, help, fault: Some(Box::new(fault)) }
     }
 
     /// The same error with advice on what to do.
@@ -109,15 +109,16 @@ impl Error {
 
     /// The same error with its place; a place that is already known is kept.
     pub fn at(mut self, file: impl Into<String>, line_column: Option<(usize, usize)>, key: impl Into<String>) -> Self {
-        self.place.get_or_insert_with(|| Box::new(Place { file: file.into(), line_column, key: key.into() }));
+        self.location
+            .get_or_insert_with(|| Box::new(SourceLocation { file: file.into(), line_column, key: key.into() }));
         self
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.what)?;
-        if let Some(place) = self.place.as_ref().filter(|place| !place.file.is_empty()) {
+        write!(f, "{}", self.message)?;
+        if let Some(place) = self.location.as_ref().filter(|place| !place.file.is_empty()) {
             write!(f, "\n  in {}", place.file)?;
             if let Some((line, column)) = place.line_column {
                 write!(f, ":{line}:{column}")?;
@@ -148,7 +149,7 @@ impl std::error::Error for Error {}
 const LONG: usize = 100;
 
 /// The entry of `known` nearest to `word`, if it is near enough to be what was meant.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest_name<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()
         .filter(|k| word.len().max(k.len()) <= LONG)

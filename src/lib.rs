@@ -1,45 +1,95 @@
 //! pontoon: rigid bodies that float, collide and are driven in water.
 //!
-//! δ-SPH computes the water, rapier the bodies with their contacts and joints. A [`Scene`] is built into
-//! a [`Simulation`], which steps a [`System`] of water and solids; probes watch, records keep, checks judge.
-//! The rooms stand in the order in which they depend on one another.
+//! δ-SPH computes the water; rapier computes the bodies, contacts and joints. A [`Scene`](scene::Scene) is built into a
+//! [`Simulation`](simulation::Simulation), which advances a [`System`](system::System) of water and solids. Probes sample it.
+//!
+//! ```
+//! use pontoon::prelude::*;
+//!
+//! let scene = r#"
+//!     dimension = 2
+//!     dp = 0.05
+//!     until = 1.0
+//!     water = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]
+//!     [[solid]]
+//!     name = "tank"
+//!     fixed = true
+//!     shape = { tank = { size = [1.0, 1.0] } }
+//!     [[solid]]
+//!     name = "crate"
+//!     free = { density = 500.0 }
+//!     shape = { box = { size = [0.2, 0.2] } }
+//!     at = { x = 0.5, draft = "equilibrium" }
+//! "#;
+//! let scene = Scene::parse(scene, std::path::Path::new(""), &[])?;
+//! let mut simulation = Simulation::new(scene.build::<2>()?.setup)?;
+//! while simulation.time() < 0.05 {
+//!     simulation.step()?;
+//! }
+//! let weight = 9.81 * 500.0 * 0.2 * 0.2;
+//! let lift = simulation.system().solids()[1].load.force[1];
+//! assert!((lift / weight - 1.0).abs() < 0.1, "the crate floats: the water carries its weight");
+//! # Ok::<(), Error>(())
+//! ```
+//!
+//! # Modules, in dependency order
+//!
+//! | module | content |
+//! |---|---|
+//! | [`error`] | errors with place, expectation and remedy |
+//! | [`math`] | vectors, bivectors, poses, time series, formulas, SIMD numbers |
+//! | [`sph`] | the equations of the water, one law a file |
+//! | [`particles`] | arrays of particles |
+//! | [`geometry`] | shapes, submerged volumes, meshes, filling and packing |
+//! | [`neighbours`] | neighbour lists |
+//! | [`wavemaker`] | wave theory, transfer functions, absorption |
+//! | [`solid`] | solids, constraints, hydrostatics, and rapier |
+//! | [`interaction`] | the pair loop: f64 reference and SIMD |
+//! | [`model`] | the chosen laws |
+//! | [`system`] | water and solids at one instant, and their rates |
+//! | [`coupling`] | the body step, acoustic added mass, load breakdown, energy budget |
+//! | [`time_integration`] | step size, symplectic and Verlet schemes |
+//! | [`simulation`] | steps, rollback, adding and removing solids, external bodies |
+//! | [`plan`], [`probe`], [`analysis`], [`output`] | what a run samples, judges and writes |
+//! | [`scene`] | the TOML scene |
+//! | [`preflight`], [`run`], [`report`], [`study`], [`bench`] | what the program does with scenes |
 
-// words
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, reason = "tests may"))]
+
 pub mod error;
 pub mod math;
-// equations
 pub mod sph;
-// matter
 pub mod particles;
 pub mod geometry;
-// neighbours and bodies
 pub mod neighbours;
 pub mod wavemaker;
 pub mod solid;
-// motion
 pub mod interaction;
 pub mod model;
 pub mod system;
 pub mod coupling;
 pub mod time_integration;
 pub mod simulation;
-// results
 pub mod plan;
 pub mod probe;
 pub mod analysis;
 pub mod output;
-// entrance
 pub mod scene;
+#[doc(hidden)]
 pub mod preflight;
 pub mod run;
+#[doc(hidden)]
 pub mod report;
+#[doc(hidden)]
 pub mod study;
+#[doc(hidden)]
 pub mod bench;
+pub mod prelude;
 
 pub use error::{Error, Result};
 
-/// The programs of the book, compiled and run as tests.
+/// The programs of the documents, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../docs/coupling.md")]
-#[doc = include_str!("../docs/scene.md")]
-pub struct Book;
+#[doc = include_str!("../docs/how-to/use-from-rust.md")]
+#[doc = include_str!("../docs/reference/scene.md")]
+pub struct DocumentedPrograms;

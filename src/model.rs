@@ -1,4 +1,4 @@
-//! The chosen laws, as data; the one place where a name becomes a type.
+//! The chosen laws as data; the one place where a name becomes a type.
 
 pub use crate::sph::{boundary::Slip, density_diffusion::Diffusion, viscosity::Viscosity};
 
@@ -16,18 +16,18 @@ use crate::{
         boundary::Repulsion,
         continuity::Continuity,
         density_diffusion::Fourtakas,
-        gradient_correction::{CorrectedGradient, RenormalizationMatrix},
+        gradient_correction::{CorrectedGradientTerm, RenormalizationTerm},
         kernel::{self, Kernel as _, SUPPORT_RATIO},
         particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
-        viscosity::{Artificial, WithTerms},
+        viscosity::{Artificial, TermConsumer},
     },
 };
 
-/// Which kernel weighs the neighbours. Scene word `model.kernel`.
+/// The kernel. Scene key `model.kernel`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Kernel {
+pub enum KernelKind {
     /// Cubic spline (Monaghan & Lattanzio 1985), by default with Monaghan's (2000) tensile correction.
     Cubic {
         /// Whether the tensile correction is on.
@@ -42,28 +42,28 @@ fn yes() -> bool {
     true
 }
 
-/// Which slope the pressure has. Scene word `model.gradient`.
+/// The pressure gradient. Scene key `model.gradient`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Gradient {
-    /// By the kernel's gradient as it is.
+pub enum PressureGradient {
+    /// The plain kernel gradient.
     #[default]
     Plain,
-    /// Corrected by how the neighbours of each particle lie (Bonet & Lok 1999); with the Wendland kernel and no shifting.
+    /// Corrected for the arrangement of the neighbours (Bonet & Lok 1999); with the Wendland kernel and without shifting.
     Corrected,
 }
 
-/// Which particles are shifted. Scene word `model.shifting`.
+/// Particle shifting. Scene key `model.shifting`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Shifting {
     /// None (the paper's type 0).
     None,
-    /// Those that see no solid at all (type 1).
+    /// Particles without any solid within the kernel support (type 1).
     AwayFromSolids(Shift),
-    /// Those that see no fixed solid (type 2).
+    /// Particles without a fixed solid within the kernel support (type 2).
     AwayFromFixed(Shift),
-    /// All (type 3).
+    /// All particles (type 3).
     Everywhere(Shift),
 }
 
@@ -78,19 +78,19 @@ impl Shifting {
     }
 }
 
-/// Which sweep adds up the pairs. Scene word `model.sweep`.
+/// The pair loop. Scene key `model.sweep`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PairLoopKind {
-    /// Eight pairs at a time in single precision, where the processor can (x86-64 with AVX2, ARM); else the oracle.
+    /// SIMD in single precision where the processor supports it (x86-64 with AVX2, ARM); otherwise the reference.
     #[default]
     Fast,
-    /// The oracle: one after the other in double precision.
+    /// The reference in double precision.
     Reference,
 }
 
 impl PairLoopKind {
-    /// The instructions that its lanes use, if it has lanes.
+    /// The SIMD instructions that it uses, if any.
     pub fn instruction_set(self) -> Option<Level> {
         match self {
             Self::Fast => simd::best_instruction_set(),
@@ -99,22 +99,22 @@ impl PairLoopKind {
     }
 }
 
-/// How a solid's skin acts on the water. Scene word `model.walls`.
+/// How boundary particles act on the water. Scene key `model.walls`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Walls {
-    /// Dynamic boundary particles: they obey continuity, and their density never falls below ρ₀.
+    /// Dynamic boundary particles: they obey continuity, and their density does not fall below ρ₀.
     #[serde(rename = "dbc")]
     Dynamic,
-    /// The same, but their density settles to that of the pressure that the water near them would have at their place.
+    /// The same, and their density relaxes to that of the water's pressure extrapolated to them (Adami et al. 2012).
     #[serde(alias = "settling")]
     RelaxedAdami,
 }
 
-/// Which scheme advances time. Scene word `time.scheme`.
+/// The time integration scheme. Scene key `time.scheme`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Scheme {
+pub enum TimeScheme {
     /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.
     Verlet {
         /// Steps from one Euler step to the next.
@@ -129,11 +129,11 @@ fn fifty() -> u32 {
     50
 }
 
-/// Everything that the equations need to know, every default filled in.
+/// All parameters of the equations, with every default filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// Kernel.
-    pub kernel: Kernel,
+    pub kernel: KernelKind,
     /// Smoothing length h, m.
     pub h: f64,
     /// Particle spacing dp, m.
@@ -148,7 +148,7 @@ pub struct Model {
     pub gravity: Vec<f64>,
     /// The pressure's gradient.
     #[serde(default)]
-    pub gradient: Gradient,
+    pub gradient: PressureGradient,
     /// Viscosity.
     pub viscosity: Viscosity,
     /// Density diffusion.
@@ -159,24 +159,24 @@ pub struct Model {
     pub walls: Walls,
     /// How water slips along solids.
     pub slip: Slip,
-    /// Which sweep adds up the pairs.
+    /// The pair loop.
     #[serde(default)]
     pub pair_loop: PairLoopKind,
     /// Time scheme.
-    pub scheme: Scheme,
+    pub scheme: TimeScheme,
     /// Courant number, –.
     pub cfl: f64,
     /// Longest time step allowed, s (infinite if none).
     pub dt_max: f64,
 }
 
-/// c₀ over √(g·depth) where nobody says it, –.
+/// Default of c₀ over √(g·depth), –.
 pub const C0_FACTOR: f64 = 10.0;
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
     /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
-    /// that settle and do not drag, symplectic at CFL 0.4. Change what you need.
+    /// relaxed Adami with free slip, symplectic at CFL 0.4. Change the fields that you need.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
         let mut gravity = vec![0.0; dimension];
@@ -184,21 +184,21 @@ impl Model {
             *down = -G;
         }
         Self {
-            kernel: Kernel::Wendland,
+            kernel: KernelKind::Wendland,
             h: dp * if dimension == 3 { 1.5 } else { 1.7 },
             dp,
             rho0: 1000.0,
             c0: C0_FACTOR * (G * depth).sqrt(),
             gamma: 7.0,
             gravity,
-            gradient: Gradient::Plain,
+            gradient: PressureGradient::Plain,
             viscosity: Viscosity::Artificial(Artificial::default()),
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
             walls: Walls::RelaxedAdami,
             slip: Slip::Free,
             pair_loop: PairLoopKind::Fast,
-            scheme: Scheme::Symplectic,
+            scheme: TimeScheme::Symplectic,
             cfl: 0.4,
             dt_max: f64::INFINITY,
         }
@@ -230,28 +230,28 @@ impl Model {
     /// Kernel value W (1/mᴰ) at squared distance `r2` (m²) in `dimension` 2 or 3.
     pub fn kernel_value(&self, r2: f64, dimension: usize) -> f64 {
         match self.kernel {
-            Kernel::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
-            Kernel::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
+            KernelKind::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
+            KernelKind::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
         }
     }
 
-    /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::stiffness`].
+    /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::lattice_stiffness`].
     pub fn lattice_stiffness<const D: usize>(&self) -> f64 {
         match self.kernel {
-            Kernel::Cubic { .. } => {
+            KernelKind::Cubic { .. } => {
                 kernel::lattice::lattice_stiffness(kernel::Cubic::new(self.h, D), &self.fluid_properties::<D>())
             }
-            Kernel::Wendland => {
+            KernelKind::Wendland => {
                 kernel::lattice::lattice_stiffness(kernel::Wendland::new(self.h, D), &self.fluid_properties::<D>())
             }
         }
     }
 
-    /// What of the choices does not go together, if anything.
+    /// The choices that cannot be combined, if any.
     pub fn conflict(&self) -> Option<&'static str> {
-        let alone = matches!(self.kernel, Kernel::Wendland) && self.shifting == Shifting::None;
+        let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
-        (self.gradient == Gradient::Corrected && !alone).then_some(clash)
+        (self.gradient == PressureGradient::Corrected && !alone).then_some(clash)
     }
 
     /// The shifting parameters, if any.
@@ -287,21 +287,25 @@ impl Model {
     /// The pair loop with the terms that this model names, and no others.
     fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
         let (units, level) = self.units::<D>();
-        let make =
-            PairLoopBuilder { model: self, properties: self.fluid_properties::<D>().in_units(&units), units, level };
+        let make = PairLoopBuilder {
+            model: self,
+            properties: self.fluid_properties::<D>().in_units(&units),
+            units,
+            instruction_set: level,
+        };
         let FluidProperties { h, dp, .. } = make.properties;
         let plain = (Pressure, Continuity);
         match self.kernel {
-            Kernel::Wendland => match self.gradient {
-                Gradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
-                Gradient::Corrected => make.with_viscosity(
+            KernelKind::Wendland => match self.gradient {
+                PressureGradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
+                PressureGradient::Corrected => make.with_viscosity(
                     kernel::Wendland::new(h, D),
-                    ((Pressure, CorrectedGradient), Continuity),
-                    ((Pressure, RenormalizationMatrix), Continuity),
+                    ((Pressure, CorrectedGradientTerm), Continuity),
+                    ((Pressure, RenormalizationTerm), Continuity),
                 ),
             },
-            Kernel::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
-            Kernel::Cubic { tensile: true } => {
+            KernelKind::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
+            KernelKind::Cubic { tensile: true } => {
                 let kernel = kernel::Cubic::new(h, D);
                 let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.properties).w(dp * dp) };
                 make.with_shifting(kernel, ((Pressure, tensile), Continuity))
@@ -310,9 +314,9 @@ impl Model {
     }
 }
 
-/// Dimensions in which sweeps are compiled, here and once.
+/// Dimensions for which the pair loop is compiled.
 pub trait Dimension<const D: usize>: HasEngine<D> {
-    /// The sweep that does what `model` names, and nothing else.
+    /// The pair loop with the terms that `model` names, and no others.
     fn pair_loop(model: &Model) -> Box<dyn PairLoop<D>>;
 }
 
@@ -330,12 +334,12 @@ impl Dimension<3> for Dim<3> {
     }
 }
 
-/// The making of a sweep, choice by choice, in the units in which it counts.
+/// Builds a pair loop choice by choice, in its units.
 struct PairLoopBuilder<'a, const D: usize> {
     model: &'a Model,
     properties: FluidProperties<D>,
     units: Units,
-    level: Option<Level>,
+    instruction_set: Option<Level>,
 }
 
 impl<const D: usize> PairLoopBuilder<'_, D> {
@@ -359,7 +363,13 @@ impl<const D: usize> PairLoopBuilder<'_, D> {
         let wall = (wall, Repulsion::new(kernel, &self.properties));
         let Model { viscosity, slip, .. } = *self.model;
         let next = Diffusive { builder: self, kernel, fluid: base, wall };
-        viscosity.terms(&self.properties, &self.units, slip.wall_share(), || kernel.viscous_sum(&self.properties), next)
+        viscosity.terms(
+            &self.properties,
+            &self.units,
+            slip.wall_viscosity_factor(),
+            || kernel.viscous_sum(&self.properties),
+            next,
+        )
     }
 }
 
@@ -371,17 +381,17 @@ struct Diffusive<'a, K, T, W, const D: usize> {
     wall: W,
 }
 
-impl<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static, const D: usize> WithTerms<D>
+impl<K: kernel::Kernel + 'static, T: Term<D> + 'static, W: Term<D> + 'static, const D: usize> TermConsumer<D>
     for Diffusive<'_, K, T, W, D>
 {
     type Output = Box<dyn PairLoop<D>>;
 
     fn with_terms<V: Term<D> + 'static, X: Term<D> + 'static>(self, fluid: V, wall: X) -> Self::Output {
-        let Self { builder: PairLoopBuilder { model, properties, units, level }, kernel, .. } = self;
+        let Self { builder: PairLoopBuilder { model, properties, units, instruction_set }, kernel, .. } = self;
         let (fluid, wall) = ((self.fluid, fluid), (self.wall, wall));
         match model.diffusion.term(properties) {
-            None => interaction::compile(kernel, fluid, wall, properties, *units, *level),
-            Some(term) => interaction::compile(kernel, (fluid, term), wall, properties, *units, *level),
+            None => interaction::compile(kernel, fluid, wall, properties, *units, *instruction_set),
+            Some(term) => interaction::compile(kernel, (fluid, term), wall, properties, *units, *instruction_set),
         }
     }
 }

@@ -32,7 +32,7 @@ impl<const D: usize> Particles<D> {
     }
 
     /// The first `n` of them.
-    pub fn first(&self, n: usize) -> ParticlesView<'_, D> {
+    pub fn first_n(&self, n: usize) -> ParticlesView<'_, D> {
         ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
     }
 

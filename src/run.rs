@@ -35,10 +35,10 @@ use std::path::{Path, PathBuf};
 use resume_point::ResumePoint;
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     output::{Checkpoint, Manifest, manifest::RunStatus},
-    scene::Scene,
+    scene::{RenamedName, Scene},
     simulation::Rollback,
     solid::Dim,
 };
@@ -61,6 +61,8 @@ pub struct RunStart<'a> {
     pub folder: &'a Path,
     /// What the manifest says at the start: caption, particles, threads, warnings.
     pub manifest: &'a Manifest,
+    /// The keys and values that the scene writes with an old name.
+    pub renamed: &'a [RenamedName],
 }
 
 /// How far a run is.
@@ -167,7 +169,9 @@ pub fn resume(
     // Read again under the lock: a run that was still going on may have finished since.
     if Manifest::read(folder)?.status == RunStatus::Finished {
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
-        return Err(Error::new(Kind::Restart, what).help("`pontoon run` with a larger --until starts a longer one"));
+        return Err(
+            Error::new(ErrorKind::Restart, what).help("`pontoon run` with a larger --until starts a longer one")
+        );
     }
     let ResumePoint { checkpoint, scene, warning } =
         resume_point::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
@@ -198,12 +202,12 @@ fn run_in_dimension<const D: usize>(scene: &Scene, origin: RunOrigin, watch: &mu
 where
     Dim<D>: Dimension<D>,
 {
-    runner::Runner::<D>::new(scene, origin)?.run(watch)
+    runner::Runner::<D>::new(scene, origin)?.run(scene.renamed_names(), watch)
 }
 
 /// The error of a scene in a dimension that this program was built without.
 pub(crate) fn missing_dimension(dimension: usize) -> Error {
-    Error::new(Kind::Usage, format!("this program was built without the {dimension}-D engine"))
+    Error::new(ErrorKind::Usage, format!("this program was built without the {dimension}-D engine"))
         .help(format!("build it with the feature dim{dimension}: cargo build --release --features dim{dimension}"))
 }
 
@@ -216,10 +220,11 @@ fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T
 pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if threads == Some(0) {
         return Err(
-            Error::new(Kind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
+            Error::new(ErrorKind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
         );
     }
     rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(|why| {
-        Error::new(Kind::Usage, format!("the threads cannot be started: {why}")).help("ask for fewer with --threads")
+        Error::new(ErrorKind::Usage, format!("the threads cannot be started: {why}"))
+            .help("ask for fewer with --threads")
     })
 }

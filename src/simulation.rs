@@ -1,34 +1,34 @@
-//! A running simulation: limit, step, check; no files.
+//! A running simulation: step limit, step, checks. No files.
 
-mod booked;
-mod change;
-mod hosted;
-mod rescue;
-mod tied;
+mod accounting;
+mod add_remove;
+mod external_bodies;
+mod rollback;
+mod constraints;
 
 use std::time::{Duration, Instant};
 
 pub use crate::{
     coupling::BodyStep,
-    system::{Escape, Limits, RemovedParticle, Setup},
+    system::{Escape, ParticleLimits, RemovedParticle, Setup},
 };
-pub use change::Added;
-pub use rescue::Rollback;
-pub(crate) use tied::find;
+pub use add_remove::AddedSolid;
+pub(crate) use constraints::find_by_name;
+pub use rollback::Rollback;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use rescue::RollbackControl;
+use rollback::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
-    error::{Error, Fault, Kind, Result},
+    error::{Error, ErrorKind, Fault, Result},
     interaction::PairLoop,
     math::{Bivector, Vector},
     model::Dimension,
     solid::{
-        Contact, Dim, HasEngine as _, Role, SolidSpec,
+        ContactForce, Dim, HasEngine as _, Role, SolidSpec,
         constraint::assembly::{Assembly, AssemblyState},
     },
     system::{System, SystemState},
@@ -42,12 +42,12 @@ pub struct Simulation<const D: usize> {
     bodies: Bodies<D>,
     clock: Clock,
     rollback: RollbackControl,
-    /// Particles taken out, and when, s.
+    /// Removed particles, and the times of removal, s.
     removed: Vec<(f64, RemovedParticle<D>)>,
     stepping: Duration,
 }
 
-/// Where the time went, since the start.
+/// Wall time by part, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TimeSpent {
     /// All steps.
@@ -67,7 +67,7 @@ struct Clock {
     steps: u64,
 }
 
-/// What of a simulation must be kept to go on to the same bits.
+/// The state of a simulation in a checkpoint.
 #[derive(Serialize, Deserialize)]
 struct SimulationState<const D: usize> {
     system: SystemState<D>,
@@ -84,7 +84,7 @@ struct SimulationState<const D: usize> {
 }
 
 impl<const D: usize> Simulation<D> {
-    /// Sets up a simulation at time 0 and makes its first force pass.
+    /// Sets up a simulation at time 0 and computes the first force pass.
     ///
     /// # Errors
     /// `Scene` if a constant has no valid value, a solid cannot be made, or bodies overlap: says which.
@@ -107,7 +107,7 @@ impl<const D: usize> Simulation<D> {
         Self::with_bodies(setup, pair_loop, false)
     }
 
-    /// Sets up a simulation whose free solids it moves itself, or lets be `hosted` by somebody else.
+    /// Sets up a simulation whose free solids the engine moves, or an `external` program.
     fn with_bodies(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
@@ -118,7 +118,7 @@ impl<const D: usize> Simulation<D> {
             solid.check()?;
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
-        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+        let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
         let engine = if !external && solids.iter().any(|s| free(&s)) {
             Some(Dim::<D>::engine(solids, &start, &setup.constraints, &medium.gravity, dp)?)
         } else {
@@ -127,7 +127,7 @@ impl<const D: usize> Simulation<D> {
         let rig = Assembly::new(&setup.constraints, start);
         let stepper = Stepper::new(&setup.model);
         let mut system = System::new(setup, pair_loop)?;
-        let bodies = Bodies::new(engine, AcousticAddedMass::find(&mut system), rig, external);
+        let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rollback: rescue, removed: lost, stepping };
@@ -135,8 +135,8 @@ impl<const D: usize> Simulation<D> {
         Ok(simulation)
     }
 
-    /// Goes one step on, as long as water and bodies allow. At the first alarm of a guard it goes back to a good state
-    /// instead, some hundred steps, and takes half the step for a while: see [`Simulation::rescued`].
+    /// Advances by one step of the largest allowed length. At the first alarm of a guard it rolls back to a good state
+    /// some hundred steps earlier, and halves the step for a while: see [`Simulation::rollbacks`].
     ///
     /// # Errors
     /// `Fault` if a particle or body leaves the valid range again: names it, its place and the usual cause.
@@ -144,7 +144,7 @@ impl<const D: usize> Simulation<D> {
         self.step_to(f64::INFINITY)
     }
 
-    /// Goes one step on, and not past time `end` (s).
+    /// Advances by one step, not past time `end` (s).
     ///
     /// # Errors
     /// As [`Simulation::step`].
@@ -152,11 +152,11 @@ impl<const D: usize> Simulation<D> {
         self.step_with_hook(end, &mut |_| Ok(()))
     }
 
-    /// Goes one step on, calling `hook` when the water has moved and the bodies have not.
+    /// Advances by one step, calling `hook` when the water has moved and the bodies have not.
     fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         let start = Instant::now();
         if self.needs_rollback_state() {
-            self.rollback.make_room();
+            self.rollback.drop_oldest_state();
             self.rollback.store(self.clock.steps, self.clock.time, self.save()?);
         }
         let outcome = self.advance(end, hook).or_else(|error| self.roll_back(error));
@@ -164,12 +164,12 @@ impl<const D: usize> Simulation<D> {
         outcome
     }
 
-    /// Goes back to a good state after the alarm `error`, or gives it on if that is no use.
+    /// Rolls back to a good state after the alarm `error`, or returns it if there is none.
     fn roll_back(&mut self, error: Error) -> Result<()> {
-        if error.kind != Kind::Fault {
+        if error.kind != ErrorKind::Fault {
             return Err(error);
         }
-        match self.rollback.state_before(&error.what, self.clock.steps, self.clock.time) {
+        match self.rollback.state_before(&error.message, self.clock.steps, self.clock.time) {
             Some(good) => {
                 let rescue = std::mem::take(&mut self.rollback);
                 self.restore(&good)?;
@@ -180,28 +180,28 @@ impl<const D: usize> Simulation<D> {
         }
     }
 
-    /// Never goes back: the first alarm ends the run.
+    /// Disables the rollback: the first alarm ends the run.
     pub fn without_rollback(mut self) -> Self {
-        self.rollback = RollbackControl::off();
+        self.rollback = RollbackControl::disabled();
         self
     }
 
-    /// Whether the next step first keeps the state of now, to go back to after an alarm.
+    /// Whether the next step first stores the state for a rollback.
     pub(crate) fn needs_rollback_state(&self) -> bool {
         self.rollback.needs_state(self.clock.steps)
     }
 
-    /// Whether a state of `time` (s) is kept.
+    /// Whether a state of `time` (s) is stored.
     pub(crate) fn has_rollback_state(&self, time: f64) -> bool {
         self.rollback.has_state_at(time)
     }
 
-    /// When and why the run went back to a good state and took half the step for a while.
+    /// The rollbacks so far, with their causes and times.
     pub fn rollbacks(&self) -> &[Rollback] {
         &self.rollback.log
     }
 
-    /// The particles that left the domain and were taken out ([`Escape::Remove`]), and when that was seen (s).
+    /// The particles that left the domain and were removed ([`Escape::Remove`]), and the times of removal (s).
     pub fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] {
         &self.removed
     }
@@ -210,14 +210,14 @@ impl<const D: usize> Simulation<D> {
         if let Some(reordering) = self.system.rebuild_neighbours() {
             self.stepper.reorder(&reordering, self.system.properties().rho0);
             if let Some(accounting) = &mut self.bodies.accounting {
-                accounting.add_removed(&self.system, &reordering.lost);
+                accounting.add_removed(&self.system, &reordering.removed);
             }
-            self.removed.extend(reordering.lost.into_iter().map(|lost| (self.clock.time, lost)));
+            self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
         }
         self.system.update_rates();
         let allowed = self.step_limit();
         let left = end - self.clock.time;
-        // The last two steps share what is left, so that none is far shorter than the others.
+        // The last two steps have equal lengths, so that none is far shorter than the others.
         let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
         if dt.is_nan() || dt <= 0.0 {
             return Err(self.fault("time step of no length", NO_STEP, 0));
@@ -236,15 +236,15 @@ impl<const D: usize> Simulation<D> {
     /// The longest step (s) that the present rates, the springs and the model allow.
     pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
-        let water = step_size::water(&self.system.step_limits(), self.system.properties(), model.cfl);
-        let ties = self.spring_limit().min(self.bodies.constraints().next_release(self.clock.time));
+        let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
+        let ties = self.spring_step_limit().min(self.bodies.constraints().next_release(self.clock.time));
         water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
             * self.rollback.step_factor(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
     fn guard(&self) -> Result<()> {
-        match self.system.first_fault() {
+        match self.system.first_invalid_particle() {
             None => Ok(()),
             Some((i, reason, cause)) => Err(self.fault(reason, cause, i)),
         }
@@ -265,7 +265,7 @@ impl<const D: usize> Simulation<D> {
         })
     }
 
-    /// Makes the rates anew after the state was changed by hand.
+    /// Computes the rates after the state was changed by hand.
     pub fn update_rates(&mut self) {
         self.system.update_rates();
     }
@@ -275,10 +275,10 @@ impl<const D: usize> Simulation<D> {
         &self.system
     }
 
-    /// Where the time went; what is left of the steps went into moving particles and packing them.
+    /// Wall time by part; the remainder of the steps is moving and packing particles.
     pub fn time_spent(&self) -> TimeSpent {
         let (lists, pairs) = self.system.time_spent();
-        TimeSpent { steps: self.stepping, lists, pairs, bodies: self.bodies.spent() }
+        TimeSpent { steps: self.stepping, lists, pairs, bodies: self.bodies.engine_time() }
     }
 
     /// Simulated time, s.
@@ -297,8 +297,8 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Force passes so far.
-    pub fn passes(&self) -> u64 {
-        self.system.passes()
+    pub fn force_passes(&self) -> u64 {
+        self.system.force_passes()
     }
 
     /// Pushes free solid number `solid` with `force` (N; N/m in 2-D) at the world point `at` (m) during the
@@ -309,8 +309,8 @@ impl<const D: usize> Simulation<D> {
         }
     }
 
-    /// Impulse (N s; N s/m in 2-D) that the water has given to free solid number `solid` and that it has yet to get: none but
-    /// of a body lighter than the water that sound sets moving while it crosses a kernel.
+    /// Impulse (N s; N s/m in 2-D) of the water not yet applied to free solid number `solid`. Non-zero only for bodies with
+    /// acoustic added mass.
     pub fn pending_impulse(&self, solid: usize) -> Vector<D> {
         self.bodies.pending_impulse(solid)
     }
@@ -337,12 +337,12 @@ impl<const D: usize> Simulation<D> {
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
     }
 
-    /// How the solids pressed on one another in the last step, pair by pair.
-    pub fn contacts(&self) -> Vec<Contact<D>> {
+    /// Contact forces in the last step, pair by pair.
+    pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|e| e.contacts()).unwrap_or_default()
     }
 
-    /// Everything that [`Simulation::restore`] needs to go on to the same bits.
+    /// The state from which [`Simulation::restore`] continues with the same bits.
     ///
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
@@ -350,7 +350,7 @@ impl<const D: usize> Simulation<D> {
         self.save_with_rollbacks(self.rollback.log.len())
     }
 
-    /// As [`Simulation::save`], of a run that has been rescued the first `times` times only.
+    /// As [`Simulation::save`], with the first `times` rollbacks only.
     pub(crate) fn save_with_rollbacks(&self, times: usize) -> Result<Vec<u8>> {
         let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
         let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
@@ -370,7 +370,7 @@ impl<const D: usize> Simulation<D> {
             accounting,
             removed_solids: gone,
         };
-        postcard::to_stdvec(&kept).map_err(|e| Error::new(Kind::Restart, format!("cannot write the state: {e}")))
+        postcard::to_stdvec(&kept).map_err(|e| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}")))
     }
 
     /// Numbers of the solids that have been removed.
@@ -381,33 +381,41 @@ impl<const D: usize> Simulation<D> {
 
     fn read(bytes: &[u8]) -> Result<SimulationState<D>> {
         postcard::from_bytes(bytes)
-            .map_err(|e| Error::new(Kind::Restart, format!("the checkpoint's state is damaged: {e}")))
+            .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
     }
 
-    /// Goes back to a state that [`Simulation::save`] gave, in a simulation made from the same setup.
+    /// Returns to a state from [`Simulation::save`], in a simulation made from the same setup.
     ///
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
         if kept.removed_solids != self.removed_solids() {
-            return Err(Error::new(Kind::Restart, "solids had been removed from the simulation whose state this is")
-                .help("restore_with takes it up in a simulation made from the same setup"));
+            return Err(Error::new(
+                ErrorKind::Restart,
+                "solids had been removed from the simulation whose state this is",
+            )
+            .help("restore_with takes it up in a simulation made from the same setup"));
         }
         match (self.bodies.engine_mut(), kept.engine) {
             (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
             (None, None) => {}
-            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies")),
+            _ => return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies")),
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
             || !self.bodies.constraints_mut().restore(kept.constraints)
         {
-            return Err(Error::new(Kind::Restart, "the checkpoint holds other bodies"));
+            return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies"));
         }
         match (&self.bodies.accounting, &kept.accounting) {
             (Some(own), Some(state)) if own.matches(state) => {}
             (None, None) => {}
-            _ => return Err(Error::new(Kind::Restart, "the checkpoint holds another load breakdown or energy budget")),
+            _ => {
+                return Err(Error::new(
+                    ErrorKind::Restart,
+                    "the checkpoint holds another load breakdown or energy budget",
+                ));
+            }
         }
         self.system.restore(kept.system)?;
         if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {

@@ -1,44 +1,88 @@
-//! The book: its scenes are run and its commands are typed, in the order in which a reader would. Its programs are compiled and
-//! run by `cargo test` as tests of the documentation (src/lib.rs).
+//! The documents against the program: their scenes and commands run, and their links and plots are right.
+//! Their Rust programs are compiled and run by `cargo test` as documentation tests (src/lib.rs).
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
     process::Command,
 };
 
-use pontoon::scene::{Scene, shipped};
+use pontoon::scene::{Scene, bundled_scenes};
 
 #[path = "../examples/choosing_plots.rs"]
-#[allow(dead_code, reason = "its main is for who draws the plots anew")]
+#[allow(dead_code, reason = "its main function draws the plots")]
 mod choosing_plots;
 
-/// Chapters that a reader follows with the program at hand.
-const CHAPTERS: [&str; 5] = ["README.md", "docs/first-run.md", "docs/own-scene.md", "docs/waves.md", "docs/bodies.md"];
+/// Pages whose `sh` blocks are executed and whose changes of keys apply to their own scene.
+const EXECUTED: [&str; 4] = [
+    "docs/tutorial/first-run.md",
+    "docs/tutorial/own-scene.md",
+    "docs/how-to/waves.md",
+    "docs/how-to/bodies-and-joints.md",
+];
 
-/// Further pages with whole scenes.
-const PAGES: [&str; 2] = ["docs/validation.md", "docs/stability.md"];
+/// The folder of the project.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
 
-/// An empty folder of that name.
-fn desk(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("pontoon-book-{}-{name}", std::process::id()));
+/// The text of a file of the project.
+fn read(file: &str) -> String {
+    fs::read_to_string(root().join(file)).unwrap_or_else(|why| panic!("{file}: {why}"))
+}
+
+/// An empty folder of this name.
+fn empty_folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("pontoon-documents-{}-{name}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-/// The blocks of a chapter that are fenced as `kind`.
-fn blocks(chapter: &str, kind: &str) -> Vec<String> {
-    let text = read(chapter);
+/// The Markdown files in `folder` and its subfolders, sorted, as paths from the root of the project.
+fn markdown_files(folder: &str) -> Vec<String> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(root().join(folder)).unwrap().flatten() {
+        let path = format!("{folder}/{}", entry.file_name().into_string().unwrap());
+        if entry.path().is_dir() {
+            files.extend(markdown_files(&path));
+        } else if path.ends_with(".md") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files
+}
+
+/// The pages of `docs/`.
+fn pages() -> Vec<String> {
+    markdown_files("docs")
+}
+
+/// The pages of `docs/`, the README and the changelog.
+fn documents() -> Vec<String> {
+    ["README.md", "CHANGELOG.md"].map(String::from).into_iter().chain(pages()).collect()
+}
+
+/// The READMEs of the bundled scenes.
+fn scene_readmes() -> Vec<String> {
+    bundled_scenes().iter().map(|(name, ..)| format!("scenes/{name}/README.md")).collect()
+}
+
+/// The blocks of a page that are fenced as `kind`.
+fn blocks(page: &str, kind: &str) -> Vec<String> {
+    let text = read(page);
     let fence = format!("```{kind}\n");
     text.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().trim_start().to_string()).collect()
 }
 
-/// The whole scenes of a chapter; words that a reader is told to append make another of the scene before them.
-fn scenes(chapter: &str) -> Vec<String> {
+/// The complete scenes of a page. A block of further entries makes another scene of the one before it.
+fn scenes(page: &str) -> Vec<String> {
     let mut scenes: Vec<String> = Vec::new();
-    for block in blocks(chapter, "toml") {
+    for block in blocks(page, "toml") {
         match scenes.last() {
             _ if block.starts_with("title") => scenes.push(block),
             Some(before) if block.starts_with("[[") && !block.starts_with("[[map]]") => {
@@ -50,45 +94,33 @@ fn scenes(chapter: &str) -> Vec<String> {
     scenes
 }
 
-/// The text of a file of the source.
-fn read(file: &str) -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap()
-}
-
-/// The pages of docs/, from the source's folder.
-fn pages() -> Vec<String> {
-    let folder = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")).unwrap();
-    let names = folder.flatten().map(|entry| entry.file_name().into_string().unwrap());
-    names.filter(|name| name.ends_with(".md")).map(|name| format!("docs/{name}")).collect()
-}
-
-/// What the program prints for these words.
-fn pontoon(words: &[&str], folder: &Path) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_pontoon")).args(words).current_dir(folder).output().unwrap();
-    assert!(output.status.success(), "pontoon {}: {}", words.join(" "), String::from_utf8_lossy(&output.stderr));
+/// The output of the program for these arguments.
+fn pontoon(arguments: &[&str], folder: &Path) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_pontoon")).args(arguments).current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "pontoon {}: {}", arguments.join(" "), String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A line as a shell takes it apart: what is quoted is one word, and a remark is none.
-fn words(line: &str) -> Vec<String> {
-    let (mut words, mut quote) = (vec![String::new()], None);
+/// The arguments of a line as a shell splits it, without quotation marks and comments.
+fn arguments(line: &str) -> Vec<String> {
+    let (mut arguments, mut quote) = (vec![String::new()], None);
     for sign in line.split(" #").next().unwrap().chars() {
         match quote {
             Some(end) if sign == end => quote = None,
             None if sign == '\'' || sign == '"' => quote = Some(sign),
-            None if sign.is_whitespace() => words.push(String::new()),
-            _ => words.last_mut().unwrap().push(sign),
+            None if sign.is_whitespace() => arguments.push(String::new()),
+            _ => arguments.last_mut().unwrap().push(sign),
         }
     }
-    words.retain(|word| !word.is_empty());
-    words
+    arguments.retain(|argument| !argument.is_empty());
+    arguments
 }
 
-/// The keys that the arguments of a command change; of several values of one the first.
-fn sets(words: &[String]) -> Vec<(String, String)> {
+/// The keys that the arguments of a command change, each with its first value.
+fn overrides(arguments: &[String]) -> Vec<(String, String)> {
     let first = |values: &str| values.split(',').next().unwrap().to_string();
     let pair = |text: &str| text.split_once('=').map(|(key, value)| (key.to_string(), value.to_string())).unwrap();
-    let known = words.windows(2).filter_map(|two| match two[0].as_str() {
+    let known = arguments.windows(2).filter_map(|two| match two[0].as_str() {
         "--set" => Some(pair(&two[1])),
         "--vary" => Some(pair(&two[1])).map(|(key, values)| (key, first(&values))),
         "--dp" | "--until" => Some((two[0][2..].to_string(), first(&two[1]))),
@@ -97,35 +129,35 @@ fn sets(words: &[String]) -> Vec<(String, String)> {
     known.collect()
 }
 
-/// A page in pieces: a line of a shell, what stands in back-quotes, a block of TOML.
-enum Piece {
-    Line(String),
+/// A part of a page: a line of a shell, code between back-quotes, or a block of TOML.
+enum Part {
+    ShellLine(String),
     Code(String),
     Toml(String),
 }
 
-/// The pieces of a page, in their order.
-fn pieces(page: &str) -> Vec<Piece> {
+/// The parts of a page in their order.
+fn parts(page: &str) -> Vec<Part> {
     let text = read(page);
-    let of = |(i, part): (usize, &str)| -> Vec<Piece> {
+    let split = |(i, part): (usize, &str)| -> Vec<Part> {
         match (i % 2, part.split_once('\n')) {
-            (0, _) => part.split('`').skip(1).step_by(2).map(|code| Piece::Code(code.to_string())).collect(),
+            (0, _) => part.split('`').skip(1).step_by(2).map(|code| Part::Code(code.to_string())).collect(),
             (_, Some(("sh" | "console", block))) => {
-                block.replace("\\\n", " ").lines().map(|line| Piece::Line(line.trim().to_string())).collect()
+                block.replace("\\\n", " ").lines().map(|line| Part::ShellLine(line.trim().to_string())).collect()
             }
-            (_, Some(("toml", block))) => vec![Piece::Toml(block.to_string())],
+            (_, Some(("toml", block))) => vec![Part::Toml(block.to_string())],
             _ => vec![],
         }
     };
-    text.split("```").enumerate().flat_map(of).collect()
+    text.split("```").enumerate().flat_map(split).collect()
 }
 
 #[test]
-fn every_scene_of_the_book_runs() {
-    let folder = desk("scenes");
+fn every_complete_scene_of_a_document_runs() {
+    let folder = empty_folder("scenes");
     let mut count = 0;
-    for chapter in CHAPTERS.into_iter().chain(PAGES) {
-        for scene in scenes(chapter) {
+    for page in documents() {
+        for scene in scenes(&page) {
             count += 1;
             let file = folder.join(format!("scene-{count}.toml"));
             fs::write(&file, scene).unwrap();
@@ -133,113 +165,113 @@ fn every_scene_of_the_book_runs() {
             pontoon(&["run", file.to_str().unwrap(), "--until", "0.02", "--out", &out, "--quiet"], &folder);
         }
     }
-    assert!(count >= 8, "README, the chapters and the pages have a scene or two each, but {count} were found");
+    assert!(count >= 7, "{count} scenes were found");
     fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn every_command_of_the_book_does_what_it_says() {
+fn every_command_in_an_sh_block_runs() {
     let mut count = 0;
-    for chapter in &CHAPTERS[1..] {
-        let folder = desk("commands");
-        for scene in scenes(chapter) {
+    for page in EXECUTED {
+        let folder = empty_folder("commands");
+        for scene in scenes(page) {
             fs::write(folder.join("scene.toml"), scene).unwrap();
         }
-        for line in blocks(chapter, "sh").iter().flat_map(|block| block.lines()) {
-            let words: Vec<&str> = line.split_whitespace().collect();
-            assert_eq!(words[0], "pontoon", "{chapter}: {line}");
-            pontoon(&words[1..], &folder);
+        for line in blocks(page, "sh").iter().flat_map(|block| block.lines()) {
+            let arguments: Vec<&str> = line.split_whitespace().collect();
+            assert_eq!(arguments[0], "pontoon", "{page}: {line}");
+            pontoon(&arguments[1..], &folder);
             count += 1;
         }
         fs::remove_dir_all(folder).unwrap();
     }
-    assert!(count >= 5, "{count} commands were found");
+    assert!(count >= 10, "{count} commands were found");
 }
 
-/// What the program knows: its subcommands with the words of their help, and the cases of `validate` and `stress`.
+/// The subcommands of the program with the tokens of their help, and the cases of `validate` and `stress`.
 #[derive(Default)]
-struct Known {
+struct Program {
     help: BTreeMap<String, BTreeSet<String>>,
     cases: BTreeMap<String, BTreeSet<String>>,
 }
 
-impl Known {
-    /// Holds a command of a page to what there is, without running it.
-    fn check(&mut self, page: &str, words: &[String]) {
-        let (line, here) = (words.join(" "), Path::new(env!("CARGO_MANIFEST_DIR")));
-        let tokens = |text: String, apart: &[char]| -> BTreeSet<String> {
-            text.split(|c: char| c.is_whitespace() || apart.contains(&c)).map(String::from).collect()
+impl Program {
+    /// Checks options, cases, scene and keys of a command without running it.
+    fn check(&mut self, page: &str, arguments: &[String]) {
+        let line = arguments.join(" ");
+        let tokens = |text: String, separators: &[char]| -> BTreeSet<String> {
+            text.split(|c: char| c.is_whitespace() || separators.contains(&c)).map(String::from).collect()
         };
-        let command = words[1].as_str();
-        let said = || tokens(pontoon(&[command, "--help"], here), &[',', '[', ']', '<', '>', '|', '=']);
-        let help = self.help.entry(command.into()).or_insert_with(said);
-        for flag in words[2..].iter().filter(|word| word.starts_with("--")) {
-            assert!(help.contains(flag.as_str()), "{page}: {line}: {flag} is none of {command}");
+        let command = arguments[1].as_str();
+        let read_help = || tokens(pontoon(&[command, "--help"], root()), &[',', '[', ']', '<', '>', '|', '=']);
+        let help = self.help.entry(command.into()).or_insert_with(read_help);
+        for option in arguments[2..].iter().filter(|argument| argument.starts_with("--")) {
+            assert!(help.contains(option.as_str()), "{page}: {line}: {command} has no option {option}");
         }
-        let plain: Vec<&String> = words[2..].iter().take_while(|word| !word.starts_with('-')).collect();
+        let names: Vec<&String> = arguments[2..].iter().take_while(|argument| !argument.starts_with('-')).collect();
         if matches!(command, "validate" | "stress") {
-            let said = || tokens(pontoon(&[command, "--list"], here), &[',', ':']);
-            let cases = self.cases.entry(command.into()).or_insert_with(said);
-            for case in plain.iter().filter(|case| **case != "…") {
-                assert!(cases.contains(case.as_str()), "{page}: {line}: there is no {case}");
+            let read_list = || tokens(pontoon(&[command, "--list"], root()), &[',', ':']);
+            let cases = self.cases.entry(command.into()).or_insert_with(read_list);
+            for case in names.iter().filter(|case| **case != "…") {
+                assert!(cases.contains(case.as_str()), "{page}: {line}: there is no case {case}");
             }
         }
-        let Some(scene) = plain.first().filter(|_| matches!(command, "run" | "inspect" | "study")) else { return };
+        let Some(scene) = names.first().filter(|_| matches!(command, "run" | "inspect" | "study")) else { return };
         let name = scene.trim_start_matches("scenes/");
         if !name.contains(|c: char| c.is_uppercase() || c == '/' || c == '.') {
-            assert!(shipped().iter().any(|(known, ..)| *known == name), "{page}: {line}: there is no {name}");
-            let scene = Scene::read(&here.join("scenes").join(name).join("scene.toml"), &sets(words));
-            let why = scene.and_then(|scene| scene.plan()).err();
-            assert!(why.is_none(), "{page}: {line}: {}", why.unwrap());
+            let known = bundled_scenes().iter().any(|(known, ..)| *known == name);
+            assert!(known, "{page}: {line}: there is no scene {name}");
+            let scene = Scene::read(&root().join("scenes").join(name).join("scene.toml"), &overrides(arguments));
+            let error = scene.and_then(|scene| scene.plan()).err();
+            assert!(error.is_none(), "{page}: {line}: {}", error.unwrap());
         }
     }
 }
 
 #[test]
-fn every_command_that_a_page_names_is_one_that_the_program_knows() {
-    let (mut known, mut count) = (Known::default(), 0);
-    for page in ["README.md".to_string(), "CHANGELOG.md".into()].into_iter().chain(pages()) {
-        for piece in pieces(&page) {
-            let (Piece::Line(line) | Piece::Code(line)) = piece else { continue };
-            let words = words(&line.replace("DIR…", "DIR"));
-            if words.len() > 1 && words[0] == "pontoon" {
-                known.check(&page, &words);
+fn every_command_in_a_document_is_valid() {
+    let (mut program, mut count) = (Program::default(), 0);
+    for page in documents().into_iter().chain(scene_readmes()) {
+        for part in parts(&page) {
+            let (Part::ShellLine(line) | Part::Code(line)) = part else { continue };
+            let arguments = arguments(&line.replace("DIR…", "DIR"));
+            if arguments.len() > 1 && arguments[0] == "pontoon" {
+                program.check(&page, &arguments);
                 count += 1;
             }
         }
     }
-    assert!(count > 100, "{count} commands were found");
+    assert!(count > 80, "{count} commands were found");
 }
 
 #[test]
-fn every_change_that_a_page_shows_of_its_scene_can_be_made() {
+fn every_change_of_keys_in_a_document_is_valid_for_its_scene() {
     let mut count = 0;
-    let mut made = |page: &str, words: &[String], scene: pontoon::Result<Scene>| {
-        let why = scene.and_then(|scene| scene.plan()).err();
-        assert!(why.is_none(), "{page}: {}: {}", words.join(" "), why.unwrap());
+    let mut check = |page: &str, arguments: &[String], scene: pontoon::Result<Scene>| {
+        let error = scene.and_then(|scene| scene.plan()).err();
+        assert!(error.is_none(), "{page}: {}: {}", arguments.join(" "), error.unwrap());
         count += 1;
     };
-    let changes = |code: &str| ["--set ", "--dp "].iter().any(|word| code.starts_with(word));
-    for (name, ..) in shipped() {
-        let page = format!("scenes/{name}/README.md");
-        for piece in pieces(&page) {
-            let Piece::Code(code) = piece else { continue };
-            if changes(&code) {
-                let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}/scene.toml"));
-                let words = words(&code);
-                made(&page, &words, Scene::read(&file, &sets(&words)));
+    let is_change = |code: &str| ["--set ", "--dp "].iter().any(|option| code.starts_with(option));
+    for page in scene_readmes() {
+        let file = root().join(page.replace("README.md", "scene.toml"));
+        for part in parts(&page) {
+            let Part::Code(code) = part else { continue };
+            if is_change(&code) {
+                let arguments = arguments(&code);
+                check(&page, &arguments, Scene::read(&file, &overrides(&arguments)));
             }
         }
     }
-    for page in CHAPTERS {
+    for page in ["README.md"].into_iter().chain(EXECUTED) {
         let mut scene: Option<String> = None;
-        for piece in pieces(page) {
-            match (piece, &mut scene) {
-                (Piece::Toml(block), before) if block.starts_with("title") => *before = Some(block),
-                (Piece::Toml(block), Some(before)) if block.starts_with("[[") => *before += &block,
-                (Piece::Code(code), Some(text)) if changes(&code) => {
-                    let words = words(&code);
-                    made(page, &words, Scene::parse(text, Path::new(""), &sets(&words)));
+        for part in parts(page) {
+            match (part, &mut scene) {
+                (Part::Toml(block), before) if block.starts_with("title") => *before = Some(block),
+                (Part::Toml(block), Some(before)) if block.starts_with("[[") => *before += &block,
+                (Part::Code(code), Some(text)) if is_change(&code) => {
+                    let arguments = arguments(&code);
+                    check(page, &arguments, Scene::parse(text, Path::new(""), &overrides(&arguments)));
                 }
                 _ => {}
             }
@@ -249,11 +281,11 @@ fn every_change_that_a_page_shows_of_its_scene_can_be_made() {
 }
 
 #[test]
-fn every_map_of_the_book_runs() {
-    let folder = desk("maps");
-    let maps: Vec<String> =
-        blocks("docs/stability.md", "toml").into_iter().filter(|block| block.starts_with("[[map]]")).collect();
-    assert!(!maps.is_empty(), "docs/stability.md shows how a map is written");
+fn every_stress_map_of_a_page_runs() {
+    let folder = empty_folder("maps");
+    let is_map = |block: &String| block.starts_with("[[map]]");
+    let maps: Vec<String> = pages().iter().flat_map(|page| blocks(page, "toml")).filter(is_map).collect();
+    assert!(!maps.is_empty(), "docs/explanation/stability.md shows a map");
     for (i, map) in maps.iter().enumerate() {
         let (file, out) = (format!("maps-{i}.toml"), format!("stress-{i}"));
         fs::write(folder.join(&file), map).unwrap();
@@ -263,37 +295,120 @@ fn every_map_of_the_book_runs() {
 }
 
 #[test]
-fn every_program_of_the_book_is_compiled_and_run() {
-    // `cargo test` does it with the pages that the library names, so no page with a program may be missing there.
+fn every_page_with_a_rust_program_is_a_documentation_test() {
     let library = read("src/lib.rs");
     let programs: Vec<String> = pages().into_iter().filter(|page| read(page).contains("```rust")).collect();
-    assert!(!programs.is_empty(), "docs/coupling.md has programs");
+    assert!(!programs.is_empty(), "docs/how-to/use-from-rust.md has programs");
     for page in programs {
-        assert!(library.contains(&format!("include_str!(\"../{page}\")")), "{page} is not named in src/lib.rs");
+        assert!(library.contains(&format!("include_str!(\"../{page}\")")), "src/lib.rs does not include {page}");
     }
 }
 
 #[test]
-fn the_plots_of_choosing_are_those_of_their_table_and_its_figures_are_measured_ones() {
+fn every_plot_equals_its_table_and_its_values_are_in_their_source() {
     for plot in choosing_plots::Sheet::read().unwrap().plot {
-        let (file, source) = (format!("plots/{}", plot.file), read(&format!("docs/{}", plot.source)));
+        let (file, source) = (format!("docs/plots/{}", plot.file), read(&format!("docs/{}", plot.source)));
         let page = read(&format!("docs/{}", plot.page));
-        assert!(page.contains(&format!("({file})")), "docs/{} does not show {file}", plot.page);
+        assert!(page.contains(&format!("plots/{})", plot.file)), "docs/{} does not show {file}", plot.page);
         assert!(
-            read(&format!("docs/{file}")) == plot.svg().unwrap(),
-            "{file} is old: cargo run --release --example choosing_plots"
+            read(&file) == plot.svg().unwrap(),
+            "{file} differs from its table: cargo run --release --example choosing_plots"
         );
         for line in &plot.lines {
-            assert!(
-                page.contains(&line.name),
-                "docs/{} does not say which line of {file} is {:?}",
-                plot.page,
-                line.name
-            );
-            // A value is written in its source as it is here, but for zeros at its end.
+            assert!(page.contains(&line.name), "docs/{} does not name the line {:?} of {file}", plot.page, line.name);
+            // Zeros at the end of a value may differ between table and source.
             for (x, y) in &line.points {
                 assert!(source.contains(&y.abs().to_string()), "{file}: {y} at {x} is not in docs/{}", plot.source);
             }
         }
     }
+}
+
+/// The text of a page without its blocks of code.
+fn without_blocks(page: &str) -> String {
+    read(page).split("```").step_by(2).collect::<Vec<_>>().join("\n")
+}
+
+/// The anchors of the headings of a page, as GitHub and mdBook form them.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let mut anchors = BTreeSet::new();
+    for line in without_blocks(page).lines().filter(|line| line.starts_with('#')) {
+        let heading = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+        let is_kept = |c: &char| c.is_alphabetic() || c.is_ascii_digit() || ['-', '_'].contains(c);
+        let anchor: String = heading.chars().filter(is_kept).collect();
+        let numbered = (1..).map(|i| format!("{anchor}-{i}"));
+        let anchor = std::iter::once(anchor.clone()).chain(numbered).find(|a| !anchors.contains(a)).unwrap();
+        anchors.insert(anchor);
+    }
+    anchors
+}
+
+/// The relative links and images of a page: file, from the root of the project, and anchor.
+fn links(page: &str) -> Vec<(String, Option<String>)> {
+    let prose: String = without_blocks(page).split('`').step_by(2).collect();
+    let targets = prose.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let relative = targets.filter(|target| !target.contains("://") && !target.starts_with("mailto:"));
+    let resolve = |target: &str| {
+        let (file, anchor) = target.split_once('#').map_or((target, None), |(file, a)| (file, Some(a.to_string())));
+        if file.is_empty() {
+            return (page.to_string(), anchor);
+        }
+        let mut path = PathBuf::new();
+        for part in Path::new(page).parent().unwrap().join(file).components() {
+            match part {
+                Component::ParentDir => assert!(path.pop(), "{page}: {target} leads out of the project"),
+                part => path.push(part),
+            }
+        }
+        (path.to_str().unwrap().replace('\\', "/"), anchor)
+    };
+    relative.map(resolve).collect()
+}
+
+#[test]
+fn every_relative_link_leads_to_a_file_and_a_heading() {
+    let (mut wrong, mut count) = (Vec::new(), 0);
+    for page in documents().into_iter().chain(scene_readmes()) {
+        for (file, anchor) in links(&page) {
+            count += 1;
+            if !root().join(&file).exists() {
+                wrong.push(format!("{page}: there is no {file}"));
+            } else if let Some(anchor) = anchor.filter(|anchor| !anchors(&file).contains(anchor)) {
+                wrong.push(format!("{page}: {file} has no heading #{anchor}"));
+            }
+            // mdBook cannot follow links out of docs/.
+            if page.starts_with("docs/") && !file.starts_with("docs/") {
+                wrong.push(format!("{page}: {file} is outside docs/"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    assert!(count > 100, "{count} links were found");
+}
+
+#[test]
+fn the_summary_lists_every_page() {
+    let listed: BTreeSet<String> = links("docs/SUMMARY.md").into_iter().map(|(file, _)| file).collect();
+    let missing: Vec<String> =
+        pages().into_iter().filter(|page| page != "docs/SUMMARY.md" && !listed.contains(page)).collect();
+    assert!(missing.is_empty(), "docs/SUMMARY.md does not list {missing:?}");
+}
+
+#[test]
+fn the_table_of_the_validation_equals_its_results() {
+    let results: toml::Table = toml::from_str(&read("docs/explanation/validation/results.toml")).unwrap();
+    let mut table = String::from(
+        "| case | reference | quantity | error | bound | pass | cost | commit |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for result in results["result"].as_array().unwrap() {
+        let text = |key: &str| result[key].as_str().unwrap().to_string();
+        let pass = if result["pass"].as_bool().unwrap() { "yes" } else { "**no**" };
+        let mut cells: Vec<String> = ["case", "reference", "quantity", "error", "bound"].map(text).into();
+        cells.extend([pass.into(), text("cost"), text("commit")]);
+        table += &format!("| {} |\n", cells.join(" | "));
+    }
+    let page = read("docs/explanation/validation.md");
+    let shown =
+        page.split("<!-- table: results.toml -->\n").nth(1).and_then(|rest| rest.split("<!-- end of table -->").next());
+    assert_eq!(shown.unwrap().trim(), table.trim(), "docs/explanation/validation.md");
 }

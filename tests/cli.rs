@@ -1,5 +1,7 @@
 //! The program as a stranger meets it: commands, exit codes, messages, files. All through the binary.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
+
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -450,7 +452,7 @@ fn repeats_tell_what_of_an_error_is_chance() {
     assert!(table.starts_with("run,repeat,dp_m,check,N,") && table.lines().count() == 31, "{table}");
     assert_eq!(table.lines().filter(|line| line.starts_with("dp-0.05,3,0.05,")).count(), 5, "{table}");
     let scene = desk.manifest("s/runs/dp-0.05_repeat-3")["scene"].to_string();
-    assert!(scene.contains("scatter = 0.000002"), "{scene}");
+    assert!(scene.contains("jitter = 0.000002"), "{scene}");
     let json: serde_json::Value = serde_json::from_str(&desk.read("s/study.json")).unwrap();
     let spreads = json["spreads"].as_array().unwrap();
     let level = |of: &&serde_json::Value| of["run"] == "dp-0.05" && of["check"] == "elevation.level_m";
@@ -461,7 +463,7 @@ fn repeats_tell_what_of_an_error_is_chance() {
     assert!(figure("deviation") < 0.01 * 0.05, "a hundredth of dp: {level}");
     assert!(desk.read("s/study.html").contains("<h2>Repeats</h2>"));
     asked(&["--repeat", "0"]).refused(2, &["0 repeats run nothing"]);
-    asked(&["--repeat", "2", "--vary", "scatter=1e-7,1e-6"]).refused(2, &["scatter tells repeats apart"]);
+    asked(&["--repeat", "2", "--vary", "scatter=1e-7,1e-6"]).refused(2, &["jitter tells repeats apart"]);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Runs that are killed at any moment, and go on to the same bits; checkpoints that are damaged; folders and disks that
 //! refuse. All through the binary. Six kills by default; `KILLS=50 cargo test --release --test kill` makes fifty.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 #![cfg(unix)]
 
 use std::{

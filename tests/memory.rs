@@ -1,6 +1,9 @@
 //! The memory that an inspection tells is that which a run takes, counted by the allocator. Alone in its program, so
 //! that nothing else is counted.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
+#![allow(unsafe_code, reason = "it counts allocations")]
+
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     path::Path,

@@ -4,6 +4,8 @@
 //! that the record does not depend on how a checkpoint arranges it; the series are hashed as files. On a mismatch the
 //! test prints the table of now, which replaces the record where a change is meant.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
+
 use std::{fmt::Write as _, path::Path};
 
 use pontoon::{

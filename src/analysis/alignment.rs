@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::error_metrics::{amplitude_ratio, relative_l2};
-use crate::{math::time_series::Series, plan::Align};
+use crate::{math::time_series::TimeSeries, plan::Align};
 
 /// The largest delay of either sign that [`best_delay`] looks at, s.
 const MAX_DELAY: f64 = 0.3;
@@ -40,15 +40,15 @@ pub struct ArrivalTimes {
 /// The two once the delay is taken out that `align` means, and when they arrive if it says so; `sim` may
 /// reach further than `window`, in which arrivals count.
 pub fn align(
-    sim: &Series,
-    reference: &Series,
+    sim: &TimeSeries,
+    reference: &TimeSeries,
     align: Align,
     window: (f64, f64),
 ) -> (Option<AlignedMetrics>, Option<ArrivalTimes>) {
     let (delay, arrival) = match align {
         Align::Crossing(threshold) => {
-            let run = sim.within(window.0, window.1).ok().and_then(|sim| sim.crossing(threshold));
-            let arrival = ArrivalTimes { run, reference: reference.crossing(threshold) };
+            let run = sim.window(window.0, window.1).ok().and_then(|sim| sim.first_crossing(threshold));
+            let arrival = ArrivalTimes { run, reference: reference.first_crossing(threshold) };
             (arrival.run.zip(arrival.reference).map(|(run, reference)| run - reference), Some(arrival))
         }
         Align::Start(_) => (None, None),
@@ -78,7 +78,7 @@ pub fn align(
 /// assert!((delay - 0.05).abs() < 1e-4);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn best_delay(sim: &Series, reference: &Series) -> Option<f64> {
+pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
     let n = |delay: f64| shifted_reference(sim, reference, delay).and_then(|moved| relative_l2(sim, &moved).ok());
     let count = (MAX_DELAY / STEP).round() as i32;
     let mut best: Option<(f64, f64)> = None;
@@ -102,8 +102,8 @@ pub fn best_delay(sim: &Series, reference: &Series) -> Option<f64> {
 }
 
 /// `reference` as much later as the run is late, where the run covers it; none if it covers too little.
-fn shifted_reference(sim: &Series, reference: &Series, delay: f64) -> Option<Series> {
+fn shifted_reference(sim: &TimeSeries, reference: &TimeSeries, delay: f64) -> Option<TimeSeries> {
     let (first, last) = sim.span();
-    let moved = reference.shifted(delay).within(first, last).ok()?;
+    let moved = reference.shifted(delay).window(first, last).ok()?;
     (moved.times().len() as f64 >= MIN_OVERLAP * reference.times().len() as f64).then_some(moved)
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Error, Result},
-    math::time_series::Series,
+    math::time_series::TimeSeries,
 };
 
 /// Relative deviation of a simulated series from a measured one: 0 is perfect.
@@ -10,13 +10,13 @@ use crate::{
 ///   N = √( Σ (sim_i − ref_i)² / Σ ref_i² )
 ///
 /// `sim`, `reference`: values over time (s), same unit, any lengths ≥ 2: `sim` is interpolated
-/// linearly to the reference's times. Returns N (–). Its companion [`amplitude`] judges size alone.
+/// linearly to the reference's times. Returns N (–). Its companion [`amplitude_ratio`] judges size alone.
 ///
 /// # Errors
 /// `Scene` if the reference leaves the simulated span (names both spans; shorten the reference or lengthen
-/// the run), or is zero throughout (use [`amplitude`] of the two the other way round).
+/// the run), or is zero throughout (use [`amplitude_ratio`] of the two the other way round).
 ///
-/// Source: [@pirkhalili2023], eq. (26).
+/// Source: @pirkhalili2023, eq. (26).
 /// ```
 /// # use pontoon::{analysis::deviation, math::time_series::Series};
 /// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
@@ -24,7 +24,7 @@ use crate::{
 /// assert_eq!(deviation(&sim, &reference)?, (10.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn relative_l2(sim: &Series, reference: &Series) -> Result<f64> {
+pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     relative_norm(sim, reference, |s, r| (s - r) * (s - r))
 }
 
@@ -32,9 +32,9 @@ pub fn relative_l2(sim: &Series, reference: &Series) -> Result<f64> {
 ///
 ///   M = √( Σ sim_i² / Σ ref_i² )
 ///
-/// Arguments and errors as for [`deviation`]. Returns M (–).
+/// Arguments and errors as for [`relative_l2`]. Returns M (–).
 ///
-/// Source: [@pirkhalili2023], eq. (27).
+/// Source: @pirkhalili2023, eq. (27).
 /// ```
 /// # use pontoon::{analysis::amplitude, math::time_series::Series};
 /// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
@@ -42,7 +42,7 @@ pub fn relative_l2(sim: &Series, reference: &Series) -> Result<f64> {
 /// assert_eq!(amplitude(&sim, &reference)?, (108.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn amplitude_ratio(sim: &Series, reference: &Series) -> Result<f64> {
+pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     relative_norm(sim, reference, |s, _| s * s)
 }
 
@@ -64,7 +64,7 @@ pub fn amplitude_ratio(sim: &Series, reference: &Series) -> Result<f64> {
 /// assert_eq!(peak(&sim, &reference)?, 0.25);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn first_peak_error(sim: &Series, reference: &Series) -> Result<f64> {
+pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     let expected = first_peak(reference.values());
     if expected == 0.0 {
         return Err(all_zero());
@@ -77,7 +77,7 @@ pub fn first_peak_error(sim: &Series, reference: &Series) -> Result<f64> {
 ///
 ///   max |sim_i − ref_i|
 ///
-/// Arguments as for [`deviation`]. Returns the distance, in the unit of the series.
+/// Arguments as for [`relative_l2`]. Returns the distance, in the unit of the series.
 ///
 /// # Errors
 /// `Scene` if the reference leaves the simulated span.
@@ -88,10 +88,10 @@ pub fn first_peak_error(sim: &Series, reference: &Series) -> Result<f64> {
 /// assert_eq!(off(&sim, &still)?, 0.5);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn max_abs(sim: &Series, reference: &Series) -> Result<f64> {
+pub fn max_abs(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     require_coverage(sim, reference)?;
     let pairs = reference.times().iter().zip(reference.values());
-    Ok(pairs.map(|(&t, &r)| (sim.at(t) - r).abs()).fold(0.0, f64::max))
+    Ok(pairs.map(|(&t, &r)| (sim.value_at(t) - r).abs()).fold(0.0, f64::max))
 }
 
 /// The value of the first peak, with its sign.
@@ -102,19 +102,19 @@ fn first_peak(x: &[f64]) -> f64 {
 }
 
 /// √( Σ term(sim_i, ref_i) / Σ ref_i² ) over the reference's times.
-fn relative_norm(sim: &Series, reference: &Series, term: impl Fn(f64, f64) -> f64) -> Result<f64> {
+fn relative_norm(sim: &TimeSeries, reference: &TimeSeries, term: impl Fn(f64, f64) -> f64) -> Result<f64> {
     require_coverage(sim, reference)?;
     let size: f64 = reference.values().iter().map(|r| r * r).sum();
     if size == 0.0 {
         return Err(all_zero());
     }
     let pairs = reference.times().iter().zip(reference.values());
-    let sum: f64 = pairs.map(|(&t, &r)| term(sim.at(t), r)).sum();
+    let sum: f64 = pairs.map(|(&t, &r)| term(sim.value_at(t), r)).sum();
     Ok((sum / size).sqrt())
 }
 
 /// Refuses a reference that leaves the simulated span.
-fn require_coverage(sim: &Series, reference: &Series) -> Result<()> {
+fn require_coverage(sim: &TimeSeries, reference: &TimeSeries) -> Result<()> {
     let (inner, outer) = (reference.span(), sim.span());
     if inner.0 < outer.0 || inner.1 > outer.1 {
         let what = format!(

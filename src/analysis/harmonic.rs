@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::math::time_series::Series;
+use crate::math::time_series::TimeSeries;
 
 /// What swings in a series: x(t) ≈ mean + amplitude · cos(ωt + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Harmonic {
 
 /// The harmonic of angular frequency `omega` (1/s) in `series`, by least squares over the samples: exact for one that has no
 /// other, whatever the samples' times. None if the samples do not tell it, as less than a few of them.
-pub fn harmonic(series: &Series, omega: f64) -> Option<Harmonic> {
+pub fn harmonic(series: &TimeSeries, omega: f64) -> Option<Harmonic> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (&t, &x) in series.times().iter().zip(series.values()) {
         let row = Vector3::new(1.0, (omega * t).cos(), (omega * t).sin());
@@ -39,7 +39,7 @@ mod tests {
     fn a_swing_is_found_exactly_between_uneven_samples() -> Result<()> {
         let t: Vec<f64> = (0..200).map(|i| 0.031 * f64::from(i) + 0.004 * f64::from(i * i % 7)).collect();
         let x: Vec<f64> = t.iter().map(|t| 0.3 + 0.05 * (5.0 * t + 1.2).cos()).collect();
-        let Some(found) = harmonic(&Series::new(t, x)?, 5.0) else { panic!("it swings") };
+        let Some(found) = harmonic(&TimeSeries::new(t, x)?, 5.0) else { panic!("it swings") };
         let error = (found.mean - 0.3).abs().max((found.amplitude - 0.05).abs()).max((found.phase - 1.2).abs());
         assert!(error < 1e-12, "the model holds exactly, so only round-off is left; got {error:e}");
         Ok(())

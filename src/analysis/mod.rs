@@ -1,5 +1,5 @@
 //! Analysis of series: error metrics against references, verdicts, moments, zero crossings, spectra, reflection, RAOs.
-//! Pure functions of [`Series`](crate::math::time_series::Series) and tables; they run nothing.
+//! Pure functions of [`TimeSeries`](crate::math::time_series::TimeSeries) and tables; they run nothing.
 
 mod alignment;
 mod error_metrics;

@@ -1,6 +1,6 @@
 //! Extremes, mean and standard deviation of a series.
 
-use crate::math::time_series::Series;
+use crate::math::time_series::TimeSeries;
 
 /// Figures of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Moments {
 ///   x̄ = 1/T ∫ x dt,   σ² = 1/T ∫ (x − x̄)² dt
 ///
 /// by the trapezoid over the samples, in the unit of the series.
-pub fn moments(series: &Series) -> Moments {
+pub fn moments(series: &TimeSeries) -> Moments {
     let (t, x) = (series.times(), series.values());
     let (first, last) = series.span();
     let mean_of = |f: &dyn Fn(f64) -> f64| {
@@ -49,18 +49,5 @@ pub fn moments(series: &Series) -> Moments {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::error::Result;
-
-    #[test]
-    fn a_ramp_has_its_middle_as_mean_and_its_length_over_root_twelve_as_deviation() -> Result<()> {
-        let t: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 1e-3).collect();
-        let of = moments(&Series::new(t.clone(), t)?);
-        assert!((of.mean - 0.5).abs() < 1e-12, "the trapezoid is exact for a line; got {}", of.mean);
-        let error = of.standard_deviation * 12.0_f64.sqrt() - 1.0;
-        assert!(error.abs() < 1e-5, "of second order in a step of 1e-3; off by {error:e}");
-        assert_eq!((of.min, of.max, of.last), ((0.0, 0.0), (1.0, 1.0), 1.0));
-        Ok(())
-    }
-}
+#[path = "../../tests/unit/analysis/moments.rs"]
+mod tests;

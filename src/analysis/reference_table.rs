@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use crate::{
-    error::{Error, Result, nearest},
-    math::time_series::Series,
+    error::{Error, Result, nearest_name},
+    math::time_series::TimeSeries,
 };
 
 /// The series of `column` over `time` of the table at `path`, its times moved by `delay` (s).
@@ -15,13 +15,13 @@ use crate::{
 /// # Errors
 /// `File` if it cannot be read; `Scene` if a column is missing (names the nearest), a field is no number, or
 /// fewer than two rows have both.
-pub fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<Series> {
+pub fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<TimeSeries> {
     let mut rows = read_pairs(path, time, column)?;
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let groups = rows.chunk_by(|a, b| a.0 == b.0);
     let (t, x): (Vec<f64>, Vec<f64>) =
         groups.map(|g| (g[0].0 + delay, g.iter().map(|row| row.1).sum::<f64>() / g.len() as f64)).unzip();
-    Series::new(t, x).map_err(|e| e.at(path.display().to_string(), None, column))
+    TimeSeries::new(t, x).map_err(|e| e.at(path.display().to_string(), None, column))
 }
 
 /// The rows (time, value) in which both columns hold a number.
@@ -32,7 +32,7 @@ fn read_pairs(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>> 
     let header = reader.headers().map_err(broken)?.clone();
     let place = |name: &str| {
         header.iter().position(|h| h == name).ok_or_else(|| {
-            let help = match nearest(name, &header) {
+            let help = match nearest_name(name, &header) {
                 Some(near) => format!("did you mean {near:?}?"),
                 None => format!("its columns are: {}", header.iter().collect::<Vec<_>>().join(", ")),
             };

@@ -2,7 +2,7 @@
 //!
 //!   η(x, t) = Re [ I e^{i(ωt − kx)} + R e^{i(ωt + kx)} ],   ω² = g k tanh kd
 //!
-//! I and R by least squares over the gauges, of three or more ([@mansard1980]; two will do where they are not half a wave
+//! I and R by least squares over the gauges, of three or more (@mansard1980; two will do where they are not half a wave
 //! length apart).
 
 use std::f64::consts::TAU;
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use realfft::num_complex::Complex;
 
 use super::{complex_amplitudes, harmonic, spectrum};
-use crate::{math::time_series::Series, wavemaker::wave_number};
+use crate::{math::time_series::TimeSeries, wavemaker::wave_number};
 
 /// Least determinant of the least squares over the square of the number of gauges, –: below, the gauges stand so that
 /// both waves look alike.
@@ -42,7 +42,7 @@ impl Reflection {
 /// peak frequency, line by line of the spectra, but for lines to which the gauges are blind.
 ///
 /// None if there are fewer than two gauges, they cannot tell the two apart, or the series are too short.
-pub fn reflection(gauges: &[(f64, &Series)], depth: f64, g: f64, period: Option<f64>) -> Option<Reflection> {
+pub fn reflection(gauges: &[(f64, &TimeSeries)], depth: f64, g: f64, period: Option<f64>) -> Option<Reflection> {
     let places: Vec<f64> = gauges.iter().map(|(x, _)| *x).collect();
     if places.len() < 2 {
         return None;
@@ -59,8 +59,8 @@ pub fn reflection(gauges: &[(f64, &Series)], depth: f64, g: f64, period: Option<
     }
 }
 
-fn irregular_reflection(gauges: &[(f64, &Series)], places: &[f64], depth: f64, g: f64) -> Option<Reflection> {
-    let all: Vec<&Series> = gauges.iter().map(|(_, series)| *series).collect();
+fn irregular_reflection(gauges: &[(f64, &TimeSeries)], places: &[f64], depth: f64, g: f64) -> Option<Reflection> {
+    let all: Vec<&TimeSeries> = gauges.iter().map(|(_, series)| *series).collect();
     let first = spectrum(all[0])?;
     let [from, until] = BAND.map(|part| part * first.peak_frequency());
     let (step, lines) = complex_amplitudes(&all)?;
@@ -94,59 +94,5 @@ fn separate_waves(places: &[f64], amplitudes: &[Complex<f64>], k: f64) -> Option
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::error::Result;
-
-    const DEPTH: f64 = 0.4;
-    const PLACES: [f64; 3] = [2.0, 2.21, 2.58];
-
-    /// Elevation of waves of these frequencies (Hz) and amplitudes at `x`, `back` of which comes back.
-    fn elevation(x: f64, back: f64, parts: &[(f64, f64)], until: f64) -> Result<Series> {
-        let t: Vec<f64> = (0..=(until * 50.0) as usize).map(|i| i as f64 * 0.02).collect();
-        let at = |t: f64| -> f64 {
-            let part = |(n, (f, a)): (usize, &(f64, f64))| {
-                let (omega, phase) = (TAU * f, 2.399_963 * (n * n) as f64);
-                let k = wave_number(omega, DEPTH, 9.81);
-                a * (omega * t - k * x + phase).cos() + back * a * (omega * t + k * x + phase + 0.7).cos()
-            };
-            parts.iter().enumerate().map(part).sum()
-        };
-        let x: Vec<f64> = t.iter().map(|&t| at(t)).collect();
-        Series::new(t, x)
-    }
-
-    #[test]
-    fn regular_waves_to_and_fro_are_told_apart_exactly() -> Result<()> {
-        let series: Result<Vec<Series>> = PLACES.iter().map(|&x| elevation(x, 0.3, &[(0.8, 0.05)], 11.3)).collect();
-        let series = series?;
-        let gauges: Vec<(f64, &Series)> = PLACES.into_iter().zip(&series).collect();
-        let Some(found) = reflection(&gauges, DEPTH, 9.81, Some(1.25)) else { panic!("they are told apart") };
-        assert!((found.coefficient() - 0.3).abs() < 1e-6, "{found:?}");
-        assert!((found.incident - 0.1).abs() < 1e-6 * 0.1, "{found:?}");
-        Ok(())
-    }
-
-    #[test]
-    fn irregular_waves_to_and_fro_are_told_apart_line_by_line() -> Result<()> {
-        let parts: Vec<(f64, f64)> = (0..60).map(|i| (0.5 + 0.01 * f64::from(i), 0.004)).collect();
-        let series: Result<Vec<Series>> = PLACES.iter().map(|&x| elevation(x, 0.2, &parts, 200.0)).collect();
-        let series = series?;
-        let gauges: Vec<(f64, &Series)> = PLACES.into_iter().zip(&series).collect();
-        let Some(found) = reflection(&gauges, DEPTH, 9.81, None) else { panic!("they are told apart") };
-        // Lines 1/200 Hz apart, to which a window three lines wide smears their neighbours.
-        assert!((found.coefficient() / 0.2 - 1.0).abs() < 0.05, "{found:?}");
-        Ok(())
-    }
-
-    #[test]
-    fn gauges_half_a_wave_length_apart_are_blind() -> Result<()> {
-        let half = 0.5 * TAU / wave_number(TAU * 0.8, DEPTH, 9.81);
-        let places = [1.0, 1.0 + half, 1.0 + 2.0 * half];
-        let series: Result<Vec<Series>> = places.iter().map(|&x| elevation(x, 0.3, &[(0.8, 0.05)], 10.0)).collect();
-        let series = series?;
-        let gauges: Vec<(f64, &Series)> = places.into_iter().zip(&series).collect();
-        assert_eq!(reflection(&gauges, DEPTH, 9.81, Some(1.25)), None);
-        Ok(())
-    }
-}
+#[path = "../../tests/unit/analysis/reflection.rs"]
+mod tests;

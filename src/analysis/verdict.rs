@@ -12,7 +12,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     math::expression::Formula,
-    math::time_series::Series,
+    math::time_series::TimeSeries,
     plan::{Align, CheckPlan, Reference, Score},
 };
 
@@ -27,7 +27,7 @@ pub struct ReferenceCheck {
 #[derive(Clone, Debug)]
 enum KnownReference {
     /// Samples, their delay added, in the window.
-    Table(Series),
+    Table(TimeSeries),
     /// A value at any time.
     Formula(Formula),
 }
@@ -36,11 +36,11 @@ enum KnownReference {
 #[derive(Clone, Debug)]
 pub struct CheckCurves {
     /// The run, from its start to its end.
-    pub sim: Series,
+    pub sim: TimeSeries,
     /// The same as the check's instrument shows it, if it has one.
-    pub running_mean: Option<Series>,
+    pub running_mean: Option<TimeSeries>,
     /// The reference, where both the window and the run cover it.
-    pub reference: Series,
+    pub reference: TimeSeries,
     /// Whether the reference is a formula.
     pub exact: bool,
     /// Share of the reference in the window that the run covers, –.
@@ -112,7 +112,7 @@ impl ReferenceCheck {
                 let (from, until) = window(words, 0.0);
                 let whole = reference_table::read_series(&path, time, column, *delay)?;
                 KnownReference::Table(
-                    whole.within(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
+                    whole.window(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
                 )
             }
         };
@@ -154,7 +154,7 @@ impl ReferenceCheck {
                 let (from, until) = window(&self.plan, 0.0);
                 let set = self.plan.zero.is_none_or(|at| at <= sim.span().1);
                 let reaches =
-                    set && matches!(self.reference, KnownReference::Formula(_)) && sim.within(from, until).is_ok();
+                    set && matches!(self.reference, KnownReference::Formula(_)) && sim.window(from, until).is_ok();
                 verdict.passed = self.plan.bound.filter(|_| reaches).map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
@@ -199,27 +199,27 @@ impl ReferenceCheck {
     }
 
     /// The run's series, and what the instrument shows of it.
-    fn run_series(&self, folder: &Path) -> Result<(Series, Option<Series>)> {
+    fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>)> {
         let (probe, column) = self.plan.series.split_once('.').unwrap_or((&self.plan.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
         let mut sim = reference_table::read_series(&path, "t_s", column, 0.0)?;
         if let Some(at) = self.plan.zero {
-            sim = sim.minus(sim.at(at));
+            sim = sim.minus(sim.value_at(at));
         }
         let meaned = self.plan.mean.map(|seconds| sim.running_mean(seconds));
         Ok((sim, meaned))
     }
 
     /// When the reference's clock starts, s of the run's: 0 unless it has one of its own.
-    fn reference_start(&self, sim: &Series) -> Result<f64> {
+    fn reference_start(&self, sim: &TimeSeries) -> Result<f64> {
         let Some(Align::Start(threshold)) = self.plan.align else { return Ok(0.0) };
-        sim.crossing(threshold).ok_or_else(|| {
+        sim.first_crossing(threshold).ok_or_else(|| {
             Error::scene(format!("the run never passes {threshold}, with which the clock of its reference starts"))
         })
     }
 
     /// The reference where the run covers it, which share of it that is, and when its clock starts.
-    fn overlap(&self, sim: &Series) -> Result<(Series, f64, f64)> {
+    fn overlap(&self, sim: &TimeSeries) -> Result<(TimeSeries, f64, f64)> {
         let (first, last) = sim.span();
         if let Some(at) = self.plan.zero.filter(|at| *at > last) {
             return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
@@ -229,7 +229,7 @@ impl ReferenceCheck {
         match &self.reference {
             KnownReference::Table(whole) => {
                 let whole = whole.shifted(start);
-                let common = whole.within(first, last).map_err(|_| {
+                let common = whole.window(first, last).map_err(|_| {
                     let (from, to) = whole.span();
                     Error::scene(format!(
                         "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
@@ -239,8 +239,8 @@ impl ReferenceCheck {
                 Ok((common, covered, start))
             }
             KnownReference::Formula(formula) => {
-                let times = sim.within(from, until)?.times().to_vec();
-                let values: Vec<f64> = times.iter().map(|&t| formula.at(t - start).0).collect();
+                let times = sim.window(from, until)?.times().to_vec();
+                let values: Vec<f64> = times.iter().map(|&t| formula.value_and_rate(t - start).0).collect();
                 if let Some(i) = values.iter().position(|x| !x.is_finite()) {
                     return Err(Error::scene(format!("the formula gives {} at t = {} s", values[i], times[i])));
                 }
@@ -250,17 +250,17 @@ impl ReferenceCheck {
                 } else {
                     1.0
                 };
-                Ok((Series::new(times, values)?, covered, start))
+                Ok((TimeSeries::new(times, values)?, covered, start))
             }
         }
     }
 
-    fn metrics(&self, sim: &Series, reference: &Series, start: f64) -> ErrorMetrics {
+    fn metrics(&self, sim: &TimeSeries, reference: &TimeSeries, start: f64) -> ErrorMetrics {
         let (from, until) = window(&self.plan, start);
         ErrorMetrics {
             relative_l2: relative_l2(sim, reference).ok(),
             amplitude_ratio: amplitude_ratio(sim, reference).ok(),
-            peak: sim.within(from, until).and_then(|sim| first_peak_error(&sim, reference)).ok(),
+            peak: sim.window(from, until).and_then(|sim| first_peak_error(&sim, reference)).ok(),
             off: max_abs(sim, reference).ok(),
         }
     }

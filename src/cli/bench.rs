@@ -4,7 +4,7 @@ use clap::Args;
 use pontoon::{
     Result,
     bench::{self, BenchCase, BenchTiming},
-    error::{Error, Kind},
+    error::{Error, ErrorKind},
     output::manifest::Machine,
 };
 use serde::Serialize;
@@ -62,7 +62,7 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
         return Ok(String::new());
     }
     if args.size.iter().any(|&n| !(100..=50_000_000).contains(&n)) || args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
+        return Err(Error::new(ErrorKind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
     }
     let machine = Machine::current();
     let threads = args.threads.unwrap_or(machine.cpus);
@@ -113,11 +113,13 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
     }
     if let Some(low) = tables.fast_over_oracle.iter().find(|&&r| r < args.floor.unwrap_or(0.0)) {
         let help = "something in the sweep has become slower: compare `perf` of both versions";
-        return Err(Error::new(Kind::Usage, format!("the fast sweep is only {low:.1} times the oracle's")).help(help));
+        return Err(
+            Error::new(ErrorKind::Usage, format!("the fast sweep is only {low:.1} times the oracle's")).help(help)
+        );
     }
     if args.json {
         let text = serde_json::to_string_pretty(&tables);
-        return text.map(|t| t + "\n").map_err(|e| Error::new(Kind::Usage, format!("no JSON: {e}")));
+        return text.map(|t| t + "\n").map_err(|e| Error::new(ErrorKind::Usage, format!("no JSON: {e}")));
     }
     Ok(text(&tables))
 }

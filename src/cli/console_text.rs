@@ -59,6 +59,9 @@ pub fn start_text(start: &RunStart) -> String {
     for warning in &manifest.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
+    for name in start.renamed {
+        let _ = writeln!(text, "note: {name}");
+    }
     let _ = writeln!(
         text,
         "{} water and {} boundary particles, {}, results in {}",

@@ -7,7 +7,7 @@ use std::{
 
 use clap::{ArgGroup, Args};
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{Manifest, SeriesTable, npz},
     run,
 };
@@ -49,7 +49,7 @@ fn series(folder: &Path, out: PathBuf) -> Result<String> {
     let tables: Vec<(&str, SeriesTable)> = names.map(read).collect::<Result<_>>()?;
     if tables.is_empty() {
         let what = format!("the run in {} has no series", folder.display());
-        return Err(Error::new(Kind::Usage, what).help("a [[probe]] in its scene would write some"));
+        return Err(Error::new(ErrorKind::Usage, what).help("a [[probe]] in its scene would write some"));
     }
     let (spectra, answers) = (spectra(folder)?, rao_arrays(folder)?);
     let all = tables.iter().flat_map(|(name, of)| {
@@ -130,15 +130,15 @@ fn surface(folder: &Path) -> Result<String> {
 
     let (manifest, run) = (Manifest::read(folder)?, || folder.display());
     let Some((dimension, dp)) = manifest.numeric_value("dimension").zip(manifest.numeric_value("dp")) else {
-        return Err(Error::new(Kind::Usage, format!("the manifest in {} does not tell dimension and dp", run())));
+        return Err(Error::new(ErrorKind::Usage, format!("the manifest in {} does not tell dimension and dp", run())));
     };
     if dimension < 3.0 {
         let what = format!("the run in {} is 2-D: its water has a line for a surface, not a mesh", run());
-        return Err(Error::new(Kind::Usage, what).help("`pontoon report` draws it, an elevation probe reads it"));
+        return Err(Error::new(ErrorKind::Usage, what).help("`pontoon report` draws it, an elevation probe reads it"));
     }
     let Some(film) = FrameSequence::open(folder)? else {
         let what = format!("the run in {} has no frames to make a surface of", run());
-        return Err(Error::new(Kind::Usage, what).help("run it without `frames = \"off\"`"));
+        return Err(Error::new(ErrorKind::Usage, what).help("run it without `frames = \"off\"`"));
     };
     let count = free_surface_mesh::write(folder, &film, dp)?;
     Ok(format!("{}: {count} meshes\n", folder.join("surface.pvd").display()))

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, GeneratedWave, Severity, three_digits},
     run::{self, InspectOptions, InspectReport},
 };
@@ -37,7 +37,8 @@ pub fn inspect(args: &InspectArgs) -> Result<String> {
     let asked = InspectOptions { overrides: args.scene.overrides(), threads: args.threads, timing: !args.no_timing };
     let report = found.with_scene_name(run::inspect(found.path(), &asked))?;
     if args.json {
-        let text = serde_json::to_string_pretty(&report).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
+        let text =
+            serde_json::to_string_pretty(&report).map_err(|why| Error::new(ErrorKind::Usage, why.to_string()))?;
         return Ok(text + "\n");
     }
     Ok(report_text(&report))
@@ -159,7 +160,7 @@ fn wave_facts(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
     let high = format!("{about}{} m high, {} dp{period}", three_digits(wave.height_m), three_digits(wave.height_dp));
     let long = format!("{} m long, {} dp", three_digits(wave.length_m), three_digits(wave.length_dp));
     let water =
-        format!("{} water{kd}, {} m deep; {}", wave.regime.word(), three_digits(wave.depth_m), wave.region.word());
+        format!("{} water{kd}, {} m deep; {}", wave.regime.name(), three_digits(wave.depth_m), wave.region.name());
     let speeds = format!("crests {} m/s, energy {} m/s", three_digits(wave.celerity_mps), three_digits(wave.group_mps));
     let (stroke, speed) = (three_digits(wave.stroke_m), three_digits(wave.paddle_mps));
     let ramp = if wave.ramp_s > 0.0 { format!(", ramp {} s", three_digits(wave.ramp_s)) } else { String::new() };

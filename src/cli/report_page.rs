@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     report::{self, ColourField, Page, PictureOptions},
 };
 
@@ -115,7 +115,7 @@ impl PictureStyleArgs {
     pub fn picture_options(&self) -> Result<PictureOptions> {
         if let Some(t) = self.time.iter().find(|t| !t.is_finite()) {
             let help = "give seconds, as in --time 0.5,1";
-            return Err(Error::new(Kind::Usage, format!("--time {t} is no time")).help(help));
+            return Err(Error::new(ErrorKind::Usage, format!("--time {t} is no time")).help(help));
         }
         let field = match self.by {
             ColourBy::Pressure => ColourField::Pressure,

@@ -6,7 +6,7 @@ use std::{
 };
 
 use pontoon::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     scene::{BundledScene, bundled_scenes},
 };
 
@@ -27,8 +27,8 @@ impl FoundScene {
         let Some(folder) = &self.temporary else { return outcome };
         let without = |text: &mut String| *text = text.replace(&format!("{}{MAIN_SEPARATOR}", folder.display()), "");
         outcome.map_err(|mut error| {
-            without(&mut error.what);
-            error.place.iter_mut().for_each(|place| without(&mut place.file));
+            without(&mut error.message);
+            error.location.iter_mut().for_each(|place| without(&mut place.file));
             error.help.iter_mut().for_each(without);
             error
         })
@@ -72,11 +72,11 @@ pub fn find_scene(word: &Path) -> Result<FoundScene> {
     if let Some(scene) = shelf.iter().find(|(known, ..)| *known == name) {
         return unpack(scene);
     }
-    let help = match nearest(&name, shelf.iter().map(|(known, ..)| *known)) {
+    let help = match nearest_name(&name, shelf.iter().map(|(known, ..)| *known)) {
         Some(near) => format!("did you mean {near:?}? `pontoon scenes` lists all that come with the program"),
         None => "name a folder with a scene.toml, a scene file, or a scene of `pontoon scenes`".into(),
     };
-    Err(Error::new(Kind::Usage, format!("there is no scene {name:?}")).help(help))
+    Err(Error::new(ErrorKind::Usage, format!("there is no scene {name:?}")).help(help))
 }
 
 /// Lays a built-in scene out in a temporary folder.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     preflight::three_digits,
     run::{RaoResult, RunStatistics, Statistic, StatisticsFilter, statistics},
 };
@@ -59,14 +59,14 @@ pub fn stats(args: &StatsArgs) -> Result<String> {
 fn no_rao(args: &StatsArgs) -> Error {
     let of = args.series.as_ref().map_or(String::new(), |series| format!(" of {series:?}"));
     let what = format!("there is no answer{of} to irregular waves over frequency in {}", args.folder.display());
-    Error::new(Kind::Usage, what).help(
+    Error::new(ErrorKind::Usage, what).help(
         "a [[statistic]] with  rao = { motion = \"box\", wave = \"gauge\" }  and without  period  asks for it, \
          and 32 waves or more at the gauge tell it",
     )
 }
 
 fn json<T: Serialize>(rows: &[T]) -> Result<String> {
-    let text = serde_json::to_string_pretty(rows).map_err(|why| Error::new(Kind::Usage, why.to_string()))?;
+    let text = serde_json::to_string_pretty(rows).map_err(|why| Error::new(ErrorKind::Usage, why.to_string()))?;
     Ok(text + "\n")
 }
 

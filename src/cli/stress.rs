@@ -4,7 +4,7 @@ use std::{path::PathBuf, sync::atomic::Ordering};
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     study::stress::{CaseOutcome, CaseResult, StressMap, StressResults, maps, select_maps, summary_line},
 };
 
@@ -50,7 +50,7 @@ pub fn stress(args: StressArgs) -> Result<u8> {
         return Ok(0);
     }
     if args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
     let mut ledger = StressResults::open(select_maps(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
     let due = ledger.entries.iter().filter(|entry| entry.run.is_none()).count();

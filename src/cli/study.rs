@@ -7,7 +7,7 @@ use std::{
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::require_parent_folder,
     report::PictureOptions,
     scene::Scene,
@@ -176,7 +176,7 @@ pub fn study(args: StudyArgs) -> Result<u8> {
     sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
     let scene = found.with_scene_name(Scene::read(found.path(), &sets))?;
     if args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
     let name = scene_name(&args.scene);
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
@@ -227,8 +227,10 @@ fn picture_options(look: &PictureStyleArgs, png: &Path, out: &Path, until: f64) 
     }
     let shot = look.picture_options()?;
     match shot.times.iter().find(|t| !(0.0..=until).contains(*t)) {
-        Some(t) => Err(Error::new(Kind::Usage, format!("--time {t} is not within the runs, which end at {until} s"))
-            .help("give times from 0 to the end, or a later end with --until")),
+        Some(t) => {
+            Err(Error::new(ErrorKind::Usage, format!("--time {t} is not within the runs, which end at {until} s"))
+                .help("give times from 0 to the end, or a later end with --until"))
+        }
         None => Ok(shot),
     }
 }
@@ -245,7 +247,7 @@ fn draw_runs(jobs: &[Job], ran: &[JobResult], mut shot: PictureOptions, png: &Pa
         }
     }
     if folders.is_empty() {
-        return Err(Error::new(Kind::Usage, "no run has frames to be drawn").help("take frames=off out of --set"));
+        return Err(Error::new(ErrorKind::Usage, "no run has frames to be drawn").help("take frames=off out of --set"));
     }
     draw_picture(&folders, &shot, png)
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pontoon::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     study::{JobState, Validation, ValidationCase, select_cases, validation_cases},
 };
 
@@ -53,7 +53,7 @@ pub fn validate(args: ValidateArgs) -> Result<u8> {
         return Ok(0);
     }
     if args.threads == Some(0) {
-        return Err(Error::new(Kind::Usage, "0 threads cannot run anything"));
+        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
     let cases = select_cases(&args.names, args.full)?;
     let scenes =

@@ -14,7 +14,7 @@ use crossterm::{
     terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode, size},
 };
 use pontoon::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     math::format::unit,
     output::{Manifest, SeriesTable, manifest::RunStatus},
     preflight::three_digits,
@@ -53,7 +53,7 @@ const LEAST_LINES: usize = 6;
 /// Watches until the run ends or somebody leaves with q or Ctrl-C; prints once where nobody sits.
 pub fn watch(args: &WatchArgs) -> Result<u8> {
     if !(args.every > 0.0 && args.every.is_finite()) {
-        return Err(Error::new(Kind::Usage, format!("--every {} is no time", args.every)).help("give seconds"));
+        return Err(Error::new(ErrorKind::Usage, format!("--every {} is no time", args.every)).help("give seconds"));
     }
     let seen = RunSnapshot::read(&args.folder)?;
     seen.check(&args.series)?;
@@ -109,7 +109,8 @@ struct AlternateScreen;
 
 impl AlternateScreen {
     fn open() -> Result<Self> {
-        enable_raw_mode().map_err(|why| Error::new(Kind::Usage, format!("the terminal cannot be watched: {why}")))?;
+        enable_raw_mode()
+            .map_err(|why| Error::new(ErrorKind::Usage, format!("the terminal cannot be watched: {why}")))?;
         let _ = execute!(stdout(), EnterAlternateScreen, Hide);
         Ok(Self)
     }
@@ -151,11 +152,11 @@ impl RunSnapshot {
         let names: Vec<String> = self.names().collect();
         match series.iter().find(|series| !names.contains(series)) {
             Some(series) => {
-                let help = match nearest(series, names.iter().map(String::as_str)) {
+                let help = match nearest_name(series, names.iter().map(String::as_str)) {
                     Some(near) => format!("did you mean {near:?}?"),
                     None => format!("the series are: {}", names.join(", ")),
                 };
-                Err(Error::new(Kind::Usage, format!("the run has no series {series:?}")).help(help))
+                Err(Error::new(ErrorKind::Usage, format!("the run has no series {series:?}")).help(help))
             }
             None => Ok(()),
         }

@@ -66,12 +66,12 @@ pub struct AddedMassState {
 
 impl<const D: usize> AcousticAddedMass<D> {
     /// Those of the free solids that need one when they are submerged.
-    pub(crate) fn find(system: &mut System<D>) -> Vec<Self> {
-        (0..system.solids().len()).filter_map(|i| Self::of(system, i)).collect()
+    pub(crate) fn find_all(system: &mut System<D>) -> Vec<Self> {
+        (0..system.solids().len()).filter_map(|i| Self::for_solid(system, i)).collect()
     }
 
     /// That of free solid number `i`, if it needs one when it is submerged.
-    pub(crate) fn of(system: &mut System<D>, i: usize) -> Option<Self> {
+    pub(crate) fn for_solid(system: &mut System<D>, i: usize) -> Option<Self> {
         let found = Self::if_light(system, i);
         if found.is_some() {
             system.boundary.wetness.get_or_insert_default();
@@ -89,7 +89,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         let of = |i: usize| (i as u32, pose.local(&system.boundary().r[i]));
         let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
         let all = solid.boundary.clone().map(of).filter(near_face);
-        let outer = all.map(|(i, r)| (i, shape.outward(&r, 0.05 * medium.dp))).collect();
+        let outer = all.map(|(i, r)| (i, shape.outward_normal(&r, 0.05 * medium.dp))).collect();
         let state = AddedMassState { pending: Six::zeros(), contacts: Six::zeros(), stiffness_sum: 0.0 };
         Some(Self { solid: i, outer, state, given: Six::zeros() })
     }
@@ -200,7 +200,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         let mut sum = Six::zeros();
         self.for_each_wet(system, |part, x, normal, along| {
             let (mut weight, mut flow) = (0.0, Vector::<D>::zeros());
-            system.water_near(x, &mut |i, _, w| (weight, flow) = (weight + w, flow + system.fluid().v[i] * w));
+            system.visit_fluid_near(x, &mut |i, _, w| (weight, flow) = (weight + w, flow + system.fluid().v[i] * w));
             if weight > 0.0 {
                 sum += along * (part * normal.dot(&flow) / weight);
             }
@@ -289,8 +289,8 @@ fn angular<const D: usize>(six: &Six) -> Bivector<D> {
 pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 {
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
-    for point in shape.skin(medium.dp, 1) {
-        let normal = shape.outward(&point.r, 0.05 * medium.dp);
+    for point in shape.boundary_points(medium.dp, 1) {
+        let normal = shape.outward_normal(&point.r, 0.05 * medium.dp);
         along += normal.component_mul(&normal) * spring;
         for (sum, arm) in about.iter_mut().zip(Bivector::torque(&(point.r - body.centre), &normal).axial()) {
             *sum += arm * arm * spring;

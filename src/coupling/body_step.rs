@@ -9,10 +9,10 @@ use super::{
     place,
 };
 use crate::{
-    error::{Error, Fault, Kind, Result},
+    error::{Error, ErrorKind, Fault, Result},
     math::{Bivector, Pose, Vector},
     solid::{
-        Contact, Engine, EngineFault, Kinematics, Load, Role, Solid,
+        ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
         constraint::assembly::{Assembly, ConstraintLoads},
     },
     system::{MomentumTransfer, System},
@@ -43,7 +43,7 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// Whether an external program moves the free bodies.
-    pub(crate) fn external(&self) -> bool {
+    pub(crate) fn has_external_bodies(&self) -> bool {
         self.external
     }
 
@@ -110,7 +110,7 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// Time spent in the engine so far.
-    pub(crate) fn spent(&self) -> Duration {
+    pub(crate) fn engine_time(&self) -> Duration {
         self.spent
     }
 
@@ -218,7 +218,7 @@ impl<const D: usize> BodyStep<'_, D> {
     }
 
     /// Contact forces, pair by pair: of this step after [`BodyStep::advance_bodies`], of the last step before it.
-    pub fn contacts(&self) -> Vec<Contact<D>> {
+    pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|engine| engine.contacts()).unwrap_or_default()
     }
 
@@ -228,8 +228,11 @@ impl<const D: usize> BodyStep<'_, D> {
     /// `Usage` where the bodies are external; `Fault` if a body leaves the valid range.
     pub fn advance_bodies(&mut self) -> Result<()> {
         if self.bodies.external {
-            return Err(Error::new(Kind::Usage, "a simulation with external bodies has none of its own to advance")
-                .help("step your own world, and write the poses of its bodies into step.solids"));
+            return Err(Error::new(
+                ErrorKind::Usage,
+                "a simulation with external bodies has none of its own to advance",
+            )
+            .help("step your own world, and write the poses of its bodies into step.solids"));
         }
         if std::mem::replace(&mut self.advanced, true) || self.bodies.engine.is_none() {
             return Ok(());
@@ -276,7 +279,7 @@ impl<const D: usize> BodyStep<'_, D> {
             added_mass.update_contacts(self.system, dt, before, &self.solids[added_mass.solid]);
         }
         let contacts = if accounted { contact_sums(&engine.contacts(), start.len()) } else { Vec::new() };
-        let iterated = engine.iterations() > 1;
+        let iterated = engine.solver_iterations() > 1;
         let body_loads = |i: usize, constraints: ConstraintLoads<D>| BodyLoads {
             water: self.loads[i],
             pushes: pushes[i],
@@ -332,7 +335,7 @@ impl<const D: usize> BodyStep<'_, D> {
         if let Some(solid) = self.solids.iter().position(|k| !finite(k)) {
             let name = &self.system.solids[solid].spec.name;
             let what = format!("the kinematics of body {name:?} after the step are not set, or are not finite");
-            return Err(Error::new(Kind::Usage, what).help(
+            return Err(Error::new(ErrorKind::Usage, what).help(
                 "advance a simulation with external bodies by step_with, and write each free body into step.solids",
             ));
         }

@@ -121,12 +121,12 @@ impl<const D: usize> Accounting<D> {
     }
 
     /// Whether the energy budget is kept.
-    pub(crate) fn has_energy(&self) -> bool {
+    pub(crate) fn has_energy_budget(&self) -> bool {
         self.energy
     }
 
     /// Steps from one power breakdown to the next, if any.
-    pub(crate) fn interval(&self) -> Option<u32> {
+    pub(crate) fn power_interval(&self) -> Option<u32> {
         self.interval
     }
 
@@ -185,7 +185,7 @@ impl<const D: usize> Accounting<D> {
             self.budget.diffusion += diffusion * dt;
             self.budget.gradient += gradient * dt;
             self.budget.walls += (total_power(system) - viscous - diffusion - gradient) * dt;
-            self.budget.driven += system.periodic_power() * dt;
+            self.budget.driven += system.periodic_gravity_power() * dt;
         }
         for (solid, work) in system.solids().iter().zip(&mut self.work) {
             *work = solid.load.power(&solid.kinematics) * dt;
@@ -238,7 +238,7 @@ impl<const D: usize> Accounting<D> {
         let BodyLoads { water, constraints, before, after, dt, iterated, .. } = *loads;
         (breakdown.viscous, breakdown.pressure) = (self.viscous[i], breakdown.pressure - self.viscous[i]);
         (breakdown.joints, breakdown.ropes) = (constraints.joints, constraints.ropes);
-        breakdown.locks = locked(body, constraints.held, &breakdown.residual());
+        breakdown.locks = locked(body, constraints.is_held, &breakdown.residual());
         if iterated {
             breakdown.assign_residual_to_constraints();
         }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     math::{Bivector, Matrix, Vector},
-    solid::{Contact, FreeBody, Kinematics, Load, Role, constraint::assembly::ConstraintLoads},
+    solid::{ContactForce, FreeBody, Kinematics, Load, Role, constraint::assembly::ConstraintLoads},
     system::System,
 };
 
@@ -139,7 +139,7 @@ pub(super) struct BodyLoads<'a, const D: usize> {
 }
 
 /// The sum of all `contacts` on each of so many solids.
-pub(super) fn contact_sums<const D: usize>(contacts: &[Contact<D>], solids: usize) -> Vec<Load<D>> {
+pub(super) fn contact_sums<const D: usize>(contacts: &[ContactForce<D>], solids: usize) -> Vec<Load<D>> {
     let mut sums = vec![Load::zero(); solids];
     for (solid, load) in contacts.iter().flat_map(|contact| contact.between.into_iter().zip(contact.loads)) {
         sums[solid] += load;

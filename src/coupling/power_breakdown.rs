@@ -1,7 +1,7 @@
 //! The power of each law on the water, by a second force pass with the pressure alone.
 //!
 //! With the pressure force (P_a + P_b)/(ρ_a ρ_b) and the volume form of continuity, a pair of water particles exchanges kinetic
-//! energy and energy of compression without a remainder [@colagrossi2003]. With e(ρ) the energy of compression and F·V, T·Ω the
+//! energy and energy of compression without a remainder @colagrossi2003. With e(ρ) the energy of compression and F·V, T·Ω the
 //! power on a solid, the powers are
 //!
 //!   Ė = Σ m (v·(a − g) + P/ρ² ρ̇)         of the water without its weight
@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     interaction::{PairLoop, PairSums},
     math::Vector,
-    model::{Diffusion, Dimension, Gradient, Model, Shifting, Viscosity},
+    model::{Diffusion, Dimension, Model, PressureGradient, Shifting, Viscosity},
     neighbours::CHUNK,
     solid::{Dim, Load},
     system::System,
@@ -54,8 +54,8 @@ impl<const D: usize> PowerMeter<D> {
     {
         let pressure =
             Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };
-        let plain = Model { gradient: Gradient::Plain, ..pressure.clone() };
-        let plain = (model.gradient != Gradient::Plain).then(|| Dim::<D>::pair_loop(&plain));
+        let plain = Model { gradient: PressureGradient::Plain, ..pressure.clone() };
+        let plain = (model.gradient != PressureGradient::Plain).then(|| Dim::<D>::pair_loop(&plain));
         let (fluid_sums, boundary_sums) = (Vec::new(), Vec::new());
         Self { pressure: Dim::<D>::pair_loop(&pressure), plain, fluid_sums, boundary_sums }
     }
@@ -67,7 +67,7 @@ impl<const D: usize> PowerMeter<D> {
         fluid_sums.resize(system.rates.fluid.len(), PairSums::zero());
         boundary_sums.resize(system.rates.boundary.len(), PairSums::zero());
         let mut pass = |pair_loop: &mut dyn PairLoop<D>| {
-            let loads = system.pass_of(pair_loop, fluid_sums, boundary_sums);
+            let loads = system.rates_of_pair_loop(pair_loop, fluid_sums, boundary_sums);
             (gains(system, fluid_sums), loads)
         };
         let (gained, loads) = pass(&mut **pressure);

@@ -3,15 +3,15 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{
-    Shape, SkinPoint,
-    cells::spaced,
-    offset::{polygon_skin, wall_skin},
-    shell::shell_skin,
+    BoundaryPoint, Shape,
+    cells::spacing_flags,
+    offset::{polygon_points, polyline_points},
+    shell::points_by_distance,
 };
 use crate::math::{Pose, Vector};
 
 /// No two particles of one solid are nearer than this, in dp.
-pub(super) const APART: f64 = 0.7;
+pub(super) const MIN_SPACING: f64 = 0.7;
 
 impl<const D: usize> Shape<D> {
     /// Boundary particles in `layers` layers, spaced about `dp` (m).
@@ -21,7 +21,7 @@ impl<const D: usize> Shape<D> {
     /// outlines parallel curves, meshes even places on surfaces of equal depth, the innermost
     /// up to a quarter dp short of it where faces are too near each other. A tank's layers go outwards into its walls, as many as are asked for.
     /// A polygon or a tip thinner than dp has no room for a particle half a dp inside and gets none there.
-    pub fn skin(&self, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+    pub fn boundary_points(&self, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
         let layers = layers.min(u8::MAX as usize);
         let points = match self {
             Shape::Box { size } => return box_skin(size, dp, layers),
@@ -29,23 +29,23 @@ impl<const D: usize> Shape<D> {
             Shape::Cylinder { length, radius, axis } => return cylinder_skin(*length, *radius, *axis, dp, layers),
             Shape::Ball { radius } => capsule_skin(0.0, *radius, D - 1, dp, layers),
             Shape::Capsule { length, radius, axis } => capsule_skin(*length, *radius, *axis, dp, layers),
-            Shape::Polygon { points } => polygon_skin(points, dp, layers),
-            Shape::Polyline { points, .. } => wall_skin(points, dp, layers),
-            Shape::Mesh { .. } => shell_skin(self, dp, layers),
+            Shape::Polygon { points } => polygon_points(points, dp, layers),
+            Shape::Polyline { points, .. } => polyline_points(points, dp, layers),
+            Shape::Mesh { .. } => points_by_distance(self, dp, layers),
             Shape::Compound(parts) => return compound_skin(parts, dp, layers),
         };
-        thinned(points, APART * dp)
+        thinned(points, MIN_SPACING * dp)
     }
 }
 
 /// The points that keep `distance` from all earlier ones.
-fn thinned<const D: usize>(points: Vec<SkinPoint<D>>, distance: f64) -> Vec<SkinPoint<D>> {
-    let kept = spaced(&points.iter().map(|p| p.r).collect::<Vec<_>>(), 0, distance);
+fn thinned<const D: usize>(points: Vec<BoundaryPoint<D>>, distance: f64) -> Vec<BoundaryPoint<D>> {
+    let kept = spacing_flags(&points.iter().map(|p| p.r).collect::<Vec<_>>(), 0, distance);
     points.into_iter().zip(kept).filter_map(|(p, keep)| keep.then_some(p)).collect()
 }
 
 /// Visits every index vector from `low` to `high` (inclusive), the first axis fastest.
-pub(super) fn each_index<const D: usize>(low: &[i64; D], high: &[i64; D], mut visit: impl FnMut(&[i64; D])) {
+pub(super) fn for_each_index<const D: usize>(low: &[i64; D], high: &[i64; D], mut visit: impl FnMut(&[i64; D])) {
     if (0..D).any(|i| low[i] > high[i]) {
         return;
     }
@@ -58,12 +58,12 @@ pub(super) fn each_index<const D: usize>(low: &[i64; D], high: &[i64; D], mut vi
     }
 }
 
-/// As [`each_index`], but leaps over most of what lies `layers` or more cells inside the faces: of a large tank that
+/// As [`for_each_index`], but leaps over most of what lies `layers` or more cells inside the faces: of a large tank that
 /// is nearly all.
 fn each_outer<const D: usize>(low: &[i64; D], high: &[i64; D], layers: i64, mut visit: impl FnMut(&[i64; D])) {
     let mut rows = *high;
     rows[0] = low[0];
-    each_index(low, &rows, |row| {
+    for_each_index(low, &rows, |row| {
         let inside = (1..D).all(|i| row[i] - low[i] >= layers && high[i] - row[i] >= layers);
         let leaps = inside && high[0] - low[0] >= 2 * layers;
         let mut at = *row;
@@ -79,20 +79,20 @@ fn parts(length: f64, dp: f64) -> i64 {
     ((length / dp).round() as i64).max(1)
 }
 
-fn box_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+fn box_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     let n: [i64; D] = std::array::from_fn(|i| parts(size[i], dp));
     let mut skin = Vec::new();
     each_outer(&[0; D], &n.map(|n| n - 1), layers as i64, |at| {
         let depth = (0..D).map(|i| at[i].min(n[i] - 1 - at[i])).min().unwrap_or(0) as usize;
         if depth < layers {
             let r = Vector::from_fn(|i, _| ((at[i] as f64 + 0.5) / n[i] as f64 - 0.5) * size[i]);
-            skin.push(SkinPoint { r, layer: depth as u8 });
+            skin.push(BoundaryPoint { r, layer: depth as u8 });
         }
     });
     skin
 }
 
-fn tank_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+fn tank_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     let n: [i64; D] = std::array::from_fn(|i| parts(size[i], dp));
     let layers = layers as i64;
     let high = std::array::from_fn(|i| if i == D - 1 { n[i] - 1 } else { n[i] - 1 + layers });
@@ -101,7 +101,7 @@ fn tank_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<Sk
         let depth = (0..D).map(|i| (-at[i]).max(at[i] - (n[i] - 1))).max().unwrap_or(0);
         if depth > 0 {
             let r = Vector::from_fn(|i, _| (at[i] as f64 + 0.5) * size[i] / n[i] as f64);
-            skin.push(SkinPoint { r, layer: (depth - 1) as u8 });
+            skin.push(BoundaryPoint { r, layer: (depth - 1) as u8 });
         }
     });
     skin
@@ -110,7 +110,7 @@ fn tank_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<Sk
 /// Places of even spacing about `dp` on a circle of radius r around the origin, as (x, y).
 fn ring(r: f64, dp: f64) -> Vec<(f64, f64)> {
     let mut n = parts(TAU * r.max(0.0), dp);
-    while n > 1 && 2.0 * r * (PI / n as f64).sin() < APART * dp {
+    while n > 1 && 2.0 * r * (PI / n as f64).sin() < MIN_SPACING * dp {
         n -= 1;
     }
     if n == 1 {
@@ -129,7 +129,13 @@ fn shells(radius: f64, dp: f64) -> impl Iterator<Item = (usize, f64)> {
 }
 
 /// Slices across the axis, each a disc of rings.
-fn cylinder_skin<const D: usize>(length: f64, radius: f64, axis: usize, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+fn cylinder_skin<const D: usize>(
+    length: f64,
+    radius: f64,
+    axis: usize,
+    dp: f64,
+    layers: usize,
+) -> Vec<BoundaryPoint<D>> {
     let n = parts(length, dp);
     let mut skin = Vec::new();
     for i in 0..n {
@@ -137,7 +143,7 @@ fn cylinder_skin<const D: usize>(length: f64, radius: f64, axis: usize, dp: f64,
         let along = ((i as f64 + 0.5) / n as f64 - 0.5) * length;
         for (k, r) in shells(radius, dp).filter(|(k, _)| depth.min(*k) < layers) {
             let layer = depth.min(k) as u8;
-            skin.extend(ring(r, dp).into_iter().map(|(x, y)| SkinPoint { r: around(axis, along, x, y), layer }));
+            skin.extend(ring(r, dp).into_iter().map(|(x, y)| BoundaryPoint { r: around(axis, along, x, y), layer }));
         }
     }
     skin
@@ -153,10 +159,16 @@ fn around<const D: usize>(axis: usize, along: f64, x: f64, y: f64) -> Vector<D> 
 }
 
 /// A ball is a capsule of no length.
-fn capsule_skin<const D: usize>(length: f64, radius: f64, axis: usize, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+fn capsule_skin<const D: usize>(
+    length: f64,
+    radius: f64,
+    axis: usize,
+    dp: f64,
+    layers: usize,
+) -> Vec<BoundaryPoint<D>> {
     let mut skin = Vec::new();
     for (k, r) in shells(radius, dp).take(layers) {
-        let mut push = |p: Vector<D>| skin.push(SkinPoint { r: p, layer: k as u8 });
+        let mut push = |p: Vector<D>| skin.push(BoundaryPoint { r: p, layer: k as u8 });
         if r < 0.3 * dp {
             let n = parts(length, dp);
             (0..n).for_each(|i| push(around(axis, ((i as f64 + 0.5) / n as f64 - 0.5) * length, 0.0, 0.0)));
@@ -215,10 +227,10 @@ fn hoops<const D: usize>(length: f64, r: f64, axis: usize, dp: f64, push: &mut i
     }
 }
 
-fn compound_skin<const D: usize>(parts: &[(Pose<D>, Shape<D>)], dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+fn compound_skin<const D: usize>(parts: &[(Pose<D>, Shape<D>)], dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     let mut skin = Vec::new();
     for (i, (pose, part)) in parts.iter().enumerate() {
-        for p in part.skin(dp, layers) {
+        for p in part.boundary_points(dp, layers) {
             let r = pose.point(&p.r);
             let depth = (p.layer as f64 + 0.5) * dp;
             let buried = parts
@@ -226,7 +238,7 @@ fn compound_skin<const D: usize>(parts: &[(Pose<D>, Shape<D>)], dp: f64, layers:
                 .enumerate()
                 .any(|(j, (at, other))| j != i && other.signed_distance(&at.local(&r)) < -depth * (1.0 + 1e-6));
             if !buried {
-                skin.push(SkinPoint { r, layer: p.layer });
+                skin.push(BoundaryPoint { r, layer: p.layer });
             }
         }
     }
@@ -234,99 +246,5 @@ fn compound_skin<const D: usize>(parts: &[(Pose<D>, Shape<D>)], dp: f64, layers:
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Smallest distance between two points, and largest from a point to its nearest neighbour.
-    fn spacing<const D: usize>(skin: &[SkinPoint<D>]) -> (f64, f64) {
-        let nearest = |i: usize| {
-            let others = skin.iter().enumerate().filter(|(j, _)| *j != i);
-            others.map(|(_, p)| (p.r - skin[i].r).norm()).fold(f64::INFINITY, f64::min)
-        };
-        (0..skin.len()).map(nearest).fold((f64::INFINITY, 0.0), |(a, b), d| (a.min(d), b.max(d)))
-    }
-
-    fn first_layer_depth<const D: usize>(shape: &Shape<D>, dp: f64) {
-        for p in shape.skin(dp, 3) {
-            let depth = -shape.signed_distance(&p.r) / dp;
-            assert!((depth - (p.layer as f64 + 0.5)).abs() < 1e-6, "{shape:?}: layer {} at {depth} dp", p.layer);
-        }
-    }
-
-    #[test]
-    fn a_box_of_ten_by_ten_dp_is_the_lattice() {
-        let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
-        let skin = block.skin(0.1, 1);
-        assert_eq!(skin.len(), 36);
-        for p in &skin {
-            for x in p.r.iter() {
-                let cell = (x + 0.5) / 0.1 - 0.5;
-                assert!((cell - cell.round()).abs() < 1e-12);
-            }
-        }
-        assert_eq!(block.skin(0.1, 9).len(), 100);
-        first_layer_depth(&block, 0.1);
-        first_layer_depth(&Shape::Box { size: Vector::from([0.6, 0.4, 0.5]) }, 0.1);
-    }
-
-    #[test]
-    fn rings_and_shells_have_one_point_per_cell_of_surface() {
-        let (dp, radius): (f64, f64) = (0.1, 1.03);
-        let disc = Shape::<2>::Ball { radius };
-        assert_eq!(disc.skin(dp, 1).len(), (TAU * (radius - 0.05) / dp).round() as usize);
-        let ball = Shape::<3>::Ball { radius };
-        assert_eq!(ball.skin(dp, 1).len(), (4.0 * PI * (radius - 0.05).powi(2) / (dp * dp)).round() as usize);
-        first_layer_depth(&disc, dp);
-        first_layer_depth(&ball, dp);
-        first_layer_depth(&Shape::<2>::Capsule { length: 1.0, radius: 0.4, axis: 1 }, dp);
-        first_layer_depth(&Shape::<3>::Capsule { length: 1.0, radius: 0.4, axis: 0 }, dp);
-        first_layer_depth(&Shape::<3>::Cylinder { length: 1.0, radius: 0.4, axis: 0 }, dp);
-    }
-
-    #[test]
-    fn skins_are_evenly_spaced() {
-        let dp = 0.1;
-        for radius in [0.05, 0.1, 0.23, 0.5, 0.97] {
-            let flat = [Shape::<2>::Ball { radius }, Shape::Capsule { length: 0.7, radius, axis: 0 }];
-            let solid = [
-                Shape::<3>::Ball { radius },
-                Shape::Capsule { length: 0.7, radius, axis: 1 },
-                Shape::Cylinder { length: 0.7, radius, axis: 2 },
-            ];
-            let all = flat.iter().map(|s| s.skin(dp, 4)).map(|s| (s.len(), spacing(&s)));
-            for (n, (least, most)) in all.chain(solid.iter().map(|s| s.skin(dp, 4)).map(|s| (s.len(), spacing(&s)))) {
-                assert!(n > 0 && least >= APART * dp, "radius {radius}: {n} points, {least}");
-                assert!(n == 1 || most <= 1.2 * dp, "radius {radius}: {most}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_tank_continues_its_lattice_into_the_walls() {
-        let skin = Shape::Tank { size: Vector::from([1.0, 0.5]), thickness: 0.3 }.skin(0.1, 3);
-        assert_eq!(skin.len(), 16 * 3 + 2 * 3 * 5);
-        assert_eq!(skin.iter().filter(|p| p.layer == 0).count(), 12 + 2 * 5);
-    }
-
-    #[test]
-    fn a_leap_over_the_inside_misses_no_cell_near_a_face() {
-        for high in [[0, 0], [3, 9], [7, 2], [9, 11]] {
-            let (mut all, mut outer) = (Vec::new(), Vec::new());
-            let near = |at: &[i64; 2]| (0..2).any(|i| at[i] < 2 || high[i] - at[i] < 2);
-            each_index(&[0; 2], &high, |at| all.extend(near(at).then_some(*at)));
-            each_outer(&[0; 2], &high, 2, |at| outer.extend(near(at).then_some(*at)));
-            assert_eq!(all, outer, "in the same order");
-        }
-        // Ten thousand million cells of air, not one of them visited.
-        let tank = Shape::Tank { size: Vector::from([1e5, 1e5]), thickness: 2.0 };
-        assert_eq!(tank.skin(1.0, 1).len(), 300_002);
-    }
-
-    #[test]
-    fn the_joint_of_a_compound_has_neither_double_points_nor_a_hole() {
-        let half = Shape::Box { size: Vector::from([0.5, 0.4]) };
-        let at = |x: f64| Pose::at(Vector::from([x, 0.0]));
-        let joined = Shape::Compound(vec![(at(0.0), half.clone()), (at(0.5), half)]);
-        assert_eq!(joined.skin(0.1, 9).len(), 40);
-    }
-}
+#[path = "../../tests/unit/geometry/boundary_points.rs"]
+mod tests;

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Points sorted into cubic cells.
-pub(super) struct Cells<const D: usize> {
+pub(super) struct PointCells<const D: usize> {
     min: Vector<D>,
     size: f64,
     count: [usize; D],
@@ -21,7 +21,7 @@ pub(super) struct Cells<const D: usize> {
     along: [Vec<f64>; D],
 }
 
-impl<const D: usize> Cells<D> {
+impl<const D: usize> PointCells<D> {
     /// A grid over `points` of cells `size` (m) wide, or wider.
     pub fn new(points: &[Vector<D>], size: f64) -> Self {
         let bounds = Bounds::around(points);
@@ -67,7 +67,7 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Visits every point within `distance` (m) of `x`, and some farther ones, in an order fixed by the points.
-    pub fn near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(usize, &Vector<D>)) {
+    pub fn visit_near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(usize, &Vector<D>)) {
         self.rows_near(x, distance, |places| {
             let at = |k| Vector::from_fn(|axis, _| self.along[axis][k]);
             places.for_each(|k| visit(self.order[k] as usize, &at(k)));
@@ -76,7 +76,7 @@ impl<const D: usize> Cells<D> {
 
     /// Appends to `found` every point nearer than `distance` (m) to `x`, in an order fixed by the points; `r2` is
     /// scratch memory.
-    pub fn within(&self, x: &Vector<D>, distance: f64, r2: &mut Vec<f64>, found: &mut Vec<u32>) {
+    pub fn append_within(&self, x: &Vector<D>, distance: f64, r2: &mut Vec<f64>, found: &mut Vec<u32>) {
         let mut n = found.len();
         self.rows_near(x, distance, |places| {
             r2.clear();
@@ -123,12 +123,12 @@ impl<const D: usize> Cells<D> {
 
 /// The points that keep `distance` (m) from every earlier point that was kept, as flags; the first `given` are kept
 /// however near they are.
-pub(super) fn spaced<const D: usize>(points: &[Vector<D>], given: usize, distance: f64) -> Vec<bool> {
-    let cells = Cells::new(points, distance);
+pub(super) fn spacing_flags<const D: usize>(points: &[Vector<D>], given: usize, distance: f64) -> Vec<bool> {
+    let cells = PointCells::new(points, distance);
     let mut kept = vec![false; points.len()];
     for (i, x) in points.iter().enumerate() {
         let mut free = true;
-        cells.near(x, distance, |j, y| free &= !(kept[j] && (x - y).norm_squared() < distance * distance));
+        cells.visit_near(x, distance, |j, y| free &= !(kept[j] && (x - y).norm_squared() < distance * distance));
         kept[i] = i < given || free;
     }
     kept

@@ -24,7 +24,7 @@ impl<const D: usize> Shape<D> {
             Shape::Polygon { points } => to_polygon(x, points),
             Shape::Polyline { points, thickness } => to_wall(x, points, *thickness),
             Shape::Tank { size, thickness } => to_tank(x, size, *thickness),
-            Shape::Mesh { mesh, .. } => mesh.distance(&in_space(x)).0,
+            Shape::Mesh { mesh, .. } => mesh.distance_and_normal(&in_space(x)).0,
             Shape::Compound(parts) => {
                 parts.iter().map(|(pose, part)| part.signed_distance(&pose.local(x))).fold(f64::INFINITY, f64::min)
             }
@@ -33,9 +33,9 @@ impl<const D: usize> Shape<D> {
 
     /// The direction in which the signed distance grows at `x` (m, own frame), unit length: the outward
     /// normal of the nearest face. By central differences over `step` (m), of a mesh exact.
-    pub(crate) fn outward(&self, x: &Vector<D>, step: f64) -> Vector<D> {
+    pub(crate) fn outward_normal(&self, x: &Vector<D>, step: f64) -> Vector<D> {
         if let Shape::Mesh { mesh, .. } = self {
-            let n = mesh.distance(&in_space(x)).1;
+            let n = mesh.distance_and_normal(&in_space(x)).1;
             return Vector::from_fn(|i, _| n[i]);
         }
         let mut n = Vector::<D>::zeros();
@@ -48,13 +48,13 @@ impl<const D: usize> Shape<D> {
     }
 
     /// The signed distance at `x`, m, and the outward direction, as by themselves; of a mesh by one search.
-    pub(super) fn slope(&self, x: &Vector<D>, step: f64) -> (f64, Vector<D>) {
+    pub(super) fn distance_and_normal(&self, x: &Vector<D>, step: f64) -> (f64, Vector<D>) {
         match self {
             Shape::Mesh { mesh, .. } => {
-                let (distance, n) = mesh.distance(&in_space(x));
+                let (distance, n) = mesh.distance_and_normal(&in_space(x));
                 (distance, Vector::from_fn(|i, _| n[i]))
             }
-            _ => (self.signed_distance(x), self.outward(x, step)),
+            _ => (self.signed_distance(x), self.outward_normal(x, step)),
         }
     }
 }
@@ -91,7 +91,7 @@ fn to_tank<const D: usize>(x: &Vector<D>, size: &Vector<D>, thickness: f64) -> f
 }
 
 /// The point of the segment a-b nearest to `x`, and where `x` projects on its line (0 at a, 1 at b).
-pub(super) fn foot<const D: usize>(x: &Vector<D>, a: &Vector<D>, b: &Vector<D>) -> (Vector<D>, f64) {
+pub(super) fn nearest_on_segment<const D: usize>(x: &Vector<D>, a: &Vector<D>, b: &Vector<D>) -> (Vector<D>, f64) {
     let along = b - a;
     let u = (x - a).dot(&along) / along.norm_squared();
     // The ends are returned as given, so that two segments tie exactly at their shared point.
@@ -109,7 +109,7 @@ fn to_polygon<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> f64 {
     let (mut d2, mut inside) = (f64::INFINITY, false);
     for (i, a) in points.iter().enumerate() {
         let b = &points[(i + 1) % points.len()];
-        d2 = d2.min((x - foot(x, a, b).0).norm_squared());
+        d2 = d2.min((x - nearest_on_segment(x, a, b).0).norm_squared());
         if (a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (x[1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1]) {
             inside = !inside;
         }
@@ -118,14 +118,14 @@ fn to_polygon<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> f64 {
 }
 
 /// The unit normal to the right of the step from `a` to `b`: into the solid of a polyline.
-pub(super) fn right_of<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
+pub(super) fn right_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
     let mut n = Vector::<D>::zeros();
     (n[0], n[1]) = (b[1] - a[1], a[0] - b[0]);
     n / n.norm()
 }
 
 /// Which side of an open line a point is on.
-pub(super) enum Side {
+pub(super) enum LineSide {
     /// On the water's side, or on the line.
     Left(f64),
     /// On the solid's side, this deep (m).
@@ -136,11 +136,11 @@ pub(super) enum Side {
     AfterEnd,
 }
 
-pub(super) fn side_of<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> Side {
+pub(super) fn side_of_line<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> LineSide {
     let segments = points.len() - 1;
     let (mut d2, mut right, mut before, mut after) = (f64::INFINITY, 0.0, false, false);
     for (i, ab) in points.windows(2).enumerate() {
-        let (nearest, u) = foot(x, &ab[0], &ab[1]);
+        let (nearest, u) = nearest_on_segment(x, &ab[0], &ab[1]);
         let r = x - nearest;
         let r2 = r.norm_squared();
         if r2 > d2 {
@@ -151,91 +151,32 @@ pub(super) fn side_of<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> Si
             before = i == 0 && u < 0.0;
             after = i + 1 == segments && u > 1.0;
         }
-        right += r.dot(&right_of(&ab[0], &ab[1])); // both sides of a corner vote
+        right += r.dot(&right_normal(&ab[0], &ab[1])); // both sides of a corner vote
     }
     match (before, after) {
-        (true, _) => Side::BeforeStart,
-        (_, true) => Side::AfterEnd,
-        _ if right > 0.0 => Side::Right(d2.sqrt()),
-        _ => Side::Left(d2.sqrt()),
+        (true, _) => LineSide::BeforeStart,
+        (_, true) => LineSide::AfterEnd,
+        _ if right > 0.0 => LineSide::Right(d2.sqrt()),
+        _ => LineSide::Left(d2.sqrt()),
     }
 }
 
 fn to_wall<const D: usize>(x: &Vector<D>, points: &[Vector<D>], thickness: f64) -> f64 {
     let n = points.len();
     let to_cap = |end: &Vector<D>, a: &Vector<D>, b: &Vector<D>| {
-        (x - foot(x, end, &(end + right_of(a, b) * thickness)).0).norm()
+        (x - nearest_on_segment(x, end, &(end + right_normal(a, b) * thickness)).0).norm()
     };
     let to_start = || to_cap(&points[0], &points[0], &points[1]);
     let to_end = || to_cap(&points[n - 1], &points[n - 2], &points[n - 1]);
-    match side_of(x, points) {
-        Side::BeforeStart => to_start(),
-        Side::AfterEnd => to_end(),
-        Side::Left(d) => d,
-        Side::Right(d) if d > thickness => d - thickness,
-        Side::Right(d) => -d.min(thickness - d).min(to_start()).min(to_end()),
+    match side_of_line(x, points) {
+        LineSide::BeforeStart => to_start(),
+        LineSide::AfterEnd => to_end(),
+        LineSide::Left(d) => d,
+        LineSide::Right(d) if d > thickness => d - thickness,
+        LineSide::Right(d) => -d.min(thickness - d).min(to_start()).min(to_end()),
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::Pose;
-
-    fn v<const D: usize>(x: [f64; D]) -> Vector<D> {
-        Vector::from(x)
-    }
-
-    fn near(a: f64, b: f64) {
-        assert!((a - b).abs() < 1e-12, "{a} is not {b}");
-    }
-
-    #[test]
-    fn distances_are_negative_inside_and_exact() {
-        let block = Shape::Box { size: v([2.0, 4.0, 6.0]) };
-        near(block.signed_distance(&v([0.5, 0.0, 0.0])), -0.5);
-        near(block.signed_distance(&v([4.0, 6.0, 0.0])), 5.0);
-        near(Shape::Ball { radius: 1.0 }.signed_distance(&v([3.0, 4.0])), 4.0);
-        let capsule = Shape::Capsule { length: 2.0, radius: 0.5, axis: 1 };
-        near(capsule.signed_distance(&v([0.0, 2.0])), 0.5);
-        near(capsule.signed_distance(&v([0.25, 0.7])), -0.25);
-        let can = Shape::Cylinder { length: 2.0, radius: 1.0, axis: 0 };
-        near(can.signed_distance(&v([0.9, 0.0, 0.0])), -0.1);
-        near(can.signed_distance(&v([4.0, 5.0, 0.0])), 5.0);
-        let both = Shape::Compound(vec![
-            (Pose::at(v([3.0, 0.0])), Shape::Ball { radius: 1.0 }),
-            (Pose::identity(), Shape::Ball { radius: 1.0 }),
-        ]);
-        near(both.signed_distance(&v([3.0, 0.5])), -0.5);
-    }
-
-    #[test]
-    fn a_wall_is_solid_on_the_right_of_its_line() {
-        let points = [[0.0, 1.0], [0.0, 0.0], [2.0, 0.0]].map(Vector::from).to_vec();
-        let wall = Shape::Polyline { points, thickness: 0.4 };
-        near(wall.signed_distance(&v([0.3, 0.5])), 0.3);
-        near(wall.signed_distance(&v([1.0, -0.1])), -0.1);
-        near(wall.signed_distance(&v([1.0, -0.9])), 0.5);
-        near(wall.signed_distance(&v([-0.03, -0.04])), -0.05);
-        near(wall.signed_distance(&v([2.3, -0.2])), 0.3);
-    }
-
-    #[test]
-    fn a_tank_is_solid_in_its_walls_only() {
-        let tank = Shape::Tank { size: v([4.0, 2.0]), thickness: 0.5 };
-        near(tank.signed_distance(&v([1.0, 1.5])), 1.0);
-        near(tank.signed_distance(&v([2.0, -0.2])), -0.2);
-        near(tank.signed_distance(&v([-0.2, 1.9])), -0.1);
-        near(tank.signed_distance(&v([0.3, 2.4])), 0.5);
-        near(tank.signed_distance(&v([-1.5, 1.0])), 1.0);
-        near(tank.signed_distance(&v([-0.3, -0.4])), -0.1);
-    }
-
-    #[test]
-    fn a_hollow_polygon_is_outside_in_its_notch() {
-        let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 1.0], [0.0, 2.0]].map(Vector::from).to_vec();
-        let notch = Shape::Polygon { points };
-        near(notch.signed_distance(&v([1.0, 1.5])), 0.125_f64.sqrt());
-        near(notch.signed_distance(&v([1.0, 0.25])), -0.25);
-    }
-}
+#[path = "../../tests/unit/geometry/distance.rs"]
+mod tests;

@@ -7,8 +7,8 @@
 
 use super::{
     Shape,
-    boundary_points::each_index,
-    fit::{Obstacle, fit},
+    boundary_points::for_each_index,
+    fit::{Obstacle, pack_around_obstacles},
 };
 use crate::{
     error::{Error, Result},
@@ -17,7 +17,7 @@ use crate::{
 
 /// A body of water.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Region<const D: usize> {
+pub struct WaterRegion<const D: usize> {
     /// What is filled; of an unturned box the lattice starts at the lowest corner.
     pub shape: Shape<D>,
     /// Where it is.
@@ -26,13 +26,13 @@ pub struct Region<const D: usize> {
 
 /// What the filling gave.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Filled<const D: usize> {
+pub struct FilledWater<const D: usize> {
     /// Positions, m.
     pub r: Vec<Vector<D>>,
     /// Lattice points that were dropped because they lay in a solid.
-    pub overlapped: usize,
+    pub removed_in_solids: usize,
     /// Lattice points that were dropped because they lay in an earlier region.
-    pub doubled: usize,
+    pub removed_in_regions: usize,
 }
 
 /// Most points of a lattice: beyond, the spacing is a slip of the pen.
@@ -46,7 +46,11 @@ const MOST: f64 = 4e8;
 /// # Errors
 /// A scene error if `dp` is not positive, a region cannot exist or is thinner than half a dp, or its lattice
 /// would have more than 4·10⁸ points.
-pub fn fill<const D: usize>(regions: &[Region<D>], solids: &[(&Shape<D>, &Pose<D>)], dp: f64) -> Result<Filled<D>> {
+pub fn fill<const D: usize>(
+    regions: &[WaterRegion<D>],
+    solids: &[(&Shape<D>, &Pose<D>)],
+    dp: f64,
+) -> Result<FilledWater<D>> {
     if !(dp > 0.0 && dp.is_finite()) {
         return Err(
             Error::scene(format!("the particle spacing dp is {dp}")).help("give a length above zero, in metres")
@@ -57,36 +61,36 @@ pub fn fill<const D: usize>(regions: &[Region<D>], solids: &[(&Shape<D>, &Pose<D
         lattices.push(Lattice::new(region, lattices.first().map(|l| l.origin), dp)?);
     }
     let mut obstacles: Vec<_> = solids.iter().map(|(shape, pose)| Obstacle::new(shape, pose, dp)).collect();
-    let mut filled = Filled { r: Vec::new(), overlapped: 0, doubled: 0 };
+    let mut filled = FilledWater { r: Vec::new(), removed_in_solids: 0, removed_in_regions: 0 };
     let mut home = Vec::new();
     for (k, lattice) in lattices.iter().enumerate() {
-        lattice.each(0, |x| {
-            if !lattice.holds(x) {
+        lattice.for_each_point(0, |x| {
+            if !lattice.contains(x) {
                 return;
             }
-            if lattices[..k].iter().any(|earlier| earlier.holds(x)) {
-                filled.doubled += 1;
-            } else if obstacles.iter_mut().any(|o| o.takes(x)) {
-                filled.overlapped += 1;
+            if lattices[..k].iter().any(|earlier| earlier.contains(x)) {
+                filled.removed_in_regions += 1;
+            } else if obstacles.iter_mut().any(|o| o.claims_cell(x)) {
+                filled.removed_in_solids += 1;
             } else {
-                obstacles.iter_mut().for_each(|o| o.judge(x, |cell| lattice.holds(cell)));
+                obstacles.iter_mut().for_each(|o| o.check_fit(x, |cell| lattice.contains(cell)));
                 filled.r.push(*x);
                 home.push(k);
             }
         });
     }
-    fit(&mut filled.r, &home, &lattices, &mut obstacles, dp);
-    if obstacles.iter().any(Obstacle::is_misfit) {
+    pack_around_obstacles(&mut filled.r, &home, &lattices, &mut obstacles, dp);
+    if obstacles.iter().any(Obstacle::needs_packing) {
         let before = filled.r.len();
-        filled.r.retain(|x| !obstacles.iter().any(|o| o.cramps(x)));
-        filled.overlapped += before - filled.r.len();
+        filled.r.retain(|x| !obstacles.iter().any(|o| o.is_in_narrow_gap(x)));
+        filled.removed_in_solids += before - filled.r.len();
     }
     Ok(filled)
 }
 
 /// The lattice of a region: point i lies at origin + (i + ½) dp.
 pub(super) struct Lattice<'a, const D: usize> {
-    region: &'a Region<D>,
+    region: &'a WaterRegion<D>,
     /// An unturned box holds all points of its lattice, any other shape those inside it.
     is_box: bool,
     origin: Vector<D>,
@@ -97,7 +101,7 @@ pub(super) struct Lattice<'a, const D: usize> {
 
 impl<'a, const D: usize> Lattice<'a, D> {
     /// The lattice of `region`, one with the lattice at `shared` if their corners allow.
-    fn new(region: &'a Region<D>, shared: Option<Vector<D>>, dp: f64) -> Result<Self> {
+    fn new(region: &'a WaterRegion<D>, shared: Option<Vector<D>>, dp: f64) -> Result<Self> {
         region.shape.check()?;
         let bounds = region.shape.bounds_at(&region.pose);
         if (bounds.size() / dp).map(|n| n + 1.0).product() > MOST {
@@ -129,31 +133,31 @@ impl<'a, const D: usize> Lattice<'a, D> {
     }
 
     /// Visits the lattice points of the region's box, and of `margin` cells around it.
-    pub fn each(&self, margin: i64, mut visit: impl FnMut(&Vector<D>)) {
+    pub fn for_each_point(&self, margin: i64, mut visit: impl FnMut(&Vector<D>)) {
         let (low, high) = (self.low.map(|i| i - margin), self.high.map(|i| i + margin));
-        each_index(&low, &high, |at| {
+        for_each_index(&low, &high, |at| {
             visit(&(self.origin + Vector::from_fn(|i, _| (at[i] as f64 + 0.5) * self.dp)));
         });
     }
 
     /// The cells of the lattice and of `margin` cells around it.
-    pub fn grown(&self, margin: i64) -> Bounds<D> {
+    pub fn bounds_with_margin(&self, margin: i64) -> Bounds<D> {
         let corner =
             |at: &[i64; D], more: i64| Vector::from_fn(|i, _| self.origin[i] + (at[i] + more) as f64 * self.dp);
         Bounds { min: corner(&self.low, -margin), max: corner(&self.high, 1 + margin) }
     }
 
     /// Whether the region holds the place `x`.
-    pub fn holds(&self, x: &Vector<D>) -> bool {
+    pub fn contains(&self, x: &Vector<D>) -> bool {
         if self.is_box {
-            return self.grown(0).grown(-1e-9 * self.dp).contains(x);
+            return self.bounds_with_margin(0).grown(-1e-9 * self.dp).contains(x);
         }
         self.region.shape.signed_distance(&self.region.pose.local(x)) < -1e-9 * self.dp
     }
 
     /// Keeps `x` half a dp inside the sides of a box; its top is free and its bottom a solid's business.
     /// Returns how far (m) it may then go without leaving them.
-    pub fn keep_within(&self, x: &mut Vector<D>) -> f64 {
+    pub fn clamp_to_sides(&self, x: &mut Vector<D>) -> f64 {
         let mut room = f64::INFINITY;
         if let (true, Shape::Box { size }) = (self.is_box, &self.region.shape) {
             for i in 0..D - 1 {
@@ -168,134 +172,5 @@ impl<'a, const D: usize> Lattice<'a, D> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn pool<const D: usize>(size: [f64; D]) -> Region<D> {
-        let size = Vector::from(size);
-        Region { shape: Shape::Box { size }, pose: Pose::at(size * 0.5) }
-    }
-
-    /// The nearest water to the solid's face, and the barest place of the wetted face.
-    fn clearance<const D: usize>(water: &[Vector<D>], shape: &Shape<D>, pose: &Pose<D>, dp: f64) -> (f64, f64) {
-        let nearest = water.iter().map(|x| shape.signed_distance(&pose.local(x))).fold(f64::INFINITY, f64::min);
-        let reach = |x: Vector<D>| water.iter().map(|w| (w - x).norm()).fold(f64::INFINITY, f64::min);
-        // Places on the face: a fine skin of the shape, brought up to the face.
-        let fine = shape.skin(0.3 * dp, 1);
-        let face = fine.iter().map(|p| p.r - shape.outward(&p.r, 1e-3 * dp) * shape.signed_distance(&p.r));
-        let top = water.iter().map(|w| w[D - 1]).fold(f64::NEG_INFINITY, f64::max);
-        let bare = face.map(|x| pose.point(&x)).filter(|x| x[D - 1] < top - 1.5 * dp).map(reach).fold(0.0, f64::max);
-        (nearest / dp, bare / dp)
-    }
-
-    fn fits<const D: usize>(filled: &Filled<D>, shape: &Shape<D>, pose: &Pose<D>, dp: f64) {
-        let (nearest, bare) = clearance(&filled.r, shape, pose, dp);
-        assert!(nearest >= 0.45, "{shape:?}: water {nearest} dp from the face");
-        // Half a dp in front, half a spacing aside in D − 1 directions: 0.71 and 0.87 dp on a lattice that
-        // fits; uneven places add a fifth.
-        let most = if D == 2 { 0.85 } else { 1.04 };
-        assert!(bare <= most, "{shape:?}: a gap of {bare} dp");
-        let cells = crate::geometry::cells::spaced(&filled.r, 0, 0.5 * dp);
-        assert!(cells.iter().all(|kept| *kept), "{shape:?}: points nearer than half a dp");
-    }
-
-    #[test]
-    fn a_fitting_tank_and_body_leave_the_lattice_exact() {
-        let tank = Shape::Tank { size: Vector::from([4.0, 5.0]), thickness: 0.3 };
-        let (block, at) = (Shape::Box { size: Vector::from([1.0, 0.5]) }, Pose::at(Vector::from([2.0, 1.25])));
-        let solids = [(&tank, &Pose::identity()), (&block, &at)];
-        let filled = fill(&[pool([4.0, 2.0])], &solids, 0.1).unwrap();
-        assert_eq!((filled.r.len(), filled.overlapped, filled.doubled), (750, 50, 0));
-        for x in filled.r.iter().flat_map(|r| r.iter()) {
-            assert!((x / 0.1 - 0.5 - (x / 0.1 - 0.5).round()).abs() < 1e-9);
-        }
-    }
-
-    #[test]
-    fn regions_share_a_lattice_and_never_fill_twice() {
-        let film = pool([2.0, 0.2]);
-        let mut column = pool([0.5, 1.0]);
-        column.pose.position[0] += 0.3;
-        let filled = fill(&[column, film], &[], 0.1).unwrap();
-        assert_eq!((filled.r.len(), filled.doubled), (50 + 30, 10));
-        assert!(fill(&[pool([1.0, 0.04])], &[], 0.1).is_err());
-        assert!(fill(&[pool([1.0, 1.0])], &[], 1e-9).is_err());
-    }
-
-    #[test]
-    fn water_displaced_by_a_disc_has_its_area() {
-        let pool = [pool([4.0, 4.0])];
-        for (x, y) in [(2.0, 2.0), (2.03, 1.97), (2.0 + 0.031, 2.0 + 0.047)] {
-            let (disc, at) = (Shape::Ball { radius: 0.5 }, Pose::at(Vector::from([x, y])));
-            let filled = fill(&pool, &[(&disc, &at)], 0.1).unwrap();
-            // 78.5 cells; each of the four sides may be off by half a cell.
-            assert!((filled.overlapped as f64 - 78.54).abs() <= 2.0, "{}", filled.overlapped);
-            assert_eq!(filled.r.len() + filled.overlapped, 1600);
-            fits(&filled, &disc, &at, 0.1);
-        }
-    }
-
-    #[test]
-    fn boxes_off_the_lattice_or_tilted_have_no_gap() {
-        let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
-        for (x, y, turn) in [(2.03, 2.0, 0.0), (2.05, 2.05, 0.0), (2.03, 1.98, 0.3), (2.0, 3.93, 0.0)] {
-            let at = Pose::rotated(Vector::from([x, y]), &[turn]);
-            let filled = fill(&[pool([4.0, 4.0])], &[(&block, &at)], 0.1).unwrap();
-            let (wet, _) = block.submerged(&at, 4.0);
-            // Half a cell for each of the four sides, not half a row.
-            assert!((filled.overlapped as f64 - 100.0 * wet).abs() <= 2.0, "{}", filled.overlapped);
-            fits(&filled, &block, &at, 0.1);
-        }
-    }
-
-    #[test]
-    fn packing_round_a_float_leaves_the_surface_level() {
-        let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
-        let at = Pose::at(Vector::from([2.03, 3.95]));
-        let filled = fill(&[pool([4.0, 4.0])], &[(&block, &at)], 0.1).unwrap();
-        let top = filled.r.iter().map(|x| (x[1] - 3.95) / 0.1).fold(f64::NEG_INFINITY, f64::max);
-        // No mound: uneven places within a quarter of a spacing. A hollow would be a lack in the count.
-        assert!(top < 0.25, "the top row rises to {top} dp above its height");
-    }
-
-    #[test]
-    fn water_lies_on_a_slope_and_not_beneath_it() {
-        let points = [[0.0, 0.0], [1.0, 0.0], [4.0, 1.2]].map(Vector::from).to_vec();
-        let bed = Shape::Polyline { points, thickness: 0.2 };
-        let filled = fill(&[pool([4.0, 1.0])], &[(&bed, &Pose::identity())], 0.05).unwrap();
-        let area = 4.0 - 0.5 * 2.5 * 1.0 - 0.5; // the triangle under the slope up to x = 3.5, then the rest
-        assert!((filled.r.len() as f64 * 0.0025 - area).abs() < 0.02, "{}", filled.r.len() as f64 * 0.0025);
-        fits(&filled, &bed, &Pose::identity(), 0.05);
-        // The lattice is as it was far from the slope.
-        assert!(filled.r.iter().any(|x| (x - Vector::from([0.025, 0.975])).norm() < 1e-9));
-    }
-
-    #[test]
-    fn water_closes_round_a_ball() {
-        let (ball, at) = (Shape::Ball { radius: 0.4 }, Pose::at(Vector::from([1.013, 0.987, 1.03])));
-        let filled = fill(&[pool([2.0, 2.0, 2.0])], &[(&ball, &at)], 0.1).unwrap();
-        assert!((filled.overlapped as f64 - 268.1).abs() < 8.0, "{}", filled.overlapped);
-        fits(&filled, &ball, &at, 0.1);
-    }
-
-    #[test]
-    fn a_gap_too_narrow_for_a_row_of_particles_stays_dry() {
-        let tank = Shape::Tank { size: Vector::from([2.1, 5.0]), thickness: 0.4 };
-        let (block, at) = (Shape::Box { size: Vector::from([2.0, 1.0]) }, Pose::at(Vector::from([1.05, 1.5])));
-        let filled = fill(&[pool([2.1, 3.0])], &[(&tank, &Pose::identity()), (&block, &at)], 0.1).unwrap();
-        // Half a dp is left on either side: water would lie a quarter of dp from both faces.
-        assert!(filled.r.iter().all(|x| x[1] <= 1.0 || x[1] >= 2.0));
-        assert!(filled.r.len() >= 2 * 10 * 21 - 21, "what is below and above stays: {}", filled.r.len());
-    }
-
-    #[test]
-    fn any_number_of_threads_fills_with_the_same_bits() {
-        let (ball, at) = (Shape::Ball { radius: 0.4 }, Pose::at(Vector::from([1.013, 0.987, 1.03])));
-        let filled = |threads: usize| {
-            let workers = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            workers.install(|| fill(&[pool([2.0, 2.0, 2.0])], &[(&ball, &at)], 0.1).unwrap())
-        };
-        let one = filled(1);
-        assert!([2, 3, 8].into_iter().all(|threads| filled(threads) == one));
-    }
-}
+#[path = "../../tests/unit/geometry/fill.rs"]
+mod tests;

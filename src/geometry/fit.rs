@@ -32,7 +32,7 @@ pub(super) struct Obstacle<'a, const D: usize> {
     /// What the cells taken so far lack in the solid's volume, on each side, cells.
     owed: Vec<f64>,
     /// Whether water on the lattice would lie too near to its face, or too far.
-    misfit: bool,
+    needs_packing: bool,
 }
 
 impl<'a, const D: usize> Obstacle<'a, D> {
@@ -40,8 +40,8 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         let bounds = shape.bounds_at(pose);
         let mut lines = Vec::new();
         collect_lines(shape, pose, &mut lines);
-        let around = bounds.grown((ZONE + packing::REACH + 1.0) * dp);
-        Self { shape, pose, dp, close: bounds.grown(dp), around, lines, owed: vec![0.0; 2 * D], misfit: false }
+        let around = bounds.grown((ZONE + packing::SUPPORT_RADIUS_DP + 1.0) * dp);
+        Self { shape, pose, dp, close: bounds.grown(dp), around, lines, owed: vec![0.0; 2 * D], needs_packing: false }
     }
 
     fn distance(&self, x: &Vector<D>) -> f64 {
@@ -49,12 +49,12 @@ impl<'a, const D: usize> Obstacle<'a, D> {
     }
 
     fn outward(&self, x: &Vector<D>) -> Vector<D> {
-        self.pose.rotation * self.shape.outward(&self.pose.local(x), 1e-3 * self.dp)
+        self.pose.rotation * self.shape.outward_normal(&self.pose.local(x), 1e-3 * self.dp)
     }
 
     /// Whether the cell at `x` goes to the solid, or lies in the ground below a bed. Cells that a face cuts are
     /// shared out so that, along each side, the solid gets its volume and not half a row more or less.
-    pub fn takes(&mut self, x: &Vector<D>) -> bool {
+    pub fn claims_cell(&mut self, x: &Vector<D>) -> bool {
         // A line over one dp has a cubic cell's second moment along any normal: before a curved face, too, the
         // shares add up to the volume.
         let share = if self.close.contains(x) { 0.5 - self.distance(x) / self.dp } else { 0.0 };
@@ -85,27 +85,27 @@ impl<'a, const D: usize> Obstacle<'a, D> {
 
     /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
     /// belongs to the water (`in_water`) or is not above it.
-    pub fn judge(&mut self, x: &Vector<D>, in_water: impl Fn(&Vector<D>) -> bool) {
-        if self.misfit || !self.close.contains(x) {
+    pub fn check_fit(&mut self, x: &Vector<D>, in_water: impl Fn(&Vector<D>) -> bool) {
+        if self.needs_packing || !self.close.contains(x) {
             return;
         }
         let distance = self.distance(x) / self.dp;
-        self.misfit = distance < 0.5 - 1e-6;
+        self.needs_packing = distance < 0.5 - 1e-6;
         if distance > 0.5 + GAP && distance < 1.0 {
             // Only before a face along the lattice: at a corner this distance is as it should be.
             let n = self.outward(x);
             let is_above = n[D - 1] < -0.5;
-            self.misfit = n.amax() > 1.0 - 1e-6 && (!is_above || in_water(&(x - n * self.dp)));
+            self.needs_packing = n.amax() > 1.0 - 1e-6 && (!is_above || in_water(&(x - n * self.dp)));
         }
     }
 
     /// Whether water on the lattice does not fit it.
-    pub fn is_misfit(&self) -> bool {
-        self.misfit
+    pub fn needs_packing(&self) -> bool {
+        self.needs_packing
     }
 
     /// Whether the water point `x` lies so near to the face that it can only be in a gap too narrow for a row of particles.
-    pub fn cramps(&self, x: &Vector<D>) -> bool {
+    pub fn is_in_narrow_gap(&self, x: &Vector<D>) -> bool {
         self.close.contains(x) && self.distance(x) < NARROW * self.dp
     }
 
@@ -148,18 +148,18 @@ fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
 }
 
 /// Packs the water around the solids that do not fit the lattice; `home` is each point's lattice.
-pub(super) fn fit<const D: usize>(
+pub(super) fn pack_around_obstacles<const D: usize>(
     water: &mut [Vector<D>],
     home: &[usize],
     lattices: &[Lattice<D>],
     obstacles: &mut [Obstacle<D>],
     dp: f64,
 ) {
-    if obstacles.iter().all(|o| !o.misfit) {
+    if obstacles.iter().all(|o| !o.needs_packing) {
         return;
     }
     let (moving, still) = ghosts(lattices, obstacles);
-    let misfits: Vec<_> = obstacles.iter().filter(|o| o.misfit).collect();
+    let misfits: Vec<_> = obstacles.iter().filter(|o| o.needs_packing).collect();
     let to_misfit = |x: &Vector<D>| {
         let near = misfits.iter().filter(|o| o.around.contains(x));
         near.map(|o| o.distance(x)).fold(f64::INFINITY, f64::min) / dp
@@ -169,7 +169,7 @@ pub(super) fn fit<const D: usize>(
     for (i, (x, far)) in water.iter().zip(far).enumerate() {
         match far {
             d if d < ZONE => movable.push(i),
-            d if d < ZONE + packing::REACH + 1.0 => held.push(*x),
+            d if d < ZONE + packing::SUPPORT_RADIUS_DP + 1.0 => held.push(*x),
             _ => (),
         }
     }
@@ -179,13 +179,13 @@ pub(super) fn fit<const D: usize>(
     let all_movable = points.len();
     points.extend(held);
     points.extend(still);
-    let near = Bounds::around(&points).grown(packing::REACH * dp);
+    let near = Bounds::around(&points).grown(packing::SUPPORT_RADIUS_DP * dp);
     for o in &*obstacles {
-        let skin = o.shape.skin(dp, LAYERS);
+        let skin = o.shape.boundary_points(dp, LAYERS);
         points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
     }
-    packing::relax(&mut points, all_movable, dp, |i, _, x| {
-        let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].keep_within(x));
+    packing::spread_points(&mut points, all_movable, dp, |i, _, x| {
+        let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].clamp_to_sides(x));
         // Twice: what one face of a corner pushes out, it may push into the other.
         (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))
     });
@@ -199,14 +199,14 @@ fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]
     const RIM: i64 = 3;
     let (mut moving, mut still) = (Vec::new(), Vec::new());
     for (k, lattice) in lattices.iter().enumerate() {
-        let inner = lattice.grown(MARGIN - RIM);
-        lattice.each(MARGIN, |x| {
-            if obstacles.iter().any(|o| o.misfit && o.around.contains(x))
-                && !lattices.iter().any(|l| l.holds(x))
-                && !lattices[..k].iter().any(|l| l.grown(MARGIN).contains(x))
-                && !obstacles.iter_mut().any(|o| o.takes(x))
+        let inner = lattice.bounds_with_margin(MARGIN - RIM);
+        lattice.for_each_point(MARGIN, |x| {
+            if obstacles.iter().any(|o| o.needs_packing && o.around.contains(x))
+                && !lattices.iter().any(|l| l.contains(x))
+                && !lattices[..k].iter().any(|l| l.bounds_with_margin(MARGIN).contains(x))
+                && !obstacles.iter_mut().any(|o| o.claims_cell(x))
             {
-                let zone = obstacles.iter().any(|o| o.misfit && o.distance(x) < ZONE * o.dp);
+                let zone = obstacles.iter().any(|o| o.needs_packing && o.distance(x) < ZONE * o.dp);
                 if zone && inner.contains(x) { &mut moving } else { &mut still }.push(*x);
             }
         });

@@ -11,15 +11,15 @@ use std::collections::HashMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Volume, submerged_volume::Facet};
+use super::{VolumeProperties, submerged_volume::Facet};
 use crate::{
     error::{Error, Result},
     math::{Bounds, Matrix, Vector},
 };
-use tree::Tree;
+use tree::FacetTree;
 
 /// Most facets of a mesh: far more than particles can feel.
-pub const MOST_FACETS: usize = 500_000;
+pub const MAX_FACETS: usize = 500_000;
 
 /// The longest mesh, m: what is longer is in another unit.
 const LARGEST: f64 = 1e6;
@@ -30,13 +30,13 @@ pub struct Mesh {
     points: Vec<Vector<3>>,
     facets: Vec<[u32; 3]>,
     bounds: Bounds<3>,
-    tree: Tree,
+    tree: FacetTree,
 }
 
 /// What of a mesh other bodies touch. The water sees the mesh itself, whatever is chosen. Scene word `mesh.contact`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Touchable {
+pub enum ContactGeometry {
     /// The surface of a solid that is fixed. Of one that moves its hull, where that has at most a hundredth more
     /// volume, else its decomposition: two surfaces without an inside cannot be kept apart.
     #[default]
@@ -60,8 +60,8 @@ impl Mesh {
     /// out or partly turned over, passes through itself, or has a shell within a shell that faces the same way: says where (m), how
     /// often, and what to do.
     pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
-        if facets.len() > MOST_FACETS {
-            return Err(Error::scene(format!("a mesh of {} facets; the most is {MOST_FACETS}", facets.len()))
+        if facets.len() > MAX_FACETS {
+            return Err(Error::scene(format!("a mesh of {} facets; the most is {MAX_FACETS}", facets.len()))
                 .help("thin it out (\"decimate\"): what is finer than dp cannot be seen"));
         }
         if let Some(i) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
@@ -78,7 +78,7 @@ impl Mesh {
             return Err(Error::scene(format!("a mesh {size:.1e} m long; the most is {LARGEST:.0e} m"))
                 .help("in which unit is the file? Write, say,  unit = \"mm\""));
         }
-        welding::closed(&points, &facets)?;
+        welding::check_closed(&points, &facets)?;
         let volume = moments(&points, &facets).volume;
         let bounds = Bounds::around(&points);
         if volume <= 1e-12 * bounds.size().product() {
@@ -90,10 +90,12 @@ impl Mesh {
                 }
             });
         }
-        let tree = Tree::new(&points, &facets)?;
+        let tree = FacetTree::new(&points, &facets)?;
         let mesh = Self { points, facets, bounds, tree };
-        mesh.tree.crossing(&mesh).map_or(Ok(()), |(a, b)| Err(welding::crossed(&mesh.corners(a), &mesh.corners(b))))?;
-        shells::nested(&mesh.points, &mesh.facets)?;
+        mesh.tree
+            .find_crossing(&mesh)
+            .map_or(Ok(()), |(a, b)| Err(welding::crossing_error(&mesh.facet_corners(a), &mesh.facet_corners(b))))?;
+        shells::check_orientation(&mesh.points, &mesh.facets)?;
         Ok(mesh)
     }
 
@@ -113,31 +115,34 @@ impl Mesh {
     }
 
     /// Exact volume, centroid and second moment of the polyhedron.
-    pub fn volume(&self) -> Volume<3> {
+    pub fn volume_properties(&self) -> VolumeProperties<3> {
         moments(&self.points, &self.facets)
     }
 
     /// Area of the surface, m².
-    pub fn surface(&self) -> f64 {
-        (0..self.facets.len()).map(|i| self.corners(i)).map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum()
+    pub fn surface_area(&self) -> f64 {
+        (0..self.facets.len())
+            .map(|i| self.facet_corners(i))
+            .map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm())
+            .sum()
     }
 
     /// Signed distance (m) of `x` (m) from the surface, negative inside, and the direction in which it grows, unit
     /// length.
     ///
-    /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. [@baerentzen2005]
-    pub fn distance(&self, x: &Vector<3>) -> (f64, Vector<3>) {
-        self.tree.distance(x)
+    /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. @baerentzen2005
+    pub fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
+        self.tree.distance_and_normal(x)
     }
 
     /// The facets with their corners, for sums over the surface; none in 2-D.
     pub(super) fn triangles<const D: usize>(&self) -> Vec<Facet<D>> {
         let corner = |p: &Vector<3>| Vector::from_fn(|i, _| p[i]);
-        let all = (0..if D == 3 { self.facets.len() } else { 0 }).map(|i| self.corners(i));
+        let all = (0..if D == 3 { self.facets.len() } else { 0 }).map(|i| self.facet_corners(i));
         all.map(|corners| std::array::from_fn(|i| corner(&corners[i]))).collect()
     }
 
-    fn corners(&self, facet: usize) -> [Vector<3>; 3] {
+    fn facet_corners(&self, facet: usize) -> [Vector<3>; 3] {
         self.facets[facet].map(|p| self.points[p as usize])
     }
 }
@@ -171,7 +176,7 @@ fn joined(points: &[Vector<3>], facets: &[[u32; 3]]) -> (Vec<Vector<3>>, Vec<[u3
 }
 
 /// The signed sum of the tetrahedra between the facets and the middle of all corners.
-fn moments(points: &[Vector<3>], facets: &[[u32; 3]]) -> Volume<3> {
+fn moments(points: &[Vector<3>], facets: &[[u32; 3]]) -> VolumeProperties<3> {
     let bounds = Bounds::around(points);
     let origin = (bounds.min + bounds.max) * 0.5;
     let (mut volume, mut first, mut second) = (0.0, Vector::<3>::zeros(), Matrix::<3>::zeros());
@@ -184,7 +189,11 @@ fn moments(points: &[Vector<3>], facets: &[[u32; 3]]) -> Volume<3> {
         second += (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose()) * (0.05 * part);
     }
     let centroid = first / volume;
-    Volume { volume, centroid: origin + centroid, second_moment: second - centroid * centroid.transpose() * volume }
+    VolumeProperties {
+        volume,
+        centroid: origin + centroid,
+        second_moment: second - centroid * centroid.transpose() * volume,
+    }
 }
 
 #[cfg(all(test, feature = "dim3"))]

@@ -1,4 +1,4 @@
-//! Geometry: what a solid or a body of water looks like. No motion, no mass.
+//! Geometry of solids and water: shapes, volumes, distances, boundary points, filling. No motion, no mass.
 //!
 //! A [`Shape`] gives its exact volume properties, its signed distance, the part of it under water and its
 //! boundary particles; [`fill()`] puts water on a lattice and fits it to the solids.
@@ -21,11 +21,12 @@ use std::sync::Arc;
 
 use crate::math::{Matrix, Pose, Vector};
 
-pub use fill::{Filled, Region, fill};
-pub use mesh::{Mesh, Touchable};
+pub use fill::{FilledWater, WaterRegion, fill};
+pub use mesh::{ContactGeometry, Mesh};
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the sentence of each variant names its fields")]
 pub enum Shape<const D: usize> {
     /// A box of edge lengths `size`, centred on the origin.
     Box { size: Vector<D> },
@@ -45,14 +46,14 @@ pub enum Shape<const D: usize> {
     /// origin to `size`.
     Tank { size: Vector<D>, thickness: f64 },
     /// A solid by the facets of its surface, and what of it other bodies touch; 3-D only.
-    Mesh { mesh: Arc<Mesh>, contact: Touchable },
+    Mesh { mesh: Arc<Mesh>, contact: ContactGeometry },
     /// Several shapes as one solid, each at its pose; they must not overlap, unless it is fixed or driven.
     Compound(Vec<(Pose<D>, Shape<D>)>),
 }
 
 /// Volume properties of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Volume<const D: usize> {
+pub struct VolumeProperties<const D: usize> {
     /// Volume, m³ (area, m², in 2-D).
     pub volume: f64,
     /// Centroid in the shape's frame, m.
@@ -62,9 +63,9 @@ pub struct Volume<const D: usize> {
     pub second_moment: Matrix<D>,
 }
 
-/// A boundary particle of a skin, in the shape's frame.
+/// A boundary particle, in the shape's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SkinPoint<const D: usize> {
+pub struct BoundaryPoint<const D: usize> {
     /// Position, m.
     pub r: Vector<D>,
     /// Layer, 0 the one nearest the water, half a dp inside the true face.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Shape, Volume, distance::right_of};
+use super::{Shape, VolumeProperties, distance::right_normal};
 use crate::math::{Bounds, Matrix, Pose, Vector};
 
 impl<const D: usize> Shape<D> {
@@ -23,8 +23,8 @@ impl<const D: usize> Shape<D> {
                 around(half)
             }
             Shape::Polygon { points } => Bounds::around(points),
-            Shape::Polyline { points, thickness } => Bounds::around(&wall_outline(points, *thickness)),
-            Shape::Tank { size, thickness } => tank_outside(size, *thickness),
+            Shape::Polyline { points, thickness } => Bounds::around(&polyline_outline(points, *thickness)),
+            Shape::Tank { size, thickness } => tank_outer_bounds(size, *thickness),
             Shape::Mesh { mesh, .. } => {
                 let Bounds { min, max } = mesh.bounds();
                 Bounds { min: Vector::from_fn(|i, _| min[i]), max: Vector::from_fn(|i, _| max[i]) }
@@ -44,7 +44,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// Exact volume, centroid and second moment.
-    pub fn volume(&self) -> Volume<D> {
+    pub fn volume_properties(&self) -> VolumeProperties<D> {
         match self {
             Shape::Box { size } => {
                 let volume = size.product();
@@ -62,40 +62,40 @@ impl<const D: usize> Shape<D> {
                 centred(volume, moment)
             }
             Shape::Polygon { points } => polygon(points),
-            Shape::Polyline { points, thickness } => polygon(&wall_outline(points, *thickness)),
+            Shape::Polyline { points, thickness } => polygon(&polyline_outline(points, *thickness)),
             Shape::Tank { size, thickness } => {
-                let outside = tank_outside(size, *thickness);
-                let solid = |size: Vector<D>| Shape::Box { size }.volume();
+                let outside = tank_outer_bounds(size, *thickness);
+                let solid = |size: Vector<D>| Shape::Box { size }.volume_properties();
                 let middle = |b: &Bounds<D>| Pose::at((b.min + b.max) * 0.5);
                 let hollow = Bounds { min: Vector::zeros(), max: *size };
                 sum([(1.0, middle(&outside), solid(outside.size())), (-1.0, middle(&hollow), solid(*size))])
             }
             Shape::Mesh { mesh, .. } => {
-                let Volume { volume, centroid, second_moment } = mesh.volume();
+                let VolumeProperties { volume, centroid, second_moment } = mesh.volume_properties();
                 let second_moment = Matrix::from_fn(|i, j| second_moment[(i, j)]);
-                Volume { volume, centroid: Vector::from_fn(|i, _| centroid[i]), second_moment }
+                VolumeProperties { volume, centroid: Vector::from_fn(|i, _| centroid[i]), second_moment }
             }
-            Shape::Compound(parts) => sum(parts.iter().map(|(pose, part)| (1.0, *pose, part.volume()))),
+            Shape::Compound(parts) => sum(parts.iter().map(|(pose, part)| (1.0, *pose, part.volume_properties()))),
         }
     }
 
     /// Area of the whole surface, m² (length of the outline, m, in 2-D). Of a compound the sum of its
     /// parts', so that faces in touch count.
-    pub fn surface(&self) -> f64 {
+    pub fn surface_area(&self) -> f64 {
         match self {
             Shape::Box { size } => (0..D).map(|i| 2.0 * size.product() / size[i]).sum(),
             Shape::Ball { radius } => ball_surface(D, *radius),
             Shape::Capsule { length, radius, .. } => ball_surface(D - 1, *radius) * length + ball_surface(D, *radius),
             Shape::Cylinder { length, radius, .. } => 2.0 * PI * radius * (length + radius),
             Shape::Polygon { points } => perimeter(points),
-            Shape::Polyline { points, thickness } => perimeter(&wall_outline(points, *thickness)),
+            Shape::Polyline { points, thickness } => perimeter(&polyline_outline(points, *thickness)),
             Shape::Tank { size, thickness } => {
                 // The hollow's floor makes up for the hole that it leaves in the top.
                 let sides: f64 = (0..D - 1).map(|i| 2.0 * size.product() / size[i]).sum();
-                Shape::Box { size: tank_outside(size, *thickness).size() }.surface() + sides
+                Shape::Box { size: tank_outer_bounds(size, *thickness).size() }.surface_area() + sides
             }
-            Shape::Mesh { mesh, .. } => mesh.surface(),
-            Shape::Compound(parts) => parts.iter().map(|(_, part)| part.surface()).sum(),
+            Shape::Mesh { mesh, .. } => mesh.surface_area(),
+            Shape::Compound(parts) => parts.iter().map(|(_, part)| part.surface_area()).sum(),
         }
     }
 }
@@ -114,11 +114,11 @@ fn ball_surface(n: usize, radius: f64) -> f64 {
     n as f64 * ball_volume(n, radius) / radius
 }
 
-fn centred<const D: usize>(volume: f64, second_moment: Matrix<D>) -> Volume<D> {
-    Volume { volume, centroid: Vector::zeros(), second_moment }
+fn centred<const D: usize>(volume: f64, second_moment: Matrix<D>) -> VolumeProperties<D> {
+    VolumeProperties { volume, centroid: Vector::zeros(), second_moment }
 }
 
-fn capsule<const D: usize>(length: f64, radius: f64, axis: usize) -> Volume<D> {
+fn capsule<const D: usize>(length: f64, radius: f64, axis: usize) -> VolumeProperties<D> {
     let (rod, ends, r2) = (ball_volume(D - 1, radius) * length, ball_volume(D, radius), radius * radius);
     // ∫|s| dV over the two half balls, s along the axis from the flat side of each.
     let first = if D == 2 { 4.0 / 3.0 * radius.powi(3) } else { 0.5 * PI * radius.powi(4) };
@@ -131,7 +131,7 @@ fn capsule<const D: usize>(length: f64, radius: f64, axis: usize) -> Volume<D> {
 }
 
 /// Sum of volumes, each with its sign and its pose, by the parallel-axis theorem.
-fn sum<const D: usize>(parts: impl IntoIterator<Item = (f64, Pose<D>, Volume<D>)>) -> Volume<D> {
+fn sum<const D: usize>(parts: impl IntoIterator<Item = (f64, Pose<D>, VolumeProperties<D>)>) -> VolumeProperties<D> {
     let (mut volume, mut first, mut second) = (0.0, Vector::zeros(), Matrix::zeros());
     for (sign, pose, part) in parts {
         let c = pose.point(&part.centroid);
@@ -141,11 +141,11 @@ fn sum<const D: usize>(parts: impl IntoIterator<Item = (f64, Pose<D>, Volume<D>)
         second += (turned + c * c.transpose() * part.volume) * sign;
     }
     let centroid = first / volume;
-    Volume { volume, centroid, second_moment: second - centroid * centroid.transpose() * volume }
+    VolumeProperties { volume, centroid, second_moment: second - centroid * centroid.transpose() * volume }
 }
 
 /// A polygon as the signed sum of the triangles between its edges and its first point.
-fn polygon<const D: usize>(points: &[Vector<D>]) -> Volume<D> {
+fn polygon<const D: usize>(points: &[Vector<D>]) -> VolumeProperties<D> {
     let origin = points[0];
     let (mut volume, mut first, mut second) = (0.0, Vector::zeros(), Matrix::zeros());
     for ab in points[1..].windows(2) {
@@ -157,7 +157,11 @@ fn polygon<const D: usize>(points: &[Vector<D>]) -> Volume<D> {
         second += (a * a.transpose() + b * b.transpose() + s * s.transpose()) * (area / 12.0);
     }
     let centroid = first / volume;
-    Volume { volume, centroid: origin + centroid, second_moment: second - centroid * centroid.transpose() * volume }
+    VolumeProperties {
+        volume,
+        centroid: origin + centroid,
+        second_moment: second - centroid * centroid.transpose() * volume,
+    }
 }
 
 fn perimeter<const D: usize>(points: &[Vector<D>]) -> f64 {
@@ -165,7 +169,7 @@ fn perimeter<const D: usize>(points: &[Vector<D>]) -> f64 {
 }
 
 /// The outside of a tank: walls and bottom, the top open at `size`.
-pub(super) fn tank_outside<const D: usize>(size: &Vector<D>, thickness: f64) -> Bounds<D> {
+pub(super) fn tank_outer_bounds<const D: usize>(size: &Vector<D>, thickness: f64) -> Bounds<D> {
     let mut max = size.add_scalar(thickness);
     max[D - 1] = size[D - 1];
     Bounds { min: Vector::repeat(-thickness), max }
@@ -173,8 +177,8 @@ pub(super) fn tank_outside<const D: usize>(size: &Vector<D>, thickness: f64) -> 
 
 /// The outline of a polyline wall, counter-clockwise: the line backwards, then its parallel `thickness`
 /// to the right, whose corners are mitred.
-pub(super) fn wall_outline<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
-    let normals: Vec<_> = points.windows(2).map(|ab| right_of(&ab[0], &ab[1])).collect();
+pub(super) fn polyline_outline<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
+    let normals: Vec<_> = points.windows(2).map(|ab| right_normal(&ab[0], &ab[1])).collect();
     let back = points.iter().enumerate().map(|(i, p)| {
         let (a, b) = (normals[i.max(1) - 1], normals[i.min(normals.len() - 1)]);
         // A corner sharper than 143° would send its mitre far away: cut it there.
@@ -184,65 +188,5 @@ pub(super) fn wall_outline<const D: usize>(points: &[Vector<D>], thickness: f64)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn near(a: f64, b: f64) {
-        assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()), "{a} is not {b}");
-    }
-
-    #[test]
-    fn a_turned_box_of_two_halves_is_the_box() {
-        let half = Shape::Box { size: Vector::from([1.0, 2.0]) };
-        let whole = Shape::Box { size: Vector::from([2.0, 2.0]) }.volume();
-        let at = |x: f64| Pose::rotated(Vector::from([x, 3.0]), &[std::f64::consts::PI]);
-        let joined = Shape::Compound(vec![(at(0.5), half.clone()), (at(1.5), half)]).volume();
-        near(joined.volume, whole.volume);
-        near(joined.centroid[0], 1.0);
-        near((joined.second_moment - whole.second_moment).norm(), 0.0);
-    }
-
-    #[test]
-    fn a_polygon_agrees_with_the_box_it_draws() {
-        let points = [[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 3.0]].map(Vector::from).to_vec();
-        let drawn = Shape::Polygon { points };
-        let v = drawn.volume();
-        near(v.volume, 6.0);
-        near((v.centroid - Vector::from([2.5, 2.0])).norm(), 0.0);
-        near(v.second_moment[(0, 0)], 6.0 * 9.0 / 12.0);
-        near(v.second_moment[(0, 1)], 0.0);
-        near(drawn.surface(), 10.0);
-    }
-
-    #[test]
-    fn round_shapes_have_the_textbook_moments() {
-        let ball = Shape::<3>::Ball { radius: 2.0 };
-        let tr = ball.volume().second_moment.trace();
-        near(2.0 / 3.0 * tr, 0.4 * ball.volume().volume * 4.0); // 2/5 m r²
-        near(ball.surface(), 16.0 * PI);
-        let can = Shape::<3>::Cylinder { length: 3.0, radius: 1.0, axis: 2 }.volume();
-        near(can.second_moment[(0, 0)] + can.second_moment[(1, 1)], 0.5 * 3.0 * PI); // m r²/2
-        // A capsule of no length is a ball.
-        let short = Shape::<3>::Capsule { length: 1e-14, radius: 2.0, axis: 0 }.volume();
-        near((short.second_moment - ball.volume().second_moment).norm(), 0.0);
-        let disc = Shape::<2>::Capsule { length: 2.0, radius: 1.0, axis: 0 };
-        near(disc.volume().volume, 4.0 + PI);
-        near(disc.surface(), 4.0 + 2.0 * PI);
-        // ∫ x²: 2·2³/12 of the middle, π/4 + 2·4/3 + π of the ends.
-        near(disc.volume().second_moment[(0, 0)], 4.0 / 3.0 + PI / 4.0 + 8.0 / 3.0 + PI);
-    }
-
-    #[test]
-    fn a_tank_weighs_as_its_three_slabs() {
-        let tank = Shape::Tank { size: Vector::from([4.0, 2.0]), thickness: 0.5 };
-        let v = tank.volume();
-        near(v.volume, 2.5 + 2.0);
-        near(v.centroid[0], 2.0);
-        near(v.centroid[1], (2.5 * -0.25 + 2.0 * 1.0) / 4.5);
-        near(tank.surface(), 5.0 + 2.0 * 2.5 + 2.0 * 0.5 + 2.0 * 2.0 + 4.0);
-        let points = [[0.0, 2.0], [0.0, 0.0], [4.0, 0.0], [4.0, 2.0]].map(Vector::from).to_vec();
-        let wall = Shape::Polyline { points, thickness: 0.5 };
-        near((wall.volume().second_moment - v.second_moment).norm(), 0.0);
-        near((wall.bounds().min - tank.bounds().min).norm(), 0.0);
-    }
-}
+#[path = "../../tests/unit/geometry/moments.rs"]
+mod tests;

@@ -2,8 +2,8 @@
 //! outline is nearer, mitred at outer corners of a wall, and divided evenly. 2-D only.
 
 use super::{
-    Shape, SkinPoint,
-    distance::{Side, right_of, side_of},
+    BoundaryPoint, Shape,
+    distance::{LineSide, right_normal, side_of_line},
 };
 use crate::math::Vector;
 
@@ -18,7 +18,7 @@ struct Curve<const D: usize> {
 const SMOOTH: f64 = 0.866;
 
 /// The layers inside a counter-clockwise polygon.
-pub(super) fn polygon_skin<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+pub(super) fn polygon_points<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     // Walked backwards the solid is on the right, as a wall's is.
     let line: Vec<_> = points.iter().chain(points.first()).rev().copied().collect();
     let shape = Shape::Polygon { points: points.to_vec() };
@@ -26,9 +26,9 @@ pub(super) fn polygon_skin<const D: usize>(points: &[Vector<D>], dp: f64, layers
 }
 
 /// The layers on the right of an open line, as many as are asked for, however thick the wall.
-pub(super) fn wall_skin<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
-    layered(points, false, dp, layers, |x| match side_of(x, points) {
-        Side::Right(depth) => depth,
+pub(super) fn polyline_points<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
+    layered(points, false, dp, layers, |x| match side_of_line(x, points) {
+        LineSide::Right(depth) => depth,
         _ => 0.0,
     })
 }
@@ -39,7 +39,7 @@ fn layered<const D: usize>(
     dp: f64,
     layers: usize,
     depth_at: impl Fn(&Vector<D>) -> f64,
-) -> Vec<SkinPoint<D>> {
+) -> Vec<BoundaryPoint<D>> {
     let mut skin = Vec::new();
     for k in 0..layers {
         let depth = (k as f64 + 0.5) * dp;
@@ -47,7 +47,7 @@ fn layered<const D: usize>(
         let valid = |x: &Vector<D>| depth_at(x) >= depth * (1.0 - 1e-7);
         let pieces = parallels(line, closed, depth, dp, &valid);
         for curve in joined(pieces, closed, dp) {
-            skin.extend(divided(&curve, dp).into_iter().map(|r| SkinPoint { r, layer: k as u8 }));
+            skin.extend(divided(&curve, dp).into_iter().map(|r| BoundaryPoint { r, layer: k as u8 }));
         }
     }
     skin
@@ -62,7 +62,7 @@ fn parallels<const D: usize>(
     valid: &impl Fn(&Vector<D>) -> bool,
 ) -> Vec<Curve<D>> {
     let edges = line.len() - 1;
-    let normal: Vec<_> = line.windows(2).map(|ab| right_of(&ab[0], &ab[1])).collect();
+    let normal: Vec<_> = line.windows(2).map(|ab| right_normal(&ab[0], &ab[1])).collect();
     // How far the parallel runs on past corner i, before which edge i − 1 and after which edge i lies.
     let past = |i: usize| -> Option<f64> {
         let (a, b) = match (i == 0 || i == edges, closed) {
@@ -198,73 +198,5 @@ fn divided<const D: usize>(curve: &Curve<D>, dp: f64) -> Vec<Vector<D>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn line(points: &[[f64; 2]]) -> Vec<Vector<2>> {
-        points.iter().map(|&p| Vector::from(p)).collect()
-    }
-
-    /// The largest distance from a point of the face to its nearest particle.
-    fn bare(face: &[Vector<2>], skin: &[SkinPoint<2>]) -> f64 {
-        let at = |ab: &[Vector<2>], u: f64| ab[0] + (ab[1] - ab[0]) * u;
-        let places =
-            face.windows(2).flat_map(|ab| (0..200).map(|i| at(ab, (i as f64 + 0.5) / 200.0)).collect::<Vec<_>>());
-        let nearest = |x: Vector<2>| skin.iter().map(|p| (p.r - x).norm()).fold(f64::INFINITY, f64::min);
-        places.map(nearest).fold(0.0, f64::max)
-    }
-
-    #[test]
-    fn a_polygon_that_draws_a_box_has_the_skin_of_the_box() {
-        let square = Shape::Polygon { points: line(&[[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]) };
-        let block = Shape::Box { size: Vector::from([1.0, 1.0]) }.skin(0.1, 4);
-        let drawn = square.skin(0.1, 4);
-        assert_eq!(drawn.len(), block.len());
-        for p in &drawn {
-            assert!(block.iter().any(|q| q.layer == p.layer && (q.r - p.r).norm() < 1e-7));
-        }
-    }
-
-    #[test]
-    fn a_wall_that_draws_a_tank_has_the_skin_of_the_tank() {
-        let size = Vector::from([1.0, 0.5]);
-        let wall = Shape::Polyline { points: line(&[[0.0, 0.5], [0.0, 0.0], [1.0, 0.0], [1.0, 0.5]]), thickness: 0.3 };
-        let (drawn, tank) = (wall.skin(0.1, 3), Shape::Tank { size, thickness: 0.3 }.skin(0.1, 3));
-        assert_eq!(drawn.len(), tank.len());
-        for p in &drawn {
-            assert!(tank.iter().any(|q| q.layer == p.layer && (q.r - p.r).norm() < 1e-7));
-        }
-    }
-
-    #[test]
-    fn walls_of_any_bend_are_covered_and_never_too_near() {
-        let dp = 0.1;
-        let smooth: Vec<_> = (0..60).map(|i| [0.04 * i as f64, (0.2 * i as f64).sin() * 0.3]).collect();
-        let walls = [
-            line(&[[0.0, 0.0], [1.03, 0.0], [2.1, 0.37]]),
-            line(&[[0.0, 0.8], [0.6, 0.0], [1.2, 0.8]]),
-            line(&[[0.0, 0.0], [1.0, 0.7], [2.0, 0.0]]),
-            line(&[[0.0, 0.0], [0.9, 0.0], [0.9, 0.45], [1.4, 0.45], [1.4, 0.0], [2.0, 0.0]]),
-            line(&smooth),
-        ];
-        for points in walls {
-            let skin = Shape::Polyline { points: points.clone(), thickness: 0.3 }.skin(dp, 3);
-            for p in &skin {
-                let Side::Right(depth) = side_of(&p.r, &points) else { panic!("{p:?} is in the water") };
-                // Spans are sampled every dp/8: a dip this shallow may hide between two samples.
-                assert!(depth >= (p.layer as f64 + 0.5 - 1e-3) * dp, "{p:?} at {depth}");
-            }
-            // Half a dp deep and half a spacing aside would be 0.71 dp; a ridge's tip has to be barer.
-            assert!(bare(&points, &skin) < 1.0 * dp, "{points:?}: {}", bare(&points, &skin));
-        }
-    }
-
-    #[test]
-    fn a_fine_polygon_has_the_skin_of_a_disc() {
-        let circle = |i: usize| (std::f64::consts::TAU * i as f64 / 90.0).sin_cos();
-        let points: Vec<_> = (0..90).map(|i| Vector::from([circle(i).1, circle(i).0])).collect();
-        let skin = Shape::Polygon { points }.skin(0.1, 3);
-        let disc = Shape::<2>::Ball { radius: 1.0 }.skin(0.1, 3);
-        assert_eq!(skin.len(), disc.len());
-    }
-}
+#[path = "../../tests/unit/geometry/offset.rs"]
+mod tests;

@@ -8,13 +8,13 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::cells::Cells;
+use super::cells::PointCells;
 use crate::math::Vector;
 
 /// Smoothing length, dp. Of 1.0 to 1.5, tried on boxes, discs, balls and slopes, it leaves the smallest gaps.
 const H: f64 = 1.0;
 /// Reach of the kernel, dp.
-pub(super) const REACH: f64 = 2.0 * H;
+pub(super) const SUPPORT_RADIUS_DP: f64 = 2.0 * H;
 /// Longest move in one pass, dp.
 const STEP: f64 = 0.15;
 /// The longest move, in dp, that counts as rest.
@@ -48,7 +48,7 @@ impl Pace {
 ///
 /// `confine(i, from, x)` may put point `i`, which has come from `from`, back where it is allowed to be, and says how
 /// far (m) it may then go before it has to be asked again.
-pub(super) fn relax<const D: usize>(
+pub(super) fn spread_points<const D: usize>(
     points: &mut [Vector<D>],
     movable: usize,
     dp: f64,
@@ -59,7 +59,7 @@ pub(super) fn relax<const D: usize>(
     let (mut lists, mut travelled) = (Vec::new(), f64::INFINITY);
     for _ in 0..pace.passes {
         if 2.0 * travelled >= pace.margin * dp {
-            lists = List::all(points, movable, (REACH + pace.margin) * dp);
+            lists = List::all(points, movable, (SUPPORT_RADIUS_DP + pace.margin) * dp);
             travelled = 0.0;
         }
         let chunks = lists.par_iter().zip(next.par_chunks_mut(CHUNK)).zip(room.par_chunks_mut(CHUNK)).enumerate();
@@ -96,7 +96,7 @@ fn drift<const D: usize>(
     dp: f64,
     weight: &mut Vec<f64>,
 ) -> Vector<D> {
-    let reach = REACH * dp;
+    let reach = SUPPORT_RADIUS_DP * dp;
     // Wendland C2: ∇W = norm · (−5 q / h) (1 − q/2)³ r/|r|, times V = dp^D.
     let norm = if D == 2 { 7.0 / (4.0 * PI) } else { 21.0 / (16.0 * PI) } / H.powi(D as i32);
     let factor = 5.0 * norm * beta / (H * H);
@@ -120,11 +120,11 @@ struct List {
 impl List {
     /// The lists of the first `movable` of `points`, of all within `reach` (m).
     fn all<const D: usize>(points: &[Vector<D>], movable: usize, reach: f64) -> Vec<Self> {
-        let cells = Cells::new(points, reach);
+        let cells = PointCells::new(points, reach);
         let list = |points: &[Vector<D>]| {
             let (mut list, mut row) = (Self::default(), Vec::new());
             for at in points {
-                cells.within(at, reach, &mut row, &mut list.index);
+                cells.append_within(at, reach, &mut row, &mut list.index);
                 list.end.push(list.index.len() as u32);
             }
             list
@@ -140,37 +140,5 @@ impl List {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_disturbed_lattice_becomes_even_again() {
-        let mut points: Vec<Vector<2>> = Vec::new();
-        let cell = |i: i32, j: i32| Vector::from([i as f64, j as f64]);
-        for (i, j) in (0..49).map(|k| (k % 7 - 3, k / 7 - 3)) {
-            points.push(cell(i, j) + Vector::from([(3.0 * i as f64).sin(), (5.0 * j as f64).cos()]) * 0.2);
-        }
-        let movable = points.len();
-        let outer = (0..225_i32).map(|k| (k % 15 - 7, k / 15 - 7)).filter(|(i, j)| i.abs() > 3 || j.abs() > 3);
-        points.extend(outer.map(|(i, j)| cell(i, j)));
-        relax(&mut points, movable, 1.0, |_, _, _| f64::INFINITY);
-        for (k, x) in points.iter().enumerate() {
-            let nearest = points.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, y)| (x - y).norm());
-            let gap = nearest.fold(f64::INFINITY, f64::min);
-            assert!((0.85..=1.01).contains(&gap), "{k}: {gap}");
-        }
-    }
-
-    #[test]
-    fn rows_of_a_cubic_lattice_do_not_swing() {
-        let place = |k: i32| Vector::from([(k % 15) as f64, (k / 15 % 15) as f64, (k / 225) as f64]);
-        let is_inner = |x: &Vector<3>| x.iter().all(|c| (3.0..12.0).contains(c));
-        let (inner, outer): (Vec<_>, Vec<_>) = (0..3375).map(place).partition(is_inner);
-        // Every other row is a little to the left, the rest to the right: the wave that swings first.
-        let shifted = inner.iter().map(|x| x + Vector::from([0.03 * (x[0] * std::f64::consts::PI).cos(), 0.0, 0.0]));
-        let mut points: Vec<_> = shifted.chain(outer).collect();
-        relax(&mut points, inner.len(), 1.0, |_, _, _| f64::INFINITY);
-        let off = points.iter().zip(&inner).map(|(x, at)| (x - at).norm()).fold(0.0, f64::max);
-        assert!(off < 0.01, "{off} dp off the lattice");
-    }
-}
+#[path = "../../tests/unit/geometry/packing.rs"]
+mod tests;

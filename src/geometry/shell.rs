@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use super::{Shape, SkinPoint, boundary_points::APART, cells::spaced, packing};
+use super::{BoundaryPoint, Shape, boundary_points::MIN_SPACING, cells::spacing_flags, packing};
 use crate::math::Vector;
 
 /// Edge of the cells, dp: eight candidates for each point.
@@ -35,7 +35,7 @@ struct Found<const D: usize> {
 }
 
 /// Boundary particles of `shape` in `layers` layers.
-pub(super) fn shell_skin<const D: usize>(shape: &Shape<D>, dp: f64, layers: usize) -> Vec<SkinPoint<D>> {
+pub(super) fn points_by_distance<const D: usize>(shape: &Shape<D>, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     let bounds = shape.bounds();
     let grain = GRAIN * dp;
     let doublings = (bounds.size().max() / grain).log2().ceil().max(0.0) as i32;
@@ -46,7 +46,7 @@ pub(super) fn shell_skin<const D: usize>(shape: &Shape<D>, dp: f64, layers: usiz
         owed += cells;
         let points = layer(shape, &found.cells, k, owed.round().max(0.0) as usize, dp);
         owed -= points.len() as f64;
-        skin.push(points.into_iter().map(|r| SkinPoint { r, layer: k as u8 }).collect::<Vec<_>>());
+        skin.push(points.into_iter().map(|r| BoundaryPoint { r, layer: k as u8 }).collect::<Vec<_>>());
     }
     skin.reverse();
     skin.concat()
@@ -60,11 +60,11 @@ fn layer<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>], k: usize, wanted: 
     let candidates: Vec<_> = near.filter_map(|(x, _)| at_depth(shape, *x, depth, short, dp)).collect();
     let mut points = chosen(&candidates, wanted, dp);
     let many = points.len();
-    packing::relax(&mut points, many, dp, |_, from, x| {
+    packing::spread_points(&mut points, many, dp, |_, from, x| {
         *x = at_depth(shape, *x, depth, short, dp).unwrap_or(*from);
         0.0
     });
-    apart(&[], &points, APART * dp)
+    apart(&[], &points, MIN_SPACING * dp)
 }
 
 /// The small cells no deeper than `depth` (m), by halving a cube of edge `edge` (m) about `middle` wherever it may hold
@@ -110,7 +110,7 @@ fn counts<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64, layers: u
         found.inner + found.cells.iter().map(share).sum::<f64>() * grain.powi(D as i32)
     };
     let last = (-found.deepest / dp - 0.5 + SHORT).floor().max(0.0) as usize;
-    let mut volume = vec![shape.volume().volume];
+    let mut volume = vec![shape.volume_properties().volume];
     volume.extend((1..=layers.min(last + 1)).map(|k| deeper(k as f64 * dp)));
     if last < layers
         && let Some(rest) = volume.last_mut()
@@ -123,7 +123,7 @@ fn counts<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64, layers: u
 /// The place at the depth `depth` (m) that the point `x` comes to along the gradient; or the place halfway between two
 /// opposite faces, if it meets that first and no more than `short` (m) is missing there. `None` where there is none.
 fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, short: f64, dp: f64) -> Option<Vector<D>> {
-    let slope = |x: &Vector<D>| shape.slope(x, 1e-3 * dp);
+    let slope = |x: &Vector<D>| shape.distance_and_normal(x, 1e-3 * dp);
     let (mut distance, mut normal) = slope(&x);
     for _ in 0..40 {
         let off = distance + depth;
@@ -179,6 +179,6 @@ fn farthest<const D: usize>(
 
 /// Those of `points` that keep `distance` (m) from all of `fixed` and from all earlier ones.
 fn apart<const D: usize>(fixed: &[Vector<D>], points: &[Vector<D>], distance: f64) -> Vec<Vector<D>> {
-    let kept = spaced(&[fixed, points].concat(), fixed.len(), distance);
+    let kept = spacing_flags(&[fixed, points].concat(), fixed.len(), distance);
     points.iter().zip(&kept[fixed.len()..]).filter_map(|(x, keep)| keep.then_some(*x)).collect()
 }

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::{
     Shape,
-    moments::{tank_outside, wall_outline},
+    moments::{polyline_outline, tank_outer_bounds},
 };
 use crate::math::{Bounds, Pose, Vector};
 
@@ -22,9 +22,9 @@ impl<const D: usize> Shape<D> {
     /// (m), and the world position of that volume's centroid (of the shape's, if all of it is dry).
     ///
     /// Exact for flat-sided shapes and balls, to 1e-5 of the volume for capsules and cylinders.
-    pub fn submerged(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
+    pub fn submerged_volume(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
         let (volume, first) = self.below(pose, level);
-        if volume > 0.0 { (volume, first / volume) } else { (0.0, pose.point(&self.volume().centroid)) }
+        if volume > 0.0 { (volume, first / volume) } else { (0.0, pose.point(&self.volume_properties().centroid)) }
     }
 
     /// Volume and its first moment ∫ x dV below `level`.
@@ -63,9 +63,9 @@ impl<const D: usize> Shape<D> {
                 self.turned_facets(&[(*radius, -0.5 * length), (*radius, 0.5 * length)], *axis)
             }
             Shape::Polygon { points } => edges(points),
-            Shape::Polyline { points, thickness } => edges(&wall_outline(points, *thickness)),
+            Shape::Polyline { points, thickness } => edges(&polyline_outline(points, *thickness)),
             Shape::Tank { size, thickness } => {
-                let mut all = box_facets(&tank_outside(size, *thickness));
+                let mut all = box_facets(&tank_outer_bounds(size, *thickness));
                 let hollow = box_facets(&Bounds { min: Vector::zeros(), max: *size });
                 all.extend(hollow.into_iter().map(|mut facet| {
                     facet.swap(0, 1);
@@ -85,7 +85,7 @@ impl<const D: usize> Shape<D> {
         let top = self.bounds().max[D - 1];
         let mut enclosed = (0.0, Vector::zeros());
         all.iter().for_each(|facet| add_wet(*facet, facet.map(|x| x[D - 1] - top), top, &mut enclosed));
-        let factor = (self.volume().volume / enclosed.0).powf(1.0 / (D - 1) as f64);
+        let factor = (self.volume_properties().volume / enclosed.0).powf(1.0 / (D - 1) as f64);
         for x in all.iter_mut().flatten() {
             (0..D).filter(|i| *i != axis).for_each(|i| x[i] *= factor);
         }
@@ -211,54 +211,5 @@ fn lofted<const D: usize>(rings: &[Vec<Vector<D>>]) -> Vec<Facet<D>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_shape_under_water_displaces_its_volume_about_its_centroid() {
-        let pose = Pose::rotated(Vector::from([1.0, 2.0, 3.0]), &[0.3, -0.4, 0.5]);
-        for shape in [
-            Shape::Box { size: Vector::from([1.0, 2.0, 0.5]) },
-            Shape::Ball { radius: 0.7 },
-            Shape::Capsule { length: 1.0, radius: 0.3, axis: 0 },
-            Shape::Cylinder { length: 1.0, radius: 0.3, axis: 1 },
-            Shape::Tank { size: Vector::from([1.0, 2.0, 0.5]), thickness: 0.1 },
-        ] {
-            let (exact, (volume, centroid)) = (shape.volume(), shape.submerged(&pose, 9.0));
-            assert!((volume / exact.volume - 1.0).abs() < 1e-10, "{shape:?}: {volume}");
-            assert!((centroid - pose.point(&exact.centroid)).norm() < 1e-9, "{shape:?}: {centroid}");
-            assert_eq!(shape.submerged(&pose, -9.0).0, 0.0);
-        }
-    }
-
-    #[test]
-    fn the_wet_and_the_dry_part_are_mirror_images_at_half_draught() {
-        for axis in 0..3 {
-            let capsule = Shape::Capsule { length: 1.0, radius: 0.3, axis };
-            let (wet, _) = capsule.submerged(&Pose::at(Vector::from([5.0, 5.0, 1.0])), 1.0);
-            assert!((2.0 * wet / capsule.volume().volume - 1.0).abs() < 1e-10);
-        }
-    }
-
-    #[test]
-    fn partial_draughts_follow_the_formulas() {
-        // A standing box and cylinder: area times draught.
-        let pose = Pose::at(Vector::from([0.2, 0.0, 0.0]));
-        let (v, c) = Shape::Box { size: Vector::from([2.0, 3.0, 1.0]) }.submerged(&pose, 0.2);
-        assert!((v - 6.0 * 0.7).abs() < 1e-12 && (c - Vector::from([0.2, 0.0, -0.15])).norm() < 1e-12);
-        let (v, _) = Shape::Cylinder { length: 1.0, radius: 0.5, axis: 2 }.submerged(&pose, 0.1);
-        assert!((v - PI * 0.25 * 0.6).abs() < 1e-10);
-        // A lying cylinder: the circle's segment times the length.
-        let (v, _) = Shape::Cylinder { length: 2.0, radius: 0.5, axis: 0 }.submerged(&pose, 0.3);
-        let (segment, _) = Shape::<2>::Ball { radius: 0.5 }.submerged(&Pose::identity(), 0.3);
-        assert!((v / (2.0 * segment) - 1.0).abs() < 1e-5, "{v}");
-        // A standing capsule cut in its lower cap is a ball's cap.
-        let (v, c) = Shape::<3>::Capsule { length: 1.0, radius: 0.5, axis: 2 }.submerged(&Pose::identity(), -0.7);
-        let (cap, at) = Shape::<3>::Ball { radius: 0.5 }.submerged(&Pose::at(Vector::from([0.0, 0.0, -0.5])), -0.7);
-        assert!((v - cap).abs() < 1e-5 * (PI / 4.0 + PI / 6.0) && (c - at).norm() < 1e-4, "{v} {cap}");
-        // A wedge, tip down, in 2-D: half its height wets a quarter of its area.
-        let points = [[0.0, 0.0], [1.0, 1.0], [-1.0, 1.0]].map(Vector::from).to_vec();
-        let (v, c) = Shape::Polygon { points }.submerged(&Pose::identity(), 0.5);
-        assert!((v - 0.25).abs() < 1e-14 && (c[1] - 1.0 / 3.0).abs() < 1e-14);
-    }
-}
+#[path = "../../tests/unit/geometry/submerged_volume.rs"]
+mod tests;

@@ -1,22 +1,22 @@
-//! Running sums, and in which rows they lie in memory.
+//! Running sums of the pair loop, and the rows in which they lie in memory.
 
 use crate::sph::{AuxiliarySums, Num, Term};
 
-/// What a set of laws reads and sums beside acceleration and density rate.
+/// Inputs and sums that a set of terms needs beside acceleration and density rate.
 #[derive(Clone, Copy, Debug)]
 pub struct RequiredSums {
     /// The sums of shifting.
     pub shift: bool,
     /// Tensile repulsions.
     pub repulsion: bool,
-    /// Marks, and the sum that holds shifting back.
+    /// Marks of boundary particles, and the sum that suppresses shifting.
     pub suppression: bool,
     /// Stress, and the sum of strain.
     pub stress: bool,
     /// Corrected gradients.
     pub gradient_correction: bool,
-    /// The moment of the neighbours.
-    pub moment: bool,
+    /// The renormalization matrix of the neighbours.
+    pub renormalization: bool,
 }
 
 /// Entries of a symmetric tensor that are kept.
@@ -25,21 +25,21 @@ const fn entries(dimension: usize) -> usize {
 }
 
 impl RequiredSums {
-    /// Those of the laws `Y`.
-    pub const fn of<Y: Term<D>, const D: usize>() -> Self {
+    /// The needs of the terms `Y`.
+    pub const fn of_terms<Y: Term<D>, const D: usize>() -> Self {
         Self {
             shift: Y::SHIFT,
             repulsion: Y::REPULSION,
-            suppression: Y::MARK,
+            suppression: Y::SHIFTING_SUPPRESSION,
             stress: Y::STRESS,
-            gradient_correction: Y::FORM,
-            moment: Y::MOMENT,
+            gradient_correction: Y::GRADIENT_CORRECTION,
+            renormalization: Y::RENORMALIZATION,
         }
     }
 
     /// Whether there are sums.
-    pub const fn any(self) -> bool {
-        self.shift || self.suppression || self.stress || self.moment
+    pub const fn any_auxiliary(self) -> bool {
+        self.shift || self.suppression || self.stress || self.renormalization
     }
 
     const fn held_at(self, dimension: usize) -> usize {
@@ -54,75 +54,75 @@ impl RequiredSums {
         self.strain_at(dimension) + if self.stress { entries(dimension) } else { 0 }
     }
 
-    /// Rows of sums: acceleration and density rate, then what the laws ask for.
-    pub(super) const fn sums(self, dimension: usize) -> usize {
-        self.moment_at(dimension) + if self.moment { entries(dimension) } else { 0 }
+    /// Number of rows of sums: acceleration and density rate, then those that the terms need.
+    pub(super) const fn sum_rows(self, dimension: usize) -> usize {
+        self.moment_at(dimension) + if self.renormalization { entries(dimension) } else { 0 }
     }
 
-    /// The row of repulsion among the inputs beside places, velocities and densities; before it is the mark.
-    pub(super) const fn repulsion_at(self) -> usize {
+    /// Row of the repulsion among the additional inputs; the mark comes before it.
+    pub(super) const fn repulsion_row(self) -> usize {
         if self.suppression { 1 } else { 0 }
     }
 
     /// The first row of stress, after the repulsion.
-    pub(super) const fn stress_at(self) -> usize {
-        self.repulsion_at() + if self.repulsion { 1 } else { 0 }
+    pub(super) const fn stress_row(self) -> usize {
+        self.repulsion_row() + if self.repulsion { 1 } else { 0 }
     }
 
     /// The first row of the corrected gradient, after the stress.
-    pub(super) const fn form_at(self, dimension: usize) -> usize {
-        self.stress_at() + if self.stress { entries(dimension) } else { 0 }
+    pub(super) const fn gradient_correction_row(self, dimension: usize) -> usize {
+        self.stress_row() + if self.stress { entries(dimension) } else { 0 }
     }
 
-    /// Rows of such inputs.
-    pub(super) const fn inputs(self, dimension: usize) -> usize {
-        self.form_at(dimension) + if self.gradient_correction { entries(dimension) } else { 0 }
+    /// Number of rows of additional inputs.
+    pub(super) const fn input_rows(self, dimension: usize) -> usize {
+        self.gradient_correction_row(dimension) + if self.gradient_correction { entries(dimension) } else { 0 }
     }
 }
 
 /// Running sums of a particle, or of eight.
 #[derive(Clone, Copy)]
 pub(super) struct Accumulators<N, const D: usize> {
-    pub(super) dv: [N; D],
-    pub(super) dx: N,
-    pub(super) extra: AuxiliarySums<N, D>,
+    pub(super) acceleration: [N; D],
+    pub(super) compression_rate: N,
+    pub(super) auxiliary: AuxiliarySums<N, D>,
 }
 
 impl<N: Num, const D: usize> Accumulators<N, D> {
     /// All `zero`.
     #[inline(always)]
-    pub(super) fn all(zero: N) -> Self {
-        Self { dv: [zero; D], dx: zero, extra: AuxiliarySums::all(zero) }
+    pub(super) fn filled_with(zero: N) -> Self {
+        Self { acceleration: [zero; D], compression_rate: zero, auxiliary: AuxiliarySums::filled_with(zero) }
     }
 
-    /// Calls `visit` with each sum that laws of needs `own` make and its row, where laws of needs `all` share the rows.
+    /// Calls `visit` with each sum that the terms with needs `own` compute and its row; terms with needs `all` share the rows.
     #[inline(always)]
-    pub(super) fn each(&mut self, own: RequiredSums, all: RequiredSums, mut visit: impl FnMut(usize, &mut N)) {
-        for (k, dv) in self.dv.iter_mut().enumerate() {
+    pub(super) fn for_each_row(&mut self, own: RequiredSums, all: RequiredSums, mut visit: impl FnMut(usize, &mut N)) {
+        for (k, dv) in self.acceleration.iter_mut().enumerate() {
             visit(k, dv);
         }
-        visit(D, &mut self.dx);
+        visit(D, &mut self.compression_rate);
         if own.shift {
-            for (k, grad) in self.extra.concentration_gradient.iter_mut().enumerate() {
+            for (k, grad) in self.auxiliary.concentration_gradient.iter_mut().enumerate() {
                 visit(D + 1 + k, grad);
             }
-            visit(2 * D + 1, &mut self.extra.position_divergence);
+            visit(2 * D + 1, &mut self.auxiliary.position_divergence);
         }
         if own.suppression {
-            visit(all.held_at(D), &mut self.extra.shifting_suppressed);
+            visit(all.held_at(D), &mut self.auxiliary.shifting_suppressed);
         }
         if own.stress {
-            triangle(&mut self.extra.strain, all.strain_at(D), &mut visit);
+            for_each_symmetric_entry(&mut self.auxiliary.strain, all.strain_at(D), &mut visit);
         }
-        if own.moment {
-            triangle(&mut self.extra.moment, all.moment_at(D), &mut visit);
+        if own.renormalization {
+            for_each_symmetric_entry(&mut self.auxiliary.renormalization, all.moment_at(D), &mut visit);
         }
     }
 }
 
 /// Calls `visit` with the entries of a symmetric tensor that are kept, and their rows from `row` on.
 #[inline(always)]
-pub(super) fn triangle<N, const D: usize>(
+pub(super) fn for_each_symmetric_entry<N, const D: usize>(
     tensor: &mut [[N; D]; D],
     mut row: usize,
     visit: &mut impl FnMut(usize, &mut N),

@@ -1,4 +1,4 @@
-//! Sums of boundary particles over the water near them, for walls that settle: one kernel and no laws.
+//! Extrapolation of the water to boundary particles, for relaxed Adami walls and no-slip faces: one kernel, no terms.
 
 use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
 
@@ -14,7 +14,7 @@ use crate::{
 
 /// The sums under one kernel.
 pub(super) trait BoundarySums<const D: usize>: Send + Sync {
-    /// By the oracle, of the boundary particles `wet`, whose neighbours `lists` hold; with the flow if `flow`.
+    /// By the reference: the sums of the boundary particles `wet`, whose neighbours are in `lists`; with the velocity if `flow`.
     fn sum_reference(
         &self,
         nodes: [&[ReferenceParticle<D>]; 2],
@@ -24,15 +24,15 @@ pub(super) trait BoundarySums<const D: usize>: Send + Sync {
         fits: &mut [WallExtrapolation<f64, D>],
     );
 
-    /// In lanes, of a slab and the one after it; with the flow if `flow`.
+    /// In SIMD lanes: the sums of a slab and of the next one; with the velocity if `flow`.
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]);
 }
 
-/// A kernel, weighed with a particle's volume at ρ₀.
+/// A kernel, multiplied by the volume of a particle at ρ₀.
 pub(super) struct KernelSums<K>(pub(super) K);
 
-/// Rows of sums, with the flow or without.
-pub(super) const fn rows(dimension: usize, flow: bool) -> usize {
+/// Number of rows of sums, with the velocity or without.
+pub(super) const fn row_count(dimension: usize, flow: bool) -> usize {
     dimension + 2 + if flow { dimension } else { 0 }
 }
 
@@ -46,8 +46,8 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
         fits: &mut [WallExtrapolation<f64, D>],
     ) {
         for (k, (out, &i)) in fits.iter_mut().zip(wet).enumerate() {
-            let mut fit = WallExtrapolation::all(0.0);
-            for &j in lists.of(k).0 {
+            let mut fit = WallExtrapolation::filled_with(0.0);
+            for &j in lists.neighbours_of(k).0 {
                 let (wall, water) = (&skin[i as usize], &water[j as usize]);
                 let r: [f64; D] = std::array::from_fn(|k| wall.r[k] - water.r[k]);
                 let r2 = r.iter().map(|x| x * x).sum();
@@ -69,20 +69,20 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
     }
 }
 
-/// The sums in `rows` and as a fit.
+/// Calls `visit` with the row and the value of each sum.
 #[inline(always)]
 pub(super) fn for_each_row<N: Num, const D: usize>(
     fit: &mut WallExtrapolation<N, D>,
     flow: bool,
     mut visit: impl FnMut(usize, &mut N),
 ) {
-    visit(0, &mut fit.weight);
-    visit(1, &mut fit.head);
-    for (k, arm) in fit.arm.iter_mut().enumerate() {
+    visit(0, &mut fit.weight_sum);
+    visit(1, &mut fit.pressure_sum);
+    for (k, arm) in fit.offset_sum.iter_mut().enumerate() {
         visit(2 + k, arm);
     }
     if flow {
-        for (k, flow) in fit.velocity.iter_mut().enumerate() {
+        for (k, flow) in fit.velocity_sum.iter_mut().enumerate() {
             visit(2 + D + k, flow);
         }
     }
@@ -102,7 +102,7 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
     fn run<S: Simd>(self, simd: S) {
         let Self { kernel, packed, slab, sums } = self;
         let Slab { first, middle, end, spans, index } = slab;
-        let (rows, zero) = (rows(D, FLOW), f32x8::splat(simd, 0.0));
+        let (rows, zero) = (row_count(D, FLOW), f32x8::splat(simd, 0.0));
         sums.fill(LaneRow::default());
         for c in *first..*end {
             for l in 0..LANES {
@@ -114,7 +114,7 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
                 let (p, volume) = (all(s[2][l]), all(s[3][l]));
                 let moves: [f32x8<S>; D] = std::array::from_fn(|k| all(v[k][l]));
                 let mine: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, x[k][l]));
-                let mut sum = WallExtrapolation::all(zero);
+                let mut sum = WallExtrapolation::filled_with(zero);
                 for &j in others {
                     let PackedCluster { x, v, s } = &packed.clusters[j as usize];
                     let mut r = [zero; D];
@@ -127,9 +127,9 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
                     }
                     let w = kernel.w(r2);
                     if is_water {
-                        // One water particle beside eight of a wall, which take it.
+                        // One water particle beside eight boundary particles, which receive its contribution.
                         let theirs = &mut sums[(j as usize - first) * rows..][..rows];
-                        let mut fit = WallExtrapolation::all(zero);
+                        let mut fit = WallExtrapolation::filled_with(zero);
                         for_each_row(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));
                         fit.add(w, p, volume, r.map(|x| -x));
                         if FLOW {

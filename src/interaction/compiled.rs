@@ -13,9 +13,9 @@ use crate::{
     },
 };
 
-/// One choice of laws, called once a slab or a chunk of particles.
+/// One combination of terms, called once a slab or a chunk of particles.
 pub(super) trait PairTerms<const D: usize>: Send + Sync {
-    /// What they need.
+    /// The inputs and sums that they need.
     fn required_sums(&self) -> RequiredSums;
 
     /// By the oracle, the sums of the water particles of a chunk, the first of them `first`; gives the largest
@@ -29,7 +29,7 @@ pub(super) trait PairTerms<const D: usize>: Send + Sync {
         extra: &mut [AuxiliarySums<f64, D>],
     ) -> f64;
 
-    /// By the oracle, the sums of the boundary particles `wet`.
+    /// By the reference: the sums of the boundary particles `wet`.
     fn sum_boundary(
         &self,
         nodes: [&[ReferenceParticle<D>]; 2],
@@ -38,16 +38,16 @@ pub(super) trait PairTerms<const D: usize>: Send + Sync {
         sums: &mut [PairSums<D>],
     );
 
-    /// In lanes, the sums of a slab and of the one after it; gives the largest |v_ab·r_ab|/(r² + η²).
+    /// In SIMD lanes: the sums of a slab and of the next one; returns the largest |v_ab·r_ab|/(r² + η²).
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, sums: &mut [LaneRow]) -> f32;
 }
 
-/// Laws `T` among water and `W` between water and solids under a kernel.
+/// Terms `T` between water particles and `W` between water and solids, under a kernel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CompiledTerms<K, T, W> {
-    /// Weighed with a particle's volume at ρ₀.
+    /// Multiplied by the volume of a particle at ρ₀.
     pub(super) kernel: K,
-    pub(super) inner: T,
+    pub(super) fluid: T,
     pub(super) wall: W,
     pub(super) eta2: f64,
     /// Square of the kernel's support.
@@ -55,16 +55,16 @@ pub(super) struct CompiledTerms<K, T, W> {
 }
 
 impl<K: Kernel, T, W> CompiledTerms<K, T, W> {
-    /// With kernel and laws made for `medium`, in its units.
+    /// With kernel and terms in the units of `medium`.
     pub(super) fn new<const D: usize>(kernel: K, inner: T, wall: W, medium: &FluidProperties<D>) -> Self {
         let (kernel, reach2) = (kernel.normalised_on_lattice(medium), (SUPPORT_RATIO * medium.h).powi(2));
-        Self { kernel, inner, wall, eta2: medium.eta2(), reach2 }
+        Self { kernel, fluid: inner, wall, eta2: medium.eta2(), reach2 }
     }
 }
 
 impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for CompiledTerms<K, T, W> {
     fn required_sums(&self) -> RequiredSums {
-        RequiredSums::of::<(T, W), D>()
+        RequiredSums::of_terms::<(T, W), D>()
     }
 
     fn sum_fluid(
@@ -75,7 +75,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for Compile
         sums: &mut [PairSums<D>],
         extra: &mut [AuxiliarySums<f64, D>],
     ) -> f64 {
-        reference::water(self, nodes, first, lists, sums, extra)
+        reference::sum_fluid(self, nodes, first, lists, sums, extra)
     }
 
     fn sum_boundary(
@@ -85,10 +85,10 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for Compile
         lists: &ParticleListChunk,
         sums: &mut [PairSums<D>],
     ) {
-        reference::skin(self, nodes, wet, lists, sums);
+        reference::sum_boundary(self, nodes, wet, lists, sums);
     }
 
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, sums: &mut [LaneRow]) -> f32 {
-        simd::slab(self, level, packed, slab, sums)
+        simd::sum_slab(self, level, packed, slab, sums)
     }
 }

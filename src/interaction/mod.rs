@@ -1,7 +1,7 @@
-//! Loops over pairs: the one place where laws meet arrays and threads. No formulas.
+//! The pair loop: applies the terms of `sph` to all pairs of particles, in parallel. It has no equations of its own.
 //!
-//! `gather` is the oracle, in f64; `lanes` does the same eight pairs at a time, each pair once. Threads and buffers are
-//! theirs; what is compiled anew for every choice of laws is in `laws` and no more.
+//! `reference` is the f64 reference. `simd` computes eight pairs at a time, each pair once. Both own their threads and
+//! buffers; only the code in `compiled` is compiled for each combination of terms.
 
 mod accumulators;
 mod boundary_sums;
@@ -23,15 +23,15 @@ use crate::{
     },
 };
 
-/// What a sweep reads.
+/// Input of a force pass.
 pub struct PairLoopInput<'a, const D: usize> {
-    /// Which particles meet.
+    /// Neighbour lists.
     pub neighbours: &'a NeighbourLists<D>,
     /// The water.
     pub fluid: &'a Particles<D>,
     /// The boundary particles.
     pub boundary: &'a Particles<D>,
-    /// The velocities that they show, m/s.
+    /// Velocities with which they act on the water, m/s.
     pub boundary_velocity: &'a [Vector<D>],
     /// Stress of the water, m²/s²; empty unless a law reads it.
     pub stress: &'a [Matrix<D>],
@@ -45,11 +45,11 @@ pub struct PairLoopInput<'a, const D: usize> {
     pub equation_of_state: &'a EquationOfState,
 }
 
-/// Where a sweep writes.
+/// Output of a force pass.
 pub struct PairLoopOutput<'a, const D: usize> {
-    /// One for each water particle; gravity is in it.
+    /// One for each water particle; gravity included.
     pub fluid: &'a mut [PairSums<D>],
-    /// One for each wet boundary particle, in the order of [`Near::wet`].
+    /// One for each wet boundary particle, in the order of [`NeighbourLists::boundary_near_fluid`].
     pub boundary: &'a mut [PairSums<D>],
     /// One for each water particle, or none if no law needs it.
     pub auxiliary: &'a mut [AuxiliarySums<f64, D>],
@@ -80,17 +80,17 @@ pub struct StepLimits {
     pub approach_rate: f64,
 }
 
-/// A sweep with its laws compiled in. One call a pass goes through the trait object; inside there is no branch
-/// on a choice of law.
+/// A pair loop with its terms compiled in. One call a pass goes through the trait object; inside, no branch depends on
+/// the choice of terms.
 pub trait PairLoop<const D: usize>: Send + Sync {
-    /// Whether [`Extra`] sums are made.
+    /// Whether [`AuxiliarySums`] are computed.
     fn has_auxiliary_sums(&self) -> bool;
 
     /// Time spent on pairs so far.
     fn time_spent(&self) -> Duration;
 
-    /// Sums of the wet boundary particles over the water, for walls that settle or that it sticks to (with its `flow`); the
-    /// lists must hold, and [`Sweep::rates`] comes next, with the same water.
+    /// Fluid-to-wall extrapolation sums, with the velocity if `flow`. Call before [`PairLoop::rates`], which reuses the packed
+    /// fluid data; the neighbour lists must hold.
     fn extrapolate_to_boundary(
         &mut self,
         input: &PairLoopInput<'_, D>,
@@ -98,12 +98,12 @@ pub trait PairLoop<const D: usize>: Send + Sync {
         fits: &mut [WallExtrapolation<f64, D>],
     );
 
-    /// Sums over all pairs; the lists must hold.
+    /// Sums over all pairs; the neighbour lists must hold.
     fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits;
 }
 
-/// The sweep of the laws `inner` among water and `wall` between water and solids, made for `medium`, which is counted
-/// in `units`: in lanes with the instructions of `level`, or else by the oracle, in SI.
+/// The pair loop of the terms `inner` between water particles and `wall` between water and solids, with the properties
+/// `medium` in `units`: in SIMD lanes with the instructions of `level`, or the reference in SI if there is none.
 pub fn compile<K, T, W, const D: usize>(
     kernel: K,
     inner: T,

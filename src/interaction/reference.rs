@@ -1,4 +1,4 @@
-//! The f64 oracle: each particle gathers its own neighbours in stored order, so that the bits depend on
+//! The f64 reference: each particle sums over its own neighbours in stored order, so that the result depends on
 //! neither threads nor chunks.
 
 use std::time::{Duration, Instant};
@@ -13,12 +13,12 @@ use super::{
 };
 use crate::{
     math::{Matrix, Vector},
-    neighbours::{CHUNK, Pairs, ParticleListChunk},
+    neighbours::{CHUNK, PairLists, ParticleListChunk},
     particles::{PARTICLES_PER_TASK, Particles},
     sph::{AuxiliarySums, Pair, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel, pressure::repulsion},
 };
 
-/// The oracle with its laws.
+/// The reference with its terms.
 pub(super) struct ReferencePairLoop<const D: usize> {
     laws: Box<dyn PairTerms<D>>,
     fits: Box<dyn BoundarySums<D>>,
@@ -26,7 +26,7 @@ pub(super) struct ReferencePairLoop<const D: usize> {
     spent: Duration,
 }
 
-/// A particle as a pair needs it, packed together.
+/// The data of a particle that a pair needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReferenceParticle<const D: usize> {
     pub(super) r: [f64; D],
@@ -35,13 +35,13 @@ pub(super) struct ReferenceParticle<const D: usize> {
 }
 
 impl<const D: usize> ReferencePairLoop<D> {
-    /// The oracle of those laws, made in SI.
+    /// The reference with those terms, in SI.
     pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>) -> Self {
         Self { laws, fits, nodes: [Vec::new(), Vec::new()], spent: Duration::ZERO }
     }
 }
 
-/// Adds the share of neighbour `b` to `sum` by the law `law`; gives |v_ab·r_ab|/(r² + η²).
+/// Adds the contribution of neighbour `b` by `law` to `sum`; returns |v_ab·r_ab|/(r² + η²).
 #[inline(always)]
 fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
     laws: &CompiledTerms<K, T, W>,
@@ -53,30 +53,31 @@ fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
     let r_ab: [f64; D] = std::array::from_fn(|i| a.r[i] - b.r[i]);
     let v_ab: [f64; D] = std::array::from_fn(|i| a.v[i] - b.v[i]);
     let r2: f64 = r_ab.iter().map(|x| x * x).sum();
-    // The lists look further than the kernel: a quarter of their entries end here.
+    // The lists reach beyond the kernel support: a quarter of their entries are skipped here.
     if r2 >= laws.reach2 {
         return 0.0;
     }
     let factor = laws.kernel.slope(r2);
     let ab = Pair::new(r_ab, v_ab, r2, laws.kernel.w(r2), laws.eta2, a.side, b.side);
     let along_r = law.along_r(&ab, 0.0);
-    let along_v = if L::DRAG { law.along_v(&ab, 0.0) } else { 0.0 };
+    let along_v = if L::ALONG_V { law.along_v(&ab, 0.0) } else { 0.0 };
     for i in 0..D {
-        sum.dv[i] += factor * if L::DRAG { along_r * r_ab[i] + along_v * v_ab[i] } else { along_r * r_ab[i] };
+        sum.acceleration[i] +=
+            factor * if L::ALONG_V { along_r * r_ab[i] + along_v * v_ab[i] } else { along_r * r_ab[i] };
     }
     if L::VECTOR {
-        for (dv, vector) in sum.dv.iter_mut().zip(law.vector(&ab, [0.0; D])) {
+        for (dv, vector) in sum.acceleration.iter_mut().zip(law.vector(&ab, [0.0; D])) {
             *dv += factor * vector;
         }
     }
-    sum.dx += factor * law.rate(&ab, (0.0, 0.0)).0;
-    if L::EXTRA {
-        law.auxiliary(&ab, factor, &mut sum.extra, &mut AuxiliarySums::all(0.0));
+    sum.compression_rate += factor * law.rate(&ab, (0.0, 0.0)).0;
+    if L::AUXILIARY {
+        law.auxiliary(&ab, factor, &mut sum.auxiliary, &mut AuxiliarySums::filled_with(0.0));
     }
     ab.velocity_along_r.abs() * ab.inv_r2
 }
 
-pub(super) fn water<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
+pub(super) fn sum_fluid<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
     laws: &CompiledTerms<K, T, W>,
     [water, skin]: [&[ReferenceParticle<D>]; 2],
     first: usize,
@@ -86,23 +87,23 @@ pub(super) fn water<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
 ) -> f64 {
     let mut closing = 0.0f64;
     for (k, out) in sums.iter_mut().enumerate() {
-        let (a, (among, beside)) = (&water[first + k], lists.of(k));
-        let mut sum = Accumulators::all(0.0);
+        let (a, (among, beside)) = (&water[first + k], lists.neighbours_of(k));
+        let mut sum = Accumulators::filled_with(0.0);
         for &j in among {
-            closing = closing.max(add(laws, &laws.inner, a, &water[j as usize], &mut sum));
+            closing = closing.max(add(laws, &laws.fluid, a, &water[j as usize], &mut sum));
         }
         for &j in beside {
             closing = closing.max(add(laws, &laws.wall, a, &skin[j as usize], &mut sum));
         }
-        *out = PairSums { acceleration: Vector::from(sum.dv), compression_rate: sum.dx };
+        *out = PairSums { acceleration: Vector::from(sum.acceleration), compression_rate: sum.compression_rate };
         if let Some(extra) = extra.get_mut(k) {
-            *extra = sum.extra;
+            *extra = sum.auxiliary;
         }
     }
     closing
 }
 
-pub(super) fn skin<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
+pub(super) fn sum_boundary<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
     laws: &CompiledTerms<K, T, W>,
     [water, skin]: [&[ReferenceParticle<D>]; 2],
     wet: &[u32],
@@ -110,11 +111,11 @@ pub(super) fn skin<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
     sums: &mut [PairSums<D>],
 ) {
     for (k, (out, &i)) in sums.iter_mut().zip(wet).enumerate() {
-        let mut sum = Accumulators::all(0.0);
-        for &j in lists.of(k).0 {
+        let mut sum = Accumulators::filled_with(0.0);
+        for &j in lists.neighbours_of(k).0 {
             add(laws, &laws.wall, &skin[i as usize], &water[j as usize], &mut sum);
         }
-        *out = PairSums { acceleration: Vector::from(sum.dv), compression_rate: sum.dx };
+        *out = PairSums { acceleration: Vector::from(sum.acceleration), compression_rate: sum.compression_rate };
     }
 }
 
@@ -122,7 +123,7 @@ fn rows<const D: usize>(m: &Matrix<D>) -> [[f64; D]; D] {
     std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
 }
 
-/// The particles as nodes.
+/// The particles as the reference reads them.
 fn nodes<const D: usize>(
     input: &PairLoopInput<'_, D>,
     particles: &Particles<D>,
@@ -157,7 +158,7 @@ fn nodes<const D: usize>(
 
 impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
     fn has_auxiliary_sums(&self) -> bool {
-        self.laws.required_sums().any()
+        self.laws.required_sums().any_auxiliary()
     }
 
     fn time_spent(&self) -> Duration {
@@ -170,7 +171,9 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         flow: bool,
         extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
     ) {
-        let Pairs::Lists(lists) = input.neighbours.pairs() else { unreachable!("the oracle has lists of particles") };
+        let PairLists::Lists(lists) = input.neighbours.pair_lists() else {
+            unreachable!("the oracle has lists of particles")
+        };
         let needs = self.laws.required_sums();
         nodes(
             input,
@@ -195,7 +198,7 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         let chunks = extrapolate_to_boundary
             .par_chunks_mut(CHUNK)
             .zip(input.neighbours.boundary_near_fluid().par_chunks(CHUNK))
-            .zip(&lists.skin);
+            .zip(&lists.boundary);
         chunks.for_each(|((extrapolate_to_boundary, wet), chunk)| {
             sums.sum_reference(nodes, wet, chunk, flow, extrapolate_to_boundary)
         });
@@ -203,7 +206,9 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
     }
 
     fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits {
-        let Pairs::Lists(lists) = input.neighbours.pairs() else { unreachable!("the oracle has lists of particles") };
+        let PairLists::Lists(lists) = input.neighbours.pair_lists() else {
+            unreachable!("the oracle has lists of particles")
+        };
         let needs = self.laws.required_sums();
         nodes(
             input,
@@ -227,7 +232,7 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         let (laws, nodes) = (&self.laws, [&self.nodes[0][..], &self.nodes[1][..]]);
         let g = input.properties.gravity;
         let one = |c: usize, sums: &mut [PairSums<D>], extra: &mut [AuxiliarySums<f64, D>]| {
-            let closing = laws.sum_fluid(nodes, c * CHUNK, &lists.water[c], sums, extra);
+            let closing = laws.sum_fluid(nodes, c * CHUNK, &lists.fluid[c], sums, extra);
             let a2 = sums.iter_mut().map(|s| {
                 s.acceleration += g;
                 s.acceleration.norm_squared()
@@ -247,7 +252,7 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
             .boundary
             .par_chunks_mut(CHUNK)
             .zip(wet)
-            .zip(&lists.skin)
+            .zip(&lists.boundary)
             .for_each(|((sums, wet), chunk)| laws.sum_boundary(nodes, wet, chunk, sums));
         self.spent += start.elapsed();
         StepLimits { acceleration: a2.sqrt(), approach_rate: closing }

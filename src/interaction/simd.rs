@@ -1,10 +1,10 @@
-//! Eight pairs at a time, each pair once: a particle meets later clusters, and what it gives them they take with
-//! the sign changed.
+//! The SIMD pair loop: eight pairs at a time, each pair once. A particle is paired with later clusters; the partners
+//! receive the opposite force.
 //!
-//! A thread takes a slab and writes its sums, and those of the slab after it, into rows of its own; then every particle
-//! adds what two slabs hold for it. So nothing depends on the threads and nobody waits. Positions are whole numbers,
-//! whose differences are exact; the rest is single precision in units of the kernel's support and the time sound
-//! takes through h.
+//! A thread computes one slab and writes its sums, and those of the next slab, into rows of its own. Every particle then
+//! adds two rows, so that the result does not depend on the threads and no thread waits. Positions are integers,
+//! whose differences are exact; all else is single precision in units of the kernel support and of the time in which sound
+//! crosses h.
 
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::{
     PairLoop, PairLoopInput, PairLoopOutput, PairSums, StepLimits,
-    accumulators::{Accumulators, RequiredSums, triangle},
+    accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
     boundary_sums::{self, BoundarySums},
     compiled::{CompiledTerms, PairTerms},
     simd_layout::{PackedCluster, PackedParticles},
@@ -21,35 +21,35 @@ use super::{
 use crate::{
     math::Vector,
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
-    neighbours::{Clusters, Pairs, Slab},
+    neighbours::{Clusters, PairLists, Slab},
     particles::PARTICLES_PER_TASK,
     sph::{AuxiliarySums, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
-/// The sweep in lanes with its laws.
+/// The SIMD pair loop with its terms.
 pub(super) struct SimdPairLoop<const D: usize> {
     laws: Box<dyn PairTerms<D>>,
     fits: Box<dyn BoundarySums<D>>,
     units: Units,
     level: Level,
     packed: PackedParticles<D>,
-    /// Whether the water lies packed for this pass already.
+    /// Whether the water is packed for this pass already.
     has_water: bool,
     /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
     sums: Vec<LaneRow>,
-    /// Where in `sums` the rows of a cluster begin: its own slab's, and those of the slab before.
+    /// Where the rows of a cluster begin in `sums`: in its own slab and in the slab before.
     at: Vec<[u32; 2]>,
     spent: Duration,
 }
 
 impl<const D: usize> SimdPairLoop<D> {
-    /// The sweep of those laws, made in `units`.
+    /// The pair loop with those terms, in `units`.
     pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>, units: Units, level: Level) -> Self {
         let (packed, sums, at) = (PackedParticles::default(), Vec::new(), Vec::new());
         Self { laws, fits, units, level, packed, has_water: false, sums, at, spent: Duration::ZERO }
     }
 
-    /// Makes room for the sums of all slabs, `rows` a cluster; returns how many rows each slab writes.
+    /// Allocates the sums of all slabs, `rows` a cluster; returns the number of rows that each slab writes.
     fn lay_out(&mut self, clusters: &Clusters, rows: usize) -> Vec<usize> {
         self.at.resize(clusters.len(), [0; 2]);
         let mut lengths = Vec::with_capacity(clusters.slabs.len());
@@ -61,18 +61,18 @@ impl<const D: usize> SimdPairLoop<D> {
             }
             let last = clusters.slabs.get(s + 1).map_or(slab.end, |next| next.end);
             before = Some((offset, slab.first));
-            // And rows for what goes nowhere.
+            // And rows for discarded sums.
             lengths.push((last - slab.first + 1) * rows);
             offset += (last - slab.first + 1) * rows;
         }
-        // The first slab has none before it: rows of zeros stand for them.
+        // The first slab has no slab before it: rows of zeros replace it.
         self.at.iter_mut().take_while(|at| at[1] == u32::MAX).for_each(|at| at[1] = offset as u32);
         self.sums.resize(offset + rows, LaneRow::default());
         self.sums[offset..].fill(LaneRow::default());
         lengths
     }
 
-    /// The sums of the particle in `slot`, in the sweep's units, by their row among the first `rows`.
+    /// The sums of the particle in `slot`, in the units of the pair loop, by row among the first `rows`.
     #[inline(always)]
     fn of_slot(&self, slot: u32, rows: usize) -> impl Fn(usize) -> f64 {
         let (c, l) = (slot as usize / LANES, slot as usize % LANES);
@@ -83,7 +83,7 @@ impl<const D: usize> SimdPairLoop<D> {
 
     /// Acceleration and density rate of the particle in `slot`, in SI.
     #[inline(always)]
-    fn sums_of(&self, slot: u32) -> PairSums<D> {
+    fn pair_sums_of(&self, slot: u32) -> PairSums<D> {
         let rate = 1.0 / self.units.time;
         let acceleration = self.units.length * rate * rate;
         let sum = self.of_slot(slot, D + 1);
@@ -94,26 +94,26 @@ impl<const D: usize> SimdPairLoop<D> {
         PairSums { acceleration: dv, compression_rate: sum(D) * rate }
     }
 
-    /// The extra sums of the particle in `slot`, in SI.
-    fn extra_of(&self, slot: u32, needs: RequiredSums) -> AuxiliarySums<f64, D> {
-        let (sum, mut sums) = (self.of_slot(slot, needs.sums(D)), Accumulators::all(0.0));
-        sums.each(needs, needs, |row, x| *x = sum(row));
+    /// The auxiliary sums of the particle in `slot`, in SI.
+    fn auxiliary_sums_of(&self, slot: u32, needs: RequiredSums) -> AuxiliarySums<f64, D> {
+        let (sum, mut sums) = (self.of_slot(slot, needs.sum_rows(D)), Accumulators::filled_with(0.0));
+        sums.for_each_row(needs, needs, |row, x| *x = sum(row));
         let Units { length, time } = self.units;
-        let AuxiliarySums { concentration_gradient, position_divergence, shifting_suppressed, strain, moment } =
-            sums.extra;
+        let AuxiliarySums { concentration_gradient, position_divergence, shifting_suppressed, strain, renormalization } =
+            sums.auxiliary;
         let strain = strain.map(|row| row.map(|x| x / time));
         AuxiliarySums {
             concentration_gradient: concentration_gradient.map(|x| x / length),
-            position_divergence: position_divergence,
-            shifting_suppressed: shifting_suppressed,
+            position_divergence,
+            shifting_suppressed,
             strain,
-            moment,
+            renormalization,
         }
     }
 
-    /// Sums over all slabs; gives the largest |v_ab·r_ab|/(r² + η²), 1/s.
-    fn pairs(&mut self, clusters: &Clusters) -> f64 {
-        let lengths = self.lay_out(clusters, self.laws.required_sums().sums(D));
+    /// Computes the sums of all slabs; returns the largest |v_ab·r_ab|/(r² + η²), 1/s.
+    fn sum_pairs(&mut self, clusters: &Clusters) -> f64 {
+        let lengths = self.lay_out(clusters, self.laws.required_sums().sum_rows(D));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let (laws, level, packed) = (&self.laws, self.level, &self.packed);
@@ -141,7 +141,7 @@ fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [LaneRow])
 
 impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
     fn has_auxiliary_sums(&self) -> bool {
-        self.laws.required_sums().any()
+        self.laws.required_sums().any_auxiliary()
     }
 
     fn time_spent(&self) -> Duration {
@@ -154,58 +154,58 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         flow: bool,
         extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
     ) {
-        let Pairs::Clusters(clusters, _) = input.neighbours.pairs() else {
+        let PairLists::Clusters(clusters, _) = input.neighbours.pair_lists() else {
             unreachable!("lanes have lists of clusters")
         };
         self.packed.pack(input, clusters, &self.units, false);
         self.has_water = true;
-        let lengths = self.lay_out(clusters, boundary_sums::rows(D, flow));
+        let lengths = self.lay_out(clusters, boundary_sums::row_count(D, flow));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let (sums, level, packed) = (&self.fits, self.level, &self.packed);
         works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.sum_slab(level, packed, slab, flow, rows));
         self.spent += start.elapsed();
         let Units { length, time } = self.units;
-        extrapolate_to_boundary.par_iter_mut().zip(&clusters.wet).with_min_len(PARTICLES_PER_TASK).for_each(
+        extrapolate_to_boundary.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK).for_each(
             |(fit, &slot)| {
-                let sum = self.of_slot(slot, boundary_sums::rows(D, flow));
+                let sum = self.of_slot(slot, boundary_sums::row_count(D, flow));
                 boundary_sums::for_each_row(fit, flow, |row, x| *x = sum(row));
-                fit.head *= (length / time).powi(2);
-                fit.arm = fit.arm.map(|x| x * length);
-                fit.velocity = fit.velocity.map(|x| x * (length / time));
+                fit.pressure_sum *= (length / time).powi(2);
+                fit.offset_sum = fit.offset_sum.map(|x| x * length);
+                fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
             },
         );
     }
 
     fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits {
-        let Pairs::Clusters(clusters, _) = input.neighbours.pairs() else {
+        let PairLists::Clusters(clusters, _) = input.neighbours.pair_lists() else {
             unreachable!("lanes have lists of clusters")
         };
         let needs = self.laws.required_sums();
         self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
-        if needs.inputs(D) > 0 {
+        if needs.input_rows(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
-        let closing = self.pairs(clusters);
+        let closing = self.sum_pairs(clusters);
         let g = input.properties.gravity;
-        let water = output.fluid.par_iter_mut().zip(&clusters.water).with_min_len(PARTICLES_PER_TASK);
+        let water = output.fluid.par_iter_mut().zip(&clusters.fluid_slots).with_min_len(PARTICLES_PER_TASK);
         let a2 = water
             .map(|(out, &slot)| {
-                *out = self.sums_of(slot);
+                *out = self.pair_sums_of(slot);
                 out.acceleration += g;
                 out.acceleration.norm_squared()
             })
             .reduce(|| 0.0, f64::max);
-        let skin = output.boundary.par_iter_mut().zip(&clusters.wet).with_min_len(PARTICLES_PER_TASK);
-        skin.for_each(|(out, &slot)| *out = self.sums_of(slot));
-        let extra = output.auxiliary.par_iter_mut().zip(&clusters.water).with_min_len(PARTICLES_PER_TASK);
-        extra.for_each(|(out, &slot)| *out = self.extra_of(slot, needs));
+        let skin = output.boundary.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK);
+        skin.for_each(|(out, &slot)| *out = self.pair_sums_of(slot));
+        let extra = output.auxiliary.par_iter_mut().zip(&clusters.fluid_slots).with_min_len(PARTICLES_PER_TASK);
+        extra.for_each(|(out, &slot)| *out = self.auxiliary_sums_of(slot, needs));
         StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
     }
 }
 
-/// The sums of a slab by the laws `laws`.
-pub(super) fn slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
+/// Computes the sums of a slab by the terms `laws`.
+pub(super) fn sum_slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
     laws: &CompiledTerms<K, T, W>,
     level: Level,
     packed: &PackedParticles<D>,
@@ -216,7 +216,7 @@ pub(super) fn slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
 }
 
 struct SlabTask<'a, K, T, W, const D: usize> {
-    /// By value: so the compiler sees that no sum written changes it.
+    /// By value: the compiler then knows that writing a sum does not change it.
     laws: CompiledTerms<K, T, W>,
     packed: &'a PackedParticles<D>,
     slab: &'a Slab,
@@ -224,14 +224,14 @@ struct SlabTask<'a, K, T, W, const D: usize> {
 }
 
 /// One particle in all lanes.
-struct LoneParticle<S: Simd, const D: usize> {
+struct BroadcastParticle<S: Simd, const D: usize> {
     cluster: usize,
     x: [i32x8<S>; D],
     v: [f32x8<S>; D],
     side: PairSide<f32x8<S>, D>,
 }
 
-/// What every pair of a slab needs.
+/// Data that every pair of a slab needs.
 #[derive(Clone, Copy)]
 struct SlabInput<'a, S: Simd, K, const D: usize> {
     simd: S,
@@ -244,7 +244,7 @@ struct SlabInput<'a, S: Simd, K, const D: usize> {
     rows: &'a [LaneRow],
     /// The slab's first cluster.
     first: usize,
-    /// What all laws together need.
+    /// The needs of all terms together.
     needs: RequiredSums,
 }
 
@@ -255,7 +255,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
     fn run<S: Simd>(self, simd: S) -> f32 {
         let Self { laws, packed, slab, sums } = self;
         let Slab { first, middle, end, spans, index } = slab;
-        let needs = const { RequiredSums::of::<(T, W), D>() };
+        let needs = const { RequiredSums::of_terms::<(T, W), D>() };
         let given = SlabInput {
             simd,
             kernel: laws.kernel,
@@ -276,13 +276,13 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
                 if start == end {
                     continue;
                 }
-                // Water meets water first; a boundary particle meets water only, by the laws of walls.
+                // First pairs of water particles; a boundary particle is paired with water only, by the wall terms.
                 let skin = if c < *middle { skin } else { start };
-                let (one, mut sum) = (given.one(c, l), Accumulators::all(given.zero));
-                given.meet(&laws.inner, &one, &index[start..skin], sums, &mut sum, &mut closing);
-                given.meet(&laws.wall, &one, &index[skin..end], sums, &mut sum, &mut closing);
-                let mine = &mut sums[(c - first) * needs.sums(D)..][..needs.sums(D)];
-                sum.each(needs, needs, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
+                let (one, mut sum) = (given.particle_in_lane(c, l), Accumulators::filled_with(given.zero));
+                given.add_pairs(&laws.fluid, &one, &index[start..skin], sums, &mut sum, &mut closing);
+                given.add_pairs(&laws.wall, &one, &index[skin..end], sums, &mut sum, &mut closing);
+                let mine = &mut sums[(c - first) * needs.sum_rows(D)..][..needs.sum_rows(D)];
+                sum.for_each_row(needs, needs, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
             }
         }
         simd::max_lane(closing)
@@ -292,14 +292,14 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
 impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
     /// The particle in lane `l` of cluster `c`.
     #[inline(always)]
-    fn one(&self, c: usize, l: usize) -> LoneParticle<S, D> {
+    fn particle_in_lane(&self, c: usize, l: usize) -> BroadcastParticle<S, D> {
         let PackedCluster { x, v, s } = &self.clusters[c];
         let all = |x: f32| f32x8::splat(self.simd, x);
-        let mut one = LoneParticle {
+        let mut one = BroadcastParticle {
             cluster: c,
             x: [i32x8::splat(self.simd, 0); D],
             v: [self.zero; D],
-            side: self.side(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
+            side: self.pair_side(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
         };
         for k in 0..D {
             one.x[k] = i32x8::splat(self.simd, x[k][l]);
@@ -308,9 +308,9 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         one
     }
 
-    /// A side of a pair from densities, pressure and volume `s` and what `read` makes of the rows beside cluster `c`.
+    /// A side of a pair from densities, pressure and volume `s`, and from the additional rows of cluster `c` as `read` reads them.
     #[inline(always)]
-    fn side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> PairSide<f32x8<S>, D> {
+    fn pair_side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> PairSide<f32x8<S>, D> {
         let [x, low, p, s] = s;
         let (repulsion, mark, none) = (self.zero, self.zero, [[self.zero; D]; D]);
         let mut side = PairSide {
@@ -323,40 +323,44 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             stress: none,
             gradient_correction: none,
         };
-        let inputs = self.needs.inputs(D);
+        let inputs = self.needs.input_rows(D);
         if inputs > 0 {
             let rows = &self.rows[c * inputs..][..inputs];
             if self.needs.suppression {
                 side.shifting_suppressed = read(&rows[0].0);
             }
             if self.needs.repulsion {
-                side.repulsion = read(&rows[self.needs.repulsion_at()].0);
+                side.repulsion = read(&rows[self.needs.repulsion_row()].0);
             }
             let mut entry = |row: usize, entry: &mut f32x8<S>| *entry = read(&rows[row].0);
             if self.needs.stress {
-                triangle(&mut side.stress, self.needs.stress_at(), &mut entry);
+                for_each_symmetric_entry(&mut side.stress, self.needs.stress_row(), &mut entry);
             }
             if self.needs.gradient_correction {
-                triangle(&mut side.gradient_correction, self.needs.form_at(D), &mut entry);
+                for_each_symmetric_entry(
+                    &mut side.gradient_correction,
+                    self.needs.gradient_correction_row(D),
+                    &mut entry,
+                );
             }
         }
         side
     }
 
-    /// Lets `one` meet `others` by the law `law`: adds its share to `sum` and theirs to their `sums`; its own cluster
-    /// comes to it lane by lane, so there its share goes nowhere, to the last rows.
+    /// Pairs `one` with `others` by the terms `law`: adds their contribution to `sum` and its contribution to their `sums`. Its own
+    /// cluster is paired lane by lane, so there its contribution is discarded into the last rows.
     #[inline(always)]
-    fn meet<L: Term<D>>(
+    fn add_pairs<L: Term<D>>(
         &self,
         law: &L,
-        one: &LoneParticle<S, D>,
+        one: &BroadcastParticle<S, D>,
         others: &[u32],
         sums: &mut [LaneRow],
         sum: &mut Accumulators<f32x8<S>, D>,
         closing: &mut f32x8<S>,
     ) {
-        let (simd, zero, own) = (self.simd, self.zero, const { RequiredSums::of::<L, D>() });
-        let rows = self.needs.sums(D);
+        let (simd, zero, own) = (self.simd, self.zero, const { RequiredSums::of_terms::<L, D>() });
+        let rows = self.needs.sum_rows(D);
         let nowhere = sums.len() - rows;
         for &j in others {
             let j = j as usize;
@@ -371,14 +375,14 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
                 r2 = d.mul_add(*d, r2);
             }
             let load = |row: &[f32; LANES]| simd::load(simd, row);
-            let side = self.side(j, [load(&s[0]), load(&s[1]), load(&s[2]), load(&s[3])], load);
+            let side = self.pair_side(j, [load(&s[0]), load(&s[1]), load(&s[2]), load(&s[3])], load);
             let factor = self.kernel.slope(r2);
             let ab = Pair::new(r_ab, v_ab, r2, self.kernel.w(r2), self.eta2, one.side, side);
             let along_r = factor * law.along_r(&ab, zero);
             for (force, r) in force.iter_mut().zip(&r_ab) {
                 *force = along_r * *r;
             }
-            if L::DRAG {
+            if L::ALONG_V {
                 let along_v = factor * law.along_v(&ab, zero);
                 for (force, v) in force.iter_mut().zip(&v_ab) {
                     *force = along_v.mul_add(*v, *force);
@@ -396,18 +400,18 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
 
             let at = if j == one.cluster { nowhere } else { (j - self.first) * rows };
             let theirs = &mut sums[at..][..rows];
-            let mut b = Accumulators::all(zero);
-            b.each(own, self.needs, |row, b| *b = load(&theirs[row].0));
+            let mut b = Accumulators::filled_with(zero);
+            b.for_each_row(own, self.needs, |row, b| *b = load(&theirs[row].0));
             for (k, force) in force.into_iter().enumerate() {
-                sum.dv[k] += force;
-                b.dv[k] -= force;
+                sum.acceleration[k] += force;
+                b.acceleration[k] -= force;
             }
-            sum.dx = factor.mul_add(rate_a, sum.dx);
-            b.dx = factor.mul_add(rate_b, b.dx);
-            if L::EXTRA {
-                law.auxiliary(&ab, factor, &mut sum.extra, &mut b.extra);
+            sum.compression_rate = factor.mul_add(rate_a, sum.compression_rate);
+            b.compression_rate = factor.mul_add(rate_b, b.compression_rate);
+            if L::AUXILIARY {
+                law.auxiliary(&ab, factor, &mut sum.auxiliary, &mut b.auxiliary);
             }
-            b.each(own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
+            b.for_each_row(own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
         }
     }
 }

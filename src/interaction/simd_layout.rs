@@ -1,4 +1,4 @@
-//! Particles packed into lanes.
+//! Memory layout of the particles for the SIMD pair loop.
 
 use rayon::prelude::*;
 
@@ -10,15 +10,15 @@ use crate::{
     sph::{Units, pressure::repulsion},
 };
 
-/// Eight particles of one kind as a pair needs them, in the sweep's units.
+/// Eight particles of one kind, in the units of the pair loop.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct PackedCluster<const D: usize> {
-    /// Position in whole units.
+    /// Position in integer units.
     pub(super) x: [[i32; LANES]; D],
     /// Velocity.
     pub(super) v: [[f32; LANES]; D],
-    /// Excess density, what single precision cuts off it, pressure over ρ₀, specific volume.
+    /// Compression ρ/ρ₀ − 1, its remainder in single precision, pressure over ρ₀, specific volume.
     pub(super) s: [[f32; LANES]; 4],
 }
 
@@ -27,7 +27,7 @@ impl<const D: usize> PackedCluster<D> {
         Self { x: [[0; LANES]; D], v: [[0.0; LANES]; D], s: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]] };
 }
 
-/// What every cluster needs, and rows more where laws read a mark or a stress.
+/// The packed particles, with additional rows where terms read a mark or a tensor.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PackedParticles<const D: usize> {
     pub(super) clusters: Vec<PackedCluster<D>>,
@@ -35,11 +35,11 @@ pub(super) struct PackedParticles<const D: usize> {
 }
 
 impl<const D: usize> PackedParticles<D> {
-    /// Packs all particles that may meet; only the boundary particles if the water has not changed since.
+    /// Packs all particles that may have pairs; only the boundary particles if the water has not changed.
     pub(super) fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
         self.clusters.resize(clusters.len(), PackedCluster::EMPTY);
         let inv_unit = 1.0 / units.length;
-        clusters.by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
+        clusters.split_by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
             let skip = if water_stays { slab.middle - slab.first } else { 0 };
             for (c, cluster) in (slab.first..).zip(packed).skip(skip) {
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
@@ -48,13 +48,13 @@ impl<const D: usize> PackedParticles<D> {
                 } else {
                     (input.boundary, input.boundary_velocity)
                 };
-                neighbours::fill(&mut cluster.x, source, &particles.r, inv_unit);
+                neighbours::fill_positions(&mut cluster.x, source, &particles.r, inv_unit);
                 state(cluster, source, (&particles.rho, v), input, units);
             }
         });
     }
 
-    /// Packs the rows of input that the laws need: marks of the skin, stress and corrected gradients of the water, repulsion of both.
+    /// Packs the additional rows: marks of boundary particles, stress and gradient correction of the water, repulsion of both.
     pub(super) fn pack_rows(
         &mut self,
         input: &PairLoopInput<'_, D>,
@@ -62,20 +62,20 @@ impl<const D: usize> PackedParticles<D> {
         units: &Units,
         needs: RequiredSums,
     ) {
-        let (mark, count) = (needs.suppression, needs.inputs(D));
+        let (mark, count) = (needs.suppression, needs.input_rows(D));
         self.rows.clear();
         self.rows.resize(clusters.len() * count, LaneRow::default());
         let scale = (units.time / units.length).powi(2);
         let packed = &self.clusters;
-        clusters.by_slab(&mut self.rows, count).into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
+        clusters.split_by_slab(&mut self.rows, count).into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
             for (c, rows) in (slab.first..).zip(rows.chunks_mut(count)) {
                 if needs.repulsion {
                     let [_, _, p, s] = packed[c].s;
                     let of = |l: usize| repulsion(f64::from(p[l]), f64::from(s[l])) as f32;
-                    rows[needs.repulsion_at()] = LaneRow(std::array::from_fn(of));
+                    rows[needs.repulsion_row()] = LaneRow(std::array::from_fn(of));
                 }
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
-                for (l, &i) in source[..neighbours::filled(source)].iter().enumerate() {
+                for (l, &i) in source[..neighbours::occupied_lanes(source)].iter().enumerate() {
                     let i = i as usize;
                     if mark && c >= slab.middle {
                         rows[0].0[l] = f32::from(u8::from(input.shifting_suppressed[i]));
@@ -89,10 +89,10 @@ impl<const D: usize> PackedParticles<D> {
                         }
                     };
                     if needs.stress && c < slab.middle {
-                        tensor(&input.stress[i], needs.stress_at(), scale);
+                        tensor(&input.stress[i], needs.stress_row(), scale);
                     }
                     if needs.gradient_correction && c < slab.middle {
-                        tensor(&input.gradient_correction[i], needs.form_at(D), 1.0);
+                        tensor(&input.gradient_correction[i], needs.gradient_correction_row(D), 1.0);
                     }
                 }
             }
@@ -111,7 +111,7 @@ fn state<const D: usize>(
 ) {
     let speed = units.time / units.length;
     let (rho0, inv_rho0) = (input.properties.rho0, 1.0 / input.properties.rho0);
-    let n = neighbours::filled(source);
+    let n = neighbours::occupied_lanes(source);
     if n < LANES {
         (cluster.v, cluster.s) = (PackedCluster::<D>::EMPTY.v, PackedCluster::<D>::EMPTY.s);
     }

@@ -32,8 +32,8 @@ pub enum NumberOrArray {
 
 impl<'de> Deserialize<'de> for NumberOrArray {
     fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
-        struct Words;
-        impl<'de> Visitor<'de> for Words {
+        struct Form;
+        impl<'de> Visitor<'de> for Form {
             type Value = NumberOrArray;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a number, a list of numbers, or a list of rows")
@@ -60,6 +60,6 @@ impl<'de> Deserialize<'de> for NumberOrArray {
                 }
             }
         }
-        deserializer.deserialize_any(Words)
+        deserializer.deserialize_any(Form)
     }
 }

@@ -83,8 +83,8 @@ impl Formula {
     }
 
     /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
-    pub fn at(&self, t: f64) -> (f64, f64) {
-        self.root.at(&[t])
+    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
+        self.root.evaluate(&[t])
     }
 }
 
@@ -97,11 +97,11 @@ impl Formula {
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Field<const D: usize> {
+pub struct ScalarField<const D: usize> {
     root: Node,
 }
 
-impl<const D: usize> Field<D> {
+impl<const D: usize> ScalarField<D> {
     /// Reads a formula.
     ///
     /// # Errors
@@ -111,23 +111,23 @@ impl<const D: usize> Field<D> {
     }
 
     /// Value at the place `r` (m).
-    pub fn at(&self, r: &Vector<D>) -> f64 {
-        self.root.at(r.as_slice()).0
+    pub fn value_at(&self, r: &Vector<D>) -> f64 {
+        self.root.evaluate(r.as_slice()).0
     }
 }
 
 impl Node {
-    fn at(&self, t: &[f64]) -> (f64, f64) {
+    fn evaluate(&self, t: &[f64]) -> (f64, f64) {
         match self {
             Self::Number(x) => (*x, 0.0),
             Self::Variable(i) => (t[*i], if *i == 0 { 1.0 } else { 0.0 }),
             Self::Negate(x) => {
-                let (x, dx) = x.at(t);
+                let (x, dx) = x.evaluate(t);
                 (-x, -dx)
             }
-            Self::Binary(binary, x, y) => binary.at(x.at(t), y.at(t)),
+            Self::Binary(binary, x, y) => binary.evaluate(x.evaluate(t), y.evaluate(t)),
             Self::Call(function, x) => {
-                let (x, dx) = x.at(t);
+                let (x, dx) = x.evaluate(t);
                 let (value, slope) = function(x);
                 (value, if dx == 0.0 { 0.0 } else { slope * dx })
             }
@@ -136,7 +136,7 @@ impl Node {
 }
 
 impl Binary {
-    fn at(self, (x, dx): (f64, f64), (y, dy): (f64, f64)) -> (f64, f64) {
+    fn evaluate(self, (x, dx): (f64, f64), (y, dy): (f64, f64)) -> (f64, f64) {
         match self {
             Self::Add => (x + y, dx + dy),
             Self::Subtract => (x - y, dx - dy),
@@ -166,62 +166,5 @@ impl Binary {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn precedence_is_that_of_mathematics() {
-        for (text, value) in [
-            ("-t^2", -9.0),
-            ("2^3^2", 512.0),
-            ("2^-t", 0.125),
-            ("8/4/2", 1.0),
-            ("8 / 2 * 4", 16.0),
-            ("1-2+3", 2.0),
-            ("2e-3*t + 1.5E3", 1500.006),
-            ("-(1+t)*-2", 8.0),
-            ("max(t, 1) - min(t, 1)", 2.0),
-            ("(-t)^2", 9.0),
-        ] {
-            assert_eq!(Formula::parse(text).unwrap().at(3.0).0, value, "{text}");
-        }
-    }
-
-    #[test]
-    fn the_rate_is_the_derivative() {
-        for (name, _) in FUNCTIONS {
-            check_rate(&format!("{name}(0.3 + 0.4*t)"));
-        }
-        for text in ["t^3 - 2^t + t^t", "exp(-t^2)/(1+t)", "0.05*sin(2*pi*t/1.2)*tanh(t)", "max(t^2, t)", "7", "-t*-t"]
-        {
-            check_rate(text);
-        }
-        assert_eq!(Formula::parse("t^2").unwrap().at(0.0), (0.0, 0.0));
-        assert_eq!(Formula::parse("(t-1)^3").unwrap().at(0.0), (-1.0, 3.0));
-    }
-
-    /// The central difference of step 1e-5 is exact to 1e-10 f''' and to the round-off 1e-11 of its quotient.
-    fn check_rate(text: &str) {
-        let formula = Formula::parse(text).unwrap();
-        let (t, step) = (0.7, 1e-5);
-        let difference = (formula.at(t + step).0 - formula.at(t - step).0) / (2.0 * step);
-        let rate = formula.at(t).1;
-        assert!((rate - difference).abs() < 1e-8 * (1.0 + rate.abs()), "{text}: {rate} against {difference}");
-    }
-
-    #[test]
-    fn a_wrong_formula_is_told_where_and_how() {
-        let said = |text: &str| Formula::parse(text).unwrap_err().to_string();
-        assert!(said("2*sinus(t)").contains("character 3: \"sinus\" is not known; did you mean \"sin"));
-        assert!(said("2*x").contains("\"x\" is not known"));
-        assert!(said("3t").contains("an operator is expected before 't'"));
-        assert!(said("sin(t").contains("it ends where ')' is expected"));
-        assert!(said("1.2.3").contains("\"1.2.3\" is not a number"));
-        for text in ["", "t*", ")", "sin t", "min(t)", "1e", "π", "t²", "2**t"] {
-            assert!(said(text).contains("known: "), "{text}");
-        }
-        assert!(said(&"(".repeat(900)).contains("nested"));
-        assert!(said(&"-".repeat(900)).contains("nested"));
-        assert!(said(&"1+".repeat(900)).contains("longer"));
-    }
-}
+#[path = "../../tests/unit/math/expression.rs"]
+mod tests;

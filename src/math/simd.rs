@@ -1,7 +1,7 @@
-//! Eight numbers at once: which instructions the processor has, and arrays in and out of lanes. No laws.
+//! SIMD numbers of eight lanes: the instruction sets of the processor, loading and storing.
 //!
-//! The width is eight on every processor, and with AVX-512, AVX2 and NEON multiply and add round once, so that no sum
-//! depends on which of them it was.
+//! The width is eight on every processor, and AVX-512, AVX2 and NEON all have fused multiply-add, so that no sum
+//! depends on the instruction set.
 
 pub use fearless_simd::{Level, Simd, f32x8, i32x8};
 
@@ -29,25 +29,25 @@ pub fn instruction_sets() -> Vec<Level> {
     }
 }
 
-/// The first of [`levels`].
+/// The first of [`instruction_sets`].
 pub fn best_instruction_set() -> Option<Level> {
     instruction_sets().first().copied()
 }
 
-/// The name of a level, for people.
-pub fn name(level: Level) -> String {
+/// The name of an instruction set.
+pub fn instruction_set_name(level: Level) -> String {
     format!("{level:?}").split('(').next().unwrap_or_default().to_lowercase()
 }
 
-/// Work to be done with the instructions of some level; everything below `run` must be `#[inline(always)]`.
+/// A task that runs with a given instruction set; everything that `run` calls must be `#[inline(always)]`.
 pub trait SimdTask {
-    /// What it gives.
+    /// Its result.
     type Output;
-    /// Does it.
+    /// Runs it.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Does `work` with the instructions of `level`, one that [`levels`] gave.
+/// Does `work` with the instructions of `level`, one that [`instruction_sets`] gave.
 pub fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {

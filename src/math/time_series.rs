@@ -4,12 +4,12 @@ use crate::error::{Error, Result};
 
 /// A quantity sampled at increasing times.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Series {
+pub struct TimeSeries {
     t: Vec<f64>,
     x: Vec<f64>,
 }
 
-impl Series {
+impl TimeSeries {
     /// The series of values `x` at times `t` (s).
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Series {
     }
 
     /// Value at time `t` (s), linear between samples; the end values outside the span.
-    pub fn at(&self, t: f64) -> f64 {
+    pub fn value_at(&self, t: f64) -> f64 {
         let (i, s) = self.locate(t);
         self.x[i] + s * (self.x[i + 1] - self.x[i])
     }
@@ -65,7 +65,7 @@ impl Series {
     pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         let (first, last) = self.span();
         if t <= first || t >= last {
-            return (self.at(t), 0.0);
+            return (self.value_at(t), 0.0);
         }
         let (i, s) = self.locate(t);
         let step = self.t[i + 1] - self.t[i];
@@ -81,7 +81,7 @@ impl Series {
     ///
     /// # Errors
     /// `Scene` if fewer than two samples lie there.
-    pub fn within(&self, from: f64, until: f64) -> Result<Self> {
+    pub fn window(&self, from: f64, until: f64) -> Result<Self> {
         let range = self.t.partition_point(|&t| t < from)..self.t.partition_point(|&t| t <= until);
         if range.len() < 2 {
             let (first, last) = self.span();
@@ -126,7 +126,7 @@ impl Series {
     }
 
     /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does.
-    pub fn crossing(&self, threshold: f64) -> Option<f64> {
+    pub fn first_crossing(&self, threshold: f64) -> Option<f64> {
         let i = self.x.iter().position(|x| x.abs() >= threshold)?;
         let Some(before) = i.checked_sub(1) else { return Some(self.t[0]) };
         let (x0, x1) = (self.x[before], self.x[i]);

@@ -1,6 +1,6 @@
 //! Space: vectors, turns, poses and boxes in two or three dimensions from one source.
 //!
-//! What turns is a [`Wedge`], an antisymmetric D×D matrix, so that no formula needs a cross product:
+//! What turns is a [`Bivector`], an antisymmetric D×D matrix, so that no formula needs a cross product:
 //! a spin Ω gives the velocity u = V + Ω r, and a force f at r about the centre gives the torque
 //! T = f rᵀ − r fᵀ. The power of the two is ½ T:Ω.
 
@@ -47,7 +47,7 @@ impl<const D: usize> Bivector<D> {
         }
     }
 
-    /// The inverse of [`Wedge::axial`]; missing components count as zero.
+    /// The inverse of [`Bivector::axial`]; missing components count as zero.
     pub fn from_axial(components: &[f64]) -> Self {
         let mut m = Matrix::zeros();
         let places: &[(usize, usize)] = if D == 2 { &[(1, 0)] } else { &[(2, 1), (0, 2), (1, 0)] };
@@ -202,26 +202,5 @@ impl<const D: usize> Bounds<D> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_turn_is_orthogonal_and_comes_back_as_its_angle() {
-        // In release this is also the guard against the compiler's fault that `exp` is written around.
-        for turn in [[0.0, 0.0, 1.5], [0.3, -0.4, 0.5], [1e-5, 0.0, -1e-9], [-1.0, 2.0, 0.7]] {
-            let r = Bivector::<3>::from_axial(&turn).exp();
-            assert!((r * r.transpose() - Matrix::identity()).norm() < 1e-14, "{r}");
-            let back = Pose { position: Vector::<3>::zeros(), rotation: r }.rotation_vector();
-            assert!(back.iter().zip(&turn).all(|(a, b)| (a - b).abs() < 1e-13), "{back:?}");
-        }
-        let quarter = Bivector::<2>::from_axial(&[std::f64::consts::FRAC_PI_2]).exp();
-        assert!((quarter * Vector::from([1.0, 0.0]) - Vector::from([0.0, 1.0])).norm() < 1e-15);
-    }
-
-    #[test]
-    fn a_force_upward_on_the_right_turns_counter_clockwise() {
-        let torque = Bivector::torque(&Vector::from([1.0, 0.0]), &Vector::from([0.0, 1.0]));
-        assert_eq!(torque.axial(), vec![1.0]);
-        assert_eq!(torque.power(&Bivector::from_axial(&[3.0])), 3.0);
-    }
-}
+#[path = "../../tests/unit/math/vector.rs"]
+mod tests;

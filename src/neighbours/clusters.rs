@@ -1,4 +1,4 @@
-//! Particles of one kind in clusters of eight, and for each particle the later clusters that it must meet.
+//! Clusters of eight particles of one kind, and for each particle the later clusters with which it has pairs.
 //!
 //! A column is cut into runs of eight. The clusters of a slab follow one another, water first, then boundary
 //! particles. A list holds, for one particle, every cluster of its own slab or the next that comes later and has a
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::{
     columns::{Columns, Sorted},
-    search::{self, Sizes},
+    search::{self, SearchSizes},
     to_integer,
 };
 use crate::{
@@ -20,14 +20,14 @@ use crate::{
 /// No particle: a pad that fills up a cluster.
 pub const PAD: u32 = u32::MAX;
 
-/// Where a pad lies: half the range of whole numbers from its cluster, so far that no kernel reaches it and
+/// Position of a pad: half the integer range from its cluster, so far that no kernel support reaches it and
 /// so near that no difference overflows.
 pub const FAR_POSITION: i32 = 1 << 30;
 
 /// Widths of a column that a cluster may span.
 const SPAN: f64 = 2.0;
 
-/// Clusters that one thread takes, and their lists.
+/// The clusters of one slab and their lists; a thread computes whole slabs.
 #[derive(Clone, Debug, Default)]
 pub struct Slab {
     /// First cluster of water.
@@ -38,25 +38,25 @@ pub struct Slab {
     pub end: usize,
     /// For each slot of the slab: first entry in `index`, start of the clusters of boundary particles, end.
     pub spans: Vec<[u32; 3]>,
-    /// Clusters to meet.
+    /// Clusters with which there are pairs.
     pub index: Vec<u32>,
 }
 
 /// All clusters.
 #[derive(Clone, Debug, Default)]
 pub struct Clusters {
-    /// The particle in each slot, eight slots a cluster: an index among the water or the skin, or [`PAD`].
+    /// The particle in each slot, eight slots a cluster: an index of a water or boundary particle, or [`PAD`].
     pub source: Vec<u32>,
     /// The slabs in order.
     pub slabs: Vec<Slab>,
     /// The slot of each water particle.
-    pub water: Vec<u32>,
-    /// The slot of each wet boundary particle, in the order of [`super::Near::wet`].
-    pub wet: Vec<u32>,
+    pub fluid_slots: Vec<u32>,
+    /// The slot of each wet boundary particle, in the order of [`super::NeighbourLists::boundary_near_fluid`].
+    pub boundary_slots: Vec<u32>,
 }
 
-/// What the search for pairs needs to know of a cluster besides its particles.
-pub(super) struct Extent<const D: usize> {
+/// The extent of a cluster, for the search for pairs.
+pub(super) struct ClusterExtent<const D: usize> {
     pub(super) column: u32,
     /// Lowest and highest particle along the columns, m.
     pub(super) low: f64,
@@ -81,9 +81,10 @@ impl Clusters {
     }
 
     /// Memory of the clusters and their lists, B.
-    pub(super) fn bytes(&self) -> usize {
+    pub(super) fn memory_bytes(&self) -> usize {
         let slab = |slab: &Slab| 12 * slab.spans.len() + 4 * slab.index.len();
-        4 * (self.source.len() + self.water.len() + self.wet.len()) + self.slabs.iter().map(slab).sum::<usize>()
+        4 * (self.source.len() + self.fluid_slots.len() + self.boundary_slots.len())
+            + self.slabs.iter().map(slab).sum::<usize>()
     }
 
     /// Makes clusters and lists of the water and of those boundary particles that may be near it; returns which
@@ -93,17 +94,17 @@ impl Clusters {
         columns: &Columns<D>,
         (water_r, water): (&[Vector<D>], &Sorted),
         (skin_r, skin): (&[Vector<D>], &Sorted),
-        sizes: &Sizes,
+        sizes: &SearchSizes,
         level: Level,
     ) -> Vec<u32> {
         self.source.clear();
-        self.slabs.resize_with(columns.slabs(), Slab::default);
+        self.slabs.resize_with(columns.slab_count(), Slab::default);
         let mut extents = Vec::new();
         let (mut ranges, mut end) = ([vec![0..0; columns.len()], vec![0..0; columns.len()]], 0);
         for (s, slab) in self.slabs.iter_mut().enumerate() {
             slab.first = end;
             for (kind, (r, sorted)) in [(water_r, water), (skin_r, skin)].into_iter().enumerate() {
-                for column in columns.of_slab(s) {
+                for column in columns.columns_of_slab(s) {
                     let before = extents.len() as u32;
                     let particles = &sorted.order[sorted.start[column] as usize..sorted.start[column + 1] as usize];
                     cut(particles, r, columns.up, SPAN * sizes.width, column as u32, &mut self.source, &mut extents);
@@ -117,25 +118,25 @@ impl Clusters {
             slab.end = end;
         }
         let x = self.places(water_r, skin_r, &mut extents, sizes.inv_unit);
-        let touched = search::find(columns, &mut self.slabs, &self.source, &x, &extents, &ranges, sizes, level);
+        let touched = search::fill_lists(columns, &mut self.slabs, &self.source, &x, &extents, &ranges, sizes, level);
         self.maps(water_r.len(), &touched)
     }
 
-    /// The places of all slots in whole units, and the boxes around the clusters.
+    /// The positions of all slots in integer units, and the boxes around the clusters.
     fn places<const D: usize>(
         &self,
         water: &[Vector<D>],
         skin: &[Vector<D>],
-        extents: &mut [Extent<D>],
+        extents: &mut [ClusterExtent<D>],
         inv_unit: f64,
     ) -> Vec<[[i32; LANES]; D]> {
         let mut x = vec![[[0; LANES]; D]; self.len()];
-        let work = self.by_slab(&mut x, 1).into_par_iter().zip(self.by_slab(extents, 1));
+        let work = self.split_by_slab(&mut x, 1).into_par_iter().zip(self.split_by_slab(extents, 1));
         work.for_each(|((slab, x), (_, extents))| {
             for ((c, x), extent) in (slab.first..).zip(x).zip(extents) {
                 let source = &self.source[c * LANES..(c + 1) * LANES];
-                fill(x, source, if c < slab.middle { water } else { skin }, inv_unit);
-                let n = filled(source);
+                fill_positions(x, source, if c < slab.middle { water } else { skin }, inv_unit);
+                let n = occupied_lanes(source);
                 for (k, x) in x.iter().enumerate() {
                     let apart = |i: &i32| i.wrapping_sub(x[0]);
                     let low = x[..n].iter().map(apart).min().unwrap_or(0);
@@ -150,7 +151,7 @@ impl Clusters {
     }
 
     /// `items`, of which each cluster has `each`, slab by slab.
-    pub fn by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> {
+    pub fn split_by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> {
         let mut rest = items;
         let mut parts = Vec::with_capacity(self.slabs.len());
         for slab in &self.slabs {
@@ -161,15 +162,15 @@ impl Clusters {
         parts
     }
 
-    /// Notes which slot each particle has; returns the wet boundary particles in ascending order.
+    /// Records the slot of each particle; returns the boundary particles near water in ascending order.
     fn maps(&mut self, water: usize, touched: &[u8]) -> Vec<u32> {
-        self.water.clear();
-        self.water.resize(water, 0);
+        self.fluid_slots.clear();
+        self.fluid_slots.resize(water, 0);
         let mut wet = Vec::new();
         for slab in &self.slabs {
             for slot in slab.first * LANES..slab.middle * LANES {
                 if self.source[slot] != PAD {
-                    self.water[self.source[slot] as usize] = slot as u32;
+                    self.fluid_slots[self.source[slot] as usize] = slot as u32;
                 }
             }
             for slot in slab.middle * LANES..slab.end * LANES {
@@ -179,15 +180,15 @@ impl Clusters {
             }
         }
         wet.par_sort_unstable();
-        self.wet = wet.iter().map(|w| w.1).collect();
+        self.boundary_slots = wet.iter().map(|w| w.1).collect();
         wet.into_iter().map(|w| w.0).collect()
     }
 }
 
-/// The places of a cluster in whole units, pads far away.
+/// The positions of a cluster in integer units, pads far away.
 #[inline(always)]
-pub fn fill<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) {
-    let n = filled(source);
+pub fn fill_positions<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) {
+    let n = occupied_lanes(source);
     for (l, &i) in source[..n].iter().enumerate() {
         for (x, r) in x.iter_mut().zip(r[i as usize].iter()) {
             x[l] = to_integer(*r, inv_unit);
@@ -201,7 +202,7 @@ pub fn fill<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vect
 
 /// How many lanes of a cluster hold a particle: the first ones.
 #[inline(always)]
-pub fn filled(source: &[u32]) -> usize {
+pub fn occupied_lanes(source: &[u32]) -> usize {
     if source[LANES - 1] == PAD { source.iter().take_while(|&&i| i != PAD).count() } else { LANES }
 }
 
@@ -213,7 +214,7 @@ fn cut<const D: usize>(
     span: f64,
     column: u32,
     source: &mut Vec<u32>,
-    extents: &mut Vec<Extent<D>>,
+    extents: &mut Vec<ClusterExtent<D>>,
 ) {
     let height = |i: u32| r[i as usize][up];
     let mut rest = particles;
@@ -225,7 +226,7 @@ fn cut<const D: usize>(
         source.extend(std::iter::repeat_n(PAD, LANES - n));
         let high = these.iter().map(|&i| height(i)).fold(low, f64::max);
         let low = these.iter().map(|&i| height(i)).fold(low, f64::min);
-        extents.push(Extent { column, low, high, centre: [0; D], half: [0.0; D] });
+        extents.push(ClusterExtent { column, low, high, centre: [0; D], half: [0.0; D] });
         rest = others;
     }
 }

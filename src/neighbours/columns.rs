@@ -1,5 +1,5 @@
-//! Space cut into columns two particles wide, the columns gathered in slabs at least as thick as a neighbour is
-//! far, and particles sorted into them.
+//! Columns two particles wide, grouped into slabs at least as thick as the search radius, and particles sorted into
+//! them.
 //!
 //! Slabs follow one another along the longest axis of the water, columns stand along the second longest. A
 //! particle then finds its neighbours in its own slab and the two beside it, and a thread takes whole slabs.
@@ -14,7 +14,7 @@ use crate::{
 /// Most columns per particle: where particles lie far apart the columns are made wider.
 const COLUMNS_PER_PARTICLE: f64 = 4.0;
 
-/// The cut.
+/// The division of space into columns.
 #[derive(Clone, Debug)]
 pub(super) struct Columns<const D: usize> {
     /// Around all places within reach of the water.
@@ -47,7 +47,7 @@ pub(super) struct Sorted {
 }
 
 impl<const D: usize> Columns<D> {
-    /// Cuts the space that the water `r` (m) fills into columns at least `width` (m) wide, for neighbours
+    /// Divides the space of the water `r` (m) into columns at least `width` (m) wide, for neighbours
     /// within `reach` (m).
     pub(super) fn new(r: &[Vector<D>], width: f64, reach: f64) -> Self {
         let bounds =
@@ -82,23 +82,23 @@ impl<const D: usize> Columns<D> {
     }
 
     /// Number of slabs.
-    pub(super) fn slabs(&self) -> usize {
+    pub(super) fn slab_count(&self) -> usize {
         self.count[0].div_ceil(self.ring)
     }
 
     /// The slab of a column.
-    pub(super) fn slab(&self, column: usize) -> usize {
+    pub(super) fn slab_of_column(&self, column: usize) -> usize {
         column / (self.count[1] * self.ring)
     }
 
     /// The columns of a slab.
-    pub(super) fn of_slab(&self, slab: usize) -> std::ops::Range<usize> {
+    pub(super) fn columns_of_slab(&self, slab: usize) -> std::ops::Range<usize> {
         let columns = self.count[1] * self.ring;
         slab * columns..((slab + 1) * columns).min(self.len())
     }
 
     /// The columns in which a particle of `column` may have neighbours, in order.
-    pub(super) fn near(&self, column: usize) -> impl Iterator<Item = usize> + use<D> {
+    pub(super) fn neighbouring_columns(&self, column: usize) -> impl Iterator<Item = usize> + use<D> {
         let [along, across] = self.count;
         let (i, j, ring) = (column / across, column % across, self.ring);
         let rows = i.saturating_sub(ring)..=(i + ring).min(along - 1);
@@ -106,7 +106,7 @@ impl<const D: usize> Columns<D> {
     }
 
     /// The column that a place is in, or the nearest.
-    pub(super) fn column(&self, x: &Vector<D>) -> usize {
+    pub(super) fn column_at(&self, x: &Vector<D>) -> usize {
         let place = |axis: usize, count: usize| (((x[axis] - self.min[axis]) * self.inv_width) as usize).min(count - 1);
         let across = if D == 2 { 0 } else { place(self.across, self.count[1]) };
         place(self.along, self.count[0]) * self.count[1] + across
@@ -115,7 +115,7 @@ impl<const D: usize> Columns<D> {
     /// Sorts the particles `which` of those at `r` (m) by column, height and index.
     pub(super) fn sort(&self, r: &[Vector<D>], which: &[u32]) -> Sorted {
         let columns: Vec<u32> =
-            which.par_iter().with_min_len(PARTICLES_PER_TASK).map(|&i| self.column(&r[i as usize]) as u32).collect();
+            which.par_iter().with_min_len(PARTICLES_PER_TASK).map(|&i| self.column_at(&r[i as usize]) as u32).collect();
         let mut start = vec![0u32; self.len() + 1];
         for &c in &columns {
             start[c as usize + 1] += 1;
@@ -131,9 +131,9 @@ impl<const D: usize> Columns<D> {
             next[c as usize] += 1;
         }
         let mut rest = keys.as_mut_slice();
-        let mut slabs = Vec::with_capacity(self.slabs());
-        for slab in 0..self.slabs() {
-            let of = self.of_slab(slab);
+        let mut slabs = Vec::with_capacity(self.slab_count());
+        for slab in 0..self.slab_count() {
+            let of = self.columns_of_slab(slab);
             let (these, others) = rest.split_at_mut((start[of.end] - start[of.start]) as usize);
             slabs.push((of, these));
             rest = others;
@@ -148,11 +148,11 @@ impl<const D: usize> Columns<D> {
     }
 
     /// Which of the places `skin` may be within `reach` of the sorted water, in ascending order.
-    pub(super) fn near_water(&self, water: &[Vector<D>], sorted: &Sorted, skin: &[Vector<D>], reach: f64) -> Vec<u32> {
+    pub(super) fn near_fluid(&self, water: &[Vector<D>], sorted: &Sorted, skin: &[Vector<D>], reach: f64) -> Vec<u32> {
         let heights = self.heights(water, sorted, reach);
         let may = |x: &Vector<D>| {
             let within = |(low, high)| low <= x[self.up] && x[self.up] <= high;
-            self.around.contains(x) && heights[self.column(x)].is_some_and(within)
+            self.around.contains(x) && heights[self.column_at(x)].is_some_and(within)
         };
         (0..skin.len() as u32)
             .into_par_iter()
@@ -172,7 +172,7 @@ impl<const D: usize> Columns<D> {
             })
             .collect();
         (0..self.len())
-            .map(|c| self.near(c).filter_map(|c| own[c]).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))))
+            .map(|c| self.neighbouring_columns(c).filter_map(|c| own[c]).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))))
             .collect()
     }
 }

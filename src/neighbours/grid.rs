@@ -7,7 +7,7 @@ const CELLS_PER_PARTICLE: f64 = 64.0;
 
 /// Indices of particles by cell; the cells of a row along axis 0 follow one another.
 #[derive(Clone, Debug)]
-pub struct Grid<const D: usize> {
+pub struct CellGrid<const D: usize> {
     min: Vector<D>,
     inv_cell: f64,
     cells: [usize; D],
@@ -16,13 +16,13 @@ pub struct Grid<const D: usize> {
     order: Vec<u32>,
 }
 
-impl<const D: usize> Default for Grid<D> {
+impl<const D: usize> Default for CellGrid<D> {
     fn default() -> Self {
         Self { min: Vector::zeros(), inv_cell: 1.0, cells: [0; D], start: vec![0], order: Vec::new() }
     }
 }
 
-impl<const D: usize> Grid<D> {
+impl<const D: usize> CellGrid<D> {
     /// Sorts the finite positions `r` (m) into cells at least `cell` (m) wide; within a cell the order of `r` stays.
     pub fn new(r: &[Vector<D>], cell: f64) -> Self {
         if r.is_empty() {
@@ -62,7 +62,7 @@ impl<const D: usize> Grid<D> {
 
     /// Calls `visit` with the particles of each row of cells that meets `bounds`.
     #[inline]
-    pub fn rows<'a>(&'a self, bounds: &Bounds<D>, mut visit: impl FnMut(&'a [u32])) {
+    pub fn visit_rows<'a>(&'a self, bounds: &Bounds<D>, mut visit: impl FnMut(&'a [u32])) {
         if self.order.is_empty() {
             return;
         }

@@ -1,8 +1,8 @@
-//! Neighbour lists in chunks of particles, for the oracle: each made and read by one thread at a time.
+//! Neighbour lists of single particles for the reference, in chunks that one thread builds and reads.
 
 use rayon::prelude::*;
 
-use super::Grid;
+use super::CellGrid;
 use crate::math::{Bounds, Vector};
 
 /// Particles in a chunk: the unit of parallel work, fixed so that no result depends on the threads.
@@ -31,7 +31,7 @@ pub struct ParticleListChunk {
 impl ParticleListChunk {
     /// Neighbours of both kinds of the chunk's `i`-th particle.
     #[inline(always)]
-    pub fn of(&self, i: usize) -> (&[u32], &[u32]) {
+    pub fn neighbours_of(&self, i: usize) -> (&[u32], &[u32]) {
         let s = self.spans[i];
         (&self.index[s.start as usize..s.middle as usize], &self.index[s.middle as usize..s.end as usize])
     }
@@ -40,30 +40,30 @@ impl ParticleListChunk {
 /// The lists of all particles.
 #[derive(Clone, Debug, Default)]
 pub struct ParticleLists {
-    /// For water: first kind water, second kind skin.
-    pub water: Vec<ParticleListChunk>,
+    /// Of water particles: first kind water, second kind boundary.
+    pub fluid: Vec<ParticleListChunk>,
     /// For the wet boundary particles: first kind water; no second.
-    pub skin: Vec<ParticleListChunk>,
+    pub boundary: Vec<ParticleListChunk>,
 }
 
 impl ParticleLists {
     /// Memory of the lists, B.
-    pub(super) fn bytes(&self) -> usize {
+    pub(super) fn memory_bytes(&self) -> usize {
         let chunk = |chunk: &ParticleListChunk| 12 * chunk.spans.len() + 4 * chunk.index.len();
-        self.water.iter().chain(&self.skin).map(chunk).sum()
+        self.fluid.iter().chain(&self.boundary).map(chunk).sum()
     }
 
-    /// Lists all pairs nearer than `reach` (m) among water and of water with skin; returns which of the boundary
+    /// Lists all pairs of water with water and boundary nearer than `reach` (m); returns which of the boundary
     /// particles `near` have any.
     pub(super) fn build<const D: usize>(
         &mut self,
-        (water, water_r): (&Grid<D>, &[Vector<D>]),
-        (skin, skin_r): (&Grid<D>, &[Vector<D>]),
+        (water, water_r): (&CellGrid<D>, &[Vector<D>]),
+        (skin, skin_r): (&CellGrid<D>, &[Vector<D>]),
         near: &[u32],
         reach: f64,
     ) -> Vec<u32> {
-        self.water.resize_with(water_r.len().div_ceil(CHUNK), ParticleListChunk::default);
-        self.water.par_iter_mut().enumerate().for_each(|(c, chunk)| {
+        self.fluid.resize_with(water_r.len().div_ceil(CHUNK), ParticleListChunk::default);
+        self.fluid.par_iter_mut().enumerate().for_each(|(c, chunk)| {
             chunk.clear();
             for i in c * CHUNK..water_r.len().min((c + 1) * CHUNK) {
                 let start = chunk.index.len();
@@ -74,7 +74,7 @@ impl ParticleLists {
             }
         });
         let mut beside = vec![false; skin_r.len()];
-        for chunk in &self.water {
+        for chunk in &self.fluid {
             for span in &chunk.spans {
                 for &j in &chunk.index[span.middle as usize..span.end as usize] {
                     beside[j as usize] = true;
@@ -82,8 +82,8 @@ impl ParticleLists {
             }
         }
         let wet: Vec<u32> = near.iter().copied().filter(|&i| beside[i as usize]).collect();
-        self.skin.resize_with(wet.len().div_ceil(CHUNK), ParticleListChunk::default);
-        self.skin.par_iter_mut().zip(wet.par_chunks(CHUNK)).for_each(|(chunk, wet)| {
+        self.boundary.resize_with(wet.len().div_ceil(CHUNK), ParticleListChunk::default);
+        self.boundary.par_iter_mut().zip(wet.par_chunks(CHUNK)).for_each(|(chunk, wet)| {
             chunk.clear();
             for &i in wet {
                 let start = chunk.index.len();
@@ -102,9 +102,9 @@ impl ParticleListChunk {
     }
 
     /// Appends the particles of `grid` nearer than `reach` to `x`, without `this` one.
-    fn append<const D: usize>(&mut self, grid: &Grid<D>, r: &[Vector<D>], x: &Vector<D>, this: u32, reach: f64) {
+    fn append<const D: usize>(&mut self, grid: &CellGrid<D>, r: &[Vector<D>], x: &Vector<D>, this: u32, reach: f64) {
         let reach2 = reach * reach;
-        grid.rows(&Bounds { min: *x, max: *x }.grown(reach), |row| {
+        grid.visit_rows(&Bounds { min: *x, max: *x }.grown(reach), |row| {
             self.index.extend(row.iter().filter(|&&j| j != this && (r[j as usize] - x).norm_squared() < reach2));
         });
     }

@@ -1,8 +1,8 @@
-//! Neighbours: positions in, indices out.
+//! Neighbour lists: positions in, indices out.
 //!
-//! The lists look a margin further than the kernel's support and hold while nothing has moved by half the margin,
-//! so most steps search nothing. A sweep in lanes has lists of clusters ([`Clusters`]), the oracle of particles
-//! ([`Lists`]); both know which boundary particles are wet, and the others cost nothing until the next lists.
+//! The lists reach beyond the kernel support by a margin, and hold while no particle has moved by half the margin.
+//! Most steps therefore search nothing. The SIMD pair loop has lists of clusters ([`Clusters`]), the reference of particles
+//! ([`ParticleLists`]). Both record the boundary particles near water; the others cost nothing until the next rebuild.
 
 mod clusters;
 mod columns;
@@ -10,8 +10,8 @@ mod grid;
 mod lists;
 mod search;
 
-pub use clusters::{Clusters, FAR_POSITION, PAD, Slab, fill, filled};
-pub use grid::Grid;
+pub use clusters::{Clusters, FAR_POSITION, PAD, Slab, fill_positions, occupied_lanes};
+pub use grid::CellGrid;
 pub use lists::{CHUNK, ParticleListChunk, ParticleLists, Span};
 
 use std::sync::OnceLock;
@@ -22,38 +22,38 @@ use crate::{
 };
 use columns::Columns;
 
-/// How far beyond the support the lists look, over the support: new lists every ten steps or so.
+/// Margin of the lists beyond the support, over the support: they are rebuilt about every ten steps.
 const MARGIN: f64 = 0.1;
 
 /// Width of a column over dp.
 const WIDTH: f64 = 2.0;
 
-/// Whole units in the kernel's support: a difference of two places within it is exact in single precision.
+/// Integer units in the kernel support: a difference of two positions within it is exact in single precision.
 const UNITS: f64 = (1 << 24) as f64;
 
-/// Which particles meet which.
+/// The pairs.
 #[derive(Clone, Debug)]
-pub enum Pairs {
-    /// Each with its list of single neighbours.
+pub enum PairLists {
+    /// Lists of single neighbours.
     Lists(ParticleLists),
-    /// Each with its list of later clusters, searched with the instructions of that level.
+    /// Lists of later clusters, searched with those instructions.
     Clusters(Clusters, Level),
 }
 
-/// The neighbours of the water and of the skin, and the positions for which they were found.
+/// The neighbour lists of water and boundary particles, and the positions at which they were built.
 #[derive(Clone, Debug)]
 pub struct NeighbourLists<const D: usize> {
     /// Kernel support, m.
     support_radius: f64,
     /// Particle spacing, m.
     dp: f64,
-    pairs: Pairs,
+    pair_lists: PairLists,
     /// Boundary particles with water within the lists' reach, in ascending order.
     boundary_near_fluid: Vec<u32>,
     /// Positions of water and skin at the last build, m.
     positions_at_build: (Vec<Vector<D>>, Vec<Vector<D>>),
-    /// The same in grids, for those who ask what is near a place; made when one asks.
-    grids: OnceLock<(Grid<D>, Grid<D>)>,
+    /// The same in grids, for queries at a point; built at the first query.
+    grids: OnceLock<(CellGrid<D>, CellGrid<D>)>,
 }
 
 impl<const D: usize> NeighbourLists<D> {
@@ -61,13 +61,13 @@ impl<const D: usize> NeighbourLists<D> {
     /// the instructions of `level`, or else of single neighbours.
     pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self {
         let pairs = match level {
-            Some(level) => Pairs::Clusters(Clusters::default(), level),
-            None => Pairs::Lists(ParticleLists::default()),
+            Some(level) => PairLists::Clusters(Clusters::default(), level),
+            None => PairLists::Lists(ParticleLists::default()),
         };
         Self {
             support_radius: reach,
             dp,
-            pairs,
+            pair_lists: pairs,
             boundary_near_fluid: Vec::new(),
             positions_at_build: (Vec::new(), Vec::new()),
             grids: OnceLock::new(),
@@ -79,30 +79,30 @@ impl<const D: usize> NeighbourLists<D> {
         reach / UNITS
     }
 
-    /// Forgets the boundary particles `gone`, whose places the later ones take.
+    /// Removes the boundary particles `gone`; the later ones are renumbered.
     pub(crate) fn remove_boundary(&mut self, gone: std::ops::Range<usize>) {
         self.boundary_near_fluid.retain(|&i| !gone.contains(&(i as usize)));
         let later = self.boundary_near_fluid.partition_point(|&i| (i as usize) < gone.start);
         self.boundary_near_fluid[later..].iter_mut().for_each(|i| *i -= gone.len() as u32);
     }
 
-    /// How far the lists look beyond the support, m.
+    /// Margin of the lists beyond the support, m.
     pub fn margin(&self) -> f64 {
         MARGIN * self.support_radius
     }
 
     /// The order in which water at `r` lies along the columns: `order[new] = old`.
-    pub fn order(&self, r: &[Vector<D>]) -> Vec<u32> {
+    pub fn column_order(&self, r: &[Vector<D>]) -> Vec<u32> {
         let columns = Columns::new(r, WIDTH * self.dp, self.list_radius());
         columns.sort(r, &all_indices(r.len())).order
     }
 
-    /// How far the lists look, m.
+    /// Search radius of the lists, m.
     fn list_radius(&self) -> f64 {
         self.support_radius + self.margin()
     }
 
-    /// Makes the lists for these positions of water and skin.
+    /// Builds the lists for these positions of water and boundary particles.
     pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
         self.positions_at_build.0.clear();
         self.positions_at_build.0.extend_from_slice(water);
@@ -112,14 +112,14 @@ impl<const D: usize> NeighbourLists<D> {
         let look = self.list_radius();
         let columns = Columns::new(water, WIDTH * self.dp, look);
         let water_sorted = columns.sort(water, &all_indices(water.len()));
-        let near = columns.near_water(water, &water_sorted, skin, look);
-        self.boundary_near_fluid = match &mut self.pairs {
-            Pairs::Lists(lists) => {
-                let (grid, skin_grid) = (Grid::new(water, look), Grid::new(skin, look));
+        let near = columns.near_fluid(water, &water_sorted, skin, look);
+        self.boundary_near_fluid = match &mut self.pair_lists {
+            PairLists::Lists(lists) => {
+                let (grid, skin_grid) = (CellGrid::new(water, look), CellGrid::new(skin, look));
                 lists.build((&grid, water), (&skin_grid, skin), &near, look)
             }
-            Pairs::Clusters(clusters, level) => {
-                let sizes = search::Sizes {
+            PairLists::Clusters(clusters, level) => {
+                let sizes = search::SearchSizes {
                     reach: look,
                     width: WIDTH * self.dp,
                     inv_unit: 1.0 / Self::length_unit(self.support_radius),
@@ -135,9 +135,9 @@ impl<const D: usize> NeighbourLists<D> {
         &self.positions_at_build.0
     }
 
-    /// Which particles meet which.
-    pub fn pairs(&self) -> &Pairs {
-        &self.pairs
+    /// The pairs.
+    pub fn pair_lists(&self) -> &PairLists {
+        &self.pair_lists
     }
 
     /// The boundary particles that have water within the lists' reach, in ascending order.
@@ -145,48 +145,51 @@ impl<const D: usize> NeighbourLists<D> {
         &self.boundary_near_fluid
     }
 
-    /// Memory of the lists, and of the particles as the sweep packs them, B.
-    pub fn bytes(&self) -> usize {
-        match &self.pairs {
-            Pairs::Lists(lists) => {
-                lists.bytes() + (self.positions_at_build.0.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
+    /// Memory of the lists and of the packed particles, B.
+    pub fn memory_bytes(&self) -> usize {
+        match &self.pair_lists {
+            PairLists::Lists(lists) => {
+                lists.memory_bytes()
+                    + (self.positions_at_build.0.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
             }
             // Eight particles packed in single precision: places, velocities, four numbers; and two rows of sums.
-            Pairs::Clusters(clusters, _) => clusters.bytes() + clusters.source.len() * 4 * (2 * D + 4 + 2 * (D + 1)),
+            PairLists::Clusters(clusters, _) => {
+                clusters.memory_bytes() + clusters.source.len() * 4 * (2 * D + 4 + 2 * (D + 1))
+            }
         }
     }
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
-    pub fn water_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        self.around(&self.grids().0, x, visit);
+    pub fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+        self.visit_around(&self.grids().0, x, visit);
     }
 
     /// The indices of every water particle that may be within `bounds` (m), in order.
-    pub fn water_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
+    pub fn fluid_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
         let mut these = Vec::new();
         let bounds = bounds.grown(self.margin());
-        self.grids().0.rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
+        self.grids().0.visit_rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
         these.sort_unstable();
         these
     }
 
     /// Calls `visit` with the index of every boundary particle that may be within the support of `x`.
-    pub fn skin_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        self.around(&self.grids().1, x, visit);
+    pub fn visit_boundary_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+        self.visit_around(&self.grids().1, x, visit);
     }
 
-    fn grids(&self) -> &(Grid<D>, Grid<D>) {
+    fn grids(&self) -> &(CellGrid<D>, CellGrid<D>) {
         self.grids.get_or_init(|| {
             (
-                Grid::new(&self.positions_at_build.0, self.list_radius()),
-                Grid::new(&self.positions_at_build.1, self.list_radius()),
+                CellGrid::new(&self.positions_at_build.0, self.list_radius()),
+                CellGrid::new(&self.positions_at_build.1, self.list_radius()),
             )
         })
     }
 
-    fn around(&self, grid: &Grid<D>, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+    fn visit_around(&self, grid: &CellGrid<D>, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
         let box_ = Bounds { min: *x, max: *x }.grown(self.list_radius());
-        grid.rows(&box_, |row| row.iter().for_each(|&i| visit(i as usize)));
+        grid.visit_rows(&box_, |row| row.iter().for_each(|&i| visit(i as usize)));
     }
 }
 
@@ -194,8 +197,8 @@ fn all_indices(n: usize) -> Vec<u32> {
     (0..n as u32).collect()
 }
 
-/// `x` (m) in whole units of which `inv_unit` are a metre, modulo 2³²: differences of places near one another are
-/// exact wherever they are, up to 2⁵¹ units from the origin.
+/// `x` (m) in integer units of which `inv_unit` are a metre, modulo 2³²: differences of near positions are
+/// exact up to 2⁵¹ units from the origin.
 #[inline(always)]
 pub fn to_integer(x: f64, inv_unit: f64) -> i32 {
     // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.

@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use fearless_simd::{SimdBase, SimdCvtFloat, SimdMask};
 
 use super::{
-    clusters::{Extent, PAD, Ranges, Slab},
+    clusters::{ClusterExtent, PAD, Ranges, Slab},
     columns::Columns,
 };
 use crate::math::simd::{self, LANES, Level, Simd, SimdTask, f32x8, i32x8};
 
 /// The sizes that a search needs.
-pub(super) struct Sizes {
-    /// How far the lists look, m.
+pub(super) struct SearchSizes {
+    /// Search radius of the lists, m.
     pub(super) reach: f64,
     /// Width of a column, m.
     pub(super) width: f64,
@@ -20,13 +20,13 @@ pub(super) struct Sizes {
     pub(super) inv_unit: f64,
 }
 
-/// What all slabs share in a search.
+/// Data that all slabs share in a search.
 struct Search<'a, const D: usize> {
     columns: &'a Columns<D>,
     bounds: &'a [[usize; 3]],
     source: &'a [u32],
     x: &'a [[[i32; LANES]; D]],
-    extents: &'a [Extent<D>],
+    extents: &'a [ClusterExtent<D>],
     ranges: &'a [Ranges; 2],
     reach: f64,
     /// Square of the reach in units, with room for rounding.
@@ -35,14 +35,14 @@ struct Search<'a, const D: usize> {
 
 /// Fills the lists of all slabs; returns for each cluster which of its lanes have a pair.
 #[allow(clippy::too_many_arguments, reason = "one caller; a struct would be filled and emptied again")]
-pub(super) fn find<const D: usize>(
+pub(super) fn fill_lists<const D: usize>(
     columns: &Columns<D>,
     slabs: &mut [Slab],
     source: &[u32],
     x: &[[[i32; LANES]; D]],
-    extents: &[Extent<D>],
+    extents: &[ClusterExtent<D>],
     ranges: &[Ranges; 2],
-    sizes: &Sizes,
+    sizes: &SearchSizes,
     level: Level,
 ) -> Vec<u8> {
     let bounds: Vec<[usize; 3]> = slabs.iter().map(|s| [s.first, s.middle, s.end]).collect();
@@ -121,15 +121,17 @@ impl<const D: usize> Search<'_, D> {
     fn candidates(&self, s: usize, c: usize, later: &mut Vec<u32>) -> usize {
         let own = self.extents[c].column as usize;
         let is_water = c < self.bounds[s][1];
-        for column in self.columns.near(own) {
-            let fits = if is_water { column >= own } else { self.columns.slab(column) > s };
+        for column in self.columns.neighbouring_columns(own) {
+            let fits = if is_water { column >= own } else { self.columns.slab_of_column(column) > s };
             if fits {
                 self.column(c, &self.ranges[0][column], later);
             }
         }
         let middle = later.len();
         if is_water {
-            for column in self.columns.near(own).filter(|&column| self.columns.slab(column) >= s) {
+            for column in
+                self.columns.neighbouring_columns(own).filter(|&column| self.columns.slab_of_column(column) >= s)
+            {
                 self.column(c, &self.ranges[1][column], later);
             }
         }

@@ -8,8 +8,8 @@ use std::{
 
 use super::cannot_write;
 use crate::{
-    error::{Error, Kind, Result},
-    math::time_series::Series,
+    error::{Error, ErrorKind, Result},
+    math::time_series::TimeSeries,
 };
 
 /// A CSV file that grows by whole rows.
@@ -49,7 +49,7 @@ impl CsvTable {
         let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
         if kept.is_none_or(|k| !k.starts_with(header.as_bytes()) || !k.ends_with(b"\n")) {
             let what = format!("{} is shorter than at the checkpoint, or has other columns", path.display());
-            return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
+            return Err(Error::new(ErrorKind::Restart, what).help("start the run afresh with `pontoon run`"));
         }
         let file = OpenOptions::new().write(true).open(path).map_err(|e| cannot_write(path, &e))?;
         let mut table = Self { path: path.to_owned(), file, bytes, columns: columns.len(), first: None, last: None };
@@ -183,11 +183,11 @@ impl SeriesTable {
     }
 
     /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.
-    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<Series> {
+    pub fn series(&self, name: &str, from: f64, until: f64) -> Option<TimeSeries> {
         let column = &self.values[self.columns.iter().position(|column| column == name)?];
         let known = self.times.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
         let (t, x): (Vec<f64>, Vec<f64>) = known.unzip();
-        Series::new(t, x).ok()
+        TimeSeries::new(t, x).ok()
     }
 }
 
@@ -203,42 +203,5 @@ fn read_row(line: &str) -> Option<(f64, Vec<f64>)> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn columns() -> Vec<String> {
-        vec!["a_m".into(), "b_N".into()]
-    }
-
-    #[test]
-    fn a_resumed_table_is_the_unbroken_one_byte_for_byte() -> Result<()> {
-        let folder = std::env::temp_dir().join(format!("pontoon-table-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
-        let path = folder.join("x.csv");
-        let mut table = CsvTable::create(&path, &columns())?;
-        table.append_row(0.0, &[1.0 / 3.0, f64::NAN])?;
-        let bytes = table.bytes();
-        table.append_row(0.1, &[-1e-9, 2.0])?;
-        let whole = std::fs::read(&path).map_err(|e| Error::file(&path, e))?;
-        assert!(CsvTable::create(&path, &columns()).is_err(), "an existing table is never overwritten");
-
-        let mut again = CsvTable::resume(&path, &columns(), bytes)?;
-        let (t, row) = again.last_row().map(|(t, row)| (t, row.to_vec())).unwrap_or_default();
-        assert!(t == 0.0 && row[0] == 1.0 / 3.0 && row[1].is_nan(), "the same bits; got {t} {row:?}");
-        again.append_row(0.1, &[-1e-9, 2.0])?;
-        again.append_row(0.2, &[0.0, 0.0])?;
-        again.truncate(whole.len() as u64)?;
-        assert_eq!(again.last_row(), Some((0.1, &[-1e-9, 2.0][..])), "the row that is the last again");
-        assert!(
-            again.first_row().is_some_and(|row| row[0] == 1.0 / 3.0),
-            "the first row stays: {:?}",
-            again.first_row()
-        );
-        assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
-        assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
-        assert!(CsvTable::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");
-        assert!(CsvTable::resume(&path, &columns()[..1], bytes).is_err(), "other columns");
-        assert!(CsvTable::resume(&path, &columns(), bytes - 1).is_err(), "a row that is not whole");
-        std::fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
-    }
-}
+#[path = "../../tests/unit/output/csv.rs"]
+mod tests;

@@ -16,7 +16,7 @@ use vtkio::{
 
 use super::{cannot_write, sync_folder, write_atomically};
 use crate::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     math::Vector,
     particles::ParticlesView,
     plan::FramesPlan,
@@ -62,7 +62,7 @@ impl FrameWriter {
     pub fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> {
         let FramesPlan { fields, crop, .. } = words.clone();
         if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
-            let help = match nearest(word, FIELDS) {
+            let help = match nearest_name(word, FIELDS) {
                 Some(near) => format!("did you mean {near:?}?"),
                 None => format!("the fields are: {}", FIELDS.join(", ")),
             };
@@ -130,7 +130,7 @@ impl FrameWriter {
             let inside = |i: &usize| (0..D).all(|k| (min[k]..=max[k]).contains(&water.r[*i][k]));
             water.select((0..water.len()).filter(inside))
         });
-        let water = kept.as_ref().map_or(water, |kept| kept.first(kept.len()));
+        let water = kept.as_ref().map_or(water, |kept| kept.first_n(kept.len()));
         let [wet, dry] = piece_names(number);
         let mut bytes = self.write_piece(&wet, system, water, None)?;
         let mut owner = vec![0.0; system.boundary().len()];
@@ -174,8 +174,8 @@ impl FrameWriter {
             owner.map(|numbers| data_array("solid", ElementType::Scalars { num_comp: 1, lookup_table: None }, numbers)),
         );
         let path = self.folder.join("frames").join(name);
-        let bytes =
-            points_vtu(particles.r, fields).map_err(|e| Error::new(Kind::File, format!("{}: {e}", path.display())))?;
+        let bytes = points_vtu(particles.r, fields)
+            .map_err(|e| Error::new(ErrorKind::File, format!("{}: {e}", path.display())))?;
         write_atomically(&path, &bytes)?;
         Ok(bytes.len() as u64)
     }
@@ -263,37 +263,5 @@ pub(super) fn pvd_index(times: &[f64], folder: &str, parts: &[&str]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_cloud_reads_back_as_it_was() -> std::result::Result<(), vtkio::Error> {
-        for points in [vec![Vector::<2>::new(1.0, 2.0), Vector::<2>::new(3.0, 4.0)], vec![]] {
-            let numbers: Vec<f32> = points.iter().map(|x| x[0] as f32).collect();
-            let scalar = ElementType::Scalars { num_comp: 1, lookup_table: None };
-            let text = points_vtu(&points, vec![data_array("density", scalar, numbers)])?;
-            let Vtk { data: DataSet::UnstructuredGrid { pieces, .. }, .. } = Vtk::parse_xml(text.as_slice())? else {
-                return Err(vtkio::Error::UnknownFileExtension(None));
-            };
-            let piece = pieces.into_iter().next().ok_or(vtkio::Error::UnknownFileExtension(None))?;
-            let piece = piece.into_loaded_piece_data(None).map_err(|_| vtkio::Error::UnknownFileExtension(None))?;
-            assert_eq!(piece.points, IOBuffer::F32(to_3d(&points)));
-            assert_eq!(piece.cells.types.len(), points.len());
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn the_film_names_both_pictures_of_each_time() {
-        let text = pvd_index(&[0.0, 0.25], "frames", &PARTS);
-        assert!(text.contains("timestep=\"0.25\" part=\"1\" name=\"solids\" file=\"frames/solids_00001.vtu\""));
-        assert_eq!(text.matches("<DataSet ").count(), 4);
-    }
-
-    #[test]
-    fn an_unknown_field_names_the_nearest() {
-        let words = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None };
-        let error = FrameWriter::new(&std::env::temp_dir(), &words, vec![]).err();
-        assert_eq!(error.and_then(|e| e.help), Some("did you mean \"pressure\"?".into()));
-    }
-}
+#[path = "../../tests/unit/output/frame.rs"]
+mod tests;

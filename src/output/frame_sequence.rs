@@ -1,4 +1,4 @@
-//! Frames read back, as [`Frames`](super::Frames) wrote them.
+//! Frames read back, as [`Frames`](super::FrameWriter) wrote them.
 
 use std::path::{Path, PathBuf};
 

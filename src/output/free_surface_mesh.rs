@@ -12,7 +12,7 @@ use super::{
     frame_sequence::{FramePoints, FrameSequence},
     write_atomically,
 };
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// How far a particle is seen, dp.
 const REACH: f64 = 3.0;
@@ -46,7 +46,7 @@ impl FreeSurfaceMesh {
         let mut how = Parameters::new((0.5 * dp) as f32, (REACH * dp) as f32, (CUBE * dp) as f32);
         how.iso_surface_threshold = ISO_LEVEL;
         let made = reconstruct_surface::<i64, f32>(&points, &how)
-            .map_err(|why| Error::new(Kind::Usage, format!("no surface can be made: {why}")))?;
+            .map_err(|why| Error::new(ErrorKind::Usage, format!("no surface can be made: {why}")))?;
         let corners = made.mesh.vertices;
         let velocity = match &made.particle_densities {
             Some(densities) if !water.velocity.is_empty() => {
@@ -89,7 +89,7 @@ pub fn write(folder: &Path, shown: &FrameSequence, dp: f64) -> Result<usize> {
     for number in 0..shown.times().len() {
         let path = pictures.join(format!("surface_{number:05}.vtu"));
         let surface = FreeSurfaceMesh::reconstruct(&shown.water(number)?, dp)?;
-        let text = surface.to_vtu().map_err(|why| Error::new(Kind::File, format!("{}: {why}", path.display())))?;
+        let text = surface.to_vtu().map_err(|why| Error::new(ErrorKind::File, format!("{}: {why}", path.display())))?;
         write_atomically(&path, &text)?;
     }
     write_atomically(&folder.join("surface.pvd"), pvd_index(shown.times(), "surface", &["surface"]).as_bytes())?;
@@ -97,62 +97,5 @@ pub fn write(folder: &Path, shown: &FrameSequence, dp: f64) -> Result<usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Still water on a lattice, 20 × 20 × 10 dp, that turns about z.
-    fn block(dp: f32) -> FramePoints {
-        let mut water = FramePoints::default();
-        for n in 0..4000 {
-            let r = [n % 20, n / 20 % 20, n / 400].map(|i| (i as f32 + 0.5) * dp);
-            water.position.push(r);
-            water.velocity.push([-r[1], r[0], 0.0]);
-        }
-        water
-    }
-
-    #[test]
-    fn the_surface_of_a_block_encloses_its_volume_and_is_level() -> Result<()> {
-        let dp = 0.02_f32;
-        let surface = FreeSurfaceMesh::reconstruct(&block(dp), f64::from(dp))?;
-        let corner = |i: usize| Vector3::from(surface.corners[i]).cast::<f64>();
-        let cone = |t: &[usize; 3]| corner(t[0]).dot(&corner(t[1]).cross(&corner(t[2]))) / 6.0;
-        let volume: f64 = surface.triangles.iter().map(cone).sum();
-        let exact = 4000.0 * f64::from(dp).powi(3);
-        // Edges are rounded over a dp, which takes 1 % of a block of this size; a mesh inside out would have less than none.
-        assert!((volume / exact - 1.0).abs() < 0.02, "{volume} m³ for {exact}");
-        let top = surface.corners.iter().filter(|x| x[2] > 0.1 && (x[0] - 0.2).abs() < 0.1 && (x[1] - 0.2).abs() < 0.1);
-        // A twentieth of dp: what a wave of ten dp is measured with is not to come from the surface.
-        assert!(top.clone().count() > 50);
-        for x in top {
-            assert!((x[2] - 0.2).abs() < 0.05 * dp, "the surface lies at {} m", x[2]);
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn every_edge_has_two_triangles_and_every_corner_a_velocity() -> Result<()> {
-        let dp = 0.02_f32;
-        let surface = FreeSurfaceMesh::reconstruct(&block(dp), f64::from(dp))?;
-        let mut edges = std::collections::HashMap::new();
-        for t in &surface.triangles {
-            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-                *edges.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
-            }
-        }
-        assert!(edges.values().all(|sum| *sum == 0), "each edge is walked once either way");
-        for (x, v) in surface.corners.iter().zip(&surface.velocity) {
-            // The mean of water within 3 dp, all of it on one side.
-            let off = (v[0] + x[1]).hypot(v[1] - x[0]);
-            assert!(off < 1.5 * dp && v[2].abs() < 1e-6, "{v:?} m/s at {x:?}");
-        }
-        assert_eq!(surface.velocity.len(), surface.corners.len());
-        Ok(())
-    }
-
-    #[test]
-    fn no_water_has_no_surface() -> Result<()> {
-        assert_eq!(FreeSurfaceMesh::reconstruct(&FramePoints::default(), 0.1)?, FreeSurfaceMesh::default());
-        Ok(())
-    }
-}
+#[path = "../../tests/unit/output/free_surface_mesh.rs"]
+mod tests;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::write_atomically;
 use crate::{
     analysis::Verdict,
-    error::{Error, Fault, Kind, Result},
+    error::{Error, ErrorKind, Fault, Result},
     math::simd,
 };
 
@@ -142,7 +142,7 @@ impl Machine {
             os: std::env::consts::OS.into(),
             arch: std::env::consts::ARCH.into(),
             processor: model.unwrap_or_default().trim().into(),
-            instructions: simd::best_instruction_set().map(simd::name),
+            instructions: simd::best_instruction_set().map(simd::instruction_set_name),
             cpus: std::thread::available_parallelism().map_or(1, |n| n.get()),
         }
     }
@@ -178,11 +178,11 @@ impl Manifest {
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join("manifest.json");
         let text = std::fs::read_to_string(&path).map_err(|why| {
-            Error::new(Kind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))
+            Error::new(ErrorKind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))
                 .help("name the folder of a run, as in `pontoon resume runs/raft`")
         })?;
         serde_json::from_str(&text).map_err(|why| {
-            Error::new(Kind::Restart, format!("{} is damaged, or of another version: {why}", path.display()))
+            Error::new(ErrorKind::Restart, format!("{} is damaged, or of another version: {why}", path.display()))
                 .help("put a whole one in its place, or start the run afresh with `pontoon run`")
         })
     }

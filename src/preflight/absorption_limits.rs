@@ -31,14 +31,15 @@ impl<const D: usize> PreflightContext<'_, D> {
         let one = |solid: &crate::solid::Solid<D>| {
             let Role::Driven(motion) = &solid.spec.role else { return None };
             let own = motion.absorber()?;
-            let (stroke_m, speed_mps) = own.limits();
+            let (stroke_m, speed_mps) = own.motion_limits();
             Some(AbsorberSummary {
                 solid: solid.spec.name.clone(),
                 period_s: own.period(),
-                gauge_m: own.gauge(),
+                gauge_m: own.gauge_distance(),
                 stroke_m,
                 speed_mps,
-                sends_back: BESIDE.map(|share| (share * own.period(), own.reflection(share * own.period()))),
+                sends_back: BESIDE
+                    .map(|share| (share * own.period(), own.reflection_coefficient(share * own.period()))),
             })
         };
         self.solids().iter().filter_map(one).collect()

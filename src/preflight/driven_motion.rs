@@ -3,7 +3,7 @@
 use super::PreflightContext;
 use crate::{
     math::{Bounds, Vector},
-    solid::{Motion, Solid},
+    solid::{PrescribedMotion, Solid},
 };
 
 /// Times at which a driven solid is looked at.
@@ -28,13 +28,13 @@ impl<const D: usize> PreflightContext<'_, D> {
     pub(super) fn driven_stroke(
         &self,
         solid: &Solid<D>,
-        motion: &Motion<D>,
+        motion: &PrescribedMotion<D>,
         bounds: &Bounds<D>,
     ) -> Option<DrivenStroke<D>> {
         let mut mark = 0.5 * (bounds.min + bounds.max);
         mark[D - 1] = self.still_water.level;
         if let Some(law) = motion.wave() {
-            let (way, speed): (Vec<f64>, Vec<f64>) = law.course(self.end_time()).into_iter().unzip();
+            let (way, speed): (Vec<f64>, Vec<f64>) = law.sample_motion(self.end_time()).into_iter().unzip();
             let stroke = largest_stroke(&way).map_or_else(|| range(&way), |(stroke, _)| stroke);
             let speed = speed.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             return Some(DrivenStroke { direction: wave_direction(motion, &mark)?, stroke, half_period: None, speed });
@@ -60,8 +60,8 @@ impl<const D: usize> PreflightContext<'_, D> {
 }
 
 /// Where the waves of a paddle by name go, whose point at `mark` (m) is in the still level; level, a unit vector.
-pub(super) fn wave_direction<const D: usize>(motion: &Motion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
-    let mut way = *motion.headings(mark).first()?;
+pub(super) fn wave_direction<const D: usize>(motion: &PrescribedMotion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
+    let mut way = *motion.directions_at(mark).first()?;
     way[D - 1] = 0.0;
     way.try_normalize(0.0)
 }
@@ -99,18 +99,5 @@ fn largest_stroke(way: &[f64]) -> Option<(f64, usize)> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f64::consts::TAU;
-
-    use super::*;
-
-    #[test]
-    fn the_largest_swing_is_found_under_a_ramp_and_past_noise() {
-        let way = |t: f64| 0.1 * (t / 4.0).min(1.0) * (TAU * t).sin() + 1e-3 * (57.0 * t).sin();
-        let samples: Vec<f64> = (0..=1000).map(|i| way(0.01 * i as f64)).collect();
-        let (stroke, steps) = largest_stroke(&samples).unwrap_or((0.0, 0));
-        // Noise moves the turns by a few samples and the stroke by its own 2 per cent.
-        assert!((stroke - 0.2).abs() < 0.005 && (45..=55).contains(&steps), "{stroke} {steps}");
-        assert_eq!(largest_stroke(&[0.0, 0.1, 0.3, 0.4]), None, "it never turns");
-    }
-}
+#[path = "../../tests/unit/preflight/driven_motion.rs"]
+mod tests;

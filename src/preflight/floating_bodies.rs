@@ -3,7 +3,7 @@
 //!   heave  T = 2π √((m + m_a)/(ρ₀ g A)),    roll  T = 2π √(I/(m g GM))
 //!
 //! A: area of the waterplane, m_a: the water that heaves along. For m_a stands half of that of a flat plate of the same
-//! waterplane: ½ π ρ₀ (A/2)² in 2-D, ½ (8/3) ρ₀ a³ with π a² = A in 3-D [@newman1977], ch. 4; half, for there is water on one
+//! waterplane: ½ π ρ₀ (A/2)² in 2-D, ½ (8/3) ρ₀ a³ with π a² = A in 3-D @newman1977, ch. 4; half, for there is water on one
 //! side only. Nothing is added to I: a real roll is slower.
 //!
 //! With Δt = C h/c₀ an explicit exchange carries a body whose mass per wetted area is above ½ C ρ₀ h. A lighter one answers
@@ -121,14 +121,14 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     fn body(&self, solid: &Solid<D>, body: &FreeBody<D>, faces: &[SurfaceSample<D>]) -> BodySummary {
         let (model, shape, pose) = (self.system.model(), &solid.spec.shape, &solid.kinematics.pose);
-        let volume = shape.volume().volume;
+        let volume = shape.volume_properties().volume;
         let rest = self.equilibrium_pose(solid, body);
         let wet =
             |face: &&SurfaceSample<D>| rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
         let share = faces.iter().filter(wet).count() as f64 / faces.len().max(1) as f64;
-        let least = 0.5 * model.cfl * model.rho0 * model.h * share * shape.surface();
+        let least = 0.5 * model.cfl * model.rho0 * model.h * share * shape.surface_area();
         let thinnest_m = thinnest_part(shape, faces, model.dp).unwrap_or(model.dp);
-        let displaced = if self.g > 0.0 { shape.submerged(pose, self.still_water.level).0 } else { volume };
+        let displaced = if self.g > 0.0 { shape.submerged_volume(pose, self.still_water.level).0 } else { volume };
         BodySummary {
             name: solid.spec.name.clone(),
             mass_kg: body.mass,
@@ -162,7 +162,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
         self.system.constraints().joints.iter().any(|joint| {
             let [one, other] = joint.between;
-            (0..D).all(|mode| joint.locks(mode))
+            (0..D).all(|mode| joint.is_locked(mode))
                 && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
         })
     }
@@ -172,13 +172,14 @@ impl<const D: usize> PreflightContext<'_, D> {
         let (shape, level, rho0) = (&solid.spec.shape, self.still_water.level, self.system.model().rho0);
         let bounds = world_bounds(shape, pose);
         let step = 1e-4 * bounds.size()[D - 1];
-        let area = (shape.submerged(pose, level + step).0 - shape.submerged(pose, level - step).0) / (2.0 * step);
+        let area = (shape.submerged_volume(pose, level + step).0 - shape.submerged_volume(pose, level - step).0)
+            / (2.0 * step);
         let added = rho0 * if D == 2 { PI * area * area / 8.0 } else { 4.0 / 3.0 * (area / PI).powf(1.5) };
         let heave = |mass: f64| TAU * (mass / (rho0 * self.g * area)).sqrt();
         let tilts = self.tilts(solid, body, pose);
         let mut up = Vector::zeros();
         up[D - 1] = 1.0;
-        let lever = Bivector::torque(&(shape.submerged(pose, level).1 - pose.point(&body.centre)), &up).axial();
+        let lever = Bivector::torque(&(shape.submerged_volume(pose, level).1 - pose.point(&body.centre)), &up).axial();
         let along = |axis: &[f64]| lever.iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
         // A body of revolution on its side has no GM; nor does it list.
         let heel = |t: &Tilt| if t.gm_m > 0.0 { along(&t.axis) / t.gm_m } else { 0.0 };

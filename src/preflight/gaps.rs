@@ -70,7 +70,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             let local = other.kinematics.pose.local(&x);
             let d = around.contains(&x).then(|| other.spec.shape.signed_distance(&local)).filter(|d| *d < reach)?;
             let n = one.kinematics.pose.rotation * face.n;
-            let facing = n.dot(&(other.kinematics.pose.rotation * other.spec.shape.outward(&local, 0.05 * dp)));
+            let facing = n.dot(&(other.kinematics.pose.rotation * other.spec.shape.outward_normal(&local, 0.05 * dp)));
             Some((d, facing, Gap { width: d, middle: x + n * (0.5 * d) }))
         };
         let near: Vec<_> = self.surface_samples[a].iter().filter_map(near).collect();
@@ -114,7 +114,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     pub(super) fn is_wet(&self, x: &Vector<D>) -> bool {
         let mut near = false;
         if self.g == 0.0 || x[D - 1] <= self.still_water.level {
-            self.system.water_near(x, &mut |_, _, _| near = true);
+            self.system.visit_fluid_near(x, &mut |_, _, _| near = true);
         }
         near
     }

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::{
     scene::world_bounds,
-    solid::{Motion, Role, Solid},
-    wavemaker::{Paddle, Regime, Region, Train},
+    solid::{PrescribedMotion, Role, Solid},
+    wavemaker::{DepthRegime, LinearWave, Paddle, TheoryRegion},
 };
 
 /// Wave height over dp below which waves lose much of it on their way.
@@ -47,9 +47,9 @@ pub struct GeneratedWave {
     /// kd; absent of a solitary wave.
     pub kd: Option<f64>,
     /// How deep the water is for the wave; a solitary one is in shallow water.
-    pub regime: Regime,
+    pub regime: DepthRegime,
     /// Which theory holds, after the chart of Le Méhauté.
-    pub region: Region,
+    pub region: TheoryRegion,
     /// Speed of the crests, m/s.
     pub celerity_mps: f64,
     /// Speed of the wave's front and energy, m/s.
@@ -132,7 +132,11 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    fn generated_wave(&self, solid: &Solid<D>, motion: &Motion<D>) -> Option<(GeneratedWave, WavemakerSite<D>)> {
+    fn generated_wave(
+        &self,
+        solid: &Solid<D>,
+        motion: &PrescribedMotion<D>,
+    ) -> Option<(GeneratedWave, WavemakerSite<D>)> {
         let level = self.still_water.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
         // A tank that is shaken holds the water rather than pushing it.
@@ -149,7 +153,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         // A given motion makes waves to both sides: those count that go the longer way.
         let stand = if named.is_none() && self.water_end(&behind) > self.water_end(&stand) { behind } else { stand };
         let depth = named.map_or(self.still_water.depth, |wave| wave.depth());
-        let facts = named.map(|wave| wave.facts());
+        let facts = named.map(|wave| wave.properties());
         let kind = facts.map(|facts| facts.kind);
         let (order, ramp) = (facts.map_or(1, |f| f.order), named.map_or(0.0, |wave| wave.ramp_time()));
         let mut wave = match facts.and_then(|facts| facts.solitary) {
@@ -158,28 +162,30 @@ impl<const D: usize> PreflightContext<'_, D> {
                 height_m: own.height,
                 length_m: own.length(),
                 kd: None,
-                regime: Regime::Shallow,
-                region: Region::Solitary,
+                regime: DepthRegime::Shallow,
+                region: TheoryRegion::Solitary,
                 celerity_mps: own.celerity,
                 group_mps: own.celerity,
                 ..GeneratedWave::empty(&solid.spec.name)
             },
             None => {
-                let train = match facts.and_then(|facts| facts.train) {
+                let train = match facts.and_then(|facts| facts.linear_wave) {
                     Some(train) => train,
-                    None => Train::of(std::f64::consts::PI / swing.half_period?, depth, self.g),
+                    None => LinearWave::new(std::f64::consts::PI / swing.half_period?, depth, self.g),
                 };
-                let height =
-                    facts.map_or_else(|| swing.stroke * self.equivalent_paddle(motion).transfer(&train), |f| f.height);
+                let height = facts.map_or_else(
+                    || swing.stroke * self.equivalent_paddle(motion).transfer_function(&train),
+                    |f| f.height,
+                );
                 GeneratedWave {
                     period_s: Some(train.period()),
                     height_m: height,
-                    length_m: train.length(),
+                    length_m: train.wavelength(),
                     kd: Some(train.kd()),
-                    regime: train.regime(),
-                    region: train.region(height),
+                    regime: train.depth_regime(),
+                    region: train.theory_region(height),
                     celerity_mps: train.celerity(),
-                    group_mps: train.group(),
+                    group_mps: train.group_velocity(),
                     ..GeneratedWave::empty(&solid.spec.name)
                 }
             }
@@ -194,7 +200,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// The motion as a paddle's.
-    fn equivalent_paddle(&self, motion: &Motion<D>) -> Paddle {
+    fn equivalent_paddle(&self, motion: &PrescribedMotion<D>) -> Paddle {
         match motion.hinge_height() {
             Some(height) if height < self.still_water.level => Paddle::Flap { arm: self.still_water.level - height },
             _ => Paddle::Piston,
@@ -224,8 +230,8 @@ impl GeneratedWave {
             length_dp: 0.0,
             depth_m: 0.0,
             kd: None,
-            regime: Regime::Shallow,
-            region: Region::Airy,
+            regime: DepthRegime::Shallow,
+            region: TheoryRegion::Airy,
             celerity_mps: 0.0,
             group_mps: 0.0,
             paddle_mps: 0.0,

@@ -33,7 +33,7 @@ pub use sound_speed::{ExpectedSpeed, SoundSpeed, StepSizeLimits};
 use crate::{
     error::Error,
     plan::Plan,
-    scene::StillWaterLevel,
+    scene::{RenamedName, StillWaterLevel},
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
@@ -75,10 +75,15 @@ impl Finding {
         Self { severity: Severity::Note, topic, what, mend }
     }
 
+    /// That the scene writes a key or a value with an old name.
+    pub fn renamed_name(name: &RenamedName) -> Self {
+        Self::note("old_name", name.to_string(), format!("write  {}", name.new))
+    }
+
     /// That the timing stopped with `error` after so many `steps`.
     pub fn timing_stopped(error: &Error, steps: usize) -> Self {
         let mend = error.help.clone().unwrap_or_else(|| "see the other findings".into());
-        Self::warning("breaks_down", format!("after {steps} steps: {}", error.what), mend)
+        Self::warning("breaks_down", format!("after {steps} steps: {}", error.message), mend)
     }
 
     /// The finding in one line, for a record.
@@ -161,7 +166,7 @@ pub fn preflight<const D: usize>(
     let look = PreflightContext { system, plan, still_water: still, g, surface_samples: faces };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
-    let step = look.step_size_limits(sim.spring_limit(), &mut findings);
+    let step = look.step_size_limits(sim.spring_step_limit(), &mut findings);
     let size = look.size(&step, columns, overlapped, &mut findings);
     let gaps = look.gaps(&mut findings);
     let bodies = look.bodies(&gaps.touching, &mut findings);

@@ -6,7 +6,7 @@ use super::{
     Finding, PreflightContext, StepSizeLimits,
     rounding::{three_digits, two_digits_up},
 };
-use crate::{math::format::bytes, model::Gradient, output::frame::particle_bytes};
+use crate::{math::format::bytes, model::PressureGradient, output::frame::particle_bytes};
 
 /// Disk that frames may take without a word, B.
 const BUDGET: f64 = 10e9;
@@ -106,7 +106,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let particle = 2.0 * d * number + number + 4.0;
         let tensor = |needed: bool| if needed { 3.0 * d * d * number } else { 0.0 };
         let stress = tensor(system.model().viscosity.stress().is_some());
-        let forms = tensor(system.model().gradient == Gradient::Corrected);
+        let forms = tensor(system.model().gradient == PressureGradient::Corrected);
         let extra = if system.model().shift().is_some() { (2.0 * d + 2.0) * number } else { 0.0 };
         // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
         let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + forms + extra;
@@ -115,7 +115,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * particle_bytes(&frames.fields).1);
         // States to go back to: two, and what it takes to make one.
         let states = 3.0 * (fluid * (particle + d * number) + boundary * particle);
-        fluid * water + boundary * skin + states + system.list_bytes() as f64 + fluid.max(boundary) * picture
+        fluid * water + boundary * skin + states + system.neighbour_list_bytes() as f64 + fluid.max(boundary) * picture
     }
 
     fn disk(&self, step: &StepSizeLimits, columns: &[usize]) -> DiskUse {

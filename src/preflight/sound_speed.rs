@@ -8,7 +8,7 @@ use super::{
     surface_samples,
 };
 use crate::{
-    model::Scheme,
+    model::TimeScheme,
     solid::{Role, Solid},
     sph::boundary::Slip,
 };
@@ -157,14 +157,14 @@ impl<const D: usize> PreflightContext<'_, D> {
                 "springs or motors are so stiff that the run takes {} times as many steps",
                 three_digits(slower)
             );
-            // What swings so fast in the water is beyond the sound that particles carry: docs/stability.md.
+            // What swings so fast in the water is beyond the sound that particles carry: docs/explanation/stability.md.
             let damped =
                 "in water a spring whose body swings as fast has a hundredth of the critical damping, 2 √(k m)";
             let soft = two_digits_down(slower.powi(-2));
             let mend = format!("{soft} of the stiffness is soft enough; a rope costs no steps; {damped}");
             findings.push(Finding::warning("stiff_spring", what, mend));
         }
-        let passes = if matches!(model.scheme, Scheme::Verlet { .. }) { 1 } else { 2 };
+        let passes = if matches!(model.scheme, TimeScheme::Verlet { .. }) { 1 } else { 2 };
         let steps = (self.end_time() / dt_s).ceil();
         StepSizeLimits { dt_s, bound_by, sound_s, gravity_s, viscosity_s, springs_s, dt_max_s, steps, passes }
     }

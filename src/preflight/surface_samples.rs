@@ -27,13 +27,18 @@ pub fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<SurfaceSample<
 pub fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     let free =
         |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
-    shape.skin(dp, 1).into_iter().flat_map(|point| nearest_samples(shape, &point.r, dp)).filter(free).collect()
+    shape
+        .boundary_points(dp, 1)
+        .into_iter()
+        .flat_map(|point| nearest_samples(shape, &point.r, dp))
+        .filter(free)
+        .collect()
 }
 
 /// The face before `r` (m); both, where that is midway between two, as in a plate of a single row.
 fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     let face = |r: Vector<D>| {
-        let n = shape.outward(&r, 0.05 * dp);
+        let n = shape.outward_normal(&r, 0.05 * dp);
         SurfaceSample { x: r - n * shape.signed_distance(&r), n }
     };
     let own = face(*r);

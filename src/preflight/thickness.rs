@@ -109,26 +109,5 @@ impl<const D: usize> PreflightContext<'_, D> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn thin<const D: usize>(shape: Shape<D>) -> f64 {
-        thinnest_part(&shape, &surface_samples::of_shape(&shape, 0.01), 0.01).unwrap_or(f64::NAN)
-    }
-
-    #[test]
-    fn the_thinnest_part_is_the_plate_not_the_hull_and_not_the_tip() {
-        // To a twentieth of dp: the least step inward.
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 5e-4, "{a} is not {b}");
-        near(thin(Shape::Box { size: Vector::from([0.3, 0.04]) }), 0.04);
-        near(thin(Shape::<2>::Ball { radius: 0.1 }), 0.2);
-        near(thin(Shape::<3>::Cylinder { length: 0.3, radius: 0.05, axis: 2 }), 0.1);
-        // A joint is no face.
-        let half = Shape::Box { size: Vector::from([0.1, 0.2]) };
-        let at = |x: f64| Pose::at(Vector::from([x, 0.0]));
-        near(thin(Shape::Compound(vec![(at(0.0), half.clone()), (at(0.1), half)])), 0.2);
-        let hull = [[-0.05, -0.03], [0.05, -0.03], [0.08, 0.03], [-0.08, 0.03]].map(Vector::from).to_vec();
-        let boat = thin(Shape::Polygon { points: hull });
-        assert!((0.03..=0.0601).contains(&boat), "{boat}");
-    }
-}
+#[path = "../../tests/unit/preflight/thickness.rs"]
+mod tests;

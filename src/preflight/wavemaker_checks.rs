@@ -11,8 +11,8 @@ use super::{
 use crate::{
     plan::StatisticKind,
     scene::world_bounds,
-    solid::{Motion, Solid},
-    wavemaker::{self, FAST, Facts, Paddle, Region, Train},
+    solid::{PrescribedMotion, Solid},
+    wavemaker::{self, LINEAR_SPEED_RATIO_MAX, LinearWave, Paddle, TheoryRegion, WaveProperties},
 };
 
 /// Angle (rad) of a flap beyond which small angles are no good theory: 30°.
@@ -33,8 +33,8 @@ impl<const D: usize> PreflightContext<'_, D> {
     pub(super) fn check_site(
         &self,
         solid: &Solid<D>,
-        motion: &Motion<D>,
-        law: &wavemaker::Wave,
+        motion: &PrescribedMotion<D>,
+        law: &wavemaker::PaddleMotion,
         findings: &mut Vec<Finding>,
     ) {
         let (name, level) = (&solid.spec.name, self.still_water.level);
@@ -48,7 +48,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             let what = format!(
                 "\"{name}\" ends at {top_m} m, and the water stands at {level_m} m: it makes no wave of theory"
             );
-            let higher = two_digits_up(self.crest(law.facts()).max(level + self.dp()) - top);
+            let higher = two_digits_up(self.crest(law.properties()).max(level + self.dp()) - top);
             findings.push(Finding::warning(
                 "drowned_paddle",
                 what,
@@ -79,13 +79,13 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// About how high (m) the crests of a wave reach at the paddle.
-    fn crest(&self, facts: &Facts) -> f64 {
+    fn crest(&self, facts: &WaveProperties) -> f64 {
         self.still_water.level + if facts.solitary.is_some() { 1.0 } else { 0.75 } * facts.height
     }
 
     /// A paddle that goes too fast for theory, or is too slow to come to its motion.
-    pub(super) fn check_speed(&self, wave: &GeneratedWave, law: &wavemaker::Wave, findings: &mut Vec<Finding>) {
-        let (name, most) = (&wave.solid, FAST * wave.celerity_mps);
+    pub(super) fn check_speed(&self, wave: &GeneratedWave, law: &wavemaker::PaddleMotion, findings: &mut Vec<Finding>) {
+        let (name, most) = (&wave.solid, LINEAR_SPEED_RATIO_MAX * wave.celerity_mps);
         if wave.paddle_mps > most * (1.0 + 1e-9) {
             let what = format!(
                 "\"{name}\" goes at up to {} m/s, more than half as fast as its crests, {} m/s: theory, by which the \
@@ -94,7 +94,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                 three_digits(wave.celerity_mps)
             );
             let share = most / wave.paddle_mps;
-            let mend = match law.facts().kind {
+            let mend = match law.properties().kind {
                 "regular" => format!("height = {}", two_digits_down(share * wave.height_m)),
                 _ => format!("{} of the height does not", two_digits_down(share)),
             };
@@ -114,10 +114,10 @@ impl<const D: usize> PreflightContext<'_, D> {
         &self,
         wave: &GeneratedWave,
         stand: &WavemakerSite<D>,
-        law: &wavemaker::Wave,
+        law: &wavemaker::PaddleMotion,
         findings: &mut Vec<Finding>,
     ) {
-        let Some((distance, time)) = law.facts().focus else { return };
+        let Some((distance, time)) = law.properties().focus else { return };
         let (name, end) = (&wave.solid, self.water_end(stand));
         let least = distance / wave.group_mps + wave.ramp_s;
         if distance > end {
@@ -156,9 +156,9 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// How two terms of Stokes are enough for a regular wave.
-    fn stokes_validity(&self, train: &Train, height: f64) -> String {
-        let lower = train.highest_of_stokes();
-        let shorter = train.longest_of_stokes(height).filter(|_| lower < LEAST * self.dp());
+    fn stokes_validity(&self, train: &LinearWave, height: f64) -> String {
+        let lower = train.stokes_height_max();
+        let shorter = train.stokes_period_max(height).filter(|_| lower < LEAST * self.dp());
         let shorter = shorter.map(|period| {
             format!(
                 "the period is long for waves of that height in this depth: period = {}, or ",
@@ -173,13 +173,14 @@ impl<const D: usize> PreflightContext<'_, D> {
         &self,
         wave: &GeneratedWave,
         solid: &Solid<D>,
-        law: &wavemaker::Wave,
+        law: &wavemaker::PaddleMotion,
         findings: &mut Vec<Finding>,
     ) {
-        let (name, facts) = (&wave.solid, law.facts());
+        let (name, facts) = (&wave.solid, law.properties());
         let sea = !matches!(facts.kind, "regular" | "solitary");
-        if let Some(train) = facts.train.filter(|_| sea) {
-            let (most, high) = (train.highest(), if facts.kind == "focused" { 0.8 } else { HIGHEST } * wave.height_m);
+        if let Some(train) = facts.linear_wave.filter(|_| sea) {
+            let (most, high) =
+                (train.breaking_height(), if facts.kind == "focused" { 0.8 } else { HIGHEST } * wave.height_m);
             if high > most {
                 let what = format!(
                     "the highest waves of \"{name}\", about {} m, will break: {} m is the most at their period",
@@ -190,7 +191,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                 findings.push(Finding::note("breaking_waves", what, mend));
             }
         }
-        if let Some(train) = facts.train.filter(|_| wave.region == Region::Cnoidal && !sea) {
+        if let Some(train) = facts.linear_wave.filter(|_| wave.region == TheoryRegion::Cnoidal && !sea) {
             let what = format!(
                 "the wave of \"{name}\" is cnoidal, H L²/d³ = {}: Stokes' theory, by which the paddle moves, holds to 26",
                 three_digits(train.ursell(wave.height_m))

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Probe, ProbeConfig, ProbeDefinition, ProbeScope, axes, find_solid, require_true};
-use crate::{error::Result, math::Vector, simulation::Simulation, solid::Contact, system::System};
+use crate::{error::Result, math::Vector, simulation::Simulation, solid::ContactForce, system::System};
 
 /// Example of a list of contacts.
 pub(super) const LIST_EXAMPLE: &str = "contacts = true";
@@ -103,7 +103,7 @@ impl ContactList {
     /// The names of the two solids of each pair and its numbers, in the order of the scene.
     pub fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> {
         let solids = sim.system().solids();
-        let row = |contact: Contact<D>| {
+        let row = |contact: ContactForce<D>| {
             let names = contact.between.map(|i| solids[i].spec.name.as_str());
             (names, contact_values(&contact, &contact.loads[1].force))
         };
@@ -120,6 +120,6 @@ fn columns<const D: usize>() -> impl Iterator<Item = String> {
 }
 
 /// Values of a contact with `force` (N) on one of the two.
-fn contact_values<const D: usize>(contact: &Contact<D>, force: &Vector<D>) -> Vec<f64> {
-    [contact.pressing].into_iter().chain(force.iter().copied()).chain(contact.at.iter().copied()).collect()
+fn contact_values<const D: usize>(contact: &ContactForce<D>, force: &Vector<D>) -> Vec<f64> {
+    [contact.normal_force].into_iter().chain(force.iter().copied()).chain(contact.at.iter().copied()).collect()
 }

@@ -158,7 +158,7 @@ impl<const D: usize> ElevationProbe<D> {
 
     /// Heights (m) of the measured surfaces, the level first.
     fn surface_heights(&self, system: &System<D>) -> Vec<f64> {
-        let mut found = system.surfaces(&self.at);
+        let mut found = system.surface_heights(&self.at);
         let all: Vec<f64> = match self.surface {
             GaugeSurface::Highest => found.next().into_iter().collect(),
             GaugeSurface::Lowest => found.last().into_iter().collect(),

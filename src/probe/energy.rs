@@ -86,7 +86,7 @@ impl<const D: usize> Probe<D> for EnergyProbe {
 
 /// −Σ m g·r of the water (J). Along a periodic axis there is no height, and gravity does work.
 fn water_potential<const D: usize>(system: &System<D>) -> f64 {
-    let g = system.height_gravity();
+    let g = system.non_periodic_gravity();
     -system.particle_mass() * system.fluid().r.iter().map(|r| g.dot(r)).sum::<f64>()
 }
 

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Probe, ProbeDefinition, ProbeLocation, ProbeScope};
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::Vector,
     simulation::Simulation,
     system::System,
@@ -101,7 +101,7 @@ impl<const D: usize> FlowProbe<D> {
             let sides = (0..D).filter(|i| *i != flat[0]).map(|i| (axis(i), 0.5 * across[i].abs()));
             return Ok(Self { middle, normal: axis(flat[0]), sides: sides.collect() });
         }
-        Err(Error::new(Kind::Usage, if D == 2 { "a section of no length" } else { NO_RECTANGLE }))
+        Err(Error::new(ErrorKind::Usage, if D == 2 { "a section of no length" } else { NO_RECTANGLE }))
     }
 
     /// The flow now.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Probe, ProbeDefinition, ProbeScope, axes};
 use crate::{
     error::Result,
-    simulation::{Simulation, find},
+    simulation::{Simulation, find_by_name},
     solid::JointKind,
     system::System,
 };
@@ -57,8 +57,8 @@ impl JointProbe {
     /// `Scene` if there is no such joint.
     pub fn new<const D: usize>(system: &System<D>, joint: &str) -> Result<Self> {
         let joints = &system.constraints().joints;
-        let joint = find("joint", joint, joints.iter().map(|joint| joint.name.as_str()))?;
-        let free = joints[joint].free.iter().map(|free| free.mode).collect();
+        let joint = find_by_name("joint", joint, joints.iter().map(|joint| joint.name.as_str()))?;
+        let free = joints[joint].free_modes.iter().map(|free| free.mode).collect();
         Ok(Self { joint, kind: joints[joint].kind, free })
     }
 }
@@ -101,19 +101,19 @@ impl<const D: usize> Probe<D> for JointProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let now = sim.joint(self.joint);
+        let now = sim.joint_reading(self.joint);
         let mut row: Vec<f64> = now.force.iter().copied().chain(now.torque.axial()).collect();
         let position = match self.kind {
             JointKind::Hinge => now.position.to_degrees(),
             JointKind::Slider => now.position,
             JointKind::Generic => {
                 let turned = |(x, &mode): (f64, &usize)| if mode < D { x } else { x.to_degrees() };
-                row.extend(sim.coordinates(self.joint).into_iter().zip(&self.free).map(turned));
+                row.extend(sim.joint_coordinates(self.joint).into_iter().zip(&self.free).map(turned));
                 return row;
             }
             JointKind::Fixed | JointKind::Ball | JointKind::Tow => return row,
         };
-        row.extend([position, now.rate, now.motor, now.power(), now.absorbed]);
+        row.extend([position, now.rate, now.motor_force, now.absorbed_power(), now.absorbed_energy]);
         row
     }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Probe, ProbeDefinition, ProbeScope};
 use crate::{
     error::Result,
-    simulation::{Simulation, find},
+    simulation::{Simulation, find_by_name},
     system::System,
 };
 
@@ -80,7 +80,7 @@ impl LineProbe {
     /// `Scene` if there is no such spring.
     pub fn spring<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
         let springs = system.constraints().springs.iter();
-        Ok(Self { line: find("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
+        Ok(Self { line: find_by_name("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
     }
 
     /// The probe of the rope called `name`.
@@ -89,7 +89,7 @@ impl LineProbe {
     /// `Scene` if there is no such rope.
     pub fn rope<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
         let ropes = system.constraints().ropes.iter();
-        Ok(Self { line: find("rope", name, ropes.map(|rope| rope.name.as_str()))?, rope: true })
+        Ok(Self { line: find_by_name("rope", name, ropes.map(|rope| rope.name.as_str()))?, rope: true })
     }
 }
 
@@ -99,7 +99,7 @@ impl<const D: usize> Probe<D> for LineProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let now = if self.rope { sim.rope(self.line) } else { sim.spring(self.line) };
+        let now = if self.rope { sim.rope_reading(self.line) } else { sim.spring_reading(self.line) };
         vec![now.length, now.tension]
     }
 }

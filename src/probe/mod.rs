@@ -46,10 +46,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::{BoxConfig, Vector},
     model::Dimension,
-    simulation::{Simulation, find},
+    simulation::{Simulation, find_by_name},
     solid::Dim,
     system::System,
 };
@@ -473,7 +473,7 @@ const fn axes<const D: usize>() -> &'static [&'static str] {
 /// # Errors
 /// `Scene` if there is none: says the nearest name, or all of them.
 pub fn find_solid<const D: usize>(system: &System<D>, name: &str) -> Result<usize> {
-    find("solid", name, system.solids().iter().map(|s| s.spec.name.as_str()))
+    find_by_name("solid", name, system.solids().iter().map(|s| s.spec.name.as_str()))
 }
 
 /// A point of `D` components from as many numbers.
@@ -483,7 +483,7 @@ pub fn find_solid<const D: usize>(system: &System<D>, name: &str) -> Result<usiz
 fn point<const D: usize>(at: &[f64], count: usize) -> Result<Vector<D>> {
     if at.len() != count || at.iter().any(|x| !x.is_finite()) {
         let what = format!("a probe's place needs {count} finite coordinates (m); got {at:?}");
-        return Err(Error::new(Kind::Usage, what));
+        return Err(Error::new(ErrorKind::Usage, what));
     }
     let mut x = Vector::<D>::zeros();
     for (xi, &a) in x.iter_mut().zip(at) {
@@ -502,7 +502,7 @@ fn interpolate<const D: usize, const C: usize>(
 ) -> Option<[f64; C]> {
     let (mass, rho) = (system.particle_mass(), system.fluid().rho);
     let (mut sum, mut weight) = ([0.0; C], 0.0);
-    system.water_near(x, &mut |b, r, w| {
+    system.visit_fluid_near(x, &mut |b, r, w| {
         let share = mass / rho[b] * w;
         weight += share;
         for (s, q) in sum.iter_mut().zip(quantity(b, r)) {

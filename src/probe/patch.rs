@@ -86,7 +86,7 @@ impl<const D: usize> PatchProbe<D> {
         for r in &system.boundary().r[of.boundary.clone()] {
             let local = pose.local(r);
             let depth = -shape.signed_distance(&local);
-            let foot = local + shape.outward(&local, 0.05 * dp) * depth;
+            let foot = local + shape.outward_normal(&local, 0.05 * dp) * depth;
             let chosen = near.contains(r) && inside.contains(&pose.point(&foot));
             behind.push(chosen);
             if chosen && depth < 0.75 * dp {
@@ -112,7 +112,7 @@ impl<const D: usize> Probe<D> for PatchProbe<D> {
         let system = sim.system();
         let solid = &system.solids()[self.solid];
         let mut force = Vector::<D>::zeros();
-        system.forces_on(self.solid, &mut |i, f| {
+        system.visit_boundary_forces(self.solid, &mut |i, f| {
             if self.behind[i - solid.boundary.start] {
                 force += f;
             }

@@ -1,6 +1,5 @@
 //! Pressure of the water at a point: P(x) = Σ V_b [P_b (ρ₀/ρ_b)² + ρ₀ g·(x − r_b)] W / Σ V_b W, with the pressure that acts in the
-//! pair force ([`State::acting`](crate::sph::equation_of_state::State::acting)). The term ρ₀ g·(x − r_b) is hydrostatic, so the
-//! point may lie on a wall.
+//! pair force ([`System::lattice_pressure`]). The term ρ₀ g·(x − r_b) is hydrostatic, so the point may lie on a wall.
 
 use serde::{Deserialize, Serialize};
 

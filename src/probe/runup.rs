@@ -88,13 +88,13 @@ fn highest_waterline<const D: usize>(system: &System<D>, solid: usize) -> Vector
         return highest;
     }
     let local = pose.local(&highest);
-    pose.point(&(local - shape.outward(&local, 0.05 * dp) * shape.signed_distance(&local)))
+    pose.point(&(local - shape.outward_normal(&local, 0.05 * dp) * shape.signed_distance(&local)))
 }
 
 /// Whether the water at `x` (m) is no more than a drop.
 fn is_isolated_drop<const D: usize>(system: &System<D>, x: &Vector<D>) -> bool {
     let (mass, rho) = (system.particle_mass(), system.fluid().rho);
     let mut filled = 0.0;
-    system.water_near(x, &mut |b, _, w| filled += mass / rho[b] * w);
+    system.visit_fluid_near(x, &mut |b, _, w| filled += mass / rho[b] * w);
     filled < MIN_FILLED
 }

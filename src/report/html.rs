@@ -1,6 +1,6 @@
 //! Words of HTML, and numbers as they are set in print. For all pages of the program.
 
-pub use crate::math::format::{bytes, duration, name_without_unit, unit};
+pub use crate::math::format::{bytes, column_label, duration, unit};
 
 /// `text` with the signs that HTML means otherwise written out.
 pub fn escape(text: &str) -> String {

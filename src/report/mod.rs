@@ -32,7 +32,7 @@ use std::{
 };
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{require_parent_folder, write_atomically},
 };
 
@@ -68,10 +68,10 @@ pub fn write(folder: &Path) -> Result<Page> {
 /// Writes a page of the runs in `folders`, laid over one another, to `out`.
 ///
 /// # Errors
-/// `Usage` if there are fewer than two; else as [`write`].
+/// `Usage` if there are fewer than two; else as [`write()`].
 pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
     if folders.len() < 2 {
-        return Err(Error::new(Kind::Usage, "a comparison needs two runs or more")
+        return Err(Error::new(ErrorKind::Usage, "a comparison needs two runs or more")
             .help("name their folders, as in `pontoon compare runs/raft runs/raft-2`"));
     }
     require_parent_folder(out)?;

@@ -13,7 +13,7 @@ use super::{
     text::{Anchor, TextRenderer},
 };
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{FramePoints, FrameSequence, require_parent_folder, write_atomically},
 };
 
@@ -131,7 +131,7 @@ pub fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> 
 
 /// The frame of `run` nearest to time `t` (s).
 fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
-    let refused = |what: &str| Error::new(Kind::Usage, format!("{}: {what}", run.folder.display()));
+    let refused = |what: &str| Error::new(ErrorKind::Usage, format!("{}: {what}", run.folder.display()));
     let film = run.frames.as_ref().ok_or_else(|| {
         refused("the run has no frames")
             .help("write [frames] in its scene, with every = … in seconds, and run it again")
@@ -251,7 +251,7 @@ fn render(names: &[&str], rows: &[Vec<Panel>], shot: &PictureOptions, range: [f6
     let height = head + step * rows.len() as f32 + foot;
     let sheet = (height.is_finite() && height < 32_000.0).then(|| Pixmap::new(width as u32, height.ceil() as u32));
     let Some(mut on) = sheet.flatten() else {
-        return Err(Error::new(Kind::Usage, format!("a picture {width} pixels wide would be {height} high"))
+        return Err(Error::new(ErrorKind::Usage, format!("a picture {width} pixels wide would be {height} high"))
             .help("ask for fewer times, or a smaller --width"));
     };
     on.fill(Color::WHITE);

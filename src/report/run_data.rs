@@ -76,7 +76,7 @@ pub struct DrawnSolid {
     pub lines: Vec<Outline>,
     /// Where others touch it, if that is not at its faces, in its own frame.
     pub contact_skin: ContactSkinOutline,
-    /// Where that frame is at the start.
+    /// Pose of that frame at the start.
     pub start: Placement,
 }
 
@@ -103,7 +103,7 @@ impl RunData {
         let manifest = Manifest::read(folder)?;
         let file = run::scene_file(&folder.join("scene"));
         let mut remarks = Vec::new();
-        let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.what));
+        let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.message));
         let sets: Vec<(String, String)> = manifest.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
         let set = Scene::read(&file, &sets).and_then(|scene| SceneGeometry::from_scene(&scene));
         let set = set.map_err(|why| noted("bodies and gauges are not drawn, for the scene cannot be built", why)).ok();
@@ -199,7 +199,7 @@ impl SceneGeometry {
             },
             lines: outlines(&spec.shape),
             contact_skin: ContactSkinOutline::of_shape(&spec.shape, spec.contact_skin, scene.dp),
-            start: Placement::from_pose(&spec.start().pose),
+            start: Placement::from_pose(&spec.initial_kinematics().pose),
         });
         let solids = solids.collect();
         let (down, beside) =
@@ -238,6 +238,6 @@ impl ProbeTable {
         let SeriesTable { columns, times, values } = SeriesTable::read(&series.join(format!("{name}.csv")))?;
         let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));
         let what = probe.map_or("table", |probe| probe.kind.label());
-        Ok(Self { name: name.into(), what, columns, times: times, values: values })
+        Ok(Self { name: name.into(), what, columns, times, values })
     }
 }

@@ -3,14 +3,14 @@
 use super::{html, run_data::ProbeTable};
 use crate::{
     analysis::{moments, zero_crossing_waves},
-    math::time_series::Series,
+    math::time_series::TimeSeries,
     probe::relative_residual,
 };
 
 /// The numbers of the column `x` over `t` (s) as a series; none if there are less than two.
-pub(super) fn column_series(t: &[f64], x: &[f64]) -> Option<Series> {
+pub(super) fn column_series(t: &[f64], x: &[f64]) -> Option<TimeSeries> {
     let (t, x): (Vec<f64>, Vec<f64>) = t.iter().zip(x).filter(|(_, x)| x.is_finite()).unzip();
-    Series::new(t, x).ok()
+    TimeSeries::new(t, x).ok()
 }
 
 /// The figures of all columns of `tables`, a row for each, but for entries of a budget or a balance that are 0 throughout; the first
@@ -28,7 +28,7 @@ pub fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
             }
             let Some(series) = column_series(&table.times, x) else { continue };
             let f = moments(&series);
-            let mut row = vec![format!("{} · {}", table.name, html::name_without_unit(name)), html::unit(name).into()];
+            let mut row = vec![format!("{} · {}", table.name, html::column_label(name)), html::unit(name).into()];
             row.extend([digits(f.min.0), time(f.min.1), digits(f.max.0), time(f.max.1)]);
             row.extend([digits(f.mean), digits(f.standard_deviation), digits(f.last)]);
             row.extend(zero_crossing_waves(&series).map_or_else(
@@ -60,11 +60,11 @@ pub fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> 
     let heads = head.iter().map(|h| if *h == "part" { h.to_string() } else { format!("{h}, {unit}") });
     let mut rows = vec![heads.collect::<Vec<String>>()];
     let digits = html::four_digits;
-    let find = |part: &str| table.columns.iter().position(|name| html::name_without_unit(name) == part);
+    let find = |part: &str| table.columns.iter().position(|name| html::column_label(name) == part);
     for (name, x) in table.columns.iter().zip(&table.values) {
         let (first, f) = (*x.first()?, moments(&column_series(&table.times, x)?));
         let cells = [first, f.last, f.last - first, f.min.0, f.max.0];
-        rows.push(std::iter::once(html::name_without_unit(name)).chain(cells.map(digits)).collect());
+        rows.push(std::iter::once(html::column_label(name)).chain(cells.map(digits)).collect());
     }
     let total = &table.values[find("total")?];
     let change = total.last()? - total.first()?;
@@ -93,7 +93,7 @@ pub fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> 
     let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
     let row = |(name, energy): (&String, &f64)| {
         vec![
-            html::name_without_unit(name),
+            html::column_label(name),
             html::four_digits(*energy),
             html::with_minus_sign(&format!("{:.2}", share(*energy))),
         ]

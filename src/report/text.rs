@@ -3,7 +3,7 @@
 use tiny_skia::{Color, FillRule, Paint, Path, PathBuilder, Pixmap, Transform};
 use ttf_parser::{Face, OutlineBuilder};
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// A part of Inter Regular (Latin, Greek, signs), under the SIL Open Font License: `assets/LICENSE-inter.txt`.
 const FONT: &[u8] = include_bytes!("assets/inter.otf");
@@ -30,7 +30,8 @@ impl TextRenderer {
     /// # Errors
     /// `File` if the font is damaged, which a test rules out.
     pub fn new() -> Result<Self> {
-        let face = Face::parse(FONT, 0).map_err(|why| Error::new(Kind::File, format!("the embedded font: {why}")))?;
+        let face =
+            Face::parse(FONT, 0).map_err(|why| Error::new(ErrorKind::File, format!("the embedded font: {why}")))?;
         Ok(Self { face })
     }
 

@@ -86,10 +86,10 @@ pub struct MeshSummary {
 impl MeshSummary {
     fn of<const D: usize>(shape: &Shape<D>) -> Option<Self> {
         let Shape::Mesh { mesh, .. } = shape else { return None };
-        let (facets, volume) = (mesh.facets().len(), mesh.volume());
+        let (facets, volume) = (mesh.facets().len(), mesh.volume_properties());
         let list = |x: &Vector<3>| x.iter().copied().collect();
         let (centroid_m, size_m) = (list(&volume.centroid), list(&mesh.bounds().size()));
-        Some(Self { facets, volume_m3: volume.volume, surface_m2: mesh.surface(), centroid_m, size_m })
+        Some(Self { facets, volume_m3: volume.volume, surface_m2: mesh.surface_area(), centroid_m, size_m })
     }
 }
 
@@ -142,6 +142,7 @@ where
     probe_factory::checks_from_plan(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
     let mut preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+    preflight.findings.extend(scene.renamed_names().iter().map(Finding::renamed_name));
     let solids = sim.system().solids().iter().map(|s| SolidSummary {
         name: s.spec.name.clone(),
         role: preflight::role_name(&s.spec.role),

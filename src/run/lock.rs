@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// The file.
 const LOCK: &str = "run.lock";
@@ -36,7 +36,7 @@ impl Lock {
             let process = fs::read_to_string(&path).unwrap_or_default();
             let what = format!("the run in {} still goes on: process {}", folder.display(), process.trim());
             let help = "wait for its end, or stop it with Ctrl-C and resume it then";
-            return Err(Error::new(Kind::Restart, what).help(help));
+            return Err(Error::new(ErrorKind::Restart, what).help(help));
         }
         // A file system that knows no locks is no reason to refuse a run there.
         file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(refused)?;
@@ -52,21 +52,5 @@ impl Drop for Lock {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_run_at_a_time_and_what_a_killed_one_leaves_is_no_hindrance() -> Result<()> {
-        let folder = std::env::temp_dir().join(format!("pontoon-lock-{}", std::process::id()));
-        fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
-        fs::write(folder.join("run.lock"), "1234567 left over").map_err(|e| Error::file(&folder, e))?;
-        let lock = Lock::acquire(&folder)?;
-        let second = Lock::acquire(&folder).err().map(|e| (e.kind, e.what)).unwrap_or((Kind::File, String::new()));
-        assert_eq!(second.0, Kind::Restart);
-        assert!(second.1.ends_with(&format!("process {}", std::process::id())), "names the process: {}", second.1);
-        drop(lock);
-        assert!(!folder.join("run.lock").exists());
-        Lock::acquire(&folder)?;
-        fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
-    }
-}
+#[path = "../../tests/unit/run/lock.rs"]
+mod tests;

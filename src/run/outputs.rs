@@ -9,7 +9,7 @@ use std::{
 };
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
     probe::{self, Probe},
     scene::Plan,
@@ -127,7 +127,7 @@ impl<const D: usize> Outputs<D> {
         let lists = plan.contacts.len();
         let all = probes.len() + lists;
         if from.is_some_and(|c| c.table_bytes.len() != all || c.next_due.len() != all + 2) {
-            return Err(Error::new(Kind::Restart, "the checkpoint was made with other probes"));
+            return Err(Error::new(ErrorKind::Restart, "the checkpoint was made with other probes"));
         }
         let series = series_folder(folder);
         let lists = (lists > 0).then(|| folder.join(LISTS));
@@ -317,19 +317,5 @@ pub fn contact_list_path(folder: &Path, name: &str) -> PathBuf {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::OutputSchedule;
-
-    #[test]
-    fn an_output_is_due_once_at_each_multiple_and_skips_those_missed() {
-        let mut due = OutputSchedule { every: 0.1, next: 0 };
-        let times = [0.0, 0.05, 0.1 - 1e-15, 0.15, 0.2999999999999999, 0.3, 0.31, 0.75, 0.79, 0.8];
-        let taken: Vec<f64> = times.into_iter().filter(|&t| due.advance_if_due(t)).collect();
-        assert_eq!(taken, [0.0, 0.1 - 1e-15, 0.2999999999999999, 0.75, 0.8]);
-        let mut every_step = OutputSchedule { every: 0.0, next: 0 };
-        assert!(every_step.advance_if_due(0.0) && every_step.advance_if_due(1e-6) && every_step.advance_if_due(2e-6));
-        // More multiples than a number holds: every step, too.
-        let mut hardly = OutputSchedule { every: 1e-300, next: 0 };
-        assert!(hardly.advance_if_due(0.0) && hardly.advance_if_due(1.0) && hardly.advance_if_due(2.0));
-    }
-}
+#[path = "../../tests/unit/run/outputs.rs"]
+mod tests;

@@ -2,7 +2,7 @@
 
 use crate::{
     analysis::ReferenceCheck,
-    error::{Error, Result, nearest},
+    error::{Error, Result, nearest_name},
     model::Dimension,
     plan::{CheckPlan, Plan},
     probe::{Probe, ProbePlan},
@@ -33,7 +33,7 @@ fn build_probe<const D: usize>(plan: &ProbePlan, system: &System<D>) -> Result<B
 
 /// The error for a `series` of a check or a statistic that is none of `known`.
 fn unknown_series(series: &str, known: &[String]) -> Error {
-    let help = match nearest(series, known.iter().map(String::as_str)) {
+    let help = match nearest_name(series, known.iter().map(String::as_str)) {
         Some(near) => format!("did you mean {near:?}?"),
         None => format!("the series are: {}", known.join(", ")),
     };
@@ -43,7 +43,7 @@ fn unknown_series(series: &str, known: &[String]) -> Error {
 /// Builds the checks of `plan` and reads their references.
 ///
 /// # Errors
-/// `Scene` if one, or a statistic, names no series of `probes`; else as [`Check::new`].
+/// `Scene` if one, or a statistic, names no series of `probes`; else as [`ReferenceCheck::new`].
 pub fn checks_from_plan<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Result<Vec<ReferenceCheck>> {
     let columns = plan.probes.iter().zip(probes);
     let known: Vec<String> =

@@ -8,7 +8,7 @@ use super::{
     run_folder,
 };
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{Checkpoint, checkpoint},
     scene::Scene,
 };
@@ -36,7 +36,7 @@ impl ResumePoint {
             let what = format!("{key} cannot be changed in a run that has begun: only [guard] can");
             let help =
                 format!("--set guard.escape=remove is such a change; `pontoon run` with --set {key}=… starts afresh");
-            return Err(Error::new(Kind::Usage, what).help(help));
+            return Err(Error::new(ErrorKind::Usage, what).help(help));
         }
         let known = &mut self.checkpoint;
         known.overrides.retain(|(key, _)| sets.iter().all(|(set, _)| set != key));
@@ -60,17 +60,17 @@ pub fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
         Ok((checkpoint, scene)) => {
             let warning = format!(
                 "{}; the run goes on from the checkpoint before, {}, at t = {:.6} s",
-                last.what,
+                last.message,
                 checkpoint::PREVIOUS,
                 checkpoint.time
             );
             Ok(ResumePoint { checkpoint, scene, warning: Some(warning) })
         }
         // Said once where both say the same, and nothing of one that never was.
-        Err(why) if why.what == last.what || !folder.join(checkpoint::PREVIOUS).exists() => Err(last),
+        Err(why) if why.message == last.message || !folder.join(checkpoint::PREVIOUS).exists() => Err(last),
         Err(why) => {
             let help = last.help.clone().unwrap_or_default();
-            Err(last.help(format!("the checkpoint before is of no use either: {}\n{help}", why.what)))
+            Err(last.help(format!("the checkpoint before is of no use either: {}\n{help}", why.message)))
         }
     }
 }
@@ -86,7 +86,9 @@ fn load_matching(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
     let scene = Scene::read(&folder.join(run_folder::SCENE), &checkpoint.overrides)?;
     if checkpoint::fnv1a(scene.to_toml()?.as_bytes()) != checkpoint.scene_hash {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
-        return Err(Error::new(Kind::Restart, what).help("undo the change there, or start afresh with `pontoon run`"));
+        return Err(
+            Error::new(ErrorKind::Restart, what).help("undo the change there, or start afresh with `pontoon run`")
+        );
     }
     let plan = scene.plan()?;
     let series = plan.probes.iter().map(|probe| series_folder(folder).join(format!("{}.csv", probe.name)));
@@ -95,7 +97,7 @@ fn load_matching(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
         let there = fs::metadata(&table).map_or(0, |file| file.len());
         if there < bytes {
             let what = format!("{} has {there} bytes, fewer than the {bytes} of {name}", table.display());
-            return Err(Error::new(Kind::Restart, what).help("start the run afresh with `pontoon run`"));
+            return Err(Error::new(ErrorKind::Restart, what).help("start the run afresh with `pontoon run`"));
         }
     }
     Ok((checkpoint, scene))

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     analysis::{ReferenceCheck, Verdict},
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     output::{
         Checkpoint, Manifest, OutputPositions, checkpoint,
@@ -21,7 +21,7 @@ use crate::{
         removed_particles, write_atomically,
     },
     preflight,
-    scene::{BuiltScene, Plan, ResolvedValue, Scene},
+    scene::{BuiltScene, Plan, RenamedName, ResolvedValue, Scene},
     simulation::Simulation,
     solid::{Dim, HasEngine as _, Role},
 };
@@ -117,11 +117,11 @@ where
 }
 
 impl<const D: usize> Runner<D> {
-    /// Runs to the end, or until `watch` says stop.
-    pub fn run(mut self, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+    /// Runs to the end, or until `watch` says stop; `renamed` are the old names in the scene.
+    pub fn run(mut self, renamed: &[RenamedName], watch: &mut dyn RunObserver) -> Result<RunOutcome> {
         self.update_manifest();
         self.manifest.write(&self.folder)?;
-        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest });
+        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest, renamed });
         match self.advance(watch) {
             Ok(status) => {
                 self.manifest.status = status;
@@ -157,13 +157,13 @@ impl<const D: usize> Runner<D> {
                 self.rollback_positions.retain(|(time, _)| self.sim.has_rollback_state(*time));
                 self.rollback_positions.push((self.sim.time(), self.outputs.positions()));
             }
-            let (clock, passes, rescued) = (Instant::now(), self.sim.passes(), self.sim.rollbacks().len());
+            let (clock, passes, rescued) = (Instant::now(), self.sim.force_passes(), self.sim.rollbacks().len());
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not moved on and do not count.
             let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
             // A run that went back has made fewer passes than before.
-            self.checkpoint.particle_steps += moved as u64 * self.sim.passes().saturating_sub(passes);
+            self.checkpoint.particle_steps += moved as u64 * self.sim.force_passes().saturating_sub(passes);
             stepped?;
             self.follow_rollback(rescued, watch)?;
             let mut written = self.outputs.write_due(&self.sim)?;
@@ -257,7 +257,7 @@ impl<const D: usize> Runner<D> {
         if self.folder.exists() {
             help += &format!("{kept} in {}", self.folder.display());
         }
-        if error.kind == Kind::File && resume_point::has_checkpoint(&self.folder) {
+        if error.kind == ErrorKind::File && resume_point::has_checkpoint(&self.folder) {
             help += &format!("\nonce that is mended, go on with `pontoon resume {}`", self.folder.display());
         }
         error.help(help)

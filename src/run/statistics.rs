@@ -10,9 +10,9 @@ use serde::Serialize;
 use super::{outputs::series_folder, scene_file};
 use crate::{
     analysis::{self, RaoPoint, moments, rao, rao_over_frequency, reflection, spectrum},
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::format::unit,
-    math::time_series::Series,
+    math::time_series::TimeSeries,
     output::{Manifest, SeriesTable, write_atomically},
     plan::{Plan, StatisticKind, StatisticPlan},
     scene::Scene,
@@ -81,7 +81,7 @@ pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatisti
         Some(series) if told.rows.is_empty() => {
             let names: Vec<&str> = plan.probes.iter().map(|probe| probe.name.as_str()).collect();
             let what = format!("there is nothing to tell of {series:?} in {}", folder.display());
-            Err(Error::new(Kind::Usage, what).help(format!("the probes are: {}", names.join(", "))))
+            Err(Error::new(ErrorKind::Usage, what).help(format!("the probes are: {}", names.join(", "))))
         }
         _ => Ok(told),
     }
@@ -101,7 +101,7 @@ fn check_time_range(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> Res
         () => format!("no series in {run} has two readings from {from} s until {until} s"),
     };
     let help = format!("choose --from and --until between {first} and {last} s");
-    if tables.is_empty() { Ok(()) } else { Err(Error::new(Kind::Usage, what).help(help)) }
+    if tables.is_empty() { Ok(()) } else { Err(Error::new(ErrorKind::Usage, what).help(help)) }
 }
 
 /// Writes the figures and the spectra of the run in `folder`; what is missing, in words.
@@ -166,7 +166,7 @@ fn from_tables(tables: &ProbeTables, plan: &Plan, asked: &StatisticsFilter) -> R
 }
 
 /// The part of a series in the window (s).
-fn series_in_window(tables: &ProbeTables, name: &str, (from, until): (f64, f64)) -> Option<Series> {
+fn series_in_window(tables: &ProbeTables, name: &str, (from, until): (f64, f64)) -> Option<TimeSeries> {
     let (probe, column) = name.split_once('.')?;
     tables.get(probe)?.series(column, from, until)
 }
@@ -187,7 +187,7 @@ impl RunStatistics {
     }
 
     /// Everything that is said of one series.
-    fn push_series(&mut self, name: &str, of: &str, series: &Series) {
+    fn push_series(&mut self, name: &str, of: &str, series: &TimeSeries) {
         let (own, m) = (unit(of), moments(series));
         let plain =
             [("mean", m.mean, own), ("std", m.standard_deviation, own), ("min", m.min.0, own), ("max", m.max.0, own)];
@@ -217,7 +217,7 @@ impl RunStatistics {
     }
 
     /// Says of waves too few for an answer over frequency how many are needed.
-    fn remark_too_few_waves(&mut self, name: &str, wave: &Series) {
+    fn remark_too_few_waves(&mut self, name: &str, wave: &TimeSeries) {
         if let Some(waves) =
             analysis::zero_crossing_waves(wave).filter(|waves| waves.count < analysis::MIN_WAVES_FOR_RAO)
         {
@@ -232,7 +232,7 @@ impl RunStatistics {
 
     /// What the scene asks for.
     fn push_declared(&mut self, tables: &ProbeTables, words: &StatisticPlan, window: (f64, f64)) {
-        let found: Option<Vec<Series>> =
+        let found: Option<Vec<TimeSeries>> =
             words.what.series().into_iter().map(|name| series_in_window(tables, name, window)).collect();
         let Some(found) = found else {
             self.remarks.push(format!("statistic {}: a series has no two readings in its time", words.name));
@@ -244,7 +244,7 @@ impl RunStatistics {
             StatisticKind::Waves { .. } => all().for_each(|(of, series)| self.push_series(&words.name, of, series)),
             StatisticKind::Reflection { gauges, depth, g, period } => {
                 let (of, own) = (&gauges[0].0, unit(&gauges[0].0));
-                let placed: Vec<(f64, &Series)> = gauges.iter().map(|(_, x)| *x).zip(&found).collect();
+                let placed: Vec<(f64, &TimeSeries)> = gauges.iter().map(|(_, x)| *x).zip(&found).collect();
                 if let Some(r) = reflection(&placed, *depth, *g, *period) {
                     let figures = [
                         ("reflection", r.coefficient(), "–"),

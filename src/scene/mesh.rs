@@ -1,4 +1,4 @@
-//! Meshes beside a scene: STL, as text or binary, and OBJ, in whatever unit; and how much of a file is read at all.
+//! Meshes beside a scene: STL, as text or binary, and OBJ, in any unit; the size limit of files.
 
 use std::{
     fs::File,
@@ -8,20 +8,20 @@ use std::{
 
 use crate::{
     error::{Error, Result},
-    geometry::{Mesh, mesh::MOST_FACETS},
+    geometry::{Mesh, mesh::MAX_FACETS},
     math::Vector,
 };
 
-/// Most bytes of a mesh or a drawing.
+/// Size of the largest mesh or drawing, B.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Longest line of a mesh in text, bytes; the loaders keep every word of one.
+/// Longest line of a mesh in text, B: the loaders store a whole line.
 const LONGEST: usize = 10_000;
 
 /// Corners, in the file's unit, and facets.
 type Facets = (Vec<Vector<3>>, Vec<[u32; 3]>);
 
-/// The solid in the file at `path`, whose unit is `unit` (m); `flip` turns its facets round.
+/// The solid in the file at `path`, whose unit is `unit` (m); `flip` reverses its facets.
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is neither STL nor OBJ, too large, damaged, or no solid.
@@ -41,10 +41,10 @@ pub fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> {
     if flip {
         facets.iter_mut().for_each(|f| f.swap(0, 1));
     }
-    Mesh::new(&points, &facets).map_err(|e| Error { what: format!("{}: {}", path.display(), e.what), ..e })
+    Mesh::new(&points, &facets).map_err(|e| Error { message: format!("{}: {}", path.display(), e.message), ..e })
 }
 
-/// The bytes of the file at `path`, if they are not too many.
+/// The bytes of the file at `path`.
 ///
 /// # Errors
 /// `File` if it cannot be read, `Scene` if it is too large.
@@ -63,13 +63,13 @@ fn damaged(path: &Path, why: impl std::fmt::Display) -> Error {
     Error::scene(format!("{} cannot be read: {why}", path.display())).help("export it again; a mesh is STL or OBJ")
 }
 
-/// Facets that are too many are not even counted.
+/// The error of too many facets, which are not counted.
 fn too_many(path: &Path) -> Error {
-    Error::scene(format!("{} has more than {MOST_FACETS} facets", path.display()))
+    Error::scene(format!("{} has more than {MAX_FACETS} facets", path.display()))
         .help("thin it out (\"decimate\"): what is finer than dp cannot be seen")
 }
 
-/// Whether these are lines that a loader may cut into words.
+/// Whether all lines are short enough for the loaders.
 fn is_text(bytes: &[u8]) -> bool {
     bytes.split(|b| *b == b'\n').all(|line| line.len() <= LONGEST)
 }
@@ -97,7 +97,7 @@ fn stl(path: &Path, mut bytes: Vec<u8>) -> Result<Facets> {
     let mut bytes = Cursor::new(bytes);
     let (mut points, mut facets) = (Vec::new(), Vec::new());
     for facet in stl_io::create_stl_reader(&mut bytes).map_err(|why| damaged(path, why))? {
-        if facets.len() == MOST_FACETS {
+        if facets.len() == MAX_FACETS {
             return Err(too_many(path));
         }
         let first = points.len() as u32;
@@ -122,7 +122,7 @@ fn obj(path: &Path, bytes: Vec<u8>) -> Result<Facets> {
         let first = points.len() as u32;
         points.extend(mesh.positions.chunks_exact(3).map(Vector::from_column_slice));
         facets.extend(mesh.indices.chunks_exact(3).map(|f| [first + f[0], first + f[1], first + f[2]]));
-        if facets.len() > MOST_FACETS {
+        if facets.len() > MAX_FACETS {
             return Err(too_many(path));
         }
     }

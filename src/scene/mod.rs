@@ -1,40 +1,54 @@
-//! What the user says: the words of a scene, read, checked and made into a simulation.
+//! Scenes: reading, checking, filling in the defaults, building.
 //!
-//! [`format`], [`bodies`] and [`links`] are the words, [`document`] reads them from TOML, `verify`, `solids` and `checks`
-//! hold them against one another, [`resolve`] fills in the defaults, [`build`] opens the files that they name.
+//! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` explains the errors of
+//! the parser. A file of `section` holds a section of the scene: configuration, validation, defaults, construction. `resolve`
+//! and `build` put the sections together.
+//!
+//! An absent key is `None`; [`resolve`](Scene::resolve) names its default and the reason. A vector is a list of as many numbers as
+//! the scene has dimensions. Units are SI; keys that end in `_deg` are in degrees. `docs/reference/scene.md` explains every key.
 
-mod absorb;
-pub mod bodies;
-pub mod build;
-mod build_links;
-mod build_solids;
-mod build_waves;
-mod checks;
-mod damping;
-mod document;
-mod drawing;
-mod driven;
-pub mod flexible;
-pub mod flow;
-pub mod format;
-mod geometry;
-mod guard;
+mod build;
+mod bundled;
+mod context;
+mod diagnostics;
 mod mesh;
-pub mod links;
-pub mod resolve;
+mod overrides;
+mod resolve;
 mod schema;
-mod sets;
-pub mod shipped;
-mod size;
-mod solids;
-pub mod statistics;
+mod svg;
 pub mod table;
-pub mod values;
-mod verify;
-mod verify_links;
-mod waves;
+mod toml_source;
+mod untagged;
 mod verify_probes;
-mod wording;
+
+/// The sections of a scene.
+mod section {
+    pub mod analysis;
+    pub mod contact;
+    pub mod domain;
+    pub mod force_element;
+    pub mod joint;
+    pub mod model;
+    pub mod motion;
+    pub mod output;
+    pub mod shape;
+    pub mod solid;
+    pub mod sponge_layer;
+    pub mod water;
+    pub mod wave;
+    pub mod wavemaker;
+}
+
+use std::{
+    io::Read,
+    path::{Path, PathBuf},
+};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use toml_source::SceneSource;
 
 pub use crate::plan::{Align, CheckPlan, FramesPlan, Plan, Reference, Score, StatisticKind, StatisticPlan};
 pub use crate::{
@@ -44,52 +58,175 @@ pub use crate::{
         SectionConfig,
     },
 };
-pub use absorb::{AbsorbChoice, AbsorptionConfig};
-pub use bodies::{
-    AxisName, CompoundPartConfig, DrivenConfig, FreeBodyConfig, MeshConfig, MotionMode, PlacementConfig, ShapeConfig,
-    SolidConfig, TimeFunctionConfig,
-};
 pub(crate) use build::SceneLayout;
-pub use build::{BuiltScene, StillWaterLevel};
-pub use damping::DampingConfig;
-pub use document::ValueSource;
-pub use flexible::{
-    DraftChoice, FieldFormulaConfig, FramesChoice, FramesConfig, LengthUnit, LimitsConfig, PolylineConfig,
-};
-pub use flow::PeriodicConfig;
-pub use format::{CheckConfig, CheckpointConfig, FillConfig, ModelConfig, Scene, TimeSteppingConfig, WaterConfig};
-pub(crate) use geometry::world_bounds;
-pub use guard::GuardConfig;
-pub use links::{
-    ContactConfig, ForceConfig, ForceFrame, JointConfig, JointKindConfig, MotorConfig, RopeConfig, SpringConfig,
-};
+pub use build::{BuiltScene, SizeEstimate};
+pub use bundled::{BundledScene, bundled_scenes};
 pub use resolve::ResolvedValue;
 pub use schema::schema;
-pub use shipped::{BundledScene, bundled_scenes};
-pub use size::SizeEstimate;
-pub use statistics::{RaoConfig, StatisticConfig};
-pub use values::{TimeValueConfig, TimeVectorConfig};
-pub use waves::{
-    FocusedWaveConfig, IrregularWaveConfig, MeasuredElevationConfig, RegularWaveConfig, SolitaryWaveConfig,
-    WaveComponentsConfig, WaveConfig,
+pub(crate) use section::shape::world_bounds;
+pub use section::{
+    analysis::{CheckConfig, RaoConfig, StatisticConfig},
+    contact::ContactConfig,
+    domain::{GuardConfig, PeriodicConfig},
+    force_element::{ForceConfig, ForceFrame, RopeConfig, SpringConfig},
+    joint::{JointConfig, JointKindConfig, LimitsConfig, MotorConfig},
+    model::{ModelConfig, TimeSteppingConfig},
+    motion::DrivenConfig,
+    output::{CheckpointConfig, FramesChoice, FramesConfig},
+    shape::{AxisName, CompoundPartConfig, MeshConfig, PlacementConfig, ShapeConfig},
+    solid::{FreeBodyConfig, MotionMode, SolidConfig},
+    sponge_layer::SpongeLayerConfig,
+    water::{FillConfig, StillWaterLevel, WaterConfig},
+    wave::{
+        AbsorbChoice, AbsorptionConfig, FocusedWaveConfig, IrregularWaveConfig, MeasuredElevationConfig,
+        RegularWaveConfig, SolitaryWaveConfig, WaveComponentsConfig, WaveConfig,
+    },
+};
+pub use toml_source::{RenamedName, ValueSource, current_key};
+pub use untagged::{
+    DraftChoice, FieldFormulaConfig, LengthUnit, PolylineConfig, TimeFunctionConfig, TimeValueConfig, TimeVectorConfig,
 };
 
-use std::{
-    io::Read,
-    path::{Path, PathBuf},
-};
-
-use crate::error::{Error, Result};
-
-/// Most bytes of a scene's text; the longest of those shipped has 3,000.
+/// Most bytes of a scene's text; the longest bundled one has 3,000.
 const MOST_TEXT: u64 = 1 << 20;
 
+/// A scene, as `scene.toml` describes it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Caption.
+    pub title: Option<String>,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particle spacing, m.
+    pub dp: f64,
+    /// Simulated time at which the run ends, s.
+    pub until: f64,
+    /// Acceleration of gravity, m/s².
+    pub gravity: Option<Vec<f64>>,
+    /// Largest random offset of a water particle from its lattice point at the start, in each direction, over dp.
+    pub jitter: Option<f64>,
+    /// Box that nothing may leave.
+    pub domain: Option<BoxConfig>,
+    /// Periodic sides.
+    pub periodic: Option<PeriodicConfig>,
+    /// The valid range of water particles.
+    pub guard: Option<GuardConfig>,
+    /// Bodies of water.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub water: Vec<WaterConfig>,
+    /// Sponge layers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub damping: Vec<SpongeLayerConfig>,
+    /// Solids.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub solid: Vec<SolidConfig>,
+    /// Joints between them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joint: Vec<JointConfig>,
+    /// Springs and mooring lines.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spring: Vec<SpringConfig>,
+    /// Ropes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rope: Vec<RopeConfig>,
+    /// Prescribed forces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub force: Vec<ForceConfig>,
+    /// Rules for pairs of solids that touch.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contact: Vec<ContactConfig>,
+    /// The equations of the water.
+    #[serde(default)]
+    pub model: ModelConfig,
+    /// The time scheme.
+    #[serde(default)]
+    pub time: TimeSteppingConfig,
+    /// Probes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probe: Vec<ProbeConfig>,
+    /// FramesChoice for ParaView.
+    pub frames: Option<FramesChoice>,
+    /// Checkpoints.
+    pub checkpoint: Option<CheckpointConfig>,
+    /// Comparisons with references.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub check: Vec<CheckConfig>,
+    /// Statistics of series.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub statistic: Vec<StatisticConfig>,
+    /// Where each key was written.
+    #[serde(skip)]
+    origin: SceneSource,
+}
+
 impl Scene {
+    /// A scene of `dimension` 2 or 3, particle spacing `dp` (m), that ends at `until` (s).
+    pub fn new(dimension: usize, dp: f64, until: f64) -> Self {
+        Self { dimension, dp, until, ..Self::default() }
+    }
+
+    /// The same scene with a caption.
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = Some(title.into());
+        self
+    }
+
+    /// The same scene with water in the box from corner `min` to corner `max` (m) too.
+    pub fn water_box(mut self, min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
+        let corners = Some(BoxConfig { min: min.into(), max: max.into() });
+        let fill = FillConfig { corners, ..FillConfig::default() };
+        self.water.push(WaterConfig { fill, level: None, velocity: None, pressure: None });
+        self
+    }
+
+    /// The same scene with a solid more.
+    pub fn solid(mut self, solid: SolidConfig) -> Self {
+        self.solid.push(solid);
+        self
+    }
+
+    /// The same scene with these laws.
+    pub fn model(mut self, model: ModelConfig) -> Self {
+        self.model = model;
+        self
+    }
+
+    /// The same scene with a probe more.
+    pub fn probe(mut self, probe: ProbeConfig) -> Self {
+        self.probe.push(probe);
+        self
+    }
+
+    /// The same scene without frames.
+    pub fn without_frames(mut self) -> Self {
+        self.frames = Some(FramesChoice::Off);
+        self
+    }
+
+    /// The same scene with a damping zone more.
+    pub fn with_damping(mut self, zone: SpongeLayerConfig) -> Self {
+        self.damping.push(zone);
+        self
+    }
+
+    /// The same scene with a joint more.
+    pub fn joint(mut self, joint: JointConfig) -> Self {
+        self.joint.push(joint);
+        self
+    }
+
+    /// The same scene with a spring or mooring line more.
+    pub fn spring(mut self, spring: SpringConfig) -> Self {
+        self.spring.push(spring);
+        self
+    }
+
     /// Reads the scene at `path`, a file or a folder that holds `scene.toml`; `sets` are keys and values
-    /// that win over the file, as in `("model.viscosity", "none")` or `("solid.box.free.density", "500")`.
+    /// that replace those of the file, as in `("model.viscosity", "none")` or `("solid.box.free.density", "500")`.
     ///
     /// # Errors
-    /// `File` if nothing can be read there; `Scene` with line, column and advice if the words are wrong.
+    /// `File` if nothing can be read there; `Scene` with line, column and advice if a key or value is wrong.
     pub fn read(path: &Path, sets: &[(String, String)]) -> Result<Self> {
         let file = if path.is_dir() { path.join("scene.toml") } else { path.to_path_buf() };
         let mut text = String::new();
@@ -104,7 +241,7 @@ impl Scene {
             ));
         }
         let folder = file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        document::read(&text, &file.display().to_string(), &folder, sets)
+        Self::from_toml(&text, &file.display().to_string(), &folder, sets)
     }
 
     /// Reads a scene from `text`; the files that it names are looked for in `folder`.
@@ -112,15 +249,27 @@ impl Scene {
     /// # Errors
     /// `Scene`, as [`Scene::read`].
     pub fn parse(text: &str, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
-        document::read(text, "scene.toml", folder, sets)
+        Self::from_toml(text, "scene.toml", folder, sets)
     }
 
-    /// An error of a simulation that this scene was built into, with the file and the line of the key that it speaks of, if it
-    /// speaks of one.
+    /// Reads a scene from `text`; messages call it `file`.
+    fn from_toml(text: &str, file: &str, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
+        let (mut scene, origin): (Self, SceneSource) = toml_source::read(text, file, folder, sets)?;
+        scene.origin = origin;
+        Ok(scene)
+    }
+
+    /// The keys and values that the scene writes with an old name.
+    pub fn renamed_names(&self) -> &[RenamedName] {
+        &self.origin.renamed
+    }
+
+    /// An error of a simulation that this scene was built into, with the file and the line of the key that it names, if it
+    /// names one.
     pub fn with_location(&self, mut error: Error) -> Error {
-        match error.place.take() {
+        match error.location.take() {
             Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
-            place => Error { place, ..error },
+            place => Error { location: place, ..error },
         }
     }
 

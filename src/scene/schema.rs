@@ -1,7 +1,7 @@
-//! The words of a scene as a JSON schema, for editors: made from the types that read them, so that it cannot drift.
+//! The keys of a scene as a JSON schema, for editors, generated from the types that read them.
 //!
-//! Where exactly one key of several is to be said (`fixed`, `driven`, `free` of a solid), it says so, and where only `true` can
-//! be meant (`fixed`). It is coarser than the program where words depend on one another otherwise (as many numbers as dimensions).
+//! It states where exactly one key of several is required (`fixed`, `driven`, `free` of a solid) and where only `true` is valid
+//! (`fixed`). It does not state other dependences between keys (as many numbers as dimensions).
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
@@ -9,19 +9,28 @@ use serde_json::{Map, Value, json};
 use super::Scene;
 
 /// Types whose choices may be written as bare words, as `viscosity = "artificial"`.
-const CHOICES: [&str; 9] =
-    ["Kernel", "Gradient", "Viscosity", "Diffusion", "Shifting", "Walls", "Slip", "Sweeping", "Scheme"];
+const CHOICES: [&str; 9] = [
+    "KernelKind",
+    "PressureGradient",
+    "Viscosity",
+    "Diffusion",
+    "Shifting",
+    "Walls",
+    "Slip",
+    "PairLoopKind",
+    "TimeScheme",
+];
 
-/// A type, and which of its keys are those of which exactly one is said.
+/// A type, and which of its keys are alternatives, of which exactly one is given.
 type Kinds = (&'static str, fn(&str) -> bool);
 
-/// What a solid, a body's weight, a water's room, a probe and a statistic are.
+/// The alternatives of a solid, of the mass of a body, of the region of water, of a probe and of a statistic.
 const KINDS: [Kinds; 5] = [
-    ("SolidWords", |key| matches!(key, "fixed" | "driven" | "free")),
-    ("FreeWords", |key| matches!(key, "density" | "mass")),
-    ("FillWords", |key| matches!(key, "box" | "shape")),
+    ("SolidConfig", |key| matches!(key, "fixed" | "driven" | "free")),
+    ("FreeBodyConfig", |key| matches!(key, "density" | "mass")),
+    ("FillConfig", |key| matches!(key, "box" | "shape")),
     ("ProbeConfig", |key| !matches!(key, "name" | "every" | "average")),
-    ("StatisticEntry", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
+    ("StatisticConfig", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
 ];
 
 /// The JSON schema (draft 2020-12) of a scene.
@@ -43,14 +52,14 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Says of a type that exactly one of the keys that are its kinds is there.
+/// Requires exactly one of the keys of a type that are alternatives.
 fn require_one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
     let keys = words["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
     let kinds: Value = keys.filter(|key| is_kind(key)).map(|key| json!({ "required": [key] })).collect();
     words["oneOf"] = kinds;
 }
 
-/// Takes out that a key may be null: TOML has none.
+/// Removes null as a value of a key: TOML has none.
 fn required_only(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -79,7 +88,7 @@ fn required_only(schema: &mut Value) {
     }
 }
 
-/// Takes a word's second name, which its type has noted as `also` beside its alias, for as good as its first.
+/// Accepts the alias of a word, which its type states as `also`, beside the word.
 fn expand_aliases(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -95,7 +104,7 @@ fn expand_aliases(schema: &mut Value) {
     }
 }
 
-/// Adds to a choice of several that each of them may be written as a bare word, or as a table of nothing.
+/// Accepts each alternative of a choice as a bare word or as an empty table.
 fn allow_bare_words(choice: &mut Value) {
     let mut tables = Map::new();
     let kinds = choice.get("oneOf").and_then(Value::as_array).into_iter().flatten().chain([&*choice]);

@@ -3,11 +3,11 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::{
-    error::{Error, Result, nearest},
-    math::time_series::Series,
+    error::{Error, Result, nearest_name},
+    math::time_series::TimeSeries,
 };
 
-/// Largest table, B.
+/// Size of the largest table, B.
 const MOST_BYTES: u64 = 256 << 20;
 
 /// The file `name` beside the scene in `folder`.
@@ -31,7 +31,7 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     }
     if !full.is_file() {
         let others = neighbours(folder, path);
-        let guess = nearest(name, others.iter().map(String::as_str));
+        let guess = nearest_name(name, others.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
         return Err(Error::scene(format!("there is no file \"{name}\" beside the scene{guess}"))
             .help("files that a scene names are looked for in the folder of the scene"));
@@ -39,7 +39,7 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     Ok(full)
 }
 
-/// Whether what is at `full`, links followed, lies in `folder`; of what is not there, nothing leads out.
+/// Whether the file at `full`, links followed, lies in `folder`; true if there is no such file.
 pub fn is_within(folder: &Path, full: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     match (folder.canonicalize(), full.canonicalize()) {
@@ -48,7 +48,7 @@ pub fn is_within(folder: &Path, full: &Path) -> bool {
     }
 }
 
-/// Names of the files in `folder` that are of the same kind as `path`.
+/// Names of the files in `folder` with the extension of `path`.
 fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -77,18 +77,18 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
     builder.comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(|e| Error::file(path, e))
 }
 
-/// The columns `names` of the table at `path`, one list each; rows in which one of them is blank are left
-/// out.
+/// The columns `names` of the table at `path`, one list each; rows with a blank cell among
+/// them are skipped.
 ///
 /// # Errors
-/// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number: says which.
+/// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number.
 pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let mut reader = reader(path)?;
     let file = path.display().to_string();
     let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
     let number = |name: &&str| {
         header.iter().position(|column| column == *name).ok_or_else(|| {
-            let guess = nearest(name, header.iter());
+            let guess = nearest_name(name, header.iter());
             let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
             let known: Vec<&str> = header.iter().collect();
             Error::scene(format!("{file} has no column \"{name}\"{guess}"))
@@ -117,10 +117,10 @@ pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
 /// The series of `column` over `time` of the table at `path`.
 ///
 /// # Errors
-/// As [`columns`], and as [`Series::new`].
-pub fn read_series(path: &Path, time: &str, column: &str) -> Result<Series> {
+/// As `read_columns`, and as [`TimeSeries::new`].
+pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> {
     let mut both = read_columns(path, &[time, column])?;
     let x = both.pop().unwrap_or_default();
     let t = both.pop().unwrap_or_default();
-    Series::new(t, x).map_err(|e| Error::scene(format!("{}, {column}: {}", path.display(), e.what)))
+    TimeSeries::new(t, x).map_err(|e| Error::scene(format!("{}, {column}: {}", path.display(), e.message)))
 }

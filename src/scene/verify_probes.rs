@@ -2,38 +2,34 @@
 
 use std::collections::HashSet;
 
-use super::{BoxConfig, ContactConfig, JointConfig, ProbeConfig, Scene, verify::suggestion};
+use super::{
+    BoxConfig, ContactConfig, JointConfig, ProbeConfig, Scene, context::suggestion, section::solid::require_solid,
+};
 use crate::{
     error::{Error, Result},
     probe::ProbeScope,
 };
 
 impl Scene {
+    /// Refuses a `[[probe]]` section that is wrong.
     pub(super) fn verify_probes(&self) -> Result<()> {
         for (i, probe) in self.probe.iter().enumerate() {
             let key = format!("probe.{i}");
             probe.verify(&key, self)?;
             if let Some(name) = &probe.name {
-                self.require_file_name(&format!("{key}.name"), name)?;
+                self.context().require_file_name(&format!("{key}.name"), name)?;
             }
         }
         let names = self.probe_names();
         let mut seen = HashSet::new();
         match names.iter().position(|name| !seen.insert(name)) {
-            Some(i) => Err(self.error_with_help(
+            Some(i) => Err(self.context().error_with_help(
                 &format!("probe.{i}"),
                 format!("two probes are called \"{}\"", names[i]),
                 "give each its own:  name = \"...\"",
             )),
             None => Ok(()),
         }
-    }
-
-    /// The error for a series of the probe `name`, a list of contacts.
-    pub(super) fn list_has_no_series(&self, key: &str, name: &str) -> Error {
-        let what = format!("\"{name}\" lists all contacts, many at one time, and has no series");
-        let help = "of two solids there is one in a [[probe]] of their own:  contact = [\"crate\", \"raft\"]";
-        self.error_with_help(key, what, help)
     }
 
     /// Stem of the file of each probe.
@@ -52,15 +48,15 @@ impl ProbeScope for Scene {
     }
 
     fn error_at(&self, key: &str, what: &str) -> Error {
-        self.error_at(key, what)
+        self.context().error_at(key, what)
     }
 
     fn error_with_help(&self, key: &str, what: &str, help: &str) -> Error {
-        self.error_with_help(key, what, help)
+        self.context().error_with_help(key, what, help)
     }
 
     fn require_solid(&self, key: &str, name: &str) -> Result<()> {
-        self.require_solid(key, name)
+        require_solid(&self.context(), &self.solid, key, name)
     }
 
     fn require_constraint(&self, key: &str, kind: &str, name: &str) -> Result<()> {
@@ -77,12 +73,12 @@ impl ProbeScope for Scene {
             true => format!("the scene has no {kind}"),
             false => format!("known: {}", known.join(", ")),
         };
-        Err(self.error_with_help(key, what, help))
+        Err(self.context().error_with_help(key, what, help))
     }
 
     fn require_contact(&self, key: &str, [a, b]: &[String; 2]) -> Result<()> {
         let refuse = |why: String, help: &str| {
-            Err(self.error_with_help(key, format!("\"{a}\" and \"{b}\" never touch: {why}"), help))
+            Err(self.context().error_with_help(key, format!("\"{a}\" and \"{b}\" never touch: {why}"), help))
         };
         if a == b {
             return refuse("they are one solid".into(), "name two");
@@ -97,7 +93,7 @@ impl ProbeScope for Scene {
         if self.solid[i].free.is_none() && self.solid[j].free.is_none() {
             return refuse("neither is free".into(), "one of them at least must be  free = { density = 500.0 }");
         }
-        let own = |(_, contact): &(usize, &ContactConfig)| self.contact_pairs(contact).contains(&[i.min(j), i.max(j)]);
+        let own = |(_, contact): &(usize, &ContactConfig)| contact.pairs(&self.solid).contains(&[i.min(j), i.max(j)]);
         match self.contact.iter().enumerate().rfind(own).filter(|(_, contact)| contact.touch == Some(false)) {
             Some((k, _)) => {
                 let help = "remove it, or say otherwise of these two in a [[contact]] after it";
@@ -108,14 +104,14 @@ impl ProbeScope for Scene {
     }
 
     fn require_vector(&self, key: &str, x: &[f64]) -> Result<()> {
-        self.require_dimension(key, x)
+        self.context().require_dimension(key, x)
     }
 
     fn require_positive(&self, key: &str, x: Option<f64>) -> Result<()> {
-        self.require_positive(key, x)
+        self.context().require_positive(key, x)
     }
 
     fn require_box(&self, key: &str, corners: &BoxConfig) -> Result<()> {
-        self.verify_box(key, corners)
+        corners.verify(&self.context(), key)
     }
 }

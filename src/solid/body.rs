@@ -1,4 +1,4 @@
-//! A solid's start, a free body's mass from its shape, and what is refused at set-up.
+//! The start of a solid, the mass of a free body from its shape, and the checks at set-up.
 
 use crate::{
     error::{Error, Result},
@@ -11,10 +11,10 @@ use crate::{
 const INERTIA_SLACK: f64 = 1e-9;
 
 impl<const D: usize> SolidSpec<D> {
-    /// Where the solid is at t = 0, and how it moves there.
+    /// Pose and velocity of the solid at t = 0.
     ///
     /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
-    pub fn start(&self) -> Kinematics<D> {
+    pub fn initial_kinematics(&self) -> Kinematics<D> {
         let still = Kinematics {
             pose: self.pose,
             centre: self.pose.position,
@@ -30,7 +30,7 @@ impl<const D: usize> SolidSpec<D> {
         }
     }
 
-    /// Whether this solid can be meant: shape (of a free one without parts that overlap), pose, role, friction, restitution and
+    /// Checks shape (parts of a free solid may not overlap), pose, role, friction, restitution and
     /// contact skin.
     ///
     /// # Errors
@@ -38,7 +38,7 @@ impl<const D: usize> SolidSpec<D> {
     pub fn check(&self) -> Result<()> {
         self.shape.check().map_err(|e| self.named(e))?;
         if let Role::Free(_) = self.role {
-            self.shape.check_apart().map_err(|e| self.named(e))?;
+            self.shape.check_no_overlap().map_err(|e| self.named(e))?;
         }
         self.check_role()
     }
@@ -61,13 +61,13 @@ impl<const D: usize> SolidSpec<D> {
             require((0.0..=1.0).contains(&bounce), || format!("restitution is {bounce}"), "0 (stays) … 1 (bounces)")?;
             let (skin, most) = (self.contact_skin, self.thickest_skin());
             let right = format!("0 to {most:.4} m, half of its smallest extent");
-            require(self.skin_fits(), || format!("its contact skin is {skin} m"), &right)
+            require(self.has_valid_contact_skin(), || format!("its contact skin is {skin} m"), &right)
         })
         .map_err(|e| self.named(e))
     }
 
     /// Whether it has no contact skin, or one that is not thicker than half of its smallest extent.
-    pub(crate) fn skin_fits(&self) -> bool {
+    pub(crate) fn has_valid_contact_skin(&self) -> bool {
         self.contact_skin == 0.0 || (0.0..=self.thickest_skin()).contains(&self.contact_skin)
     }
 
@@ -76,7 +76,7 @@ impl<const D: usize> SolidSpec<D> {
     }
 
     fn named(&self, mut error: Error) -> Error {
-        error.what = format!("solid \"{}\": {}", self.name, error.what);
+        error.message = format!("solid \"{}\": {}", self.name, error.message);
         error
     }
 }
@@ -86,7 +86,7 @@ impl<const D: usize> FreeBody<D> {
     ///
     ///   m = ρ V,   I = ρ (tr J · 1 − J) in 3-D, ρ tr J in 2-D
     pub fn from_density(shape: &Shape<D>, density: f64) -> Self {
-        let volume = shape.volume();
+        let volume = shape.volume_properties();
         let trace = volume.second_moment.trace();
         let inertia = if D == 2 {
             Matrix::from_fn(|i, j| if (i, j) == (0, 0) { trace } else { 0.0 })
@@ -106,10 +106,10 @@ impl<const D: usize> FreeBody<D> {
 
     /// The homogeneous body of `mass` (kg; kg/m in 2-D) that fills `shape`, at rest.
     pub fn from_mass(shape: &Shape<D>, mass: f64) -> Self {
-        Self::from_density(shape, mass / shape.volume().volume)
+        Self::from_density(shape, mass / shape.volume_properties().volume)
     }
 
-    /// Whether this body can exist.
+    /// Checks that mass and inertia are those of a body.
     ///
     /// # Errors
     /// `Scene` if a number is not finite, the mass is not positive, or the inertia is not that of any body.
@@ -143,75 +143,5 @@ fn require(fine: bool, what: impl FnOnce() -> String, right: &str) -> Result<()>
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::Pose;
-
-    fn spec(mass: f64, inertia: [f64; 3]) -> SolidSpec<3> {
-        let body = FreeBody {
-            mass,
-            centre: Vector::from([0.1, 0.0, 0.0]),
-            inertia: Matrix::from_diagonal(&Vector::from(inertia)),
-            velocity: Vector::zeros(),
-            spin: Bivector::zero(),
-            locked_translations: [false; 3],
-            locked_rotations: [false; 3],
-        };
-        SolidSpec {
-            name: "buoy".into(),
-            shape: Shape::Ball { radius: 0.1 },
-            pose: Pose::rotated(Vector::from([1.0, 0.0, 0.0]), &[0.0, 0.0, std::f64::consts::FRAC_PI_2]),
-            role: Role::Free(body),
-            friction: 0.3,
-            restitution: 0.0,
-            contact_skin: 0.0,
-        }
-    }
-
-    #[test]
-    fn a_free_solid_starts_about_its_centre_of_mass() {
-        let centre = spec(1.0, [1.0; 3]).start().centre;
-        assert!((centre - Vector::from([1.0, 0.1, 0.0])).norm() < 1e-15);
-    }
-
-    #[test]
-    fn what_cannot_exist_is_refused() {
-        assert_eq!(spec(1.0, [1.0, 2.0, 3.0]).check_role(), Ok(()), "a flat plate");
-        for (mass, inertia) in
-            [(0.0, [1.0; 3]), (f64::NAN, [1.0; 3]), (1.0, [1.0, 1.0, 2.1]), (1.0, [1.0, 1.0, 0.0]), (-1.0, [1.0; 3])]
-        {
-            let error = spec(mass, inertia).check_role().unwrap_err();
-            assert!(error.to_string().contains("solid \"buoy\"") && error.help.is_some(), "{error}");
-        }
-        let slippery = SolidSpec { friction: -0.1, ..spec(1.0, [1.0; 3]) };
-        assert!(slippery.check_role().unwrap_err().to_string().contains("friction is -0.1"));
-        let bouncy = SolidSpec { restitution: 1.5, ..spec(1.0, [1.0; 3]) };
-        assert!(bouncy.check_role().unwrap_err().to_string().contains("restitution is 1.5"));
-        for skin in [-0.01, 0.11, f64::NAN] {
-            let padded = SolidSpec { contact_skin: skin, ..spec(1.0, [1.0; 3]) };
-            let error = padded.check_role().unwrap_err().to_string();
-            assert!(error.contains(&format!("its contact skin is {skin} m")), "a ball of 0.1 m: {error}");
-        }
-    }
-
-    #[test]
-    fn parts_of_a_free_solid_may_not_overlap() {
-        let part = |x: f64| (Pose::at(Vector::from([x, 0.0, 0.0])), Shape::Ball { radius: 0.1 });
-        let shape = |x: f64| Shape::Compound(vec![part(0.0), part(x)]);
-        let of = |shape: Shape<3>| SolidSpec { shape, ..spec(1.0, [1.0; 3]) };
-        let message = of(shape(0.15)).check().unwrap_err().to_string();
-        assert!(message.starts_with("solid \"buoy\": parts 1 and 2 of its compound overlap"), "{message}");
-        assert_eq!(of(shape(0.2)).check(), Ok(()));
-        assert_eq!(SolidSpec { role: Role::Fixed, ..of(shape(0.15)) }.check(), Ok(()));
-    }
-
-    #[test]
-    fn a_box_has_the_inertia_of_the_books() {
-        let shape = Shape::Box { size: Vector::from([0.2, 0.3, 0.4]) };
-        let body = FreeBody::from_mass(&shape, 12.0);
-        let expected = Vector::from([0.3 * 0.3 + 0.4 * 0.4, 0.2 * 0.2 + 0.4 * 0.4, 0.2 * 0.2 + 0.3 * 0.3]);
-        assert!((body.inertia - Matrix::from_diagonal(&expected)).norm() < 1e-12);
-        let plane = FreeBody::from_mass(&Shape::Box { size: Vector::from([0.3, 0.4]) }, 12.0);
-        assert!((plane.inertia[(0, 0)] - 0.25).abs() < 1e-13 && (plane.mass - 12.0).abs() < 1e-12);
-    }
-}
+#[path = "../../tests/unit/solid/body.rs"]
+mod tests;

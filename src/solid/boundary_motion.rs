@@ -1,4 +1,4 @@
-//! The skin follows its solid: r = pose · local, v = V + Ω (r − centre). Never integrated, so never adrift.
+//! Boundary particles follow their solid: r = pose · local, v = V + Ω (r − centre). They are not integrated, so they do not drift.
 
 use crate::math::Vector;
 use crate::solid::Kinematics;
@@ -10,8 +10,8 @@ use crate::solid::Kinematics;
 /// `local`: positions in the solid's frame (m). Writes world positions `r` (m) and velocities `v` (m/s), in
 /// the same order; all three have the same length.
 ///
-/// Source: [@pirkhalili2023], eq. (25).
-pub fn place<const D: usize>(
+/// Source: @pirkhalili2023, eq. (25).
+pub fn place_boundary_particles<const D: usize>(
     kinematics: &Kinematics<D>,
     local: &[Vector<D>],
     r: &mut [Vector<D>],
@@ -25,23 +25,5 @@ pub fn place<const D: usize>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::{Bivector, Pose};
-
-    #[test]
-    fn a_turning_solid_carries_its_skin() {
-        let quarter = std::f64::consts::FRAC_PI_2;
-        let kinematics = Kinematics {
-            pose: Pose::rotated(Vector::from([1.0, 2.0]), &[quarter]),
-            centre: Vector::from([1.0, 2.0]),
-            velocity: Vector::from([0.5, 0.0]),
-            spin: Bivector::from_axial(&[2.0]),
-        };
-        let (mut r, mut v) = (vec![Vector::zeros()], vec![Vector::zeros()]);
-        place(&kinematics, &[Vector::from([3.0, 0.0])], &mut r, &mut v);
-        // The arm (3, 0) is turned to (0, 3); a counter-clockwise spin of 2 rad/s moves it to −x at 6 m/s.
-        assert!((r[0] - Vector::from([1.0, 5.0])).norm() < 1e-15);
-        assert!((v[0] - Vector::from([-5.5, 0.0])).norm() < 1e-14);
-    }
-}
+#[path = "../../tests/unit/solid/boundary_motion.rs"]
+mod tests;

@@ -1,19 +1,19 @@
-//! Who lies within whom where no contact would tell.
+//! Solids inside others, where contact detection finds nothing.
 
 use crate::{
-    geometry::{Shape, Touchable, overlap::shared},
+    geometry::{ContactGeometry, Shape, overlap::find_overlap},
     math::Pose,
     solid::{Role, SolidSpec},
 };
 
-/// A solid and where it is.
-pub(crate) type Placed<'a, const D: usize> = (&'a SolidSpec<D>, &'a Pose<D>);
+/// A solid and its pose.
+pub(crate) type PlacedSolid<'a, const D: usize> = (&'a SolidSpec<D>, &'a Pose<D>);
 
 /// The single shapes of a posed shape that others touch.
 fn touchable<'a, const D: usize>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut Vec<(&'a Shape<D>, Pose<D>)>) {
     match shape {
         Shape::Compound(parts) => parts.iter().for_each(|(inner, part)| touchable(part, pose.then(inner), found)),
-        Shape::Mesh { contact: Touchable::None, .. } => {}
+        Shape::Mesh { contact: ContactGeometry::None, .. } => {}
         _ => found.push((shape, pose)),
     }
 }
@@ -21,8 +21,8 @@ fn touchable<'a, const D: usize>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut
 /// How deep (m) a place of one solid, more than `allowed` (m) inside, lies in a mesh of the other that is touched by its
 /// surface only: what is wholly inside is in touch with nothing there.
 pub(crate) fn depth_inside_mesh<const D: usize>(
-    (one, here): Placed<D>,
-    (other, there): Placed<D>,
+    (one, here): PlacedSolid<D>,
+    (other, there): PlacedSolid<D>,
     allowed: f64,
 ) -> Option<f64> {
     let (mut inner, mut outer) = (Vec::new(), Vec::new());
@@ -30,11 +30,13 @@ pub(crate) fn depth_inside_mesh<const D: usize>(
     touchable(&other.shape, *there, &mut outer);
     let fixed = matches!(other.role, Role::Fixed);
     let surface = |shape: &Shape<D>| match shape {
-        Shape::Mesh { contact, .. } => *contact == Touchable::Surface || fixed && *contact == Touchable::Fitting,
+        Shape::Mesh { contact, .. } => {
+            *contact == ContactGeometry::Surface || fixed && *contact == ContactGeometry::Fitting
+        }
         _ => false,
     };
     let deep = |(mesh, there): &(&Shape<D>, Pose<D>)| {
-        let places = inner.iter().filter_map(|(shape, here)| shared((shape, here), (mesh, there), allowed));
+        let places = inner.iter().filter_map(|(shape, here)| find_overlap((shape, here), (mesh, there), allowed));
         places.map(|(x, _)| -mesh.signed_distance(&there.local(&x))).reduce(f64::max)
     };
     outer.iter().filter(|(shape, _)| surface(shape)).filter_map(deep).reduce(f64::max)

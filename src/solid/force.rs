@@ -1,8 +1,8 @@
-//! Forces and torques that a law puts on a free solid: wind, a thruster, a hand.
+//! Prescribed forces and torques on a free solid, such as wind or a thruster.
 
 use crate::{
     math::{Bivector, Vector},
-    solid::{Kinematics, Law, Load},
+    solid::{Kinematics, Load, TimeFunction},
 };
 
 /// A force and a torque on a solid, after laws of time.
@@ -15,21 +15,21 @@ pub struct ForceSpec<const D: usize> {
     /// The point of the solid that is here at the start, m; `None`: its centre of mass.
     pub at: Option<Vector<D>>,
     /// Components of the force, N (N/m in 2-D): none, or one along each axis.
-    pub force: Vec<Law>,
+    pub force: Vec<TimeFunction>,
     /// Axial components of the torque, N m (N m/m in 2-D): none, one in 2-D, three in 3-D.
-    pub torque: Vec<Law>,
+    pub torque: Vec<TimeFunction>,
     /// Whether the axes, the world's at the start, turn with the solid.
-    pub turns: bool,
+    pub rotates_with_solid: bool,
 }
 
 impl<const D: usize> ForceSpec<D> {
     /// The load about the centre of the solid, which started as `start` and is now as `now`, at time `t` (s).
-    pub(super) fn load(&self, start: &Kinematics<D>, now: &Kinematics<D>, t: f64) -> Load<D> {
-        let value = |laws: &[Law], i: usize| laws.get(i).map_or(0.0, |law| law.at(t).0);
+    pub(super) fn load_at(&self, start: &Kinematics<D>, now: &Kinematics<D>, t: f64) -> Load<D> {
+        let value = |laws: &[TimeFunction], i: usize| laws.get(i).map_or(0.0, |law| law.value_and_rate(t).0);
         let mut force = Vector::from_fn(|i, _| value(&self.force, i));
         let turns: Vec<f64> = (0..self.torque.len()).map(|i| value(&self.torque, i)).collect();
         let mut torque = Bivector::from_axial(&turns);
-        if self.turns {
+        if self.rotates_with_solid {
             let turn = now.pose.rotation * start.pose.rotation.transpose();
             (force, torque) = (turn * force, Bivector(turn * torque.0 * turn.transpose()));
         }

@@ -1,4 +1,4 @@
-//! Force and torque on a solid, to be added up.
+//! Force and torque on a solid.
 
 use std::ops::{Add, AddAssign, Mul, Sub};
 
@@ -23,7 +23,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// `force` (N) alone, at the arm `r` (m) from the centre.
-    pub fn at(r: &Vector<D>, force: Vector<D>) -> Self {
+    pub fn from_force_at(r: &Vector<D>, force: Vector<D>) -> Self {
         Self { force, torque: Bivector::torque(r, &force) }
     }
 
@@ -33,14 +33,14 @@ impl<const D: usize> Load<D> {
     }
 }
 
-/// What is around all solids in a step, beside what ties and contacts do.
+/// The loads on all solids in a step, without those of constraints and contacts.
 pub(crate) struct LoadContext<const D: usize> {
     /// Load of water and weight on each.
     pub(crate) loads: Vec<Load<D>>,
-    /// Whether there is water at it.
+    /// Whether each is in contact with water.
     pub(crate) wet: Vec<bool>,
     /// How long sound takes to cross a smoothing length, h/c₀, s.
-    pub(crate) crossing: f64,
+    pub(crate) sound_crossing_time: f64,
 }
 
 impl<const D: usize> Add for Load<D> {

@@ -1,4 +1,4 @@
-//! All that is not water: fixed, driven and free solids, their poses, skins and loads. No sums over pairs.
+//! Solids: fixed, driven and free, with their kinematics, loads, constraints and the rigid-body engine. No sums over pairs.
 
 mod body;
 pub mod boundary_motion;
@@ -14,18 +14,18 @@ pub mod rapier;
 mod tests;
 
 pub use constraint::{
-    Constraints, ContactSpec, Contacts, Drive, Elastic, End, FreeMode, Hold, JointKind, JointReading, JointSpec,
-    LineReading, Mobility, Motor, RopeSpec, SpringSpec,
+    Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind, JointReading, JointSpec, LineEnd,
+    LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters, SpringSpec,
 };
 pub use force::ForceSpec;
 pub use load::Load;
 pub(crate) use load::LoadContext;
-pub use prescribed_motion::{Law, Motion};
+pub use prescribed_motion::{PrescribedMotion, TimeFunction};
 #[cfg(feature = "dim2")]
 pub use rapier::rapier2d;
 #[cfg(feature = "dim3")]
 pub use rapier::rapier3d;
-pub use rapier::{Contact, Dim, Engine, EngineFault, HasEngine};
+pub use rapier::{ContactForce, Dim, Engine, EngineFault, HasEngine};
 
 use std::ops::Range;
 
@@ -37,14 +37,14 @@ use crate::{
     math::{Bivector, Matrix, Pose, Vector},
 };
 
-/// A solid as it is to be made.
+/// The specification of a solid.
 #[derive(Clone, Debug)]
 pub struct SolidSpec<const D: usize> {
     /// The name that the user gave it.
     pub name: String,
     /// Geometry in the solid's own frame.
     pub shape: Shape<D>,
-    /// Where that frame is at the start.
+    /// Pose of that frame at the start.
     pub pose: Pose<D>,
     /// What moves it.
     pub role: Role<D>,
@@ -52,7 +52,7 @@ pub struct SolidSpec<const D: usize> {
     pub friction: f64,
     /// Restitution coefficient, –.
     pub restitution: f64,
-    /// How far outside its faces others begin to touch it, m; 0: at the faces. The water does not see it.
+    /// Distance outside its faces at which contact begins, m; 0: at the faces. The water is not affected.
     pub contact_skin: f64,
 }
 
@@ -62,7 +62,7 @@ pub enum Role<const D: usize> {
     /// Nothing.
     Fixed,
     /// A prescribed motion.
-    Driven(Motion<D>),
+    Driven(PrescribedMotion<D>),
     /// Water, weight, contacts: rapier.
     Free(FreeBody<D>),
 }
@@ -104,24 +104,24 @@ pub struct Kinematics<const D: usize> {
 /// A solid in a running system.
 #[derive(Clone, Debug)]
 pub struct Solid<const D: usize> {
-    /// What it was made from.
+    /// Its specification.
     pub spec: SolidSpec<D>,
-    /// Where it is and how it moves now.
+    /// Its present kinematics.
     pub kinematics: Kinematics<D>,
-    /// Its boundary particles' indices in the system's skin arrays.
+    /// Indices of its boundary particles.
     pub boundary: Range<usize>,
     /// Acceleration of `kinematics.centre`, a mean over the last few steps, m/s².
     pub acceleration: Vector<D>,
-    /// Angular acceleration, such a mean, rad/s².
+    /// Angular acceleration, the same mean, rad/s².
     pub angular_acceleration: Bivector<D>,
     /// The water's load on it at the last force pass (pressure and viscosity, no weight).
     pub load: Load<D>,
-    /// How far it has yielded to waves, if it is a paddle that absorbs them.
+    /// State of the wave absorption, if it is a paddle that absorbs.
     pub(crate) absorption: AbsorptionState,
 }
 
-/// How far the accelerations of a solid follow its last step: a mean over five or so, so that a body lighter than the
-/// water that it drags is not driven to and fro.
+/// Weight of the last step in the mean acceleration of a solid, a mean over about five steps: a body lighter than the
+/// water that moves with it would otherwise oscillate.
 const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {
@@ -135,8 +135,8 @@ impl<const D: usize> Solid<D> {
         self.kinematics = next;
     }
 
-    /// Where its `motion` has it at time `t` (s).
-    pub(crate) fn prescribed_kinematics(&self, motion: &Motion<D>, t: f64) -> Kinematics<D> {
+    /// Its kinematics by `motion` at time `t` (s), with wave absorption.
+    pub(crate) fn prescribed_kinematics(&self, motion: &PrescribedMotion<D>, t: f64) -> Kinematics<D> {
         motion.kinematics_with_absorption(&self.spec.pose, t, &self.absorption)
     }
 

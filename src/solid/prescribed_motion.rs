@@ -1,67 +1,67 @@
-//! Prescribed motions: a slide along a direction or a turn about a hinge, after a table or a formula; or several of them, each
-//! carried by those before it, as actuators that stand on one another.
+//! Prescribed motions: a slide along a direction or a rotation about a hinge, by a table or a formula; or several of them, each
+//! in the frame moved by those before it, as stacked actuators.
 //!
 //! Positions and velocities both come from the law itself, never from differences of poses, so that a slow
-//! start is as exact as a fast swing. At time t a driven solid is its start pose moved by the law's value
+//! start is as exact as a fast motion. At time t a driven solid has its start pose moved by the law's value
 //! at t: a table that starts at a non-zero value starts there.
 
 use crate::{
     error::{Error, Result},
     math::{Bivector, Pose, Vector},
-    math::{expression::Formula, time_series::Series},
+    math::{expression::Formula, time_series::TimeSeries},
     solid::Kinematics,
-    wavemaker::{Absorber, AbsorptionState, Wave},
+    wavemaker::{Absorber, AbsorptionState, PaddleMotion},
 };
 
-/// How a driven coordinate moves in time: a length (m) or an angle (rad) at a time (s).
+/// A driven coordinate over time: a length (m) or an angle (rad) at a time (s).
 #[derive(Clone, Debug)]
-pub enum Law {
+pub enum TimeFunction {
     /// The smooth curve through measured samples; at rest before the first and after the last.
-    Table(Series),
+    Table(TimeSeries),
     /// A formula.
     Formula(Formula),
-    /// A paddle's, that makes a wave of theory.
-    Wave(Box<Wave>),
+    /// The motion of a paddle that generates a wave by theory.
+    Wave(Box<PaddleMotion>),
 }
 
-impl Law {
+impl TimeFunction {
     /// The law that is `x` at all times.
     pub fn constant(x: f64) -> Self {
         Self::Formula(Formula::constant(x))
     }
 
     /// Value (m or rad) and its rate (m/s or rad/s) at time `t` (s).
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         match self {
             Self::Table(series) => series.value_and_rate(t),
-            Self::Formula(formula) => formula.at(t),
-            Self::Wave(wave) => wave.at(t),
+            Self::Formula(formula) => formula.value_and_rate(t),
+            Self::Wave(wave) => wave.coordinate_and_rate(t),
         }
     }
 }
 
 /// A prescribed motion.
 #[derive(Clone, Debug)]
-pub struct Motion<const D: usize> {
-    /// From the ground up; most have one.
+pub struct PrescribedMotion<const D: usize> {
+    /// The stages from the ground up; most motions have one.
     stages: Vec<Stage<D>>,
     absorbing: Option<Box<Absorbing<D>>>,
 }
 
-/// One way to go, and how far.
+/// A path and the value along it.
 #[derive(Clone, Debug)]
 struct Stage<const D: usize> {
     path: Path<D>,
-    law: Law,
+    law: TimeFunction,
 }
 
-/// What makes a paddle absorb, and where its gauge is.
+/// The absorber of a paddle, and its gauge.
 #[derive(Clone, Debug)]
 struct Absorbing<const D: usize> {
     absorber: Absorber,
     /// The gauge when the paddle is at rest, m.
     gauge: Vector<D>,
-    /// Where the waves go; a unit vector.
+    /// Direction of the waves; a unit vector.
     way: Vector<D>,
 }
 
@@ -73,9 +73,9 @@ enum Path<const D: usize> {
     Hinge { centre: Vector<D>, axis: Bivector<D> },
 }
 
-impl<const D: usize> Motion<D> {
+impl<const D: usize> PrescribedMotion<D> {
     /// Sliding along `direction` (any length but zero) by the law's value (m).
-    pub fn slide(direction: Vector<D>, law: Law) -> Self {
+    pub fn slide(direction: Vector<D>, law: TimeFunction) -> Self {
         Self::of(Path::Slide(direction.normalize()), law)
     }
 
@@ -83,13 +83,13 @@ impl<const D: usize> Motion<D> {
     ///
     /// `axis`: axial components of any length but zero: `[1.0]` in 2-D, where positive angles turn
     /// counter-clockwise (`[-1.0]`: clockwise); the three of the axis in 3-D, right-handed.
-    pub fn hinge(centre: Vector<D>, axis: &[f64], law: Law) -> Self {
+    pub fn hinge(centre: Vector<D>, axis: &[f64], law: TimeFunction) -> Self {
         let axis = Bivector::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
         Self::of(Path::Hinge { centre, axis: axis * (1.0 / length) }, law)
     }
 
-    fn of(path: Path<D>, law: Law) -> Self {
+    fn of(path: Path<D>, law: TimeFunction) -> Self {
         Self { stages: vec![Stage { path, law }], absorbing: None }
     }
 
@@ -101,30 +101,30 @@ impl<const D: usize> Motion<D> {
 
     /// The same motion, of a paddle that absorbs: its gauge is above `gauge` (m) when it is at rest, and goes with it along
     /// `way`, a unit vector. Without effect on a law that is no wave's.
-    pub fn absorbing(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
+    pub fn with_absorber(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
         Self { absorbing: Some(Box::new(Absorbing { absorber, gauge, way })), ..self }
     }
 
-    /// What makes it absorb, if it does.
+    /// The absorber, if there is one.
     pub fn absorber(&self) -> Option<&Absorber> {
         self.absorbing.as_ref().map(|own| &own.absorber)
     }
 
-    /// The wave that it makes, if it is a paddle that makes one by name.
-    pub fn wave(&self) -> Option<&Wave> {
+    /// The wave that it generates, if it is a paddle with a wave by name.
+    pub fn wave(&self) -> Option<&PaddleMotion> {
         match &self.stages[..] {
-            [Stage { law: Law::Wave(wave), .. }] => Some(wave),
+            [Stage { law: TimeFunction::Wave(wave), .. }] => Some(wave),
             _ => None,
         }
     }
 
-    /// Where the gauge of a paddle that absorbs is at time `t` (s); nowhere if it does not.
-    pub(crate) fn gauge(&self, yielding: &AbsorptionState, t: f64) -> Option<Vector<D>> {
+    /// Position of the gauge of an absorbing paddle at time `t` (s); `None` if it does not absorb.
+    pub(crate) fn gauge_position(&self, yielding: &AbsorptionState, t: f64) -> Option<Vector<D>> {
         let (own, wave) = (self.absorbing.as_ref()?, self.wave()?);
-        Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.at(t).0))
+        Some(own.gauge + own.way * (wave.displacement(t).0 + yielding.offset_and_rate(t).0))
     }
 
-    /// How it goes on yielding from time `t` (s), when the water at its gauge stands at `level` (m), if there is any.
+    /// The absorption state from time `t` (s) on, with the water level `level` (m) at its gauge, if there is water.
     pub(crate) fn update_absorption(&self, before: &AbsorptionState, t: f64, level: Option<f64>) -> AbsorptionState {
         match (&self.absorbing, self.wave()) {
             (Some(own), Some(wave)) => own.absorber.update(wave, before, t, level),
@@ -147,20 +147,20 @@ impl<const D: usize> Motion<D> {
 
     /// Which way its point that is at `x` (m) at the start goes as the value of each of its laws grows: unit vectors, from the ground
     /// up; zero on the axis of a hinge.
-    pub fn headings(&self, x: &Vector<D>) -> Vec<Vector<D>> {
+    pub fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> {
         let way = |k: usize| {
-            let alone = |i: usize, law: &Law| (law.at(0.0).0, if i == k { 1.0 } else { 0.0 });
+            let alone = |i: usize, law: &TimeFunction| (law.value_and_rate(0.0).0, if i == k { 1.0 } else { 0.0 });
             let now = self.moved(&Pose::identity(), alone);
             (now.velocity + now.spin.velocity_at(&(x - now.centre))).try_normalize(0.0).unwrap_or_else(Vector::zeros)
         };
         (0..self.stages.len()).map(way).collect()
     }
 
-    /// Where a solid that starts at `start` is at time `t` (s), and how it moves there: exact rates.
+    /// The kinematics at time `t` (s) of a solid that starts at `start`, with exact rates.
     ///
     /// The `centre` of the result is the hinge of what turns about one and does nothing else, or the frame's origin.
     pub fn kinematics(&self, start: &Pose<D>, t: f64) -> Kinematics<D> {
-        self.moved(start, |_, law| law.at(t))
+        self.moved(start, |_, law| law.value_and_rate(t))
     }
 
     /// As [`Motion::kinematics`], of a paddle that has yielded.
@@ -171,13 +171,13 @@ impl<const D: usize> Motion<D> {
         yielding: &AbsorptionState,
     ) -> Kinematics<D> {
         match (&self.absorbing, self.wave()) {
-            (Some(_), Some(wave)) => self.moved(start, |_, _| wave.beside(t, yielding.at(t))),
+            (Some(_), Some(wave)) => self.moved(start, |_, _| wave.with_offset(t, yielding.offset_and_rate(t))),
             _ => self.kinematics(start, t),
         }
     }
 
     /// Where a solid that starts at `start` is when the law of each stage has a value and a rate.
-    fn moved(&self, start: &Pose<D>, values: impl Fn(usize, &Law) -> (f64, f64)) -> Kinematics<D> {
+    fn moved(&self, start: &Pose<D>, values: impl Fn(usize, &TimeFunction) -> (f64, f64)) -> Kinematics<D> {
         let still =
             Kinematics { pose: *start, centre: start.position, velocity: Vector::zeros(), spin: Bivector::zero() };
         let stages = self.stages.iter().enumerate().rev();
@@ -188,7 +188,7 @@ impl<const D: usize> Motion<D> {
         }
     }
 
-    /// Whether the motion can be meant.
+    /// Checks the motion.
     ///
     /// # Errors
     /// `Scene` if there is none, one of several makes a wave, a direction or axis is zero or not finite, or a law is not finite at time 0.
@@ -197,13 +197,13 @@ impl<const D: usize> Motion<D> {
         if self.stages.is_empty() {
             return Err(Error::scene("its list of motions is empty").help("give one or more, or make the solid fixed"));
         }
-        if several && self.stages.iter().any(|stage| matches!(stage.law, Law::Wave(_))) {
+        if several && self.stages.iter().any(|stage| matches!(stage.law, TimeFunction::Wave(_))) {
             return Err(Error::scene("one of its several motions makes a wave")
                 .help("a paddle that makes waves by name has no other motion beside it"));
         }
         self.stages.iter().enumerate().try_for_each(|(i, stage)| {
             stage.check().map_err(|e| match several {
-                true => Error { what: format!("motion {}: {}", i + 1, e.what), ..e },
+                true => Error { message: format!("motion {}: {}", i + 1, e.message), ..e },
                 false => e,
             })
         })
@@ -246,7 +246,7 @@ impl<const D: usize> Stage<D> {
             return Err(Error::scene(format!("the {what} is zero or not finite"))
                 .help("give finite numbers; a direction and an axis need a length"));
         }
-        let (value, rate) = self.law.at(0.0);
+        let (value, rate) = self.law.value_and_rate(0.0);
         if !(value.is_finite() && rate.is_finite()) {
             return Err(Error::scene(format!("the law of motion gives {value} at the rate {rate} at t = 0"))
                 .help("use a law that is finite and smooth where the run starts"));
@@ -256,110 +256,5 @@ impl<const D: usize> Stage<D> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f64::consts::PI;
-
-    use super::*;
-
-    fn formula(text: &str) -> Law {
-        Law::Formula(Formula::parse(text).unwrap())
-    }
-
-    #[test]
-    fn a_slide_starts_where_its_law_says_and_moves_at_its_rate() {
-        let table = Series::new([0.0, 0.5, 1.0, 2.0], [0.1, 0.2, 0.15, 0.3]).unwrap();
-        let motion = Motion::slide(Vector::from([2.0, 0.0]), Law::Table(table));
-        let start = Pose::at(Vector::from([1.0, 1.0]));
-        assert_eq!(motion.kinematics(&start, 0.0).pose.position, Vector::from([1.1, 1.0]));
-        let (t, step) = (0.8, 1e-6);
-        let (a, b) = (motion.kinematics(&start, t - step), motion.kinematics(&start, t + step));
-        let difference = (b.pose.position - a.pose.position) / (2.0 * step);
-        // Central difference: truncation step² times the third derivative, round-off 1e-16/step.
-        assert!((difference - motion.kinematics(&start, t).velocity).norm() < 1e-9);
-    }
-
-    #[test]
-    fn a_hinge_keeps_its_centre_and_turns_at_its_rate() {
-        let centre = Vector::from([0.2, 0.0, -0.1]);
-        let motion = Motion::hinge(centre, &[0.0, 3.0, 4.0], formula("0.3*sin(2*t)"));
-        let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
-        let (t, step) = (0.6, 1e-6);
-        let now = motion.kinematics(&start, t);
-        let (a, b) = (motion.kinematics(&start, t - step), motion.kinematics(&start, t + step));
-        let local = Vector::from([0.05, -0.4, 0.7]);
-        let difference = (b.pose.point(&local) - a.pose.point(&local)) / (2.0 * step);
-        let velocity = now.velocity + now.spin.velocity_at(&(now.pose.point(&local) - now.centre));
-        assert!((difference - velocity).norm() < 1e-9);
-        let hinge = start.local(&centre);
-        assert!((now.pose.point(&hinge) - centre).norm() < 1e-15);
-        // Axis (0, 3, 4)/5, rate 0.6 cos 1.2.
-        assert!((now.spin.axial()[2] - 0.8 * 0.6 * 1.2_f64.cos()).abs() < 1e-15);
-    }
-
-    #[test]
-    fn a_positive_angle_turns_counter_clockwise_in_two_dimensions() {
-        let motion = Motion::hinge(Vector::zeros(), &[1.0], formula("t"));
-        let now = motion.kinematics(&Pose::at(Vector::from([1.0, 0.0])), 0.5);
-        assert!(now.pose.position[1] > 0.4 && now.spin.axial()[0] == 1.0);
-    }
-
-    /// The largest distance (m) of the velocities of some points from the central difference of where they are.
-    fn off<const D: usize>(motion: &Motion<D>, start: &Pose<D>, t: f64) -> f64 {
-        let step = 1e-6;
-        let [a, now, b] = [t - step, t, t + step].map(|t| motion.kinematics(start, t));
-        let point = |i: usize| {
-            let local = Vector::from_fn(|k, _| if k == i { 0.7 } else { -0.2 });
-            let difference = (b.pose.point(&local) - a.pose.point(&local)) / (2.0 * step);
-            (now.velocity + now.spin.velocity_at(&(now.pose.point(&local) - now.centre)) - difference).norm()
-        };
-        (0..D).map(point).fold(0.0, f64::max)
-    }
-
-    #[test]
-    fn each_motion_of_several_goes_in_the_frame_that_those_before_it_have_moved() {
-        let turn = || Motion::hinge(Vector::from([1.0, 0.0]), &[1.0], formula("0.5*pi*t"));
-        let slide = || Motion::slide(Vector::from([1.0, 0.0]), formula("2*t"));
-        let start = Pose::at(Vector::from([1.0, 1.0]));
-        let at = |motion: &Motion<2>| motion.kinematics(&start, 1.0);
-        // A rail on the turntable points up by then; a turntable on the rail is 2 m further on. Round-off of cos π/2.
-        let (railed, carted) = (Motion::chain([turn(), slide()]), Motion::chain([slide(), turn()]));
-        assert!((at(&railed).pose.position - Vector::from([0.0, 2.0])).norm() < 1e-15);
-        assert!((at(&carted).pose.position - Vector::from([2.0, 0.0])).norm() < 1e-15);
-        assert!((at(&railed).velocity - Vector::from([-PI, 2.0 - 0.5 * PI])).norm() < 1e-14, "{:?}", at(&railed));
-        assert!((at(&carted).velocity - Vector::from([2.0, -0.5 * PI])).norm() < 1e-14, "{:?}", at(&carted));
-        assert_eq!(at(&carted).centre, at(&carted).pose.position, "the origin of its frame");
-        // Truncation and round-off of the difference, as above.
-        assert!(off(&railed, &start, 0.3) < 1e-8 && off(&carted, &start, 0.3) < 1e-8);
-        let one = Motion::chain([turn()]);
-        assert_eq!(at(&one), at(&turn()), "of one it is that one");
-        assert!(one.hinge_height().is_some() && carted.hinge_height().is_none());
-    }
-
-    #[test]
-    fn several_motions_in_space_have_their_exact_rates() {
-        let centre = |x: f64| Vector::from([x, 0.2, -0.1]);
-        let motion = Motion::chain([
-            Motion::slide(Vector::from([1.0, 0.0, 0.2]), formula("0.1*sin(3*t)")),
-            Motion::hinge(centre(0.0), &[0.0, 1.0, 0.0], formula("0.4*sin(2*t)")),
-            Motion::hinge(centre(0.3), &[0.2, 0.0, 1.0], formula("0.3*t")),
-            Motion::slide(Vector::from([0.0, 1.0, 0.0]), formula("0.2*cos(t)")),
-        ]);
-        let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
-        assert!(off(&motion, &start, 0.7) < 1e-8);
-        let ways = motion.headings(&Vector::from([0.4, 0.5, 0.3]));
-        assert!(ways.len() == 4 && ways.iter().all(|way| (way.norm() - 1.0).abs() < 1e-14), "{ways:?}");
-        assert!((ways[0] - Vector::from([1.0, 0.0, 0.2]).normalize()).norm() < 1e-15);
-    }
-
-    #[test]
-    fn a_motion_without_direction_is_refused() {
-        assert!(Motion::slide(Vector::<2>::zeros(), formula("t")).check().is_err());
-        assert!(Motion::hinge(Vector::<3>::zeros(), &[0.0; 3], formula("t")).check().is_err());
-        assert!(Motion::slide(Vector::from([1.0, 0.0]), formula("1/t")).check().is_err());
-        let slide = |law: &str| Motion::slide(Vector::from([1.0, 0.0]), formula(law));
-        assert!(slide("t").check().is_ok());
-        let second = Motion::chain([slide("t"), slide("1/t")]).check().unwrap_err();
-        assert!(second.to_string().contains("motion 2: the law of motion gives"), "{second}");
-        assert!(Motion::<2>::chain([]).check().is_err());
-    }
-}
+#[path = "../../tests/unit/solid/prescribed_motion.rs"]
+mod tests;

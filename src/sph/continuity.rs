@@ -5,7 +5,7 @@
 
 use super::{Num, Pair, Term};
 
-/// Continuity [@colagrossi2003].
+/// Continuity @colagrossi2003.
 #[derive(Clone, Copy, Debug)]
 pub struct Continuity;
 

@@ -24,7 +24,7 @@ impl EquationOfState {
         }
     }
 
-    /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`State::pressure`].
+    /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`EquationOfState::pressure`].
     pub fn compression(&self, p: f64) -> f64 {
         ((p / self.stiffness).ln_1p() / self.gamma).exp_m1()
     }
@@ -43,7 +43,7 @@ impl EquationOfState {
     }
 
     /// Energy of compression per unit of mass (J/kg) from ρ₀ to x: ∫ P/ρ² dρ.
-    pub fn energy(&self, x: f64) -> f64 {
+    pub fn compression_energy(&self, x: f64) -> f64 {
         let (g, s) = (self.gamma, 1.0 / (1.0 + x));
         if x.abs() < 1e-3 {
             // P ≈ c₀² x ρ₀ (1 + (γ−1) x/2): the series to third order, free of cancellation.
@@ -54,45 +54,5 @@ impl EquationOfState {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pressure_and_density_are_inverse_and_the_slope_is_the_speed_of_sound() {
-        let state = EquationOfState::new(20.0, 7.0);
-        for x in [-0.01, 1e-9, 1e-4, 0.003, 0.05] {
-            // The inverse takes a logarithm and an exponential: a few ulp.
-            assert!((state.compression(state.pressure(x)) - x).abs() < 1e-15);
-        }
-        let slope = (state.pressure(1e-6) - state.pressure(-1e-6)) / 2e-6;
-        assert!((slope / 400.0 - 1.0).abs() < 1e-9);
-        let general = EquationOfState::new(20.0, 7.0 + 1e-12);
-        assert!((general.pressure(0.01) / state.pressure(0.01) - 1.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn still_water_presses_with_its_weight() {
-        // Third order in x is left: 1 % of compression leaves 1e-4 times a factor of a few.
-        let state = EquationOfState::new(20.0, 7.0);
-        for head in [0.0, 0.04, 0.4, 4.0] {
-            let acting = state.lattice_pressure(state.hydrostatic_compression(head));
-            assert!((acting - head).abs() <= 10.0 * head * (head / 400.0).powi(2), "{head}: {acting}");
-        }
-    }
-
-    #[test]
-    fn compression_energy_is_the_integral_of_pressure() {
-        let state = EquationOfState::new(20.0, 7.0);
-        for x in [-0.02, 5e-4, 0.002, 0.05] {
-            let n = 20_000;
-            let sum: f64 = (0..n)
-                .map(|i| {
-                    let y = x * (i as f64 + 0.5) / n as f64;
-                    state.pressure(y) / (1.0 + y).powi(2) * x / n as f64
-                })
-                .sum();
-            // Third order in x: the next term of the series is 1e-6 of the first at |x| = 1e-3.
-            assert!((state.energy(x) / sum - 1.0).abs() < 1e-5, "{x}: {} {sum}", state.energy(x));
-        }
-    }
-}
+#[path = "../../tests/unit/sph/equation_of_state.rs"]
+mod tests;

@@ -19,7 +19,7 @@ pub struct FluidProperties<const D: usize> {
     pub gravity: Vector<D>,
 }
 
-/// Units of length and time in which a sweep counts, so that single precision neither overflows nor underflows.
+/// Units of length and time of the pair loop, so that single precision neither overflows nor underflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
     /// Unit of length, m.
@@ -34,7 +34,7 @@ impl Units {
 }
 
 impl<const D: usize> FluidProperties<D> {
-    /// The same constants, counted in `units` (ρ₀ in kg/m³ still: no law reads it).
+    /// The same constants in `units` (ρ₀ stays in kg/m³: no law reads it).
     pub fn in_units(&self, units: &Units) -> Self {
         let Units { length, time } = *units;
         Self {
@@ -47,11 +47,11 @@ impl<const D: usize> FluidProperties<D> {
     }
 
     /// Volume of a particle at ρ₀, dpᴰ (m³; m² in 2-D): every particle's mass divided by ρ₀.
-    pub fn volume0(&self) -> f64 {
+    pub fn particle_volume(&self) -> f64 {
         self.dp.powi(D as i32)
     }
 
-    /// η² = 0.01 h² (m²), which keeps 1/(r² + η²) finite [@monaghan1992].
+    /// η² = 0.01 h² (m²), which keeps 1/(r² + η²) finite @monaghan1992.
     pub fn eta2(&self) -> f64 {
         0.01 * self.h * self.h
     }

@@ -1,16 +1,16 @@
-//! Corrected gradients: where neighbours lie unevenly, or are missing, Σ V_b f_b ∇_a W does not tell the slope of a linear field. With
+//! Corrected gradients: where neighbours are unevenly arranged or missing, Σ V_b f_b ∇_a W is not the gradient of a linear field. With
 //!
 //!   M_a = −Σ V₀ r_ab ⊗ ∇_a W,   B_a = M_a⁻¹,
 //!
-//! B_a ∇_a W does, exactly [@bonet1999]. V₀ = dpᴰ and not m/ρ, so that water at rest on its lattice, however deep, has B = 1.
+//! B_a ∇_a W does, exactly @bonet1999. V₀ = dpᴰ and not m/ρ, so that water at rest on its lattice, however deep, has B = 1.
 //! The pressure force of a pair is then
 //!
 //!   dv_a/dt = −Σ m_b (P_a B_a + P_b B_b)/(ρ_a ρ_b) ∇_a W,
 //!
-//! which changes its sign when a and b swap, so that momentum is kept [@zhang2024]; angular momentum is no longer, to the extent to
+//! which changes its sign when a and b swap, so that momentum is kept @zhang2024; angular momentum is no longer, to the extent to
 //! which M differs from 1. It acts among water alone: at faces it would count boundary particles above a waterline as neighbours,
 //! and bodies would float a tenth of dp too deep. Where few neighbours are left, as in spray, the correction fades:
-//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) [@ren2023], by half at a flat free surface, where det M = 2⁻ᴰ. The B that acts is
+//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) @ren2023, by half at a flat free surface, where det M = 2⁻ᴰ. The B that acts is
 //! that of the pass before.
 
 use super::{AuxiliarySums, Num, Pair, Term};
@@ -45,18 +45,18 @@ pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
 
 /// The moments between water and solids.
 #[derive(Clone, Copy, Debug)]
-pub struct RenormalizationMatrix;
+pub struct RenormalizationTerm;
 
-impl<const D: usize> Term<D> for RenormalizationMatrix {
-    const MOMENT: bool = true;
+impl<const D: usize> Term<D> for RenormalizationTerm {
+    const RENORMALIZATION: bool = true;
 
     #[inline(always)]
     fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
         for i in 0..D {
             for j in 0..=i {
                 let share = -factor * ab.r_ab[i] * ab.r_ab[j];
-                a.moment[i][j] = a.moment[i][j] + share;
-                b.moment[i][j] = b.moment[i][j] + share;
+                a.renormalization[i][j] = a.renormalization[i][j] + share;
+                b.renormalization[i][j] = b.renormalization[i][j] + share;
             }
         }
     }
@@ -64,11 +64,11 @@ impl<const D: usize> Term<D> for RenormalizationMatrix {
 
 /// What the correction adds to the pressure among water, and the moments for the next pass.
 #[derive(Clone, Copy, Debug)]
-pub struct CorrectedGradient;
+pub struct CorrectedGradientTerm;
 
-impl<const D: usize> Term<D> for CorrectedGradient {
-    const FORM: bool = true;
-    const MOMENT: bool = true;
+impl<const D: usize> Term<D> for CorrectedGradientTerm {
+    const GRADIENT_CORRECTION: bool = true;
+    const RENORMALIZATION: bool = true;
 
     #[inline(always)]
     fn vector<N: Num>(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
@@ -87,42 +87,10 @@ impl<const D: usize> Term<D> for CorrectedGradient {
 
     #[inline(always)]
     fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
-        RenormalizationMatrix.auxiliary(ab, factor, a, b);
+        RenormalizationTerm.auxiliary(ab, factor, a, b);
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::Matrix;
-
-    /// B of a moment given whole.
-    fn b<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
-        let mut b = correction(moment);
-        (0..D).for_each(|i| b[i][i] += 1.0);
-        b
-    }
-
-    #[test]
-    fn it_is_the_inverse_where_there_are_neighbours() {
-        // Round-off of a handful of operations.
-        let rows = [[0.9, 0.0, 0.0], [0.1, 1.1, 0.0], [-0.05, 0.07, 0.95]];
-        let (inverse, moment) = (b(&rows), Matrix::<3>::from_fn(|i, j| rows[i.max(j)][i.min(j)]));
-        let product = moment * Matrix::from_fn(|i, j| inverse[i][j]);
-        assert!((product - Matrix::identity()).amax() < 1e-14);
-    }
-
-    #[test]
-    fn it_fades_with_the_neighbours_and_never_exceeds_their_lack() {
-        assert_eq!(correction(&[[0.0; 2]; 2]), [[0.0; 2]; 2]);
-        assert_eq!(correction(&[[1.0, 0.0], [1.0, 1.0]]), [[0.0; 2]; 2], "a pair alone: no slope across it");
-        // w (1/λ − 1) with w = 2 λ μ is at most 2 μ, however small λ is.
-        for small in [1e-12, 1e-6, 1e-3, 0.1, 0.3] {
-            let c = correction(&[[small, 0.0], [0.0, 0.8]]);
-            assert!(c[0][0] <= 1.6 && c[0][0] >= 0.0, "{small}: {c:?}");
-        }
-        // A flat surface: half of everything, so w = ½ of C = 1.
-        let c = correction(&[[0.5, 0.0], [0.0, 0.5]]);
-        assert!((c[0][0] - 0.5).abs() < 1e-15 && c[0][1] == 0.0);
-    }
-}
+#[path = "../../tests/unit/sph/gradient_correction.rs"]
+mod tests;

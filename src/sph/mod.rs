@@ -1,8 +1,8 @@
 //! The equations: numbers in, numbers out. One law a file; no index, slice, loop or thread.
 //!
-//! A law says what one neighbour b contributes to a particle a ([`Term`]) and, where a sum needs it, how
-//! the finished sum becomes a value (`close`). It is generic over its number, so that the same text serves
-//! the f64 oracle and SIMD lanes.
+//! A law states the contribution of a neighbour b to a particle a ([`Term`]) and, where a sum needs it, how
+//! the complete sum becomes a value. It is generic over its number type, so that the same text serves
+//! the f64 reference and the SIMD lanes.
 
 pub mod continuity;
 pub mod density_diffusion;

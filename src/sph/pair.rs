@@ -1,7 +1,7 @@
-//! What a law sees: a pair of particles and a number; and what it gives: a term.
+//! The input of a law, a pair of particles, and its output, a term; both generic over the number type.
 //!
 //! Densities enter as x = ρ/ρ₀ − 1, pressures as P/ρ₀, and the common factor V₀ ∇_a W (V₀ = m/ρ₀) is
-//! left to the sweep, so that single precision loses nothing and a force changes its sign *bit for bit*
+//! applied by the pair loop, so that single precision keeps all digits and a force changes its sign *bit for bit*
 //! when a and b swap.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -64,12 +64,12 @@ pub struct PairSide<N, const D: usize> {
     pub specific_volume: N,
     /// Tensile repulsion, m²/s² (read by laws with [`Term::REPULSION`]).
     pub repulsion: N,
-    /// Whether water beside it is not shifted: 1 or 0 (read by laws with [`Term::MARK`]).
+    /// Whether water beside it is not shifted: 1 or 0 (read by laws with [`Term::SHIFTING_SUPPRESSION`]).
     pub shifting_suppressed: N,
     /// Sub-particle stress ρ₀ τ/ρ², m²/s²; symmetric, of which laws read `[i][j]` with j ≤ i (read by laws with
     /// [`Term::STRESS`]).
     pub stress: [[N; D]; D],
-    /// B − 1 of the corrected gradient, –; symmetric, as above (read by laws with [`Term::FORM`]).
+    /// B − 1 of the corrected gradient, –; symmetric, as above (read by laws with [`Term::GRADIENT_CORRECTION`]).
     pub gradient_correction: [[N; D]; D],
 }
 
@@ -89,7 +89,7 @@ pub struct Pair<N, const D: usize> {
     /// 1/(r² + η²), 1/m².
     pub inv_r2: N,
     /// ρ₀/(ρ̄_ab (r² + η²)) with ρ̄ the mean of both densities, 1/m².
-    pub drag: N,
+    pub viscous_factor: N,
     /// Kernel, weighed with a particle's volume at ρ₀: V₀ W_ab, –.
     pub w: N,
     /// Particle a.
@@ -117,7 +117,7 @@ impl<N: Num, const D: usize> Pair<N, D> {
             velocity_along_r: vr,
             compression_difference: x_ba,
             inv_r2: both * twice_rho,
-            drag: both + both,
+            viscous_factor: both + both,
             w,
             a,
             b,
@@ -138,52 +138,52 @@ pub struct AuxiliarySums<N, const D: usize> {
     pub concentration_gradient: [N; D],
     /// ∇·r = −Σ V_b r_ab·∇_a W, – ([`Term::SHIFT`]).
     pub position_divergence: N,
-    /// Above zero if a marked particle is within the support ([`Term::MARK`]).
+    /// Above zero if a marked particle is within the support ([`Term::SHIFTING_SUPPRESSION`]).
     pub shifting_suppressed: N,
     /// Strain rate S_ij, symmetric, of which `[i][j]` with j ≤ i is kept, 1/s ([`Term::STRESS`]).
     pub strain: [[N; D]; D],
-    /// Moment M_ij of the neighbours, symmetric, of which `[i][j]` with j ≤ i is kept, – ([`Term::MOMENT`]).
-    pub moment: [[N; D]; D],
+    /// Moment M_ij of the neighbours, symmetric, of which `[i][j]` with j ≤ i is kept, – ([`Term::RENORMALIZATION`]).
+    pub renormalization: [[N; D]; D],
 }
 
 impl<N: Num, const D: usize> AuxiliarySums<N, D> {
     /// All sums `zero`.
     #[inline(always)]
-    pub fn all(zero: N) -> Self {
+    pub fn filled_with(zero: N) -> Self {
         Self {
             concentration_gradient: [zero; D],
             position_divergence: zero,
             shifting_suppressed: zero,
             strain: [[zero; D]; D],
-            moment: [[zero; D]; D],
+            renormalization: [[zero; D]; D],
         }
     }
 }
 
-/// One neighbour's share, as a fold: each hook gets the sum of the laws before it and returns it with
-/// its own share added; a law that has nothing to say returns what came in and leaves no instruction.
+/// The contribution of one neighbour. Each method gets the sum of the terms before it and returns it with
+/// its own contribution added; a term without a contribution returns the sum and costs no instruction.
 ///
 /// The force per unit of mass on a is V₀ ∂W (`along_r` r_ab + `along_v` v_ab + `vector`), and the rate of
 /// x_a is V₀ ∂W times the first of `rate`, with ∂W = (dW/dr)/r, so that ∇_a W = ∂W r_ab.
 pub trait Term<const D: usize>: Copy + Send + Sync {
     /// Whether `along_v` is used.
-    const DRAG: bool = false;
+    const ALONG_V: bool = false;
     /// Whether the sides' `repulsion` is read.
     const REPULSION: bool = false;
     /// Whether the sides' `stress` is read, in `vector`, and the strain summed.
     const STRESS: bool = false;
     /// Whether the sides' `form` is read, in `vector`.
-    const FORM: bool = false;
+    const GRADIENT_CORRECTION: bool = false;
     /// Whether the moment of the neighbours is summed.
-    const MOMENT: bool = false;
+    const RENORMALIZATION: bool = false;
     /// Whether the sums of shifting are made.
     const SHIFT: bool = false;
     /// Whether the sides' `mark` is read and `held` summed.
-    const MARK: bool = false;
+    const SHIFTING_SUPPRESSION: bool = false;
     /// Whether `extra` is used.
-    const EXTRA: bool = Self::STRESS || Self::MOMENT || Self::SHIFT || Self::MARK;
+    const AUXILIARY: bool = Self::STRESS || Self::RENORMALIZATION || Self::SHIFT || Self::SHIFTING_SUPPRESSION;
     /// Whether `vector` is used.
-    const VECTOR: bool = Self::STRESS || Self::FORM;
+    const VECTOR: bool = Self::STRESS || Self::GRADIENT_CORRECTION;
 
     /// Share along r_ab, m²/s²; symmetric under the swap of a and b.
     #[inline(always)]
@@ -200,12 +200,12 @@ pub trait Term<const D: usize>: Copy + Send + Sync {
     fn vector<N: Num>(&self, _ab: &Pair<N, D>, sum: [N; D]) -> [N; D] {
         sum
     }
-    /// LoadBreakdown of the rates of x_a and x_b, m²/s.
+    /// Contributions to the rates of x_a and x_b, m²/s.
     #[inline(always)]
     fn rate<N: Num>(&self, _ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
         sum
     }
-    /// LoadBreakdown of the extra sums of a and b, without the factor V₀ ∂W.
+    /// Contributions to the auxiliary sums of a and b, without the factor V₀ ∂W.
     #[inline(always)]
     fn auxiliary<N: Num>(
         &self,
@@ -223,13 +223,13 @@ impl<const D: usize> Term<D> for () {}
 macro_rules! tuple_of_terms {
     ($($name:ident $index:tt),+) => {
         impl<const D: usize, $($name: Term<D>),+> Term<D> for ($($name,)+) {
-            const DRAG: bool = $($name::DRAG)|+;
+            const ALONG_V: bool = $($name::ALONG_V)|+;
             const REPULSION: bool = $($name::REPULSION)|+;
             const STRESS: bool = $($name::STRESS)|+;
-            const FORM: bool = $($name::FORM)|+;
-            const MOMENT: bool = $($name::MOMENT)|+;
+            const GRADIENT_CORRECTION: bool = $($name::GRADIENT_CORRECTION)|+;
+            const RENORMALIZATION: bool = $($name::RENORMALIZATION)|+;
             const SHIFT: bool = $($name::SHIFT)|+;
-            const MARK: bool = $($name::MARK)|+;
+            const SHIFTING_SUPPRESSION: bool = $($name::SHIFTING_SUPPRESSION)|+;
             #[inline(always)]
             fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
                 $(let sum = self.$index.along_r(ab, sum);)+

@@ -1,7 +1,7 @@
 //! Particle shifting:  δr = −A h |v| Δt ∇C,  ∇C = Σ V_b ∇_a W, weakened near the free surface by
 //! A_FSC = (∇·r − A_FST)/(D − A_FST), ∇·r = −Σ V_b r_ab·∇_a W.
 //!
-//! What the paper's eqs. (19)–(21) mean: no shift where ∇·r < A_FST, A_FSC of it above, the whole in the interior.
+//! Reading of the paper's eqs. (19)–(21): no shift where ∇·r < A_FST, the factor A_FSC above it, the full shift inside.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{AuxiliarySums, FluidProperties, Num, Pair, Term};
 use crate::math::Vector;
 
-/// Fickian shifting with a free-surface factor [@skillen2013], [@lee2008]; eqs. (16)–(22) of [@pirkhalili2023].
+/// Fickian shifting with a free-surface factor @skillen2013, @lee2008; eqs. (16)–(22) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Shift {
@@ -61,12 +61,12 @@ impl<const D: usize> Term<D> for ShiftTerm {
     }
 }
 
-/// Notes which particles have a marked one within the support: there shifting is held back.
+/// Sums the marked boundary particles within the support: there shifting is suppressed.
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftingSuppressionTerm;
 
 impl<const D: usize> Term<D> for ShiftingSuppressionTerm {
-    const MARK: bool = true;
+    const SHIFTING_SUPPRESSION: bool = true;
 
     #[inline(always)]
     fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {

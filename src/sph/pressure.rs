@@ -2,7 +2,7 @@
 
 use super::{Num, Pair, Term};
 
-/// Pressure, in the form of [@colagrossi2003], eq. (4) of [@pirkhalili2023].
+/// Pressure, in the form of @colagrossi2003, eq. (4) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressure;
 
@@ -14,7 +14,7 @@ impl<const D: usize> Term<D> for Pressure {
 }
 
 /// Tensile correction, which keeps particles under the cubic spline from pairing:
-/// adds (R_a + R_b)(W_ab/W(dp))⁴ to the pressure bracket, with R the particles' [`repulsion`] [@monaghan2000].
+/// adds (R_a + R_b)(W_ab/W(dp))⁴ to the pressure bracket, with R the particles' [`repulsion`] @monaghan2000.
 #[derive(Clone, Copy, Debug)]
 pub struct Tensile {
     /// 1/(V₀ W(dp)), –.
@@ -22,7 +22,7 @@ pub struct Tensile {
 }
 
 /// R = 0.01 P/ρ² where P > 0 and 0.2 |P|/ρ² where P < 0, of a particle of pressure `p` (P/ρ₀) and specific volume `s`,
-/// as ρ₀ R, m²/s² [@monaghan2000].
+/// as ρ₀ R, m²/s² @monaghan2000.
 #[inline(always)]
 pub fn repulsion<N: Num>(p: N, s: N) -> N {
     p.select_below(p.constant(0.0), p.constant(-0.2), p.constant(0.01)) * p * (s * s)

@@ -1,5 +1,5 @@
 //! What is said of series after a run: extremes and means, waves between crossings, spectra, what is reflected, how a
-//! motion answers a wave, at one frequency and over all. Pure functions of [`Series`](crate::math::time_series::Series): no files.
+//! motion answers a wave, at one frequency and over all. Pure functions of [`TimeSeries`](crate::math::time_series::Series): no files.
 
 mod harmonic;
 mod moments;

@@ -40,7 +40,7 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
 ///
 /// None with fewer than three spacings, or if f does not converge monotonically: then no order can be said.
 ///
-/// Source: [@roache1994].
+/// Source: @roache1994.
 /// ```
 /// # use pontoon::study::convergence;
 /// let points = [0.04, 0.02, 0.01].map(|dp| (dp, 0.2 + 3.0 * dp));
@@ -69,19 +69,5 @@ pub fn convergence(points: &[(f64, f64)]) -> Option<Convergence> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn unequal_ratios_give_the_same_order_and_what_does_not_converge_gives_none() {
-        let figure = |dp: f64| 0.1 - 5.0 * dp.powf(1.5);
-        let points = [0.05, 0.03, 0.02].map(|dp| (dp, figure(dp)));
-        let order = convergence(&points).map(|c| c.order);
-        assert!(order.is_some_and(|q| (q - 1.5).abs() < 1e-9), "{order:?}");
-        assert_eq!(convergence(&[(0.04, 1.0), (0.02, 2.0), (0.01, 1.5)]), None, "it swings");
-        assert_eq!(convergence(&[(0.04, 1.0), (0.02, 2.0), (0.01, 4.0)]), None, "it grows");
-        assert_eq!(convergence(&points[..2]), None);
-        assert_eq!(least_squares(&points[..1]), None);
-        assert_eq!(least_squares(&[(0.02, 0.0), (0.01, 0.0)]), None, "no error has no logarithm");
-    }
-}
+#[path = "../../tests/unit/study/convergence.rs"]
+mod tests;

@@ -7,17 +7,17 @@ use std::{
 
 use crate::{
     analysis::{CheckCurves, ReferenceCheck, Verdict},
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::{Manifest, manifest::RunStatus},
     run::{self, RunObserver, RunOptions},
-    scene::{FramesChoice, FramesConfig, Scene, SizeEstimate},
+    scene::{FramesChoice, FramesConfig, Scene, SizeEstimate, current_key},
 };
 
 /// How far further off its place the water of each repeat starts than that of the one before, dp.
 const REPEAT_OFFSET: f64 = 1e-6;
 
 /// The key that tells repeats apart.
-const SCATTER: &str = "scatter";
+const JITTER: &str = "jitter";
 
 /// Keys of a scene that change what is kept or judged of a run, never the run.
 const OUTPUT_KEYS: [&str; 4] = ["title", "frames", "checkpoint", "check"];
@@ -78,20 +78,20 @@ impl Job {
     /// the first as the scene says: what then differs between them is chance.
     ///
     /// # Errors
-    /// `Usage` for no time, or if the job varies `scatter` itself; those of the scene's words.
+    /// `Usage` for no time, or if the job varies `jitter` itself; those of the scene's words.
     pub fn repeated(self, times: usize) -> Result<Vec<Self>> {
         if times == 0 {
-            return Err(Error::new(Kind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
+            return Err(Error::new(ErrorKind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
         }
-        if times > 1 && self.varied.iter().any(|(key, _)| key == SCATTER) {
-            return Err(Error::new(Kind::Usage, "scatter tells repeats apart: it cannot be varied too")
-                .help("leave out  --vary scatter  or  --repeat"));
+        if times > 1 && self.varied.iter().any(|(key, _)| current_key(key) == JITTER) {
+            return Err(Error::new(ErrorKind::Usage, "jitter tells repeats apart: it cannot be varied too")
+                .help("leave out  --vary jitter  or  --repeat"));
         }
-        let own = if times > 1 { self.read_scene()?.scatter.unwrap_or(0.0) } else { 0.0 };
+        let own = if times > 1 { self.read_scene()?.jitter.unwrap_or(0.0) } else { 0.0 };
         let nth = |repeat: usize| {
             let mut job = Self { repeat, ..self.clone() };
             if repeat > 1 {
-                job.overrides.push((SCATTER.into(), format!("{:?}", own + REPEAT_OFFSET * (repeat - 1) as f64)));
+                job.overrides.push((JITTER.into(), format!("{:?}", own + REPEAT_OFFSET * (repeat - 1) as f64)));
                 job.folder.as_mut_os_string().push(format!("_repeat-{repeat}"));
             }
             job

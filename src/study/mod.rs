@@ -1,7 +1,7 @@
 //! Many runs as one question: a grid over spacing and laws, or a list of cases with references.
 //!
 //! A [`Job`] is one run in a folder of its own; it is skipped where it has been run, and goes on where it was
-//! interrupted. [`Grid`] makes the jobs of `pontoon study`, [`Case`] those of `pontoon validate`; rows, orders
+//! interrupted. [`ParameterGrid`] makes the jobs of `pontoon study`, [`ValidationCase`] those of `pontoon validate`; rows, orders
 //! and pages say what came out. [`stress`] makes and judges many short runs in memory.
 
 mod validation_cases;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Job;
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     output::checkpoint::fnv1a,
 };
 
@@ -52,13 +52,12 @@ impl ParameterGrid {
         let mut dp = self.dp.clone();
         dp.sort_by(|a, b| b.total_cmp(a));
         if dp.is_empty() || self.vary.iter().any(|vary| vary.values.iter().any(String::is_empty)) {
-            return Err(Error::new(Kind::Usage, "a list of values has nothing in it")
+            return Err(Error::new(ErrorKind::Usage, "a list of values has nothing in it")
                 .help("write  --dp 0.02,0.01 --vary model.viscosity=none,laminar"));
         }
         if self.vary.iter().any(|vary| vary.key == "dp") {
-            return Err(
-                Error::new(Kind::Usage, "the spacing is varied apart from other keys").help("write  --dp 0.02,0.01")
-            );
+            return Err(Error::new(ErrorKind::Usage, "the spacing is varied apart from other keys")
+                .help("write  --dp 0.02,0.01"));
         }
         let frames = self
             .frames
@@ -76,7 +75,7 @@ impl ParameterGrid {
             }
         }
         match (0..jobs.len()).find(|&i| jobs[..i].iter().any(|job| job.name == jobs[i].name)) {
-            Some(i) => Err(Error::new(Kind::Usage, format!("two runs would be called {:?}", jobs[i].name))
+            Some(i) => Err(Error::new(ErrorKind::Usage, format!("two runs would be called {:?}", jobs[i].name))
                 .help("give each spacing and each value once")),
             None => Ok(jobs.into_iter().map(|job| job.repeated(self.repeat)).collect::<Result<Vec<_>>>()?.concat()),
         }
@@ -179,97 +178,5 @@ fn folder_name(dp: f64, varied: &[(String, String)]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn grid(dp: &[f64], vary: &[(&str, &[&str])]) -> ParameterGrid {
-        let vary = vary.iter().map(|(key, values)| VariedKey {
-            key: key.to_string(),
-            values: values.iter().map(|v| v.to_string()).collect(),
-        });
-        ParameterGrid {
-            name: "x".into(),
-            scene: "x".into(),
-            dp: dp.into(),
-            vary: vary.collect(),
-            overrides: vec![],
-            frames: None,
-            repeat: 1,
-        }
-    }
-
-    #[test]
-    fn every_spacing_meets_every_combination_and_the_coarsest_comes_first() -> Result<()> {
-        let values: [(&str, &[&str]); 2] = [("model.kernel", &["cubic", "wendland"]), ("time.cfl", &["0.1", "0.2"])];
-        let jobs = grid(&[0.01, 0.02, 0.005], &values).jobs(Path::new("out"))?;
-        assert_eq!(jobs.len(), 12);
-        assert_eq!(jobs[0].folder, Path::new("out/runs/dp-0.02_kernel-cubic_cfl-0.1"));
-        assert_eq!(jobs[11].name, "dp-0.005_kernel-wendland_cfl-0.2");
-        assert_eq!(jobs[11].group, "model.kernel = wendland, time.cfl = 0.2");
-        assert_eq!(jobs[11].overrides.last(), Some(&("dp".to_string(), "0.005".to_string())));
-        assert_eq!(grid(&[0.01], &[]).jobs(Path::new("out"))?[0].name, "dp-0.01");
-        Ok(())
-    }
-
-    #[test]
-    fn columns_are_headed_by_what_differs_and_frames_are_kept_at_their_times() -> Result<()> {
-        let laws: [(&str, &[&str]); 1] = [("model.diffusion", &["none", "fourtakas"])];
-        let named = |grid: ParameterGrid| grid.jobs(Path::new("out")).map(|jobs| distinguishing_labels(&jobs));
-        assert_eq!(named(grid(&[0.01], &laws))?, ["diffusion = none", "diffusion = fourtakas"]);
-        assert_eq!(named(grid(&[0.01, 0.02], &[]))?, ["dp = 0.02 m", "dp = 0.01 m"]);
-        assert_eq!(named(grid(&[0.01], &[]))?, ["dp-0.01"]);
-        let kept =
-            ParameterGrid { frames: Some(0.1), ..grid(&[0.01], &[]) }.jobs(Path::new("out"))?[0].overrides[0].clone();
-        assert_eq!((kept.0.as_str(), kept.1.starts_with("{ every = 0.1,")), ("frames", true));
-        // Times that have no long interval in common: 200 frames, the nearest of which is taken.
-        assert_eq!(
-            [frame_interval(&[0.0], 2.0), frame_interval(&[0.5, 1.25], 2.0), frame_interval(&[0.333, 1.0], 2.0)],
-            [2.0, 0.25, 0.01]
-        );
-        Ok(())
-    }
-
-    #[test]
-    fn repeats_share_a_name_and_start_a_millionth_of_dp_apart() -> Result<()> {
-        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/still-tank");
-        let thrice = |sets: &[(&str, &str)]| {
-            let sets = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-            ParameterGrid { scene: scene.clone(), overrides: sets, repeat: 3, ..grid(&[0.05], &[]) }
-                .jobs(Path::new("out"))
-        };
-        let jobs = thrice(&[])?;
-        assert!(jobs.iter().all(|job| job.name == "dp-0.05" && job.group.is_empty()));
-        let folders = ["out/runs/dp-0.05", "out/runs/dp-0.05_repeat-2", "out/runs/dp-0.05_repeat-3"];
-        assert_eq!(jobs.iter().map(|job| job.folder.as_path()).collect::<Vec<_>>(), folders.map(Path::new));
-        assert_eq!(distinguishing_labels(&jobs), ["repeat 1", "repeat 2", "repeat 3"]);
-        let starts = |jobs: &[Job]| jobs.iter().map(|job| Ok(job.read_scene()?.scatter)).collect::<Result<Vec<_>>>();
-        // The first is what it would be without repeats, so that a study that has been run can be repeated.
-        assert_eq!(starts(&jobs)?, [None, Some(1e-6), Some(2e-6)]);
-        assert_eq!(starts(&thrice(&[("scatter", "1e-3")])?)?, [1e-3, 1e-3 + 1e-6, 1e-3 + 2e-6].map(Some));
-        let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
-        assert_eq!(refused(ParameterGrid { repeat: 0, ..grid(&[0.05], &[]) }), Some(Kind::Usage));
-        let varied = grid(&[0.05], &[("scatter", &["1e-7", "1e-6"])]);
-        assert_eq!(refused(ParameterGrid { repeat: 2, ..varied }), Some(Kind::Usage));
-        Ok(())
-    }
-
-    #[test]
-    fn what_is_given_twice_or_not_at_all_is_refused() {
-        let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
-        assert_eq!(refused(grid(&[0.01, 0.01], &[])), Some(Kind::Usage));
-        assert_eq!(refused(grid(&[], &[])), Some(Kind::Usage));
-        assert_eq!(refused(grid(&[0.01], &[("dp", &["0.01", "0.02"])])), Some(Kind::Usage));
-        assert_eq!(refused(grid(&[0.01], &[("a", &["1", ""])])), Some(Kind::Usage));
-    }
-
-    #[test]
-    fn a_long_name_is_cut_but_stays_its_own() -> Result<()> {
-        let long =
-            "{ artificial = { alpha = 0.0200000000000000000000000000000000000000000000000000000000000000000001 } }";
-        let jobs =
-            grid(&[0.01], &[("model.viscosity", &[long, &long.replace("1 }", "2 }")])]).jobs(Path::new("out"))?;
-        assert!(jobs.iter().all(|job| job.name.len() <= LONGEST));
-        assert!(jobs[0].name.starts_with("dp-0.01_viscosity-artificial-alpha-0.02"));
-        Ok(())
-    }
-}
+#[path = "../../tests/unit/study/parameter_grid.rs"]
+mod tests;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Job, JobResult, JobState};
 use crate::{
     analysis::{ErrorMetrics, Verdict},
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
 };
 
 /// A run under one of its checks; a figure is none where it is not known.
@@ -137,7 +137,7 @@ fn with_verdict(row: ResultRow, verdict: &Verdict) -> ResultRow {
 /// # Errors
 /// `File` if the text cannot be made.
 pub fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
-    let broken = |why: csv::Error| Error::new(Kind::File, format!("the table cannot be made: {why}"));
+    let broken = |why: csv::Error| Error::new(ErrorKind::File, format!("the table cannot be made: {why}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head = ["run", "repeat", "dp_m"].map(String::from).to_vec();
     head.extend(keys.iter().cloned());
@@ -178,34 +178,9 @@ pub fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
         cells.extend([row.status.to_string(), row.reason.clone().unwrap_or_default().replace('\n', " ")]);
         writer.write_record(&cells).map_err(broken)?;
     }
-    writer.into_inner().map_err(|why| Error::new(Kind::File, format!("the table cannot be made: {why}")))
+    writer.into_inner().map_err(|why| Error::new(ErrorKind::File, format!("the table cannot be made: {why}")))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn checks_of_one_series_are_told_apart() {
-        assert_eq!(check_labels(["a.x_m", "b.y_m", "a.x_m"]), ["a.x_m", "b.y_m", "a.x_m (2)"]);
-    }
-
-    #[test]
-    fn a_value_with_commas_and_a_failure_of_several_lines_stay_in_their_cells() -> Result<()> {
-        let row = ResultRow {
-            run: "dp-0.01".into(),
-            dp: 0.01,
-            varied: vec![("gravity".into(), "[0.0, -9.81]".into())],
-            metrics: ErrorMetrics { relative_l2: Some(0.25), ..ErrorMetrics::default() },
-            status: "failed",
-            reason: Some("too fast\n  usual cause".into()),
-            ..ResultRow::default()
-        };
-        let text = rows_to_csv(&[row], &["gravity".into()])?;
-        let mut reader = csv::Reader::from_reader(text.as_slice());
-        let record = reader.records().next().and_then(|r| r.ok()).unwrap_or_default();
-        assert_eq!((&record[3], &record[5], record.len()), ("[0.0, -9.81]", "0.25", 19));
-        assert_eq!(&record[18], "too fast   usual cause");
-        Ok(())
-    }
-}
+#[path = "../../tests/unit/study/result_rows.rs"]
+mod tests;

@@ -79,7 +79,7 @@ impl StudyResults {
         result_rows(&self.jobs, ran, &self.checks)
     }
 
-    /// Files that [`Sheet::write`] writes.
+    /// Files that [`StudyResults::write`] writes.
     pub fn files(&self) -> [PathBuf; 3] {
         ["study.csv", "study.json", "study.html"].map(|name| self.out.join(name))
     }

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     analysis::{CheckCurves, Verdict, format_verdicts},
     error::{Error, Result},
-    math::time_series::Series,
+    math::time_series::TimeSeries,
     output::{manifest::Machine, write_atomically},
 };
 
@@ -143,7 +143,7 @@ fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> Result<String> {
     let (reference, verdict) = (&known[0].reference, verdicts[0]);
     let (first, last) = reference.span();
     let room = 0.1 * (last - first);
-    let points = |series: &Series| -> Vec<(f64, f64)> {
+    let points = |series: &TimeSeries| -> Vec<(f64, f64)> {
         let all = series.times().iter().copied().zip(series.values().iter().copied());
         all.filter(|(t, _)| (first - room..=last + room).contains(t)).collect()
     };

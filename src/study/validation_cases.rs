@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::Job;
 use crate::{
-    error::{Error, Kind, Result, nearest},
+    error::{Error, ErrorKind, Result, nearest_name},
     plan::Score,
     scene::Scene,
 };
@@ -88,11 +88,11 @@ pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>>
     }
     let case = |name: &String| {
         all.iter().find(|case| case.name == *name).cloned().ok_or_else(|| {
-            let help = match nearest(name, all.iter().map(|case| case.name.as_str())) {
+            let help = match nearest_name(name, all.iter().map(|case| case.name.as_str())) {
                 Some(near) => format!("did you mean {near:?}? `pontoon validate --list` lists all"),
                 None => "`pontoon validate --list` lists all".into(),
             };
-            Error::new(Kind::Usage, format!("there is no case {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no case {name:?}")).help(help)
         })
     };
     names.iter().map(case).collect()
@@ -170,56 +170,5 @@ fn over<T: Clone>(own: BTreeMap<String, T>, base: &BTreeMap<String, T>) -> BTree
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn scene(name: &str) -> std::path::PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
-    }
-
-    #[test]
-    fn every_case_is_a_scene_that_can_be_run_both_ways() -> Result<()> {
-        let all = validation_cases()?;
-        assert!(all.len() >= 26, "{}", all.len());
-        for case in &all {
-            assert!(case.about.ends_with('.'), "{}: {:?}", case.name, case.about);
-            for full in [false, true] {
-                let job = case.job(full, &scene(&case.scene), Path::new("out"))?;
-                job.estimated_size().map_err(|e| e.at(case.name.clone(), None, ""))?;
-                assert!(!job.checks()?.is_empty(), "{} has checks", case.name);
-            }
-        }
-        let mut names: Vec<&str> = all.iter().map(|case| case.name.as_str()).collect();
-        names.sort_unstable();
-        names.dedup();
-        assert_eq!(names.len(), all.len(), "each has a name of its own");
-        Ok(())
-    }
-
-    #[test]
-    fn a_case_of_the_paper_has_its_laws_and_figures() -> Result<()> {
-        let case = select_cases(&["column-17".to_string()], true)?.remove(0);
-        let job = case.job(true, &scene("column"), Path::new("out"))?;
-        let lines: Vec<String> =
-            job.read_scene()?.resolve()?.iter().map(|v| format!("{} = {}", v.key, v.value)).collect();
-        for line in [
-            "dp = 0.0085",
-            "model.kernel.cubic.tensile = true",
-            "model.viscosity.sps.nu0 = 0.000001",
-            "model.diffusion.molteni.delta = 0.1",
-            "model.shifting.away_from_solids.a = 2.0",
-            "time.scheme.verlet.euler_every = 50",
-            "time.cfl = 0.2",
-            "check.0.paper.N = 0.305",
-        ] {
-            assert!(lines.iter().any(|l| l == line), "no line \"{line}\" in\n{}", lines.join("\n"));
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn a_case_that_is_not_there_names_the_nearest() {
-        let error = select_cases(&["colum-3".to_string()], false).err();
-        assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"column-3\"?")));
-    }
-}
+#[path = "../../tests/unit/study/validation_cases.rs"]
+mod tests;

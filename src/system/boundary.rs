@@ -21,7 +21,7 @@ use crate::{
 pub(crate) struct Boundary<const D: usize> {
     pub(crate) particles: Particles<D>,
     /// Positions in the frames of their solids, m.
-    local: Vec<Vector<D>>,
+    local_positions: Vec<Vector<D>>,
     /// Share of the kernel's support that water fills, Σ V_f W, of each one near water, –; `None` unless a body needs it.
     pub(crate) wetness: Option<Vec<f64>>,
     /// Depths below the face, m; `None` unless the density relaxes to the water's pressure or water sticks to the face.
@@ -36,7 +36,7 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) shifting_suppressed: Option<Vec<bool>>,
     coverage: SupportCoverage,
     /// The box around the boundary particles of each solid, in its frame, m.
-    pub(super) bounds: Vec<Bounds<D>>,
+    pub(super) local_bounds: Vec<Bounds<D>>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
 }
@@ -44,11 +44,11 @@ pub(crate) struct Boundary<const D: usize> {
 impl<const D: usize> Boundary<D> {
     /// No boundary particles yet.
     pub(super) fn new(model: &Model) -> Self {
-        let volume = model.fluid_properties::<D>().volume0();
+        let volume = model.fluid_properties::<D>().particle_volume();
         let (sticks, relaxes) = (model.slip == Slip::None, model.walls == Walls::RelaxedAdami);
         Self {
             particles: Particles::default(),
-            local: Vec::new(),
+            local_positions: Vec::new(),
             wetness: None,
             depths: (sticks || relaxes).then(Vec::new),
             normals: sticks.then(Vec::new),
@@ -61,7 +61,7 @@ impl<const D: usize> Boundary<D> {
                 model.support_radius(),
                 D,
             ),
-            bounds: Vec::new(),
+            local_bounds: Vec::new(),
             poses_at_rebuild: None,
         }
     }
@@ -75,11 +75,15 @@ impl<const D: usize> Boundary<D> {
         extension: &[ExtensionParticle<D>],
     ) -> Result<Range<usize>> {
         let first = self.particles.len();
-        let mut faces =
-            spec.shape.skin(model.dp, model.boundary_layers()).into_iter().map(|point| point.r).collect::<Vec<_>>();
+        let mut faces = spec
+            .shape
+            .boundary_points(model.dp, model.boundary_layers())
+            .into_iter()
+            .map(|point| point.r)
+            .collect::<Vec<_>>();
         for r in faces.iter().chain(extension.iter().map(|particle| &particle.r)) {
             self.particles.push(kinematics.pose.point(r), model.rho0);
-            self.local.push(*r);
+            self.local_positions.push(*r);
         }
         faces.extend(extension.iter().map(|particle| particle.behind_face));
         if self.particles.len() == first {
@@ -90,30 +94,30 @@ impl<const D: usize> Boundary<D> {
             depths.par_extend(faces.par_iter().map(|r| -spec.shape.signed_distance(r)));
         }
         if let Some(normals) = &mut self.normals {
-            normals.par_extend(faces.par_iter().map(|r| spec.shape.outward(r, 0.05 * model.dp)));
+            normals.par_extend(faces.par_iter().map(|r| spec.shape.outward_normal(r, 0.05 * model.dp)));
         }
-        self.bounds.push(Bounds::around(&self.local[first..]));
+        self.local_bounds.push(Bounds::around(&self.local_positions[first..]));
         Ok(first..self.particles.len())
     }
 
     /// Removes the boundary particles `gone`, which are those of solid number `solid`.
-    pub(super) fn cut(&mut self, gone: &Range<usize>, solid: usize) {
-        let Self { particles: Particles { r, v, rho, id }, local, depths, normals, .. } = self;
-        let Self { target_density, extrapolated_velocity, bounds, .. } = self;
-        for vectors in [r, v, local].into_iter().chain(normals).chain(extrapolated_velocity) {
-            cut(vectors, gone);
+    pub(super) fn remove_range(&mut self, gone: &Range<usize>, solid: usize) {
+        let Self { particles: Particles { r, v, rho, id }, local_positions, depths, normals, .. } = self;
+        let Self { target_density, extrapolated_velocity, local_bounds, .. } = self;
+        for vectors in [r, v, local_positions].into_iter().chain(normals).chain(extrapolated_velocity) {
+            remove_range(vectors, gone);
         }
-        [rho].into_iter().chain(depths).for_each(|numbers| cut(numbers, gone));
-        target_density.iter_mut().for_each(|targets| cut(targets, gone));
+        [rho].into_iter().chain(depths).for_each(|numbers| remove_range(numbers, gone));
+        target_density.iter_mut().for_each(|targets| remove_range(targets, gone));
         id.truncate(self.particles.r.len());
-        bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
+        local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
     }
 
     /// The positions `r` (m) of all boundary particles, with those of each solid as at its pose.
-    pub(super) fn at_poses(&self, mut r: Vec<Vector<D>>, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
+    pub(super) fn positions_at(&self, mut r: Vec<Vector<D>>, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
         for (solid, pose) in solids.iter().zip(poses) {
             for i in solid.boundary.clone() {
-                r[i] = pose.point(&self.local[i]);
+                r[i] = pose.point(&self.local_positions[i]);
             }
         }
         r
@@ -122,7 +126,12 @@ impl<const D: usize> Boundary<D> {
     /// Places the boundary particles of `solid` where its kinematics say.
     pub(super) fn place(&mut self, solid: &Solid<D>) {
         let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
-        boundary_motion::place(&solid.kinematics, &self.local[range.clone()], &mut r[range.clone()], &mut v[range]);
+        boundary_motion::place_boundary_particles(
+            &solid.kinematics,
+            &self.local_positions[range.clone()],
+            &mut r[range.clone()],
+            &mut v[range],
+        );
     }
 
     /// Sets the target densities of the boundary particles near water.
@@ -165,7 +174,7 @@ impl<const D: usize> System<D> {
             .map(|&i| {
                 let x = &boundary.r[i as usize];
                 let mut nearest = (f64::INFINITY, 0.0);
-                self.neighbours.water_around(x, &mut |j| {
+                self.neighbours.visit_fluid_around(x, &mut |j| {
                     let d = (water.r[j] - x).norm_squared();
                     if d < nearest.0 {
                         let head = self.equation_of_state.pressure(water.rho[j] / self.properties.rho0 - 1.0);
@@ -206,10 +215,10 @@ impl<const D: usize> System<D> {
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, .. } = self;
         let mut input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         input.boundary_velocity = &boundary.particles.v;
-        let mut fits = vec![WallExtrapolation::all(0.0); neighbours.boundary_near_fluid().len()];
+        let mut fits = vec![WallExtrapolation::filled_with(0.0); neighbours.boundary_near_fluid().len()];
         pair_loop.extrapolate_to_boundary(&input, sticks, &mut fits);
         if let Some(wetness) = &mut self.boundary.wetness {
-            *wetness = fits.iter().map(|fit| fit.weight).collect();
+            *wetness = fits.iter().map(|fit| fit.weight_sum).collect();
         }
         if relaxes {
             self.update_wall_pressure(&fits);
@@ -228,7 +237,7 @@ impl<const D: usize> System<D> {
             let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
-            (density, coverage.fraction(fit.weight, depths[i]))
+            (density, coverage.fraction(fit.weight_sum, depths[i]))
         };
         let wet = self.neighbours.boundary_near_fluid();
         let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();
@@ -261,7 +270,7 @@ impl<const D: usize> System<D> {
 }
 
 /// Removes `gone` from an array that may be shorter.
-fn cut<T>(array: &mut Vec<T>, gone: &Range<usize>) {
+fn remove_range<T>(array: &mut Vec<T>, gone: &Range<usize>) {
     let end = gone.end.min(array.len());
     array.drain(gone.start.min(end)..end);
 }

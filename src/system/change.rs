@@ -45,7 +45,7 @@ impl<const D: usize> System<D> {
     /// Removes the water inside the last solid, whose boundary particles start with the pressure of the remaining water.
     /// Returns how particle arrays must change, the number of particles removed, and their energy (J).
     pub(crate) fn displace(&mut self) -> (Option<Reordering<D>>, usize, f64) {
-        let (before, mut energy) = (self.real_count(), 0.0);
+        let (before, mut energy) = (self.particle_count(), 0.0);
         if let Some(solid) = self.solids.last() {
             let (pose, water) = (solid.kinematics.pose, &self.fluid.particles);
             let inside = |x: &Vector<D>| solid.spec.shape.signed_distance(&pose.local(x)) < 0.0;
@@ -58,13 +58,13 @@ impl<const D: usize> System<D> {
         self.fluid.displaced = None;
         self.init_hydrostatic(self.solids.last().map_or(0..0, |solid| solid.boundary.clone()));
         self.check_water();
-        (reordering, before - self.real_count(), energy)
+        (reordering, before - self.particle_count(), energy)
     }
 
     /// Removes solid number `i`: it keeps its number, stays at rest at its position, and has no boundary particles.
     pub(crate) fn remove_body(&mut self, i: usize) {
         let gone = self.solids[i].boundary.clone();
-        self.boundary.cut(&gone, i);
+        self.boundary.remove_range(&gone, i);
         self.neighbours.remove_boundary(gone.clone());
         let solid = &mut self.solids[i];
         solid.spec.role = Role::Fixed;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Images, System};
 use crate::{
     math::{Matrix, Vector},
-    model::{Gradient, Model},
+    model::{Model, PressureGradient},
     particles::{PARTICLES_PER_TASK, Particles},
 };
 
@@ -34,7 +34,7 @@ impl<const D: usize> Fluid<D> {
         let zeros = |needed: bool| needed.then(|| vec![Matrix::zeros(); r.len()]);
         Self {
             stress: zeros(model.viscosity.stress().is_some()),
-            gradient_correction: zeros(model.gradient == Gradient::Corrected),
+            gradient_correction: zeros(model.gradient == PressureGradient::Corrected),
             particles: Particles { id: (0..r.len() as u32).collect(), r, v, rho },
             images,
             displaced: None,
@@ -54,8 +54,8 @@ impl<const D: usize> Fluid<D> {
 
 impl<const D: usize> System<D> {
     /// Number of water particles, images not counted.
-    pub(crate) fn real_count(&self) -> usize {
-        self.fluid.particles.len() - self.fluid.images.of.len()
+    pub(crate) fn particle_count(&self) -> usize {
+        self.fluid.particles.len() - self.fluid.images.originals.len()
     }
 }
 

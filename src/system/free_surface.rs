@@ -9,7 +9,7 @@ use crate::{math::Vector, particles::PARTICLES_PER_TASK, solid::Role};
 impl<const D: usize> System<D> {
     /// Heights (m) of the surfaces above the horizontal place `at` (m; the last axis does not count), from the highest down, to
     /// a thousandth of the spacing. Spray lighter than half a kernel does not count.
-    pub fn surfaces(&self, at: &Vector<D>) -> impl Iterator<Item = f64> {
+    pub fn surface_heights(&self, at: &Vector<D>) -> impl Iterator<Item = f64> {
         let (dp, h, up) = (self.model.dp, self.model.h, D - 1);
         let beside = |r: &Vector<D>| (0..up).map(|i| (r[i] - at[i]).powi(2)).sum::<f64>() < (2.0 * h).powi(2);
         let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
@@ -21,7 +21,7 @@ impl<const D: usize> System<D> {
             let mut x = at;
             x[up] = z;
             let mut sum = 0.0;
-            self.water_near(&x, &mut |b, _, w| sum += self.particle_mass() / self.fluid.particles.rho[b] * w);
+            self.visit_fluid_near(&x, &mut |b, _, w| sum += self.particle_mass() / self.fluid.particles.rho[b] * w);
             sum
         };
         half_crossings(filled, low, high + 2.0 * h, 0.5 * dp, 1e-3 * dp)
@@ -32,8 +32,8 @@ impl<const D: usize> System<D> {
         for i in 0..self.solids.len() {
             let solid = &self.solids[i];
             let Role::Driven(motion) = &solid.spec.role else { continue };
-            let Some(gauge) = motion.gauge(&solid.absorption, t) else { continue };
-            let level = self.surfaces(&gauge).next();
+            let Some(gauge) = motion.gauge_position(&solid.absorption, t) else { continue };
+            let level = self.surface_heights(&gauge).next();
             self.solids[i].absorption = motion.update_absorption(&solid.absorption, t, level);
         }
     }
@@ -77,18 +77,5 @@ fn half_crossings(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::half_crossings;
-
-    #[test]
-    fn surfaces_are_the_falls_through_a_half_from_the_highest_down() {
-        let two_layers = |z: f64| if (0.1..0.2).contains(&z) || (0.0..0.05).contains(&z) { 1.0 } else { 0.1 };
-        let found: Vec<f64> = half_crossings(two_layers, 0.0, 0.4, 0.01, 1e-5).collect();
-        assert_eq!(found.len(), 2);
-        for (found, expected) in found.iter().zip([0.2, 0.05]) {
-            assert!((found - expected).abs() <= 1e-5, "within the tolerance asked for; got {found}");
-        }
-        assert_eq!(half_crossings(|_| 0.4, 0.0, 1.0, 0.01, 1e-5).next(), None);
-        assert_eq!(half_crossings(|_| 0.0, f64::INFINITY, f64::NEG_INFINITY, 0.01, 1e-5).next(), None);
-    }
-}
+#[path = "../../tests/unit/system/free_surface.rs"]
+mod tests;

@@ -22,7 +22,7 @@ pub use periodic::Periodic;
 pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
 pub(crate) use step_check::StepCheck;
-pub use step_check::{Escape, ExitPath, Limits, RemovedParticle};
+pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 
 pub use crate::interaction::StepLimits;
 
@@ -52,19 +52,19 @@ pub struct System<const D: usize> {
     pub(crate) boundary: Boundary<D>,
     pub(crate) solids: Vec<Solid<D>>,
     constraints: Constraints<D>,
-    region: Region<D>,
+    fluid_domain: FluidDomain<D>,
     pub(crate) rates: Rates<D>,
     pub(crate) status: Status,
 }
 
 /// Where water may be, and how it is treated there.
-struct Region<const D: usize> {
+struct FluidDomain<const D: usize> {
     /// Where particles may be.
     domain: Bounds<D>,
-    limits: Limits,
+    limits: ParticleLimits,
     sponge_layers: Vec<SpongeLayer<D>>,
     /// Height of the highest water at the start, m.
-    initial_top: f64,
+    initial_water_height: f64,
     /// Number of water particles at the start.
     initial_count: usize,
 }
@@ -82,9 +82,9 @@ pub(crate) struct Rates<const D: usize> {
 /// Counters and extremes of the steps so far.
 pub(crate) struct Status {
     /// The largest values that limit the next step.
-    peaks: StepLimits,
+    step_limits: StepLimits,
     /// What the last step saw of the water particles.
-    pub(crate) check: StepCheck,
+    pub(crate) step_check: StepCheck,
     /// Force passes so far.
     passes: u64,
     /// Whether solids have been added, which may have displaced water.
@@ -100,7 +100,7 @@ pub(crate) struct Reordering<const D: usize> {
     /// Boundary particles that have no water near them any more.
     pub(crate) dried: Vec<u32>,
     /// Particles that were removed.
-    pub(crate) lost: Vec<RemovedParticle<D>>,
+    pub(crate) removed: Vec<RemovedParticle<D>>,
 }
 
 /// An impulse that was shared equally by some water particles.
@@ -119,7 +119,7 @@ impl<const D: usize> System<D> {
         let Setup {
             model,
             water,
-            levels,
+            surface_levels,
             velocity,
             pressure,
             solids: specs,
@@ -137,16 +137,16 @@ impl<const D: usize> System<D> {
         // Depth along g: the level is a height on the last axis.
         let depth = |(r, level): (&Vector<D>, &f64)| (level - r[D - 1]).max(0.0) * -properties.gravity[D - 1];
         let more = pressure.into_iter().chain(std::iter::repeat(0.0));
-        let head = water.iter().zip(&levels).map(depth).zip(more).map(|(head, p)| head + p / properties.rho0);
+        let head = water.iter().zip(&surface_levels).map(depth).zip(more).map(|(head, p)| head + p / properties.rho0);
         let rho = head.map(|head| properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head))).collect();
-        drop(levels);
+        drop(surface_levels);
         let fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, support));
         let particles = &fluid.particles;
-        let region = Region {
+        let region = FluidDomain {
             domain: domain.unwrap_or_else(Bounds::empty),
             limits,
-            sponge_layers: sponge_layers,
-            initial_top: particles.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max),
+            sponge_layers,
+            initial_water_height: particles.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max),
             initial_count: particles.len(),
         };
         let mut system = Self {
@@ -163,27 +163,27 @@ impl<const D: usize> System<D> {
             equation_of_state,
             fluid,
             solids: Vec::new(),
-            constraints: constraints,
-            region,
+            constraints,
+            fluid_domain: region,
             status: Status {
-                peaks: StepLimits { acceleration: 0.0, approach_rate: 0.0 },
-                check: StepCheck::NOTHING,
+                step_limits: StepLimits { acceleration: 0.0, approach_rate: 0.0 },
+                step_check: StepCheck::INITIAL,
                 passes: 0,
                 solids_added: false,
                 neighbour_time: Duration::ZERO,
             },
         };
         let extensions: Vec<_> =
-            (0..specs.len()).map(|i| boundary_extension::of_solid(i, &specs, &system.model)).collect();
+            (0..specs.len()).map(|i| boundary_extension::extension_particles(i, &specs, &system.model)).collect();
         for (spec, extension) in specs.into_iter().zip(&extensions) {
-            let kinematics = spec.start();
+            let kinematics = spec.initial_kinematics();
             system.append_solid(spec, kinematics, extension)?;
         }
         system.update_shifting_suppression();
         if domain.is_none() {
             let fluid = Bounds::around(&system.fluid.particles.r);
             let everything = fluid.union(&Bounds::around(&system.boundary.particles.r));
-            system.region.domain = everything.grown(everything.size().max() + support);
+            system.fluid_domain.domain = everything.grown(everything.size().max() + support);
         }
         for i in 0..system.solids.len() {
             system.place_boundary(i);
@@ -204,7 +204,7 @@ impl<const D: usize> System<D> {
         let start = Instant::now();
         let (order, lost) = self.sort_water();
         self.status.neighbour_time += start.elapsed();
-        Some(Reordering { order, dried: self.rebuild_lists(), lost })
+        Some(Reordering { order, dried: self.rebuild_lists(), removed: lost })
     }
 
     /// Rebuilds the neighbour lists within a step, if that is needed; the water keeps its order.
@@ -222,8 +222,9 @@ impl<const D: usize> System<D> {
             bounds.corners().map(|x| (now.point(&x) - then.point(&x)).norm()).fold(0.0, f64::max)
         };
         let Some(then) = &self.boundary.poses_at_rebuild else { return true };
-        let boundary = self.solids.iter().zip(then.iter().zip(&self.boundary.bounds)).map(moved).fold(0.0, f64::max);
-        let moved = self.status.check.moved2.sqrt() + boundary;
+        let boundary =
+            self.solids.iter().zip(then.iter().zip(&self.boundary.local_bounds)).map(moved).fold(0.0, f64::max);
+        let moved = self.status.step_check.max_displacement2.sqrt() + boundary;
         moved.is_nan() || moved >= self.neighbours.margin()
     }
 
@@ -234,7 +235,7 @@ impl<const D: usize> System<D> {
         let mut dried = self.neighbours.boundary_near_fluid().to_vec();
         self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
         self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
-        self.status.check.moved2 = 0.0;
+        self.status.step_check.max_displacement2 = 0.0;
         self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
         let mut wet = self.neighbours.boundary_near_fluid().iter().copied().peekable();
         dried.retain(|&i| {
@@ -257,7 +258,7 @@ impl<const D: usize> System<D> {
         state: &'a EquationOfState,
     ) -> PairLoopInput<'a, D> {
         PairLoopInput {
-            neighbours: neighbours,
+            neighbours,
             fluid: &fluid.particles,
             boundary: &boundary.particles,
             boundary_velocity: boundary.extrapolated_velocity.as_ref().unwrap_or(&boundary.particles.v),
@@ -274,13 +275,12 @@ impl<const D: usize> System<D> {
     pub(crate) fn update_rates(&mut self) {
         self.update_wall_state();
         if self.pair_loop.has_auxiliary_sums() {
-            self.rates.auxiliary.resize(self.fluid.particles.len(), AuxiliarySums::all(0.0));
+            self.rates.auxiliary.resize(self.fluid.particles.len(), AuxiliarySums::filled_with(0.0));
         }
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, .. } = self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         let Rates { fluid, boundary, auxiliary } = rates;
-        self.status.peaks =
-            pair_loop.rates(&input, &mut PairLoopOutput { fluid: fluid, boundary: boundary, auxiliary: auxiliary });
+        self.status.step_limits = pair_loop.rates(&input, &mut PairLoopOutput { fluid, boundary, auxiliary });
         self.copy_to_images();
         self.update_fluid_tensors();
         let loads = self.loads(&self.rates.boundary);
@@ -301,7 +301,7 @@ impl<const D: usize> System<D> {
         if let Some(corrections) = &mut self.fluid.gradient_correction {
             corrections.par_iter_mut().zip(auxiliary).with_min_len(PARTICLES_PER_TASK).for_each(
                 |(correction, sums)| {
-                    let rows = gradient_correction::correction(&sums.moment);
+                    let rows = gradient_correction::correction(&sums.renormalization);
                     *correction = Matrix::from_fn(|i, j| rows[i][j]);
                 },
             );
@@ -309,7 +309,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Sums of another pair loop at the state of the last force pass, and the loads that they give on the solids.
-    pub(crate) fn pass_of(
+    pub(crate) fn rates_of_pair_loop(
         &self,
         pair_loop: &mut dyn PairLoop<D>,
         fluid: &mut [PairSums<D>],
@@ -317,7 +317,7 @@ impl<const D: usize> System<D> {
     ) -> Vec<Load<D>> {
         let (medium, state) = (&self.properties, &self.equation_of_state);
         let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
-        pair_loop.rates(&input, &mut PairLoopOutput { fluid: fluid, boundary: boundary, auxiliary: &mut [] });
+        pair_loop.rates(&input, &mut PairLoopOutput { fluid, boundary, auxiliary: &mut [] });
         self.loads(boundary)
     }
 
@@ -332,8 +332,8 @@ impl<const D: usize> System<D> {
             let part = |(wet, sums): (&[u32], &[PairSums<D>])| {
                 // Beyond a periodic side the water is an image, and its load has been counted.
                 let own = wet.iter().map(|&i| &r[i as usize]).zip(sums);
-                let own = own.filter(|(r, _)| self.fluid.images.between(r));
-                own.map(|(r, s)| Load::at(&(r - centre), s.acceleration * mass)).sum()
+                let own = own.filter(|(r, _)| self.fluid.images.is_inside(r));
+                own.map(|(r, s)| Load::from_force_at(&(r - centre), s.acceleration * mass)).sum()
             };
             let parts: Vec<Load<D>> = chunks.map(part).collect();
             parts.into_iter().sum()
@@ -343,7 +343,7 @@ impl<const D: usize> System<D> {
 
     /// The largest values that limit the next step.
     pub fn step_limits(&self) -> StepLimits {
-        self.status.peaks
+        self.status.step_limits
     }
 
     /// The sums of each water particle that only some laws need; empty if none does.
@@ -356,13 +356,13 @@ impl<const D: usize> System<D> {
         if impulse.norm_squared() == 0.0 {
             return None;
         }
-        let (real, mass) = (self.real_count(), self.particle_mass());
+        let (real, mass) = (self.particle_count(), self.particle_mass());
         let own = Bounds::around(&self.boundary.particles.r[self.solids[solid].boundary.clone()]);
         let water = &mut self.fluid.particles;
         let mut distance = self.model.support_radius();
         loop {
             let around = own.grown(distance);
-            let mut particles = self.neighbours.water_within(&around);
+            let mut particles = self.neighbours.fluid_within(&around);
             particles.retain(|&i| i < real && around.contains(&water.r[i]));
             if !particles.is_empty() {
                 let velocity = impulse / (particles.len() as f64 * mass);

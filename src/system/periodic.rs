@@ -25,13 +25,13 @@ pub(super) struct Images<const D: usize> {
     pub(super) periodic: Periodic<D>,
     width: f64,
     /// Which particle each of them mirrors; they follow the real ones in this order.
-    pub(super) of: Vec<u32>,
+    pub(super) originals: Vec<u32>,
 }
 
 impl<const D: usize> Images<D> {
     /// None yet, for a kernel of support `reach` (m).
     pub(super) fn new(periodic: Periodic<D>, reach: f64) -> Self {
-        Self { periodic, width: WIDTH * reach, of: Vec::new() }
+        Self { periodic, width: WIDTH * reach, originals: Vec::new() }
     }
 
     /// Whether any side is periodic.
@@ -78,7 +78,7 @@ impl<const D: usize> Images<D> {
     }
 
     /// Whether `x` (m) lies between the sides.
-    pub(super) fn between(&self, x: &Vector<D>) -> bool {
+    pub(super) fn is_inside(&self, x: &Vector<D>) -> bool {
         let inside = |(x, side): (&f64, &Option<[f64; 2]>)| side.is_none_or(|[from, to]| (from..to).contains(x));
         x.iter().zip(&self.periodic).all(inside)
     }
@@ -88,10 +88,10 @@ impl<const D: usize> System<D> {
     /// Wraps the water round the periodic sides, removes what left the domain or is displaced, sorts it along the columns and
     /// puts new images at its end. Returns the order, `order[new] = old` (for an image that of its original), and what was removed.
     pub(super) fn sort_water(&mut self) -> (Vec<u32>, Vec<RemovedParticle<D>>) {
-        let real = self.real_count();
+        let real = self.particle_count();
         let Fluid { particles, images, displaced, .. } = &mut self.fluid;
         images.wrap(&mut particles.r[..real]);
-        let mut order = self.neighbours.order(&particles.r[..real]);
+        let mut order = self.neighbours.column_order(&particles.r[..real]);
         let displaced = displaced.take();
         let lost = self.remove_outside(&mut order);
         if let Some(displaced) = displaced {
@@ -110,15 +110,16 @@ impl<const D: usize> System<D> {
         for (r, (_, away)) in particles.r[real..].iter_mut().zip(&copies) {
             *r += away;
         }
-        images.of = copies.into_iter().map(|(of, _)| of).collect();
+        images.originals = copies.into_iter().map(|(of, _)| of).collect();
         self.rates.fluid.resize(particles.len(), PairSums::zero());
         (order, lost)
     }
 
     /// Gives the images the rates of their originals.
     pub(super) fn copy_to_images(&mut self) {
-        let (real, images, Rates { fluid, auxiliary, .. }) = (self.real_count(), &self.fluid.images, &mut self.rates);
-        for (k, &i) in images.of.iter().enumerate() {
+        let (real, images, Rates { fluid, auxiliary, .. }) =
+            (self.particle_count(), &self.fluid.images, &mut self.rates);
+        for (k, &i) in images.originals.iter().enumerate() {
             fluid[real + k] = fluid[i as usize];
             if !auxiliary.is_empty() {
                 auxiliary[real + k] = auxiliary[i as usize];
@@ -127,7 +128,7 @@ impl<const D: usize> System<D> {
         if images.any() {
             // The outermost images lack half their neighbours: their acceleration says nothing of the water.
             let largest = fluid[..real].iter().map(|s| s.acceleration.norm_squared()).fold(0.0, f64::max);
-            self.status.peaks = StepLimits { acceleration: largest.sqrt(), ..self.status.peaks };
+            self.status.step_limits = StepLimits { acceleration: largest.sqrt(), ..self.status.step_limits };
         }
     }
 }

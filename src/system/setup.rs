@@ -3,7 +3,7 @@
 use super::{
     SpongeLayer,
     periodic::{self, Periodic},
-    step_check::Limits,
+    step_check::ParticleLimits,
 };
 use crate::{
     error::{Error, Result},
@@ -20,7 +20,7 @@ pub struct Setup<const D: usize> {
     /// Places of the water particles, m.
     pub water: Vec<Vector<D>>,
     /// Height of the still surface above each of them, m.
-    pub levels: Vec<f64>,
+    pub surface_levels: Vec<f64>,
     /// Velocity of each of them, m/s; empty if all are at rest.
     pub velocity: Vec<Vector<D>>,
     /// Pressure of each beyond that of water at rest, Pa; empty if there is none.
@@ -34,7 +34,7 @@ pub struct Setup<const D: usize> {
     /// Which sides are periodic.
     pub periodic: Periodic<D>,
     /// The valid range of a water particle.
-    pub limits: Limits,
+    pub limits: ParticleLimits,
     /// Where water loses its motion.
     pub sponge_layers: Vec<SpongeLayer<D>>,
 }
@@ -42,12 +42,13 @@ pub struct Setup<const D: usize> {
 impl<const D: usize> Setup<D> {
     /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
     pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
-        let (velocity, pressure, links, limits) = (Vec::new(), Vec::new(), Constraints::default(), Limits::default());
+        let (velocity, pressure, links, limits) =
+            (Vec::new(), Vec::new(), Constraints::default(), ParticleLimits::default());
         let (domain, periodic, damping) = (None, [None; D], Vec::new());
         Self {
             model,
             water,
-            levels,
+            surface_levels: levels,
             solids,
             constraints: links,
             velocity,
@@ -83,7 +84,7 @@ impl<const D: usize> Setup<D> {
         if m.gravity.len() != D || m.gravity.iter().any(|g| !g.is_finite()) {
             return Err(Error::scene(format!("gravity needs {D} finite components")));
         }
-        if self.levels.len() != self.water.len() {
+        if self.surface_levels.len() != self.water.len() {
             return Err(Error::scene("every water particle needs the level of its surface"));
         }
         let each = |n: usize| n == 0 || n == self.water.len();

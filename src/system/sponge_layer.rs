@@ -54,6 +54,6 @@ impl<const D: usize> SpongeLayer<D> {
 impl<const D: usize> System<D> {
     /// The sponge layers.
     pub fn sponge_layers(&self) -> &[SpongeLayer<D>] {
-        &self.region.sponge_layers
+        &self.fluid_domain.sponge_layers
     }
 }

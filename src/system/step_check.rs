@@ -14,7 +14,7 @@ use crate::{
 
 /// The valid range of a water particle. Scene words `[guard]`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
+pub struct ParticleLimits {
     /// Largest speed over c₀, –.
     pub speed: f64,
     /// Smallest and largest density over ρ₀, –.
@@ -33,7 +33,7 @@ pub enum Escape {
     Remove,
 }
 
-impl Default for Limits {
+impl Default for ParticleLimits {
     /// Half of c₀, where the density is off by an eighth and the water is no longer weakly compressible; half of ρ₀ and half as
     /// much again; a particle that leaves stops the run.
     fn default() -> Self {
@@ -79,7 +79,7 @@ impl fmt::Display for ExitPath {
 
 /// What a step looks at while it moves a particle.
 #[derive(Clone, Copy)]
-pub(crate) struct Guard<const D: usize> {
+pub(crate) struct ValidRange<const D: usize> {
     speed2: f64,
     rho: [f64; 2],
     /// Everywhere, if those that leave the domain are taken out.
@@ -90,55 +90,63 @@ pub(crate) struct Guard<const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StepCheck {
     /// Square of the furthest way since the lists were made, m²; NaN if one is.
-    pub(crate) moved2: f64,
+    pub(crate) max_displacement2: f64,
     /// Whether all are in the valid range.
     pub(crate) valid: bool,
 }
 
 impl StepCheck {
     /// Nothing yet.
-    pub(crate) const NOTHING: Self = Self { moved2: 0.0, valid: true };
+    pub(crate) const INITIAL: Self = Self { max_displacement2: 0.0, valid: true };
 
     /// A particle in the middle of a step, that was at `then` when the lists were made: the end of the step will say whether it is
     /// valid.
     #[inline(always)]
     pub(crate) fn displacement<const D: usize>(then: &Vector<D>, r: &Vector<D>) -> Self {
-        Self { moved2: (r - then).norm_squared(), valid: true }
+        Self { max_displacement2: (r - then).norm_squared(), valid: true }
     }
 
     /// Both.
     #[inline(always)]
-    pub(crate) fn and(self, other: Self) -> Self {
-        let moved2 = if self.moved2.is_nan() || self.moved2 > other.moved2 { self.moved2 } else { other.moved2 };
-        Self { moved2, valid: self.valid && other.valid }
+    pub(crate) fn combine(self, other: Self) -> Self {
+        let moved2 = if self.max_displacement2.is_nan() || self.max_displacement2 > other.max_displacement2 {
+            self.max_displacement2
+        } else {
+            other.max_displacement2
+        };
+        Self { max_displacement2: moved2, valid: self.valid && other.valid }
     }
 }
 
-impl<const D: usize> Guard<D> {
+impl<const D: usize> ValidRange<D> {
     /// Looks at a particle that was at `then` when the lists were made.
     #[inline(always)]
     pub(crate) fn check(&self, then: &Vector<D>, r: &Vector<D>, v: &Vector<D>, rho: f64) -> StepCheck {
         // Whatever is not finite fails one of these comparisons.
         let [least, most] = self.rho;
         let valid = v.norm_squared() <= self.speed2 && rho >= least && rho <= most && self.domain.contains(r);
-        StepCheck { moved2: (r - then).norm_squared(), valid }
+        StepCheck { max_displacement2: (r - then).norm_squared(), valid }
     }
 }
 
 impl<const D: usize> System<D> {
     /// What looks at the water while it is moved.
-    pub(crate) fn guard(&self) -> Guard<D> {
-        let Limits { speed, density, escape } = self.region.limits;
+    pub(crate) fn valid_range(&self) -> ValidRange<D> {
+        let ParticleLimits { speed, density, escape } = self.fluid_domain.limits;
         let domain = match escape {
-            Escape::Stop => self.region.domain,
+            Escape::Stop => self.fluid_domain.domain,
             Escape::Remove => Bounds { min: Vector::repeat(f64::MIN), max: Vector::repeat(f64::MAX) },
         };
-        Guard { speed2: (speed * self.properties.c0).powi(2), rho: density.map(|x| x * self.properties.rho0), domain }
+        ValidRange {
+            speed2: (speed * self.properties.c0).powi(2),
+            rho: density.map(|x| x * self.properties.rho0),
+            domain,
+        }
     }
 
     /// Looks at all water now.
     pub(crate) fn check_water(&mut self) {
-        let (guard, fluid) = (self.guard(), &self.fluid.particles);
+        let (guard, fluid) = (self.valid_range(), &self.fluid.particles);
         let all = fluid
             .r
             .par_iter()
@@ -146,17 +154,17 @@ impl<const D: usize> System<D> {
             .zip(&fluid.rho)
             .zip(self.neighbours.positions_at_build())
             .with_min_len(PARTICLES_PER_TASK);
-        self.status.check = all
+        self.status.step_check = all
             .map(|(((r, v), rho), then)| guard.check(then, r, v, *rho))
-            .reduce(|| StepCheck::NOTHING, StepCheck::and);
+            .reduce(|| StepCheck::INITIAL, StepCheck::combine);
     }
 
     /// The first water particle that has left the valid range, with what is wrong and its usual cause.
-    pub(crate) fn first_fault(&self) -> Option<(usize, &'static str, &'static str)> {
-        if self.status.check.valid {
+    pub(crate) fn first_invalid_particle(&self) -> Option<(usize, &'static str, &'static str)> {
+        if self.status.step_check.valid {
             return None;
         }
-        let Guard { speed2, rho: [least, most], domain } = self.guard();
+        let ValidRange { speed2, rho: [least, most], domain } = self.valid_range();
         let bad = |i: usize| {
             let (r, v, rho) = (&self.fluid.particles.r[i], &self.fluid.particles.v[i], self.fluid.particles.rho[i]);
             let finite = r.iter().chain(v.iter()).all(|x| x.is_finite()) && rho.is_finite();
@@ -183,10 +191,10 @@ impl<const D: usize> System<D> {
     pub(super) fn remove_outside(&self, order: &mut Vec<u32>) -> Vec<RemovedParticle<D>> {
         let Particles { r, v, rho, id } = &self.fluid.particles;
         let mut lost = Vec::new();
-        if self.region.limits.escape == Escape::Remove {
+        if self.fluid_domain.limits.escape == Escape::Remove {
             order.retain(|&i| {
                 let i = i as usize;
-                let inside = self.region.domain.contains(&r[i]);
+                let inside = self.fluid_domain.domain.contains(&r[i]);
                 if !inside {
                     let way = self.exit_path(&r[i], &v[i]);
                     lost.push(RemovedParticle { id: id[i], r: r[i], v: v[i], rho: rho[i], exit: way });
@@ -204,9 +212,11 @@ impl<const D: usize> System<D> {
         // wall comes from no higher than the water stood, give or take what pairs push it.
         let (g, falls) = (-self.properties.gravity[up], v[up] < 0.0);
         let summit = if g > 0.0 && falls { x[up] + v[up].powi(2) / (2.0 * g) } else { x[up] };
-        if x[up] > self.region.domain.max[up] {
+        if x[up] > self.fluid_domain.domain.max[up] {
             ExitPath::Up
-        } else if x[up] > self.region.initial_top || summit > self.region.initial_top + 2.0 * self.properties.h {
+        } else if x[up] > self.fluid_domain.initial_water_height
+            || summit > self.fluid_domain.initial_water_height + 2.0 * self.properties.h
+        {
             ExitPath::Over
         } else {
             ExitPath::Through

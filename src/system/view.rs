@@ -24,12 +24,12 @@ impl<const D: usize> System<D> {
 
     /// The water.
     pub fn fluid(&self) -> ParticlesView<'_, D> {
-        self.fluid.particles.first(self.real_count())
+        self.fluid.particles.first_n(self.particle_count())
     }
 
     /// The boundary particles of all solids.
     pub fn boundary(&self) -> ParticlesView<'_, D> {
-        self.boundary.particles.first(self.boundary.particles.len())
+        self.boundary.particles.first_n(self.boundary.particles.len())
     }
 
     /// The solids.
@@ -49,7 +49,7 @@ impl<const D: usize> System<D> {
 
     /// Where particles may be.
     pub fn domain(&self) -> &Bounds<D> {
-        &self.region.domain
+        &self.fluid_domain.domain
     }
 
     /// Which sides are periodic.
@@ -59,7 +59,7 @@ impl<const D: usize> System<D> {
 
     /// Mass of every particle, ρ₀ dpᴰ (kg; kg/m in 2-D).
     pub fn particle_mass(&self) -> f64 {
-        self.properties.rho0 * self.properties.volume0()
+        self.properties.rho0 * self.properties.particle_volume()
     }
 
     /// Pressure (Pa) at density `rho` (kg/m³).
@@ -75,23 +75,23 @@ impl<const D: usize> System<D> {
 
     /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
     pub fn compression_energy(&self, rho: f64) -> f64 {
-        self.equation_of_state.energy(rho / self.properties.rho0 - 1.0)
+        self.equation_of_state.compression_energy(rho / self.properties.rho0 - 1.0)
     }
 
     /// Energy (J; J/m in 2-D) of a water particle of density `rho` (kg/m³) that moves at `v` (m/s) at `r` (m): motion, height,
     /// compression.
     pub(crate) fn particle_energy(&self, r: &Vector<D>, v: &Vector<D>, rho: f64) -> f64 {
-        let height = self.height_gravity().dot(r);
+        let height = self.non_periodic_gravity().dot(r);
         self.particle_mass() * (0.5 * v.norm_squared() - height + self.compression_energy(rho))
     }
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
-    pub fn fluid_dv(&self, i: usize) -> Vector<D> {
+    pub fn fluid_acceleration(&self, i: usize) -> Vector<D> {
         self.rates.fluid[i].acceleration
     }
 
     /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
-    pub fn fluid_drho(&self, i: usize) -> f64 {
+    pub fn fluid_density_rate(&self, i: usize) -> f64 {
         self.rates.fluid[i].compression_rate * self.properties.rho0
     }
 
@@ -101,8 +101,8 @@ impl<const D: usize> System<D> {
     }
 
     /// Memory of the neighbour lists, B.
-    pub fn list_bytes(&self) -> usize {
-        self.neighbours.bytes()
+    pub fn neighbour_list_bytes(&self) -> usize {
+        self.neighbours.memory_bytes()
     }
 
     /// Time spent so far on lists and sorting, and on pairs.
@@ -111,7 +111,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Force passes so far.
-    pub fn passes(&self) -> u64 {
+    pub fn force_passes(&self) -> u64 {
         self.status.passes
     }
 
@@ -128,7 +128,7 @@ impl<const D: usize> System<D> {
         };
         let loads = loads.iter().zip(&self.solids).map(with_weight).collect();
         let wet = self.solids.iter().map(|solid| solid.load != Load::zero()).collect();
-        LoadContext { loads, wet, crossing: self.properties.h / self.properties.c0 }
+        LoadContext { loads, wet, sound_crossing_time: self.properties.h / self.properties.c0 }
     }
 
     /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).
@@ -137,13 +137,13 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
-    pub fn height_gravity(&self) -> Vector<D> {
+    pub fn non_periodic_gravity(&self) -> Vector<D> {
         Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { self.properties.gravity[i] })
     }
 
     /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).
-    pub fn periodic_power(&self) -> f64 {
-        let along = self.properties.gravity - self.height_gravity();
+    pub fn periodic_gravity_power(&self) -> f64 {
+        let along = self.properties.gravity - self.non_periodic_gravity();
         if along.norm_squared() == 0.0 {
             return 0.0;
         }
@@ -152,25 +152,26 @@ impl<const D: usize> System<D> {
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
-    pub fn water_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        let real = self.real_count();
-        self.neighbours.water_around(x, &mut |i| {
-            let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.of[k] as usize);
+    pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+        let real = self.particle_count();
+        self.neighbours.visit_fluid_around(x, &mut |i| {
+            let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.originals[k] as usize);
             self.visit_within_support(&self.fluid.particles.r[i], x, own, visit);
         });
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
-    pub fn boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        self.neighbours.skin_around(x, &mut |i| self.visit_within_support(&self.boundary.particles.r[i], x, i, visit));
+    pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+        self.neighbours
+            .visit_boundary_around(x, &mut |i| self.visit_within_support(&self.boundary.particles.r[i], x, i, visit));
     }
 
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
-    pub fn forces_on(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
+    pub fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
         let (mass, skin) = (self.particle_mass(), &self.solids[solid].boundary);
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
-            if skin.contains(&(i as usize)) && self.fluid.images.between(&self.boundary.particles.r[i as usize]) {
+            if skin.contains(&(i as usize)) && self.fluid.images.is_inside(&self.boundary.particles.r[i as usize]) {
                 visit(i as usize, sums.acceleration * mass);
             }
         }

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     coupling::{Accounting, Interval},
     math::Vector,
-    model::{Model, Scheme},
+    model::{Model, TimeScheme},
     particles::PARTICLES_PER_TASK,
     sph::boundary::relaxation,
     system::{MomentumTransfer, Reordering, System},
@@ -33,8 +33,8 @@ impl<const D: usize> Stepper<D> {
     /// The stepper of a model's scheme, at the start of a run.
     pub fn new(model: &Model) -> Self {
         match model.scheme {
-            Scheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
-            Scheme::Symplectic => Self::Symplectic,
+            TimeScheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
+            TimeScheme::Symplectic => Self::Symplectic,
         }
     }
 
@@ -48,7 +48,7 @@ impl<const D: usize> Stepper<D> {
     /// Adds the impulses that the water got to the velocities from which the next step starts.
     pub(crate) fn add_transfers(&mut self, transfers: &[MomentumTransfer<D>]) {
         if let Self::Verlet(verlet) = self {
-            let before = verlet.before_mut();
+            let before = verlet.previous_velocities_mut();
             for MomentumTransfer { particles, velocity, .. } in transfers {
                 particles.iter().for_each(|&i| before[i] += *velocity);
             }
@@ -74,9 +74,9 @@ impl<const D: usize> Stepper<D> {
             Self::Verlet(verlet) => verlet.step(system, over, accounting.as_deref_mut()),
             Self::Symplectic => Symplectic.step(system, over, accounting.as_deref_mut()),
         };
-        let before = if let Self::Verlet(verlet) = self { Some(verlet.before_mut()) } else { None };
-        let measured = accounting.as_ref().is_some_and(|accounting| accounting.has_energy());
-        let absorbed = sponge::absorb(system, over.dt, before, measured);
+        let before = if let Self::Verlet(verlet) = self { Some(verlet.previous_velocities_mut()) } else { None };
+        let measured = accounting.as_ref().is_some_and(|accounting| accounting.has_energy_budget());
+        let absorbed = sponge::damp_velocities(system, over.dt, before, measured);
         accounting.into_iter().for_each(|accounting| accounting.add_absorbed(absorbed));
         weight
     }

@@ -6,7 +6,7 @@ use crate::{math::Vector, particles::PARTICLES_PER_TASK, system::System};
 
 /// Damps the water in the sponge layers over `dt` (s), and the velocities `before` from which a scheme continues. Returns the
 /// energy (J) that the water lost, if that is `measured`.
-pub(super) fn absorb<const D: usize>(
+pub(super) fn damp_velocities<const D: usize>(
     system: &mut System<D>,
     dt: f64,
     before: Option<&mut [Vector<D>]>,

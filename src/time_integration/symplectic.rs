@@ -16,7 +16,7 @@ use crate::{
     system::{StepCheck, System},
 };
 
-/// The scheme [@dominguez2022]; it keeps no state between steps.
+/// The scheme @dominguez2022; it keeps no state between steps.
 pub struct Symplectic;
 
 impl Symplectic {
@@ -33,7 +33,7 @@ impl Symplectic {
 
         let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
-        system.status.check = now
+        system.status.step_check = now
             .zip(system.neighbours.positions_at_build())
             .with_min_len(PARTICLES_PER_TASK)
             .map(|((((r, v), rho), s), then)| {
@@ -42,7 +42,7 @@ impl Symplectic {
                 *rho += rho0 * s.compression_rate * half;
                 StepCheck::displacement(then, r)
             })
-            .reduce(|| StepCheck::NOTHING, StepCheck::and);
+            .reduce(|| StepCheck::INITIAL, StepCheck::combine);
         step_boundary_density(system, half, |dx, _, rho| rho + rho0 * dx * half);
         drift_half_step(system, over);
 
@@ -55,10 +55,10 @@ impl Symplectic {
             let epsilon = -dt * rho0 * dx / rho_half;
             rho_start * (2.0 - epsilon) / (2.0 + epsilon)
         };
-        let guard = system.guard();
+        let guard = system.valid_range();
         let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
-        system.status.check = now
+        system.status.step_check = now
             .zip(system.neighbours.positions_at_build())
             .enumerate()
             .with_min_len(PARTICLES_PER_TASK)
@@ -68,7 +68,7 @@ impl Symplectic {
                 *rho = whole(start.rho[i], *rho, s.compression_rate);
                 guard.check(then, r, v, *rho)
             })
-            .reduce(|| StepCheck::NOTHING, StepCheck::and);
+            .reduce(|| StepCheck::INITIAL, StepCheck::combine);
         if let Some(shifts) = shifts {
             apply_shifts(system, &shifts, &mut accounting);
         }

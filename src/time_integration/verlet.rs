@@ -28,7 +28,7 @@ use crate::{
 /// stands with 3.5 between Euler steps and is lost with 7.
 const FOLDINGS: f64 = 3.5;
 
-/// The scheme [@verlet1967], eqs. (12), (13) of [@pirkhalili2023], and the step before.
+/// The scheme @verlet1967, eqs. (12), (13) of @pirkhalili2023, and the step before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Verlet<const D: usize> {
     euler_every: u32,
@@ -59,7 +59,7 @@ impl<const D: usize> Verlet<D> {
     }
 
     /// The velocities (m/s) from which the next step goes on.
-    pub(crate) fn before_mut(&mut self) -> &mut [Vector<D>] {
+    pub(crate) fn previous_velocities_mut(&mut self) -> &mut [Vector<D>] {
         &mut self.v_before
     }
 
@@ -101,11 +101,11 @@ impl<const D: usize> Verlet<D> {
         accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
         let shifts = shifts(system, dt);
 
-        let guard = system.guard();
+        let guard = system.valid_range();
         let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
         let before = self.v_before.par_iter_mut().zip(&mut self.rho_before);
         let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
-        system.status.check = now
+        system.status.step_check = now
             .zip(before)
             .zip(system.neighbours.positions_at_build())
             .with_min_len(PARTICLES_PER_TASK)
@@ -115,7 +115,7 @@ impl<const D: usize> Verlet<D> {
                 (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.compression_rate * span);
                 guard.check(then, r, v, *rho)
             })
-            .reduce(|| StepCheck::NOTHING, StepCheck::and);
+            .reduce(|| StepCheck::INITIAL, StepCheck::combine);
         if let Some(shifts) = shifts {
             apply_shifts(system, &shifts, &mut accounting);
         }

@@ -11,14 +11,14 @@
 //! c is the paddle's transfer function, s = Σ sⱼ e^{−κⱼδ} that of the standing waves at its face. Nothing goes out if
 //! X = i η/(c e^{ikδ} + is), and F and T make that so at one period. τ brings the paddle home; it is the longer for not being
 //! seen at that period. The lag T stands for δ and s: so does the law hold back the gauge's noise. In shallow water it is that of
-//! long waves, x′ = −√(g/d) e. [@schaffer2000], [@altomare2017]
+//! long waves, x′ = −√(g/d) e. @schaffer2000, @altomare2017
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Component, Course, Paddle, STEEPEST, Train, Wave, Wavemaker, smooth,
-    train::{evanescent, wave_number},
+    Course, LinearWave, Paddle, PaddleMotion, STEEPEST, WaveComponent, Wavemaker, smooth,
+    train::{evanescent_wave_numbers, wave_number},
 };
 use crate::error::{Error, Result};
 
@@ -43,27 +43,27 @@ const I: Complex<f64> = Complex::new(0.0, 1.0);
 
 /// How a paddle absorbs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tuning {
+pub struct AbsorptionSettings {
     /// The period (s) whose waves it takes whole; none: that of its own wave.
     pub period: Option<f64>,
     /// From the face at rest to the gauge at least, m. A flap's stands as much further off as makes T as long as a wave takes to
     /// the piston's: what stays at a flap runs ahead of what leaves it.
-    pub gauge: f64,
+    pub gauge_distance: f64,
     /// Height of the still water, m.
-    pub level: f64,
+    pub water_level: f64,
     /// How far (m) its face may go from end to end at the still level; none: four times what its own wave takes.
-    pub stroke: Option<f64>,
+    pub max_stroke: Option<f64>,
     /// How fast (m/s) that may go; none: four times as fast as its own wave, without one as a sine of that stroke and period.
-    pub speed: Option<f64>,
+    pub max_speed: Option<f64>,
 }
 
 /// What makes a paddle absorb.
 #[derive(Clone, Debug)]
 pub struct Absorber {
     maker: Wavemaker,
-    train: Train,
-    gauge: f64,
-    level: f64,
+    train: LinearWave,
+    gauge_distance: f64,
+    water_level: f64,
     /// How far (m) it may go to each side of its place, and how fast, m/s.
     reach: f64,
     speed: f64,
@@ -98,7 +98,7 @@ pub struct AbsorptionState {
 
 impl AbsorptionState {
     /// x (m) and x′ (m/s) at time `t` (s).
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn offset_and_rate(&self, t: f64) -> (f64, f64) {
         let s = t - self.since;
         (self.x + s * (self.rate + 0.5 * s * self.change), self.rate + s * self.change)
     }
@@ -114,18 +114,18 @@ impl Absorber {
     ///
     /// # Errors
     /// `Scene` if the gauge is too far off for so short a wave, or the stroke is less than the paddle's own wave takes.
-    pub fn new(maker: &Wavemaker, wave: &Wave, tuning: &Tuning) -> Result<Self> {
-        let Tuning { gauge, level, .. } = *tuning;
+    pub fn new(maker: &Wavemaker, wave: &PaddleMotion, tuning: &AbsorptionSettings) -> Result<Self> {
+        let AbsorptionSettings { gauge_distance, water_level, .. } = *tuning;
         let train = match tuning.period {
             Some(period) => maker.train(period)?,
             None => wave.peak(maker.g),
         };
-        let (stroke, speed) = limits(maker, wave, &train, tuning)?;
+        let (stroke, speed) = allowed_motion(maker, wave, &train, tuning)?;
         let mut absorber = Self {
             maker: *maker,
             train,
-            gauge,
-            level,
+            gauge_distance,
+            water_level,
             reach: 0.5 * stroke,
             speed,
             gain: 0.0,
@@ -134,18 +134,18 @@ impl Absorber {
             own: Vec::new(),
             bound: 0.0,
         };
-        let least = gauge / (maker.g * maker.depth).sqrt();
+        let least = gauge_distance / (maker.g * maker.depth).sqrt();
         absorber.tune();
-        while absorber.lag < least && train.k * absorber.gauge < FARTHEST {
-            absorber.gauge += 0.25 * gauge;
+        while absorber.lag < least && train.k * absorber.gauge_distance < FARTHEST {
+            absorber.gauge_distance += 0.25 * gauge_distance;
             absorber.tune();
         }
-        if absorber.lag < least || train.k * absorber.gauge > FARTHEST {
+        if absorber.lag < least || train.k * absorber.gauge_distance > FARTHEST {
             let what = format!(
                 "waves of {:.3} s, {:.3} m long, cannot be absorbed by a gauge {:.3} m before this paddle",
                 train.period(),
-                train.length(),
-                absorber.gauge
+                train.wavelength(),
+                absorber.gauge_distance
             );
             return Err(Error::scene(what).help("a smaller dp brings the gauge nearer; a flap needs a lower hinge"));
         }
@@ -155,7 +155,7 @@ impl Absorber {
 
     /// F and T for the period: −ω²T + iω + 1/τ = F i (c e^{ikδ} + is).
     fn tune(&mut self) {
-        let (omega, turn) = (self.train.omega, (I * self.train.k * self.gauge).exp());
+        let (omega, turn) = (self.train.omega, (I * self.train.k * self.gauge_distance).exp());
         let (c, s) = self.answer(&self.train);
         let wanted = I * (turn * c + I * s);
         self.gain = omega / wanted.im;
@@ -163,32 +163,32 @@ impl Absorber {
     }
 
     /// What its own `wave` is at the gauge.
-    fn learn(&mut self, wave: &Wave) {
+    fn learn(&mut self, wave: &PaddleMotion) {
         let Course::Tones(tones) = &wave.course else { return };
         let facts = &wave.facts;
         // The second tone of order 2 makes no wave: it keeps one from being made.
         let real = if facts.order == 2 { &tones[..1] } else { &tones[..] };
-        let own = |tone: &Component| {
-            let train = Train::of(tone.omega, self.maker.depth, self.maker.g);
+        let own = |tone: &WaveComponent| {
+            let train = LinearWave::new(tone.omega, self.maker.depth, self.maker.g);
             let (c, s) = self.answer(&train);
             Own { k: train.k, leaving: c * tone.amplitude, staying: s * tone.amplitude }
         };
         self.own = real.iter().map(own).collect();
-        if let (2, Some(train)) = (facts.order, facts.train) {
-            self.bound = 0.5 * facts.height * train.second(facts.height);
+        if let (2, Some(train)) = (facts.order, facts.linear_wave) {
+            self.bound = 0.5 * facts.height * train.second_order_ratio(facts.height);
         }
     }
 
     /// c and s of a wave, –.
-    fn answer(&self, train: &Train) -> (f64, f64) {
+    fn answer(&self, train: &LinearWave) -> (f64, f64) {
         let Wavemaker { depth, g, paddle } = self.maker;
-        let stays = evanescent(train.omega, depth, g, MODES).into_iter().map(|kappa| {
+        let stays = evanescent_wave_numbers(train.omega, depth, g, MODES).into_iter().map(|kappa| {
             let k = Complex::new(0.0, -kappa);
-            let whole = k * 4.0 * (k * depth).sinh() * paddle.projected(k, depth);
+            let whole = k * 4.0 * (k * depth).sinh() * paddle.shape_integral(k, depth);
             let norm = (k * depth * 2.0).sinh() + k * depth * 2.0;
-            -(whole / norm).im * (-kappa * self.gauge).exp()
+            -(whole / norm).im * (-kappa * self.gauge_distance).exp()
         });
-        (paddle.transfer(train), stays.sum())
+        (paddle.transfer_function(train), stays.sum())
     }
 
     /// Period (s) whose waves it takes whole.
@@ -197,21 +197,21 @@ impl Absorber {
     }
 
     /// From the face at rest to the gauge, m.
-    pub fn gauge(&self) -> f64 {
-        self.gauge
+    pub fn gauge_distance(&self) -> f64 {
+        self.gauge_distance
     }
 
     /// How far (m) the face may go from end to end, and how fast, m/s.
-    pub fn limits(&self) -> (f64, f64) {
+    pub fn motion_limits(&self) -> (f64, f64) {
         (2.0 * self.reach, self.speed)
     }
 
     /// The share of the amplitude of a wave of `period` (s) that goes out again, by linear theory, –.
-    pub fn reflection(&self, period: f64) -> f64 {
+    pub fn reflection_coefficient(&self, period: f64) -> f64 {
         let omega = std::f64::consts::TAU / period;
-        let train = Train { omega, k: wave_number(omega, self.maker.depth, self.maker.g), ..self.train };
+        let train = LinearWave { omega, k: wave_number(omega, self.maker.depth, self.maker.g), ..self.train };
         let (c, s) = self.answer(&train);
-        let phase = train.k * self.gauge;
+        let phase = train.k * self.gauge_distance;
         let law = Complex::from(-self.gain) / Complex::new(1.0 / self.home - omega * omega * self.lag, omega);
         let seen = I * c * (I * -phase).exp() + s;
         let x = law * 2.0 * phase.cos() / (Complex::from(1.0) - law * seen);
@@ -219,7 +219,7 @@ impl Absorber {
     }
 
     /// What the gauge would read of the paddle's own `wave` alone at `x` (m) before the face at rest and time `t` (s), m.
-    fn wanted(&self, wave: &Wave, x: f64, t: f64) -> f64 {
+    fn wanted(&self, wave: &PaddleMotion, x: f64, t: f64) -> f64 {
         match &wave.course {
             Course::Tones(tones) => {
                 let parts = tones.iter().zip(&self.own).map(|(tone, own)| {
@@ -235,7 +235,7 @@ impl Absorber {
                 (sum + self.bound * double) * smooth(t, wave.ramp).0 * end
             }
             Course::Solitary(own) => {
-                let theta = own.kappa * own.celerity * (t - own.crest_at(x));
+                let theta = own.kappa * own.celerity * (t - own.crest_time(x));
                 own.height / theta.cosh().powi(2)
             }
         }
@@ -243,11 +243,17 @@ impl Absorber {
 
     /// How the paddle, which makes `wave` and has yielded `before`, goes on from time `t` (s): `level` is the height (m) of the
     /// water at the gauge; none: there is none.
-    pub(crate) fn update(&self, wave: &Wave, before: &AbsorptionState, t: f64, level: Option<f64>) -> AbsorptionState {
-        let (x, rate) = before.at(t);
+    pub(crate) fn update(
+        &self,
+        wave: &PaddleMotion,
+        before: &AbsorptionState,
+        t: f64,
+        level: Option<f64>,
+    ) -> AbsorptionState {
+        let (x, rate) = before.offset_and_rate(t);
         let (own, own_rate) = wave.displacement(t);
         let place = own + x;
-        let excess = level.map_or(0.0, |z| z - self.level - self.wanted(wave, place + self.gauge, t));
+        let excess = level.map_or(0.0, |z| z - self.water_level - self.wanted(wave, place + self.gauge_distance, t));
         // Slow enough before the end of the stroke that the lag does not carry it further.
         let room = |left: f64| self.speed.min(left.max(0.0) / (4.0 * self.lag));
         let asked = own_rate - x / self.home - self.gain * excess;
@@ -257,13 +263,18 @@ impl Absorber {
 }
 
 /// How far (m) the face of a paddle may go from end to end, and how fast, m/s: as was asked, or as is usual.
-fn limits(maker: &Wavemaker, wave: &Wave, train: &Train, tuning: &Tuning) -> Result<(f64, f64)> {
+fn allowed_motion(
+    maker: &Wavemaker,
+    wave: &PaddleMotion,
+    train: &LinearWave,
+    tuning: &AbsorptionSettings,
+) -> Result<(f64, f64)> {
     let (own, own_speed) = extent(wave, train);
     let most = if let Paddle::Flap { arm } = maker.paddle { 2.0 * STEEPEST * arm } else { f64::INFINITY };
-    let usual = if own > 0.0 { ROOM * own } else { train.highest() / maker.paddle.transfer(train) };
-    let stroke = tuning.stroke.unwrap_or(usual).min(most);
+    let usual = if own > 0.0 { ROOM * own } else { train.breaking_height() / maker.paddle.transfer_function(train) };
+    let stroke = tuning.max_stroke.unwrap_or(usual).min(most);
     let usual = if own > 0.0 { ROOM * own_speed } else { 0.5 * train.omega * stroke };
-    let speed = tuning.speed.unwrap_or(usual);
+    let speed = tuning.max_speed.unwrap_or(usual);
     match stroke >= 2.0 * own && speed >= own_speed {
         true => Ok((stroke, speed)),
         false => {
@@ -275,7 +286,7 @@ fn limits(maker: &Wavemaker, wave: &Wave, train: &Train, tuning: &Tuning) -> Res
 }
 
 /// How far (m) the own motion of a paddle goes from end to end if as far to both sides, and how fast, m/s.
-fn extent(wave: &Wave, train: &Train) -> (f64, f64) {
+fn extent(wave: &PaddleMotion, train: &LinearWave) -> (f64, f64) {
     let step = train.period() / f64::from(SAMPLES);
     let motion = (0..PERIODS * SAMPLES).map(|i| wave.displacement(f64::from(i) * step));
     motion.fold((0.0, 0.0), |most, (x, v)| (most.0.max(2.0 * x.abs()), most.1.max(v.abs())))

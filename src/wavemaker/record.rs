@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::{Component, MOST_COMPONENTS};
+use super::{COMPONENTS_MAX, WaveComponent};
 use crate::{
     error::{Error, Result},
-    math::time_series::Series,
+    math::time_series::TimeSeries,
 };
 
 /// Share of the energy, at either end of the spectrum, that is left out: drift and noise.
@@ -15,14 +15,14 @@ const LEFT_OUT: f64 = 0.005;
 ///
 /// # Errors
 /// `Scene` if it has fewer than eight samples or is still.
-pub(super) fn components(series: &Series) -> Result<Vec<Component>> {
+pub(super) fn fourier_components(series: &TimeSeries) -> Result<Vec<WaveComponent>> {
     let count = series.times().len();
     if count < 8 {
         return Err(Error::scene(format!("the record has {count} samples; waves need eight and more")));
     }
     let (first, last) = series.span();
     let (span, step) = (last - first, (last - first) / (count - 1) as f64);
-    let samples: Vec<f64> = (0..count - 1).map(|i| series.at(first + step * i as f64)).collect();
+    let samples: Vec<f64> = (0..count - 1).map(|i| series.value_at(first + step * i as f64)).collect();
     let mean = samples.iter().sum::<f64>() / samples.len() as f64;
     let many = samples.len();
     let circle: Vec<(f64, f64)> = (0..many).map(|i| (TAU * i as f64 / many as f64).sin_cos()).collect();
@@ -33,16 +33,16 @@ pub(super) fn components(series: &Series) -> Result<Vec<Component>> {
         });
         let omega = TAU * n as f64 / span;
         let amplitude = 2.0 * cosine.hypot(sine) / many as f64;
-        Component { amplitude, omega, phase: -sine.atan2(cosine) - omega * first }
+        WaveComponent { amplitude, omega, phase: -sine.atan2(cosine) - omega * first }
     };
-    let most = ((many - 1) / 2).min(MOST_COMPONENTS);
-    let parts: Vec<Component> = (1..=most).map(part).collect();
+    let most = ((many - 1) / 2).min(COMPONENTS_MAX);
+    let parts: Vec<WaveComponent> = (1..=most).map(part).collect();
     let energy: f64 = parts.iter().map(|c| c.amplitude.powi(2)).sum();
     if energy.is_nan() || energy <= 0.0 {
         return Err(Error::scene("nothing moves in this record"));
     }
     let mut below = 0.0;
-    let within = |c: &Component| {
+    let within = |c: &WaveComponent| {
         let before = below;
         below += c.amplitude.powi(2) / energy;
         below > LEFT_OUT && before < 1.0 - LEFT_OUT

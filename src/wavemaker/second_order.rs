@@ -8,13 +8,13 @@
 //!
 //! The surface's forcing has the bound solution Σ Bⱼₗ cosh (kⱼ + kₗ)(z + d)/cosh (kⱼ + kₗ)d e^{−i(kⱼ + kₗ)x}; what it
 //! and the paddle's displacement leave over at x = 0, projected on the free wave of 2ω, has to be nothing, and that
-//! gives X₂. The problem is that of [@schaffer1996]; in shallow water the answer is that of [@madsen1971].
+//! gives X₂. The problem is that of @schaffer1996; in shallow water the answer is that of @madsen1971.
 
 use nalgebra::Complex;
 
 use super::{
-    Paddle, Train,
-    train::{evanescent, wave_number},
+    LinearWave, Paddle,
+    train::{evanescent_wave_numbers, wave_number},
 };
 
 /// Standing waves that are counted: the correction is then good to 1 % of itself up to kd = 3.
@@ -24,26 +24,26 @@ const MODES: usize = 100;
 const DEEPEST: f64 = 30.0;
 
 /// A₂ (m) of X₂ = Re A₂ e^{2iωt} for a paddle that moves as X = Re A e^{iωt}, A = `amplitude` (m), at the still level.
-pub(super) fn correction(paddle: &Paddle, train: &Train, amplitude: f64) -> Complex<f64> {
+pub(super) fn correction(paddle: &Paddle, train: &LinearWave, amplitude: f64) -> Complex<f64> {
     let (d, omega, g) = (train.depth, train.omega, train.g);
     if train.kd() > DEEPEST {
         return Complex::from(0.0);
     }
     let free = Complex::from(wave_number(2.0 * omega, d, g));
-    let standing = evanescent(omega, d, g, MODES).into_iter().map(|kappa| Complex::new(0.0, -kappa));
+    let standing = evanescent_wave_numbers(omega, d, g, MODES).into_iter().map(|kappa| Complex::new(0.0, -kappa));
     let modes: Vec<Mode> = [Complex::from(train.k)]
         .into_iter()
         .chain(standing)
         .map(|k| {
             let norm = ((k * d * 2.0).sinh() + k * d * 2.0) / (k * 4.0);
-            Mode { k, b: -(k * d).cosh() * paddle.projected(k, d) * (omega * amplitude) / (k * norm) }
+            Mode { k, b: -(k * d).cosh() * paddle.shape_integral(k, d) * (omega * amplitude) / (k * norm) }
         })
         .collect();
     // Integrals of products with cosh K(z + d), K the free wave's: halves of sums over k ± K.
     let both = |k: Complex<f64>, of: &dyn Fn(Complex<f64>) -> Complex<f64>| (of(k + free) + of(k - free)) * 0.5;
-    let shape = |k| paddle.projected(k, d);
-    let foot = paddle.foot(d);
-    let slope = |k: Complex<f64>| ((k * d).cosh() - (k * foot).cosh()) * paddle.slant() / k;
+    let shape = |k| paddle.shape_integral(k, d);
+    let foot = paddle.hinge_above_bed(d);
+    let slope = |k: Complex<f64>| ((k * d).cosh() - (k * foot).cosh()) * paddle.inverse_arm() / k;
     let moved: Complex<f64> = modes
         .iter()
         .map(|m| m.b / (m.k * d).cosh() * (m.k * m.k * both(m.k, &shape) + m.k * both(m.k, &slope)))
@@ -69,7 +69,7 @@ struct Mode {
 
 impl Mode {
     /// B of the product of two modes: iω b b′ (k k′ + (k² + k′²)/4 − 3ω⁴/2g²)/(g(k + k′) tanh (k + k′)d − 4ω²).
-    fn bound(&self, other: &Self, train: &Train) -> Complex<f64> {
+    fn bound(&self, other: &Self, train: &LinearWave) -> Complex<f64> {
         let (k, l, omega, g) = (self.k, other.k, train.omega, train.g);
         let forcing = k * l + (k * k + l * l) * 0.25 - 1.5 * omega.powi(4) / (g * g);
         let sum = k + l;

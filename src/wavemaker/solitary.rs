@@ -3,8 +3,8 @@
 //!   X′ = c η/(d + η) at the piston's own place, so that with θ = κ(ct − X) the motion is known in closed form but for t:
 //!   X = (H/κd)(tanh θ − tanh θ₀),   κct = θ − θ₀ + (H/d)(tanh θ − tanh θ₀)
 //!
-//! c = √(g(d + H)). Boussinesq: κ² = 3H/4d³ [@goring1978]; Rayleigh: κ² = 3H/4d²(d + H), whose wave keeps its height
-//! better [@guizien2002].
+//! c = √(g(d + H)). Boussinesq: κ² = 3H/4d³ @goring1978; Rayleigh: κ² = 3H/4d²(d + H), whose wave keeps its height
+//! better @guizien2002.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ const START: f64 = 5.0;
 /// Whose wave it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Theory {
+pub enum SolitaryTheory {
     /// Boussinesq's.
     Boussinesq,
     /// Rayleigh's.
@@ -25,7 +25,7 @@ pub enum Theory {
 
 /// A solitary wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solitary {
+pub struct SolitaryWave {
     /// H, m.
     pub height: f64,
     /// d, m.
@@ -36,12 +36,12 @@ pub struct Solitary {
     pub kappa: f64,
 }
 
-impl Solitary {
+impl SolitaryWave {
     /// The wave of `height` (m) in water `depth` (m) deep.
-    pub fn new(height: f64, depth: f64, g: f64, theory: Theory) -> Self {
+    pub fn new(height: f64, depth: f64, g: f64, theory: SolitaryTheory) -> Self {
         let total = match theory {
-            Theory::Boussinesq => depth,
-            Theory::Rayleigh => depth + height,
+            SolitaryTheory::Boussinesq => depth,
+            SolitaryTheory::Rayleigh => depth + height,
         };
         let kappa = (0.75 * height / total).sqrt() / depth;
         Self { height, depth, celerity: (g * (depth + height)).sqrt(), kappa }
@@ -58,7 +58,7 @@ impl Solitary {
     }
 
     /// The time (s) over which it is let in: its speed is then 2 % of the largest.
-    pub(super) fn lead(&self) -> f64 {
+    pub(super) fn ramp_time(&self) -> f64 {
         0.5 * START / (self.kappa * self.celerity)
     }
 
@@ -68,7 +68,7 @@ impl Solitary {
     }
 
     /// When (s) the crest is at `x` (m) before the piston's place at the start.
-    pub fn crest_at(&self, x: f64) -> f64 {
+    pub fn crest_time(&self, x: f64) -> f64 {
         let (d, tanh) = (self.depth, START.tanh());
         // θ = 0 at the piston's middle place, which the crest leaves at this time.
         let time = (START + self.height / d * tanh) / (self.kappa * self.celerity);

@@ -2,8 +2,8 @@
 //!
 //!   S(f) ∝ f⁻⁵ exp(−¼·5 (f_p/f)⁴) γ^exp(−(f/f_p − 1)²/2σ²),   σ = 0.07 below f_p, 0.09 above
 //!
-//! JONSWAP [@hasselmann1973]; with γ = 1 Bretschneider's two-parameter spectrum [@bretschneider1959], and with the peak
-//! that belongs to the height of a fully grown sea that of [@pierson1964].
+//! JONSWAP @hasselmann1973; with γ = 1 Bretschneider's two-parameter spectrum @bretschneider1959, and with the peak
+//! that belongs to the height of a fully grown sea that of @pierson1964.
 //!
 //! The band from ½ to 3 f_p is cut into parts of equal energy, each with one component at the frequency that halves its
 //! energy. No two frequencies have a simple ratio, so the sea does not repeat, and 4 √m₀ is the height to round-off.
@@ -21,14 +21,14 @@ const ALPHA: f64 = 0.0081;
 
 /// The form of a spectrum; its height is said elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spectrum {
+pub struct WaveSpectrum {
     /// 1/f_p, s.
     pub peak_period: f64,
     /// γ, –.
     pub gamma: f64,
 }
 
-impl Spectrum {
+impl WaveSpectrum {
     /// JONSWAP's.
     pub fn jonswap(peak_period: f64, gamma: f64) -> Self {
         Self { peak_period, gamma }
@@ -53,7 +53,7 @@ impl Spectrum {
     }
 
     /// ω (rad/s) of `count` components of equal energy.
-    pub(super) fn frequencies(&self, count: usize) -> Vec<f64> {
+    pub(super) fn equal_energy_frequencies(&self, count: usize) -> Vec<f64> {
         let step = (BAND.1 - BAND.0) / POINTS as f64;
         let mut energy = vec![0.0];
         for i in 0..POINTS {
@@ -70,8 +70,8 @@ impl Spectrum {
     }
 }
 
-/// Phases (rad) without end, by the generator splitmix64 [@steele2014] from `seed`.
-pub(super) fn phases(seed: u64) -> impl Iterator<Item = f64> {
+/// Phases (rad) without end, by the generator splitmix64 @steele2014 from `seed`.
+pub(super) fn random_phases(seed: u64) -> impl Iterator<Item = f64> {
     (1u64..).map(move |n| {
         let mut z = seed.wrapping_add(n.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -4,18 +4,18 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
-/// Largest height of a wave over the depth [@mccowan1894].
-pub const MCCOWAN: f64 = 0.78;
+/// Largest height of a wave over the depth @mccowan1894.
+pub const MCCOWAN_LIMIT: f64 = 0.78;
 
-/// Largest height of a wave over its length in deep water [@miche1944].
+/// Largest height of a wave over its length in deep water @miche1944.
 const MICHE: f64 = 0.142;
 
-/// H L²/d³ above which waves are cnoidal, on the chart of [@lemehaute1976].
+/// H L²/d³ above which waves are cnoidal, on the chart of @lemehaute1976.
 const URSELL: f64 = 26.0;
 
 /// A wave of small height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Train {
+pub struct LinearWave {
     /// Depth, m.
     pub depth: f64,
     /// Acceleration of gravity, m/s².
@@ -29,7 +29,7 @@ pub struct Train {
 /// How deep the water is for a wave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Regime {
+pub enum DepthRegime {
     /// kd > π.
     Deep,
     /// Between.
@@ -38,9 +38,9 @@ pub enum Regime {
     Shallow,
 }
 
-/// Where a wave lies on the chart of [@lemehaute1976].
+/// Where a wave lies on the chart of @lemehaute1976.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Region {
+pub enum TheoryRegion {
     /// Stokes' second term is less than a hundredth of the first.
     Airy,
     /// Below a quarter of the breaking height.
@@ -60,9 +60,9 @@ pub enum Region {
     Breaking,
 }
 
-impl Regime {
+impl DepthRegime {
     /// The word for it.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Deep => "deep",
             Self::Intermediate => "intermediate",
@@ -71,9 +71,9 @@ impl Regime {
     }
 }
 
-impl Region {
+impl TheoryRegion {
     /// The word for it.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Airy => "Airy",
             Self::Stokes2 => "Stokes 2",
@@ -85,9 +85,9 @@ impl Region {
     }
 }
 
-impl Train {
+impl LinearWave {
     /// The wave of angular frequency `omega` (rad/s) in water `depth` (m) deep.
-    pub fn of(omega: f64, depth: f64, g: f64) -> Self {
+    pub fn new(omega: f64, depth: f64, g: f64) -> Self {
         Self { depth, g, omega, k: wave_number(omega, depth, g) }
     }
 
@@ -97,7 +97,7 @@ impl Train {
     }
 
     /// Length, m.
-    pub fn length(&self) -> f64 {
+    pub fn wavelength(&self) -> f64 {
         TAU / self.k
     }
 
@@ -112,58 +112,58 @@ impl Train {
     }
 
     /// Speed of its energy, m/s: ½ (1 + 2kd/sinh 2kd) ω/k.
-    pub fn group(&self) -> f64 {
+    pub fn group_velocity(&self) -> f64 {
         let x = 2.0 * self.kd();
         0.5 * (1.0 + if x > 600.0 { 0.0 } else { x / x.sinh() }) * self.celerity()
     }
 
     /// How deep the water is for it.
-    pub fn regime(&self) -> Regime {
+    pub fn depth_regime(&self) -> DepthRegime {
         match self.kd() {
-            kd if kd > PI => Regime::Deep,
-            kd if kd < 0.1 * PI => Regime::Shallow,
-            _ => Regime::Intermediate,
+            kd if kd > PI => DepthRegime::Deep,
+            kd if kd < 0.1 * PI => DepthRegime::Shallow,
+            _ => DepthRegime::Intermediate,
         }
     }
 
     /// Height (m) of the highest of its length: the lesser of 0.142 L tanh kd and 0.78 d.
-    pub fn highest(&self) -> f64 {
-        (MICHE * self.length() * self.kd().tanh()).min(MCCOWAN * self.depth)
+    pub fn breaking_height(&self) -> f64 {
+        (MICHE * self.wavelength() * self.kd().tanh()).min(MCCOWAN_LIMIT * self.depth)
     }
 
     /// H L²/d³ of a wave of `height` (m), –.
     pub fn ursell(&self, height: f64) -> f64 {
-        height * self.length().powi(2) / self.depth.powi(3)
+        height * self.wavelength().powi(2) / self.depth.powi(3)
     }
 
     /// The greatest height (m) for which two terms of Stokes are enough: H L²/d³ = 26.
-    pub fn highest_of_stokes(&self) -> f64 {
+    pub fn stokes_height_max(&self) -> f64 {
         URSELL / self.ursell(1.0)
     }
 
     /// The longest period (s) at which two terms of Stokes are enough for a wave of `height` (m) in this depth; none if
     /// it would break.
-    pub fn longest_of_stokes(&self, height: f64) -> Option<f64> {
+    pub fn stokes_period_max(&self, height: f64) -> Option<f64> {
         let k = TAU / (URSELL * self.depth.powi(3) / height).sqrt();
         let own = Self { k, omega: (self.g * k * (k * self.depth).tanh()).sqrt(), ..*self };
-        (height < own.highest()).then(|| own.period())
+        (height < own.breaking_height()).then(|| own.period())
     }
 
     /// Which theory holds for a wave of `height` (m).
-    pub fn region(&self, height: f64) -> Region {
+    pub fn theory_region(&self, height: f64) -> TheoryRegion {
         match height {
-            h if h >= self.highest() => Region::Breaking,
-            h if self.second(h) < 0.01 => Region::Airy,
-            h if self.ursell(h) > URSELL => Region::Cnoidal,
-            h if h < 0.25 * self.highest() => Region::Stokes2,
-            _ => Region::Stokes5,
+            h if h >= self.breaking_height() => TheoryRegion::Breaking,
+            h if self.second_order_ratio(h) < 0.01 => TheoryRegion::Airy,
+            h if self.ursell(h) > URSELL => TheoryRegion::Cnoidal,
+            h if h < 0.25 * self.breaking_height() => TheoryRegion::Stokes2,
+            _ => TheoryRegion::Stokes5,
         }
     }
 
     /// Stokes' second term over the first: (πH/4L) cosh kd (2 + cosh 2kd)/sinh³ kd.
-    pub fn second(&self, height: f64) -> f64 {
+    pub fn second_order_ratio(&self, height: f64) -> f64 {
         let kd = self.kd().min(100.0);
-        0.25 * PI * height / self.length() * kd.cosh() * (2.0 + (2.0 * kd).cosh()) / kd.sinh().powi(3)
+        0.25 * PI * height / self.wavelength() * kd.cosh() * (2.0 + (2.0 * kd).cosh()) / kd.sinh().powi(3)
     }
 }
 
@@ -179,7 +179,7 @@ pub fn wave_number(omega: f64, depth: f64, g: f64) -> f64 {
 }
 
 /// The first `count` solutions κ (1/m) of ω² = −g κ tan κd: the standing waves that stay at the paddle.
-pub(super) fn evanescent(omega: f64, depth: f64, g: f64, count: usize) -> Vec<f64> {
+pub(super) fn evanescent_wave_numbers(omega: f64, depth: f64, g: f64, count: usize) -> Vec<f64> {
     let deep = omega * omega * depth / g;
     let root = |j: usize| {
         let (mut low, mut high) = ((j as f64 - 0.5) * PI, j as f64 * PI);

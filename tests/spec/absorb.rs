@@ -78,7 +78,7 @@ fn a_basin_in_tune_with_its_paddle_holds_twice_the_wave_and_no_more() {
     while sim.time() < 6.0 * PERIOD {
         sim.step().unwrap();
         if sim.time() > 5.0 * PERIOD {
-            let level = sim.system().surfaces(&Vector::from([0.565, 0.0])).next().unwrap();
+            let level = sim.system().surface_heights(&Vector::from([0.565, 0.0])).next().unwrap();
             (low, high) = (low.min(level), high.max(level));
         }
     }

@@ -7,7 +7,7 @@ use pontoon::{
     math::{Bivector, Matrix, Pose, Vector},
     scene::Scene,
     simulation::Simulation,
-    solid::{Kinematics, Law, Motion, Role},
+    solid::{Kinematics, PrescribedMotion, Role, TimeFunction},
 };
 
 /// Water 0.1 m deep in a tank of 0.4 m × 0.3 m at the origin, at dp 10 mm, that moves as `driven` says.
@@ -179,7 +179,7 @@ fn a_list_of_motions_that_cannot_be_meant_is_refused_with_what_to_write() {
         }
     }
     // A program is told, too.
-    let chain = Motion::<2>::chain([]).check().expect_err("empty").to_string();
+    let chain = PrescribedMotion::<2>::chain([]).check().expect_err("empty").to_string();
     assert!(chain.contains("its list of motions is empty"), "{chain}");
 }
 
@@ -187,7 +187,7 @@ fn a_list_of_motions_that_cannot_be_meant_is_refused_with_what_to_write() {
 fn a_scene_of_several_motions_is_written_as_it_is_read() -> Result<()> {
     let scene = tank(&format!("{{ motions = [{SURGE}, {PITCH}] }}"))?;
     assert!(Scene::parse(&scene.to_toml()?, Path::new(""), &[])? == scene, "{}", scene.to_toml()?);
-    let one = Motion::chain([Motion::slide(Vector::from([1.0, 0.0]), Law::constant(0.1))]);
+    let one = PrescribedMotion::chain([PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::constant(0.1))]);
     let still = one.kinematics(&Pose::identity(), 2.0);
     assert_eq!(
         (still.centre, still.velocity),

@@ -105,8 +105,8 @@ fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
             // unlike mass touch: 1e-3 as the rope comes taut.
             let (hinged, hung) = (sim.load_breakdown(5).unwrap(), sim.load_breakdown(1).unwrap());
             for (ties, told, weight) in [
-                (hinged.joints, sim.joint(0).force.norm(), hinged.weight),
-                (hung.ropes, sim.rope(0).tension, hung.weight),
+                (hinged.joints, sim.joint_reading(0).force.norm(), hinged.weight),
+                (hung.ropes, sim.rope_reading(0).tension, hung.weight),
             ] {
                 let (force, round_off) = (ties.force.norm(), 1e-12 * weight.force.norm());
                 assert!((force - told).abs() <= 1e-3 * force + round_off, "{model}, {step}: {force} N, told {told} N");
@@ -144,7 +144,7 @@ fn joints_and_ropes_add_up_to_the_last_digits_where_nothing_touches() {
             assert!(off < 1e-9, "step {step}, solid {i}: {off:e}");
         }
     }
-    assert!(sim.rope(0).tension + sim.joint(0).force.norm() > 0.0, "they carry something");
+    assert!(sim.rope_reading(0).tension + sim.joint_reading(0).force.norm() > 0.0, "they carry something");
 }
 
 fn torque(load: &Load<2>) -> f64 {

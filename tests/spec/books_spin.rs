@@ -115,7 +115,7 @@ fn the_torques_on_tied_bodies_that_spin_in_space_add_up_in_every_step() -> Resul
         turned = turned.max(largest(&[sim.load_breakdown(2).unwrap().change]).1);
     }
     assert!(turned > 0.1, "the lower bar is turned by up to {turned} N m");
-    assert!(sim.rope(0).tension > 0.0 && sim.joint(3).motor != 0.0, "what is tied carries");
+    assert!(sim.rope_reading(0).tension > 0.0 && sim.joint_reading(3).motor_force != 0.0, "what is tied carries");
     Ok(())
 }
 

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use pontoon::{
-    geometry::{Region, Shape, fill},
+    geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
     model::{Dimension, Model, Viscosity, Walls},
     simulation::Simulation,
@@ -75,7 +75,7 @@ where
         let mut size = pool;
         size[up] *= 1.5;
         let tank = rig::tank(size.into(), DP);
-        let region = Region { shape: Shape::Box { size: pool }, pose: Pose::at(pool * 0.5) };
+        let region = WaterRegion { shape: Shape::Box { size: pool }, pose: Pose::at(pool * 0.5) };
         let water = fill(&[region], &[(&tank.shape, &tank.pose), (&shape, &float.pose)], DP).unwrap().r;
         let mut model = Model::water(D, DP, pool[up]);
         model.walls = walls;
@@ -92,7 +92,8 @@ where
     fn level(&self) -> f64 {
         let water = self.sim.system().fluid().len() as f64 * DP.powi(D as i32);
         // No body here covers more than half of the tank: each round halves the error at least.
-        (0..40).fold(water / self.area, |level, _| (water + self.shape.submerged(self.pose(), level).0) / self.area)
+        (0..40)
+            .fold(water / self.area, |level, _| (water + self.shape.submerged_volume(self.pose(), level).0) / self.area)
     }
 
     /// By how much the body lies too deep now, dp: the lift that would float it as it is turned.
@@ -121,7 +122,7 @@ where
     /// Mean error of the draft, dp, over the last of `periods` of 2π √(draft/g), about those of the heave.
     fn draft_error(&mut self, periods: f64) -> f64 {
         let volume = self.body.mass / RHO0;
-        let draft = volume / (self.shape.volume().volume / self.shape.bounds().size()[D - 1]);
+        let draft = volume / (self.shape.volume_properties().volume / self.shape.bounds().size()[D - 1]);
         let period = TAU * (draft / 9.81).sqrt();
         self.watch((periods - 1.0) * period, |_| 0.0);
         mean(&self.watch(period, Self::too_deep))

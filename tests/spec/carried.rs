@@ -6,10 +6,10 @@ use pontoon::{
     Result,
     geometry::Shape,
     math::{Bivector, Bounds, Matrix, Pose, Vector, expression::Formula},
-    model::{Model, PairLoopKind, Scheme, Walls},
+    model::{Model, PairLoopKind, TimeScheme, Walls},
     scene::Scene,
     simulation::{Setup, Simulation},
-    solid::{Constraints, Law, Load, Motion, Role, SolidSpec},
+    solid::{Constraints, Load, PrescribedMotion, Role, SolidSpec, TimeFunction},
 };
 
 use crate::rig;
@@ -96,7 +96,7 @@ fn water_and_bodies_that_collide_in_free_space_keep_their_momentum() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.gravity, model.pair_loop, model.c0, model.scheme) =
-        (vec![0.0, 0.0], PairLoopKind::Reference, 34.0, Scheme::Symplectic);
+        (vec![0.0, 0.0], PairLoopKind::Reference, 34.0, TimeScheme::Symplectic);
     let mut water = rig::lattice([-0.3, -0.2], [0.6, 0.4], dp);
     // A dry gap of one dp between them.
     let sizes = [[-0.06, 0.0], [0.06, 0.02]];
@@ -190,9 +190,9 @@ fn water_in_a_tank_that_gains_speed_leans_by_a_over_g() {
     // the water's centre, which lies a/g · L²/(12 d) behind the middle of the tank.
     let (dp, length, depth) = (0.01, 0.4, 0.1);
     let slope = 0.05;
-    let law = Law::Formula(Formula::parse(&format!("0.5*{slope}*9.81*t^2")).expect("a formula"));
+    let law = TimeFunction::Formula(Formula::parse(&format!("0.5*{slope}*9.81*t^2")).expect("a formula"));
     let mut tank = rig::tank([length, 0.25], dp);
-    tank.role = Role::Driven(Motion::slide(Vector::from([1.0, 0.0]), law));
+    tank.role = Role::Driven(PrescribedMotion::slide(Vector::from([1.0, 0.0]), law));
     let mut model = Model::water(2, dp, depth);
     model.viscosity = pontoon::model::Viscosity::Artificial(pontoon::sph::viscosity::Artificial { alpha: 0.1 });
     let water = rig::lattice([0.0, 0.0], [length, depth], dp);
@@ -244,9 +244,9 @@ fn a_body_on_a_driven_floor_is_carried_as_far_as_friction_goes() -> Result<()> {
     use pontoon::solid::{Dim, FreeBody, HasEngine};
     // μ = 0.4 on a floor of 0.3 g, and of 0.5 g.
     for (floor, carried) in [(0.3, 0.3), (0.5, 0.4)] {
-        let law = Law::Formula(Formula::parse(&format!("0.5*{}*t^2", floor * 9.81))?);
+        let law = TimeFunction::Formula(Formula::parse(&format!("0.5*{}*t^2", floor * 9.81))?);
         let (slab, block) = (Vector::from([4.0, 0.5]), Vector::from([0.2, 0.1]));
-        let motion = Motion::slide(Vector::from([1.0, 0.0]), law);
+        let motion = PrescribedMotion::slide(Vector::from([1.0, 0.0]), law);
         let block = Shape::Box { size: block };
         let mut solids = vec![
             rig::solid(
@@ -263,7 +263,7 @@ fn a_body_on_a_driven_floor_is_carried_as_far_as_friction_goes() -> Result<()> {
             ),
         ];
         solids.iter_mut().for_each(|solid| solid.friction = 0.4);
-        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+        let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
         let mut engine = Dim::<2>::engine(&solids, &start, &Constraints::default(), &Vector::from([0.0, -9.81]), 0.01)?;
         let (dt, idle) = (2e-4, Load::zero());
         for step in 1..=2000 {
@@ -287,7 +287,7 @@ fn a_body_that_tumbles_in_a_vacuum_for_ten_seconds_keeps_energy_and_angular_mome
     let brick = rig::solid("brick", shape, Pose::identity(), Role::Free(body));
     let mut engine = Dim::<3>::engine(
         std::slice::from_ref(&brick),
-        &[brick.start()],
+        &[brick.initial_kinematics()],
         &Constraints::default(),
         &Vector::zeros(),
         0.01,

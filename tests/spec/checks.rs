@@ -10,8 +10,8 @@ use pontoon::{
         Align, CheckPlan, Reference, ReferenceCheck, Score, Verdict, amplitude_ratio, first_peak_error,
         format_verdicts, max_abs, relative_l2,
     },
-    error::{Kind, Result},
-    math::time_series::Series,
+    error::{ErrorKind, Result},
+    math::time_series::TimeSeries,
     run::{self, Progress, RunOptions},
     scene::Scene,
 };
@@ -68,8 +68,8 @@ const SIM: &str = "t_s,heave_m,gap_m\n0.0,0.0,\n1.0,2.0,5.0\n2.0,4.0,\n3.0,6.0,7
 
 #[test]
 fn a_perfect_run_has_no_deviation_and_a_run_twice_too_large_has_n_1_and_m_2() -> Result<()> {
-    let reference = Series::new([0.0, 1.0, 2.5], [1.0, -3.0, 0.5])?;
-    let twice = Series::new([0.0, 1.0, 2.5], [2.0, -6.0, 1.0])?;
+    let reference = TimeSeries::new([0.0, 1.0, 2.5], [1.0, -3.0, 0.5])?;
+    let twice = TimeSeries::new([0.0, 1.0, 2.5], [2.0, -6.0, 1.0])?;
     assert_eq!([relative_l2(&reference, &reference)?, amplitude_ratio(&reference, &reference)?], [0.0, 1.0]);
     assert_eq!([relative_l2(&twice, &reference)?, amplitude_ratio(&twice, &reference)?], [1.0, 2.0]);
     assert_eq!(first_peak_error(&twice, &reference)?, 1.0);
@@ -78,10 +78,10 @@ fn a_perfect_run_has_no_deviation_and_a_run_twice_too_large_has_n_1_and_m_2() ->
 
 #[test]
 fn a_reference_outside_the_run_or_zero_is_refused() -> Result<()> {
-    let sim = Series::new([0.0, 1.0], [1.0, 1.0])?;
-    let late = Series::new([0.5, 1.5], [1.0, 1.0])?;
-    let zero = Series::new([0.0, 1.0], [0.0, 0.0])?;
-    assert!(relative_l2(&sim, &late).is_err_and(|e| e.what.contains("0.5 to 1.5 s")));
+    let sim = TimeSeries::new([0.0, 1.0], [1.0, 1.0])?;
+    let late = TimeSeries::new([0.5, 1.5], [1.0, 1.0])?;
+    let zero = TimeSeries::new([0.0, 1.0], [0.0, 0.0])?;
+    assert!(relative_l2(&sim, &late).is_err_and(|e| e.message.contains("0.5 to 1.5 s")));
     assert!(amplitude_ratio(&sim, &zero).is_err() && first_peak_error(&sim, &zero).is_err());
     assert_eq!(max_abs(&sim, &zero)?, 1.0);
     Ok(())
@@ -130,12 +130,12 @@ fn empty_fields_are_gaps_and_wrong_tables_say_what_is_wrong() -> std::io::Result
     let words = |names: [&str; 2]| by_table("box.gap_m", names, 0.0, bound(0.0));
     assert_eq!(judge(&words(["t", "z"]), &folder).passed, Some(true));
     let missing = ReferenceCheck::new(&words(["t_s", "z"]), &folder).err();
-    assert_eq!(missing.map(|e| e.kind), Some(Kind::Scene));
+    assert_eq!(missing.map(|e| e.kind), Some(ErrorKind::Scene));
     fs::write(&reference, "t,z\n1,5\n2,six\n")?;
     let word = ReferenceCheck::new(&words(["t", "z"]), &folder).err();
-    assert_eq!(word.and_then(|e| e.place).and_then(|p| p.line_column), Some((3, 1)));
+    assert_eq!(word.and_then(|e| e.location).and_then(|p| p.line_column), Some((3, 1)));
     let absent = ReferenceCheck::new(&words(["t", "z"]), &folder.join("nowhere")).err();
-    assert_eq!(absent.map(|e| e.kind), Some(Kind::File));
+    assert_eq!(absent.map(|e| e.kind), Some(ErrorKind::File));
     fs::remove_dir_all(folder)
 }
 
@@ -184,13 +184,13 @@ fn a_reference_of_zero_has_a_largest_distance_but_no_n() -> std::io::Result<()> 
 #[test]
 fn the_running_mean_of_a_line_is_the_line_and_of_a_spike_its_share() -> Result<()> {
     let t: Vec<f64> = (0..=10).map(|i| 0.1 * i as f64).collect();
-    let line = Series::new(t.clone(), t.clone())?.running_mean(0.3);
+    let line = TimeSeries::new(t.clone(), t.clone())?.running_mean(0.3);
     // Away from the ends, where the window is cut.
     assert!((2..=8).all(|i| (line.values()[i] - t[i]).abs() < 1e-12));
     assert!((line.values()[0] - 0.075).abs() < 1e-12, "half the window is left at the end");
     // A triangle of height 1 and width 0.2 has the area 0.1: over 0.4 s it is 0.25.
     let spike: Vec<f64> = (0..=10).map(|i| f64::from(i == 5)).collect();
-    let spike = Series::new(t, spike)?.running_mean(0.4);
+    let spike = TimeSeries::new(t, spike)?.running_mean(0.4);
     assert!((spike.values()[5] - 0.25).abs() < 1e-12 && spike.values()[1] == 0.0);
     Ok(())
 }

@@ -3,32 +3,32 @@
 use pontoon::{
     geometry::Shape,
     math::{Bivector, Bounds, Pose, Vector, expression::Formula},
-    model::{Diffusion, Dimension, Model, PairLoopKind, Scheme, Viscosity, Walls},
+    model::{Diffusion, Dimension, Model, PairLoopKind, TimeScheme, Viscosity, Walls},
     simulation::{Setup, Simulation},
-    solid::{Dim, Law, Motion, Role},
+    solid::{Dim, PrescribedMotion, Role, TimeFunction},
 };
 
 use crate::rig;
 
 /// Both sweeps and what they may lose of what they add up in 500 to 1,000 steps: rounding of f64; and of single precision,
-/// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/performance.md).
+/// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/explanation/performance.md).
 const SWEEPS: [(PairLoopKind, f64); 2] = [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)];
 
 /// Speed of sound in a drop, m/s: so fast that 1,000 steps end before the drop has flown apart.
 const C0: f64 = 34.0;
 
 /// A drop in free space with a body inside it, started spinning and stretching.
-fn drop_with_body(scheme: Scheme, sweep: PairLoopKind) -> Simulation<2> {
+fn drop_with_body(scheme: TimeScheme, sweep: PairLoopKind) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.scheme, model.gravity, model.pair_loop) = (scheme, vec![0.0, 0.0], sweep);
     (model.c0, model.walls) = (C0, Walls::Dynamic);
-    if scheme != Scheme::Symplectic {
+    if scheme != TimeScheme::Symplectic {
         // Without damping no Euler step comes before its time.
         (model.cfl, model.viscosity, model.diffusion) = (0.2, Viscosity::None, Diffusion::None);
     }
     // Under Verlet's one that is heavy enough: what joins a light one comes into the sum a step later.
-    drop_under(model, if scheme == Scheme::Symplectic { 600.0 } else { 2000.0 })
+    drop_under(model, if scheme == TimeScheme::Symplectic { 600.0 } else { 2000.0 })
 }
 
 /// That drop with another model and a body of another `density` (kg/m³).
@@ -57,7 +57,7 @@ fn momentum_scale(sim: &Simulation<2>) -> f64 {
 #[test]
 fn a_free_drop_with_a_body_inside_keeps_its_momentum() {
     for (sweep, rounding) in SWEEPS {
-        let mut sim = drop_with_body(Scheme::Symplectic, sweep);
+        let mut sim = drop_with_body(TimeScheme::Symplectic, sweep);
         let (start, scale) = (rig::water_momentum(&sim) + body_momentum(&sim), momentum_scale(&sim));
         for _ in 0..1000 {
             sim.step().unwrap();
@@ -71,7 +71,7 @@ fn a_free_drop_with_a_body_inside_keeps_its_momentum() {
 #[test]
 fn walls_that_settle_keep_momentum_too() {
     for (sweep, lost) in SWEEPS {
-        let mut model = drop_with_body(Scheme::Symplectic, sweep).system().model().clone();
+        let mut model = drop_with_body(TimeScheme::Symplectic, sweep).system().model().clone();
         model.walls = Walls::RelaxedAdami;
         let mut sim = drop_under(model, 600.0);
         let start = rig::water_momentum(&sim) + body_momentum(&sim);
@@ -110,7 +110,7 @@ fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
     for (sweep, rounding) in SWEEPS {
         // Derived in src/time/verlet.rs: ½(P⁺ + P) of the water and P⁺ of the bodies are constant between Euler
         // steps; the plain sum is off by ½(P⁺ − P).
-        let mut sim = drop_with_body(Scheme::Verlet { euler_every: 1_000_000 }, sweep);
+        let mut sim = drop_with_body(TimeScheme::Verlet { euler_every: 1_000_000 }, sweep);
         let scale = momentum_scale(&sim);
         sim.step().unwrap();
         let mut before = rig::water_momentum(&sim);
@@ -134,7 +134,7 @@ fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
 #[test]
 fn an_euler_step_moves_the_shared_momentum_by_less_than_a_step_does() {
     let (every, steps) = (50, 500);
-    let mut sim = drop_with_body(Scheme::Verlet { euler_every: every }, PairLoopKind::Fast);
+    let mut sim = drop_with_body(TimeScheme::Verlet { euler_every: every }, PairLoopKind::Fast);
     sim.step().unwrap();
     let mut before = rig::water_momentum(&sim);
     let shared = |now: Vector<2>, before: Vector<2>, sim: &Simulation<2>| (now + before) * 0.5 + body_momentum(sim);
@@ -166,7 +166,7 @@ fn a_piston_gives_the_water_the_work_that_it_records() {
 /// Water of this size (m) before a piston `thick` and `high` (m) on the bed of a tank, which goes as `law` (m) says.
 fn before_a_piston(model: Model, [long, deep]: [f64; 2], law: &str, [thick, high]: [f64; 2]) -> Simulation<2> {
     let (dp, behind) = (model.dp, 0.4);
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse(law).unwrap()));
+    let motion = PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse(law).unwrap()));
     let shape = Shape::Box { size: Vector::from([thick, high]) };
     let start = Pose::at(Vector::from([-0.5 * thick, 0.5 * high]));
     let piston = rig::solid("piston", shape, start, Role::Driven(motion));
@@ -230,7 +230,7 @@ fn energy(sim: &Simulation<2>) -> f64 {
 }
 
 /// How far (m) a body thrown over water is from the parabola after half a second, and how long that way is (m).
-fn thrown<const D: usize>(scheme: Scheme) -> (f64, f64)
+fn thrown<const D: usize>(scheme: TimeScheme) -> (f64, f64)
 where
     Dim<D>: Dimension<D>,
 {
@@ -261,7 +261,7 @@ where
 
 #[test]
 fn a_body_thrown_over_water_flies_as_in_a_vacuum() {
-    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 40 }] {
+    for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 40 }] {
         for (off, way) in [thrown::<2>(scheme), thrown::<3>(scheme)] {
             // A thousand steps of round-off; a step of g Δt/2 more or less would be 1e-4.
             assert!(off < 1e-12 * way, "{scheme:?}: {off:e} m off in {way} m");

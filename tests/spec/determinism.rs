@@ -3,36 +3,39 @@
 use pontoon::{
     geometry::Shape,
     math::{Pose, Vector, expression::Formula},
-    model::{Gradient, Model, Scheme, Shifting, Viscosity, Walls},
+    model::{Model, PressureGradient, Shifting, TimeScheme, Viscosity, Walls},
     simulation::Simulation,
-    solid::{Law, Motion, Role},
+    solid::{PrescribedMotion, Role, TimeFunction},
     sph::{particle_shifting::Shift, viscosity::Sps},
 };
 
 use crate::rig;
 
 /// Both steppers, walls and gradients.
-const KINDS: [(Scheme, Walls, Gradient); 4] = [
-    (Scheme::Symplectic, Walls::Dynamic, Gradient::Plain),
-    (Scheme::Verlet { euler_every: 50 }, Walls::Dynamic, Gradient::Plain),
-    (Scheme::Symplectic, Walls::RelaxedAdami, Gradient::Plain),
-    (Scheme::Symplectic, Walls::RelaxedAdami, Gradient::Corrected),
+const KINDS: [(TimeScheme, Walls, PressureGradient); 4] = [
+    (TimeScheme::Symplectic, Walls::Dynamic, PressureGradient::Plain),
+    (TimeScheme::Verlet { euler_every: 50 }, Walls::Dynamic, PressureGradient::Plain),
+    (TimeScheme::Symplectic, Walls::RelaxedAdami, PressureGradient::Plain),
+    (TimeScheme::Symplectic, Walls::RelaxedAdami, PressureGradient::Corrected),
 ];
 
 /// A dam break onto two floats that collide, one as light as foam, beside a paddle, with every term that remembers something.
-fn scene((scheme, walls, gradient): (Scheme, Walls, Gradient)) -> Simulation<2> {
+fn scene((scheme, walls, gradient): (TimeScheme, Walls, PressureGradient)) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.scheme, model.cfl, model.walls) = (scheme, 0.2, walls);
     (model.viscosity, model.gradient) = (Viscosity::Sps(Sps::default()), gradient);
-    if gradient == Gradient::Plain {
+    if gradient == PressureGradient::Plain {
         model.shifting = Shifting::AwayFromFixed(Shift::default());
     }
     let mut water = rig::lattice([0.1, 0.0], [0.5, 0.3], dp);
     water.extend(rig::lattice([0.6, 0.0], [0.8, 0.1], dp));
     let mut second = rig::float(Shape::Ball { radius: 0.06 }, [1.16, 0.17], 30.0);
     second.name = "second".into();
-    let paddle = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.02*sin(9*t)").unwrap()));
+    let paddle = PrescribedMotion::slide(
+        Vector::from([1.0, 0.0]),
+        TimeFunction::Formula(Formula::parse("0.02*sin(9*t)").unwrap()),
+    );
     let paddle_shape = Shape::Box { size: Vector::from([0.08, 0.6]) };
     let solids = vec![
         rig::tank([1.4, 0.6], dp),
@@ -100,5 +103,5 @@ fn damaged_bytes_are_refused() {
     // The first place of all, behind the number of particles.
     let places = kept.windows(8).position(|b| b == sim.system().fluid().r[0][0].to_le_bytes()).unwrap();
     let far = [&kept[..places], &1e15f64.to_le_bytes(), &kept[places + 8..]].concat();
-    assert!(other.restore(&far).is_err_and(|e| e.what.contains("nowhere")));
+    assert!(other.restore(&far).is_err_and(|e| e.message.contains("nowhere")));
 }

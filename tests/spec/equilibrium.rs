@@ -63,7 +63,7 @@ fn list(sim: &Simulation<2>, solid: usize) -> Result<f64> {
     let lever = |tilt: f64| -> Result<f64> {
         let mut pose = Pose::rotated(Vector::zeros(), &[tilt]);
         pose.position[1] += equilibrium_height(&spec.shape, &pose, body.mass, 1000.0, 0.0)?;
-        Ok(spec.shape.submerged(&pose, 0.0).1[0] - pose.point(&body.centre)[0])
+        Ok(spec.shape.submerged_volume(&pose, 0.0).1[0] - pose.point(&body.centre)[0])
     };
     let (mut low, mut high) = (-0.5, 0.5);
     for _ in 0..50 {
@@ -98,7 +98,7 @@ fn a_crate_on_a_raft_is_borne_by_it_and_both_by_the_water() -> Result<()> {
     let mut sim = afloat(60.0, 16.0, words)?;
     let borne = |sim: &Simulation<2>| {
         let pair = sim.contacts().into_iter().find(|pair| pair.between == [1, 2]);
-        [height(sim, 1), height(sim, 2), pair.map_or(0.0, |pair| pair.pressing)]
+        [height(sim, 1), height(sim, 2), pair.map_or(0.0, |pair| pair.normal_force)]
     };
     let [raft, load, force] = mean(&mut sim, 4.0, 2.0, borne)?;
     // The level in the closed tank stays where it was filled, as both start at their draft; 24 kg over 0.4 m.
@@ -196,7 +196,7 @@ fn the_fixing_of_a_gate_carries_the_water_behind_it() -> Result<()> {
                  [[joint]]\nname = \"foot\"\nkind = \"fixed\"\nbetween = [\"tank\", \"gate\"]\nat = [0.5, 0.0]";
     let mut sim = pool("box = { min = [0, 0], max = [0.5, 0.4] }", [1.0, 0.6], words)?;
     let carried = |sim: &Simulation<2>| {
-        let (joint, load) = (sim.joint(0), &sim.system().solids()[1].load);
+        let (joint, load) = (sim.joint_reading(0), &sim.system().solids()[1].load);
         [joint.force[0], joint.torque.axial()[0], joint.force[1], load.force[0]]
     };
     let [across, torque, up, load] = mean(&mut sim, 3.0, 1.5, carried)?;
@@ -240,7 +240,7 @@ fn a_barge_capsizes_when_its_metacentre_sinks_below_its_centre() -> Result<()> {
     // Wall-sided, the righting arm is (GM + ½ BM tan² φ) sin φ: with GM = −0.05 BM it lies at 18°, with −0.02 BM at 11°, with more than
     // nothing upright. All start at 3°. At 5 % one has come back from there, the other is at more than twice that and on its way; at the
     // project's 2 % one is nearer to upright than it was, the other half as far again from it and stays there: which is what border
-    // means. That it lies at 5° and not at 11° is missed (docs/validation.md).
+    // means. That it lies at 5° and not at 11° is missed (docs/explanation/validation.md).
     let [upright, less, more, over] = [0.05, 0.02, -0.02, -0.05].map(tilts);
     let (upright, less, more, over) = (upright?, less?, more?, over?);
     assert!(upright < 3.0, "GM = 0.05 BM: {upright}°");

@@ -88,6 +88,37 @@ fn wrong_set(name: &str, key: &str, value: &str) {
 }
 
 #[test]
+fn an_old_name_keeps_working_and_is_noted_with_the_new_one() {
+    let parse = |text: &str, sets: &[(&str, &str)]| {
+        let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+        Scene::parse(text, folder(), &sets)
+    };
+    let old = GOOD
+        .replacen("until     = 1.0", "until     = 1.0\nscatter   = 0.01", 1)
+        .replacen("free  = { density = 500.0 }", "free  = { density = 500.0 }\nskin  = 0.01", 1)
+        .replacen("[model]", "[model]\nwalls = \"settling\"", 1);
+    let new = old.replace("scatter", "jitter").replace("skin", "contact_skin").replace("settling", "relaxed_adami");
+    let both = old.replace("scatter ", "jitter = 0.01\nscatter ");
+    let (old, new) = (parse(&old, &[]).unwrap(), parse(&new, &[]).unwrap());
+    assert!(old == new && new.renamed_names().is_empty());
+    let notes: Vec<String> = old.renamed_names().iter().map(ToString::to_string).collect();
+    let expected = [
+        "scatter (scene line 5): \"scatter\" is called \"jitter\" now",
+        "solid.box.skin (scene line 20): \"skin\" is called \"contact_skin\" now",
+        "model.walls (scene line 29): \"settling\" is called \"relaxed_adami\" now",
+    ];
+    assert_eq!(notes, expected);
+    let set = parse(GOOD, &[("scatter", "0.01"), ("solid.box.skin", "0.01"), ("model.walls", "settling")]).unwrap();
+    assert!(set == new);
+    let notes: Vec<String> = set.renamed_names().iter().map(ToString::to_string).collect();
+    assert_eq!(notes[1], "solid.box.skin (--set): \"skin\" is called \"contact_skin\" now");
+    // An override with either name replaces the value of the text.
+    assert_eq!(parse(&both.replace("scatter   = 0.01\n", ""), &[("scatter", "0.02")]).unwrap().jitter, Some(0.02));
+    let error = parse(&both, &[]).expect_err("one of the two must go").to_string();
+    assert!(error.contains("scatter and jitter say the same thing twice") && error.contains(":6:1"), "{error}");
+}
+
+#[test]
 fn the_good_scene_is_good() {
     try_out(GOOD, &[]).unwrap();
 }

@@ -19,8 +19,8 @@ fn carried(water: [f64; 2], tank: [f64; 2], words: &str) -> Result<[f64; 3]> {
     while sim.time() < 2.0 {
         sim.step_to(2.0)?;
         if sim.time() > 1.0 {
-            let force = sim.joint(0).force;
-            let now = [force[0], force[1], sim.rope(0).tension];
+            let force = sim.joint_reading(0).force;
+            let now = [force[0], force[1], sim.rope_reading(0).tension];
             sums.iter_mut().zip(now).for_each(|(sum, x)| *sum += x * sim.dt());
             weight += sim.dt();
         }

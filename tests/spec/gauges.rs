@@ -142,7 +142,7 @@ fn patches_of_a_wall_carry_the_weight_of_the_water_and_together_all_of_it() -> R
     let force = ForceProbe::new(sim.system(), "tank")?.sample(&sim);
     let error = (whole[0] - force[0]).abs().max((whole[1] - force[1]).abs());
     assert!(error < 1e-9 * weight, "the same forces in another order; off by {error:e}");
-    let nothing = patch([0.1, 0.1], [0.2, 0.2]).err().map(|e| e.what).unwrap_or_default();
+    let nothing = patch([0.1, 0.1], [0.2, 0.2]).err().map(|e| e.message).unwrap_or_default();
     assert!(nothing.contains("no face of solid \"tank\""), "{nothing}");
     Ok(())
 }

@@ -3,11 +3,11 @@
 use pontoon::{
     geometry::Shape,
     math::Vector,
-    model::{Gradient, Kernel, Model, PairLoopKind, Shifting, Viscosity},
+    model::{KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Viscosity},
     simulation::{Setup, Simulation},
     sph::{
         AuxiliarySums, Pair, PairSide, Term,
-        gradient_correction::{self, CorrectedGradient},
+        gradient_correction::{self, CorrectedGradientTerm},
         kernel::{Kernel as _, Wendland},
         viscosity::Laminar,
     },
@@ -38,14 +38,14 @@ fn the_slope_of_a_linear_field_is_exact_however_particles_lie() {
     let slope = Vector::from([0.7, -1.3, 2.1]);
     let centre = places.iter().copied().min_by(|a, b| a.norm().total_cmp(&b.norm())).expect("a cloud");
     let near: Vec<&Vector<3>> = places.iter().filter(|r| (centre - *r).norm() < 2.0 * h && **r != centre).collect();
-    let (mut sums, mut other) = (AuxiliarySums::all(0.0), AuxiliarySums::all(0.0));
+    let (mut sums, mut other) = (AuxiliarySums::filled_with(0.0), AuxiliarySums::filled_with(0.0));
     for b in &near {
         let r = centre - *b;
         let factor: f64 = kernel.slope(r.norm_squared()) * volume;
         let pair = Pair::new(r.into(), [0.0; 3], r.norm_squared(), 0.0, 0.0, side, side);
-        CorrectedGradient.auxiliary(&pair, factor, &mut sums, &mut other);
+        CorrectedGradientTerm.auxiliary(&pair, factor, &mut sums, &mut other);
     }
-    let form = gradient_correction::correction(&sums.moment);
+    let form = gradient_correction::correction(&sums.renormalization);
     let mut found = [Vector::<3>::zeros(); 2];
     for b in &near {
         let r = centre - *b;
@@ -62,7 +62,8 @@ fn the_slope_of_a_linear_field_is_exact_however_particles_lie() {
 fn momentum_of_water_and_body_is_kept() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    (model.gradient, model.pair_loop, model.gravity) = (Gradient::Corrected, PairLoopKind::Reference, vec![0.0, 0.0]);
+    (model.gradient, model.pair_loop, model.gravity) =
+        (PressureGradient::Corrected, PairLoopKind::Reference, vec![0.0, 0.0]);
     let mut water = rig::lattice([-0.2, -0.2], [0.4, 0.4], dp);
     water.retain(|r| r.amax() > 0.06);
     let float = rig::float(Shape::Box { size: Vector::from([0.12, 0.12]) }, [0.0, 0.0], 2000.0);
@@ -83,7 +84,7 @@ fn momentum_of_water_and_body_is_kept() {
 
 /// What is left of the height of a standing wave, 1 m long between two walls, after four periods, as the root of the mean square of the
 /// velocities at their largest.
-fn left(gradient: Gradient) -> f64 {
+fn left(gradient: PressureGradient) -> f64 {
     let (dp, depth, height) = (0.02, 0.4, 0.06);
     let viscosity = Viscosity::Laminar(Laminar { nu0: 1e-6 });
     let model = Model { gradient, viscosity, ..Model::water(2, dp, depth) };
@@ -113,23 +114,28 @@ fn left(gradient: Gradient) -> f64 {
 
 #[test]
 fn a_standing_wave_loses_less_of_its_height() {
-    let (plain, corrected) = (left(Gradient::Plain), left(Gradient::Corrected));
-    // What is lost is the kernel's: by a fifth less at least (by nearly a half in a wave of 90 dp, docs/validation.md).
+    let (plain, corrected) = (left(PressureGradient::Plain), left(PressureGradient::Corrected));
+    // What is lost is the kernel's: by a fifth less at least (by nearly a half in a wave of 90 dp, docs/explanation/validation.md).
     assert!(1.0 - corrected < 0.8 * (1.0 - plain), "left: {plain} plain, {corrected} corrected");
     assert!(corrected < 1.0, "no energy is made: {corrected}");
 }
 
 #[test]
 fn what_it_does_not_go_with_is_refused() {
-    let of = |kernel, shifting| Model { gradient: Gradient::Corrected, kernel, shifting, ..Model::water(2, 0.02, 0.3) };
-    assert!(of(Kernel::Wendland, Shifting::None).conflict().is_none());
+    let of = |kernel, shifting| Model {
+        gradient: PressureGradient::Corrected,
+        kernel,
+        shifting,
+        ..Model::water(2, 0.02, 0.3)
+    };
+    assert!(of(KernelKind::Wendland, Shifting::None).conflict().is_none());
     for model in [
-        of(Kernel::Cubic { tensile: true }, Shifting::None),
-        of(Kernel::Wendland, Shifting::Everywhere(pontoon::sph::particle_shifting::Shift::default())),
+        of(KernelKind::Cubic { tensile: true }, Shifting::None),
+        of(KernelKind::Wendland, Shifting::Everywhere(pontoon::sph::particle_shifting::Shift::default())),
     ] {
         let water = rig::lattice([0.0, 0.0], [0.2, 0.2], 0.02);
         let levels = vec![0.2; water.len()];
         let refused = Simulation::new(Setup::new(model, water, levels, vec![rig::tank([0.2, 0.4], 0.02)]));
-        assert!(refused.is_err_and(|e| e.what.contains("corrected gradients")));
+        assert!(refused.is_err_and(|e| e.message.contains("corrected gradients")));
     }
 }

@@ -1,12 +1,12 @@
 //! Guards: what they see, and what a run does about it.
 
 use pontoon::{
-    error::Kind,
+    error::ErrorKind,
     geometry::Shape,
     math::{Bounds, Vector},
     model::Model,
     run::{self, InspectOptions},
-    simulation::{Escape, Limits, Setup, Simulation},
+    simulation::{Escape, ParticleLimits, Setup, Simulation},
     solid::Role,
 };
 
@@ -63,7 +63,7 @@ fn an_alarm_that_returns_ends_the_run_with_its_report() {
     sim.step().expect("the run goes back");
     plant(&mut sim);
     let error = sim.step().expect_err("the alarm returned");
-    assert_eq!(error.kind, Kind::Fault);
+    assert_eq!(error.kind, ErrorKind::Fault);
     assert!(error.fault.is_some_and(|fault| fault.who.starts_with("water particle")));
 }
 
@@ -94,7 +94,7 @@ fn a_healthy_run_is_not_changed_by_a_bit() {
 }
 
 /// A block of water that falls out of a domain whose sides are a metre away, with these limits.
-fn falling(limits: Limits) -> Simulation<2> {
+fn falling(limits: ParticleLimits) -> Simulation<2> {
     let dp = 0.02;
     let water = rig::lattice([0.0, 0.0], [0.1, 0.1], dp);
     let levels = vec![0.1; water.len()];
@@ -106,10 +106,10 @@ fn falling(limits: Limits) -> Simulation<2> {
 
 #[test]
 fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
-    let mut stops = falling(Limits::default());
+    let mut stops = falling(ParticleLimits::default());
     let error = (0..10_000).find_map(|_| stops.step().err()).expect("the water falls out");
     assert!(error.to_string().contains("escape from the domain"), "{error}");
-    let mut goes_on = falling(Limits { escape: Escape::Remove, ..Limits::default() });
+    let mut goes_on = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
     while goes_on.system().fluid().len() > 5 {
         goes_on.step().expect("those that leave are taken out");
     }
@@ -129,7 +129,7 @@ fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
 #[test]
 fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
     // Thrown up by v²/2g = 0.32 m, three supports and more above where it stood, it leaves below, as splash does beside a tank.
-    let mut thrown = falling(Limits { escape: Escape::Remove, ..Limits::default() });
+    let mut thrown = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
     thrown.set_water_velocity(|_| Vector::from([0.0, 2.5]));
     while thrown.removed_particles().is_empty() {
         thrown.step().expect("those that leave are taken out");
@@ -141,7 +141,7 @@ fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
 
 #[test]
 fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
-    let limits = Limits { escape: Escape::Remove, ..Limits::default() };
+    let limits = ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() };
     let mut whole = falling(limits);
     while whole.removed_particles().is_empty() {
         whole.step().unwrap();
@@ -158,8 +158,8 @@ fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
 #[test]
 fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
     for (limits, word) in [
-        (Limits { density: [0.9, 1.1], ..Limits::default() }, "guard.density"),
-        (Limits { speed: 0.1, ..Limits::default() }, "guard.speed"),
+        (ParticleLimits { density: [0.9, 1.1], ..ParticleLimits::default() }, "guard.density"),
+        (ParticleLimits { speed: 0.1, ..ParticleLimits::default() }, "guard.speed"),
     ] {
         let plant = |sim: &mut Simulation<2>| {
             let c0 = sim.system().model().c0;
@@ -168,7 +168,7 @@ fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
                 _ => sim.set_water_velocity(|_| Vector::from([0.2 * c0, 0.0])),
             }
         };
-        let (mut narrow, mut usual) = (falling(limits), falling(Limits::default()));
+        let (mut narrow, mut usual) = (falling(limits), falling(ParticleLimits::default()));
         plant(&mut narrow);
         plant(&mut usual);
         let error = narrow.step().expect_err("outside what the scene allows");
@@ -181,7 +181,7 @@ fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
 fn what_is_not_finite_is_told_by_the_step_that_sees_it() {
     for what in ["velocity", "density"] {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let mut sim = falling(Limits::default());
+            let mut sim = falling(ParticleLimits::default());
             sim.step().expect("a sound start");
             match what {
                 "velocity" => sim.set_water_velocity(|r| Vector::repeat(if r[0] < 0.02 { bad } else { 0.0 })),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pontoon::{
     Result,
-    error::Kind,
+    error::ErrorKind,
     geometry::Shape,
     math::{Bivector, Vector},
     scene::Scene,
@@ -98,7 +98,7 @@ fn a_push_at_the_handover_is_a_push() -> Result<()> {
     Ok(())
 }
 
-/// The floats of the pool in a world of rapier's, set up as anybody would who reads docs/coupling.md.
+/// The floats of the pool in a world of rapier's, set up as anybody would who reads docs/how-to/use-from-rust.md.
 fn world(sim: &Simulation<2>) -> (rapier::PhysicsWorld, Vec<rapier::RigidBodyHandle>) {
     let mut world =
         rapier::PhysicsWorld { gravity: rapier::Vector::new(0.0, -9.81), ..rapier::PhysicsWorld::default() };
@@ -126,7 +126,7 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
     let (mut inside, mut hosted) = (Simulation::new(setup()?)?, Simulation::with_external_bodies(setup()?)?);
     let (mut world, bodies) = world(&hosted);
     for (body, name) in bodies.iter().zip(["float", "foam"]) {
-        let spec = rapier2d::solid(name, *body, &world.bodies, &world.colliders)?;
+        let spec = rapier2d::solid_from_body(name, *body, &world.bodies, &world.colliders)?;
         let known = &hosted.system().solids()[hosted.system().find_solid(name).unwrap_or_default()].spec;
         let (Role::Free(taken), Role::Free(said)) = (&spec.role, &known.role) else { panic!("both are free") };
         assert!((taken.mass / said.mass - 1.0).abs() < 1e-12 && spec.shape == known.shape && spec.pose == known.pose);
@@ -160,7 +160,7 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
 fn a_hosted_body_that_nobody_places_is_told_by_name() -> Result<()> {
     let mut sim = Simulation::with_external_bodies(Scene::parse(POOL, Path::new(""), &[])?.build::<2>()?.setup)?;
     let error = sim.step().expect_err("nobody moved them");
-    assert!(error.kind == Kind::Usage && error.what.contains("\"float\""), "{error}");
+    assert!(error.kind == ErrorKind::Usage && error.message.contains("\"float\""), "{error}");
     let error = sim.step_with(1.0, |step| step.advance_bodies()).expect_err("it has no bodies of its own");
     assert!(error.help.is_some_and(|help| help.contains("step.solids")));
     Ok(())
@@ -173,8 +173,8 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
     };
     let mut world = PhysicsWorld::default();
     let body = world.insert_body(RigidBodyBuilder::dynamic().translation(Point::new(0.0, 0.0, 1.0)).lock_rotations());
-    let made = |world: &PhysicsWorld| rapier3d::solid("boat", body, &world.bodies, &world.colliders);
-    assert!(made(&world).is_err_and(|e| e.what.contains("no collider")));
+    let made = |world: &PhysicsWorld| rapier3d::solid_from_body("boat", body, &world.bodies, &world.colliders);
+    assert!(made(&world).is_err_and(|e| e.message.contains("no collider")));
     for (x, shape) in [
         (0.0, SharedShape::cuboid(0.1, 0.2, 0.3)),
         (1.0, SharedShape::ball(0.1)),
@@ -189,7 +189,7 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
     world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
     let spec = made(&world)?;
     let Role::Free(body_) = &spec.role else { panic!("a free body") };
-    let volume = spec.shape.volume();
+    let volume = spec.shape.volume_properties();
     assert!((body_.mass / (500.0 * volume.volume) - 1.0).abs() < 1e-9, "mass and volume agree");
     assert!((body_.centre - volume.centroid).norm() < 1e-9, "and where they lie");
     assert_eq!(body_.locked_rotations, [true; 3]);
@@ -197,12 +197,13 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
     let mut other = PhysicsWorld::default();
     let tetra = other.insert_body(RigidBodyBuilder::fixed());
     other.insert_collider(ColliderBuilder::convex_hull(&hull).expect("a hull"), Some(tetra));
-    let spec = rapier3d::solid("rock", tetra, &other.bodies, &other.colliders)?;
-    assert!(matches!(spec.role, Role::Fixed) && (spec.shape.volume().volume - 1.0 / 6.0).abs() < 1e-12);
+    let spec = rapier3d::solid_from_body("rock", tetra, &other.bodies, &other.colliders)?;
+    assert!(matches!(spec.role, Role::Fixed) && (spec.shape.volume_properties().volume - 1.0 / 6.0).abs() < 1e-12);
     other.insert_collider(ColliderBuilder::cone(0.1, 0.1), Some(tetra));
-    let error = rapier3d::solid("rock", tetra, &other.bodies, &other.colliders).expect_err("water feels no cone");
-    assert!(error.what.contains("Cone") && error.help.is_some(), "{error}");
-    assert!(rapier3d::solid("gone", tetra, &world.bodies, &ColliderSet::new()).is_err());
+    let error =
+        rapier3d::solid_from_body("rock", tetra, &other.bodies, &other.colliders).expect_err("water feels no cone");
+    assert!(error.message.contains("Cone") && error.help.is_some(), "{error}");
+    assert!(rapier3d::solid_from_body("gone", tetra, &world.bodies, &ColliderSet::new()).is_err());
     Ok(())
 }
 
@@ -258,7 +259,10 @@ fn solids_that_come_and_go_give_the_same_bits_at_any_number_of_threads_and_after
     let mut resumed = pool()?;
     assert!(resumed.restore(&kept).is_err(), "other solids");
     let mut resumed = pool()?;
-    resumed.restore_with(&kept, vec![block("first", [0.5, 0.4], 30.0), block("second", [0.3, 0.25], 700.0)])?;
+    resumed.restore_with_added_solids(
+        &kept,
+        vec![block("first", [0.5, 0.4], 30.0), block("second", [0.3, 0.25], 700.0)],
+    )?;
     assert!(resumed.save()? == kept, "what was kept comes back whole");
     steps(&mut resumed, 40)?;
     assert!(resumed.save()? == end, "and goes on to the same bits");
@@ -270,11 +274,11 @@ fn what_cannot_come_or_go_is_refused_in_words_and_nothing_changes() -> Result<()
     let mut sim = pool()?;
     let before = sim.save()?;
     let inside = sim.add_solid(block("late", [0.35, 0.3], 500.0)).expect_err("inside the float");
-    assert!(inside.what.contains("\"late\" would come") && inside.what.contains("\"float\""), "{inside}");
+    assert!(inside.message.contains("\"late\" would come") && inside.message.contains("\"float\""), "{inside}");
     let twice = sim.add_solid(block("float", [0.5, 0.5], 500.0)).expect_err("the name is taken");
-    assert!(twice.what.contains("\"float\""), "{twice}");
+    assert!(twice.message.contains("\"float\""), "{twice}");
     assert!(sim.add_solid(block("ghost", [0.5, 0.5], -1.0)).is_err());
-    assert!(sim.remove_solid(7).is_err_and(|e| e.what.contains("number 7")));
+    assert!(sim.remove_solid(7).is_err_and(|e| e.message.contains("number 7")));
     assert!(sim.save()? == before);
     Ok(())
 }

@@ -14,7 +14,7 @@ const SCENE: &str = r#"dimension = 2
 dp        = 0.1
 until     = 1.0
 gravity   = [0.0, -9.81]
-scatter   = 0.01
+jitter    = 0.01
 
 [domain]
 min = [-3.0, -2.0]
@@ -193,7 +193,8 @@ fn a_link_beside_the_scene_does_not_lead_out_of_its_folder() {
         try_out(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &bay)
     };
     assert!(
-        with("out.csv").is_err_and(|e| e.what.contains("\"out.csv\" is a link that leads out of the scene's folder"))
+        with("out.csv")
+            .is_err_and(|e| e.message.contains("\"out.csv\" is a link that leads out of the scene's folder"))
     );
     assert_eq!(with("within.csv"), Ok(()), "a link within the folder is as good as the file");
     std::fs::remove_dir_all(home).unwrap();

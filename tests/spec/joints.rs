@@ -70,15 +70,15 @@ fn a_line_and_a_hinge_carry_what_archimedes_says() -> Result<()> {
     while sim.time() < 2.0 {
         sim.step_to(2.0)?;
         if sim.time() > 1.0 {
-            tension += sim.spring(line).tension * sim.dt();
-            carried -= sim.joint(foot).force[1] * sim.dt();
+            tension += sim.spring_reading(line).tension * sim.dt();
+            carried -= sim.joint_reading(foot).force[1] * sim.dt();
         }
     }
     // (ρ₀ − ρ) g V, held to 2 %: the bodies are 5 dp thick, and the line gives way by 5 mm.
     let exact = 500.0 * 9.81 * 0.02;
     assert!((tension / exact - 1.0).abs() < 0.02, "line {tension} N/m, exact {exact}");
     assert!((carried / exact - 1.0).abs() < 0.02, "hinge {carried} N/m, exact {exact}");
-    assert!(sim.joint(foot).position.abs() < 0.05, "the flap stands: {:?}", sim.joint(foot));
+    assert!(sim.joint_reading(foot).position.abs() < 0.05, "the flap stands: {:?}", sim.joint_reading(foot));
     Ok(())
 }
 
@@ -87,14 +87,14 @@ fn a_moored_and_hinged_run_resumed_goes_on_to_the_same_bits() -> Result<()> {
     let steps = |sim: &mut Simulation<2>, n: usize| (0..n).try_for_each(|_| sim.step());
     let mut whole = moored()?;
     steps(&mut whole, 30)?;
-    whole.elastic(0).length = 0.19;
+    whole.spring_parameters(0).rest_length = 0.19;
     let kept = whole.save()?;
     steps(&mut whole, 30)?;
     let mut resumed = moored()?;
     resumed.restore(&kept)?;
     steps(&mut resumed, 30)?;
     assert!(resumed.save()? == whole.save()?);
-    assert!(whole.spring(0).tension > 0.0 && whole.joint(0).absorbed != 0.0);
+    assert!(whole.spring_reading(0).tension > 0.0 && whole.joint_reading(0).absorbed_energy != 0.0);
     Ok(())
 }
 
@@ -108,9 +108,12 @@ fn probes_of_ties_name_their_units_and_read_what_the_simulation_tells() -> Resul
     assert_eq!(Probe::<2>::columns(&foot).join(" "), expected);
     assert_eq!(Probe::<3>::columns(&foot)[..7].join(" "), "fx_N fy_N fz_N tx_Nm ty_Nm tz_Nm angle_deg");
     assert_eq!(Probe::<2>::columns(&line), ["length_m", "tension_N_per_m"]);
-    let now = sim.joint(0);
-    assert_eq!(foot.sample(&sim)[3..], [now.position.to_degrees(), now.rate, now.motor, now.power(), now.absorbed]);
-    assert_eq!(line.sample(&sim), [sim.spring(0).length, sim.spring(0).tension]);
+    let now = sim.joint_reading(0);
+    assert_eq!(
+        foot.sample(&sim)[3..],
+        [now.position.to_degrees(), now.rate, now.motor_force, now.absorbed_power(), now.absorbed_energy]
+    );
+    assert_eq!(line.sample(&sim), [sim.spring_reading(0).length, sim.spring_reading(0).tension]);
     let unknown = JointProbe::new(sim.system(), "food").err().and_then(|e| e.help);
     assert_eq!(unknown, Some("did you mean \"foot\"?".into()));
     Ok(())
@@ -152,7 +155,7 @@ fn a_guide_with_play_carries_the_moment_that_the_water_does_not() -> Result<()> 
     while sim.time() < 4.0 {
         sim.step_to(4.0)?;
         if sim.time() > 3.0 {
-            carried += sim.joint(0).torque.axial()[0] * sim.dt();
+            carried += sim.joint_reading(0).torque.axial()[0] * sim.dt();
         }
     }
     let [y, turn]: [f64; 2] = guide.sample(&sim)[3..].try_into().unwrap();
@@ -196,7 +199,7 @@ fn a_flap_pinned_to_a_moving_paddle_goes_with_it_and_its_loads_add_up() -> Resul
         sim.step_to(1.0)?;
         let [paddle, flap] = [1, 2].map(|i| sim.system().solids()[i].kinematics.pose);
         let apart = paddle.point(&[0.0, -0.08].into()) - flap.point(&[0.0, 0.12].into());
-        (torn, swung) = (torn.max(apart.norm()), swung.max(sim.joint(0).position.abs()));
+        (torn, swung) = (torn.max(apart.norm()), swung.max(sim.joint_reading(0).position.abs()));
         let shares = sim.load_breakdown(2).unwrap();
         let largest = shares.kinds().iter().map(|(_, load)| load.force.norm()).fold(0.0, f64::max);
         let off = shares.residual().force.norm();
@@ -326,8 +329,11 @@ fn values_of_ties_may_be_numbers_formulas_or_tables() -> Result<()> {
     let scene = Scene::parse(&MOORED.replacen("[[joint]]", force, 1), Path::new(""), &[])?;
     let links = scene.build::<2>()?.setup.constraints;
     assert_eq!((links.forces[0].force.len(), links.forces[0].torque.len(), links.contacts.len()), (2, 1, 2));
-    assert!(!links.touch(1, 2) && links.touch(1, 0) && !links.touch(0, 2), "what is jointed does not touch either");
-    let pushed = links.forces[0].force[0].at(0.5).0;
+    assert!(
+        !links.can_touch(1, 2) && links.can_touch(1, 0) && !links.can_touch(0, 2),
+        "what is jointed does not touch either"
+    );
+    let pushed = links.forces[0].force[0].value_and_rate(0.5).0;
     assert_eq!(pushed, 5.0);
     Ok(())
 }

@@ -4,11 +4,14 @@ use pontoon::{
     geometry::Shape,
     interaction::{self, PairLoopInput, PairLoopOutput, PairSums},
     math::{Bounds, Pose, Vector, expression::Formula, simd},
-    model::{Diffusion, Dimension, Gradient, Kernel, Model, PairLoopKind, Scheme, Shifting, Slip, Viscosity, Walls},
+    model::{
+        Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
+        Walls,
+    },
     neighbours::NeighbourLists,
     particles::Particles,
     simulation::{Setup, Simulation},
-    solid::{Dim, Law, Motion, Role},
+    solid::{Dim, PrescribedMotion, Role, TimeFunction},
     sph::{
         Units,
         continuity::Continuity,
@@ -55,12 +58,12 @@ fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
         let differences = (rho - fluid.rho[a]).abs() / rho0 + system.gravity().dot(&r).abs() / (c0 * c0);
         rate += (v.norm() + 0.2 * c0 * h * differences / r.norm().max(0.1 * h)) * grad * rho0;
     };
-    system.water_near(&fluid.r[a], &mut |b, _, _| {
+    system.visit_fluid_near(&fluid.r[a], &mut |b, _, _| {
         if b != a {
             meet(&fluid.r[b], &fluid.v[b], fluid.rho[b]);
         }
     });
-    system.boundary_near(&fluid.r[a], &mut |b, _, _| meet(&skin.r[b], &skin.v[b], skin.rho[b]));
+    system.visit_boundary_near(&fluid.r[a], &mut |b, _, _| meet(&skin.r[b], &skin.v[b], skin.rho[b]));
     (force, rate)
 }
 
@@ -78,14 +81,14 @@ where
     let fast = under(setup, PairLoopKind::Fast, state);
     let with = fast.system();
     for (i, size) in sizes.iter().enumerate() {
-        let dv = (with.fluid_dv(i) - of.fluid_dv(i)).norm();
-        let drho = (with.fluid_drho(i) - of.fluid_drho(i)).abs();
-        // The bounds of docs/performance.md: a particle's own terms, and the largest for one at the rim.
+        let dv = (with.fluid_acceleration(i) - of.fluid_acceleration(i)).norm();
+        let drho = (with.fluid_density_rate(i) - of.fluid_density_rate(i)).abs();
+        // The bounds of docs/explanation/performance.md: a particle's own terms, and the largest for one at the rim.
         assert!(dv <= 2e-5 * size.0 + 2e-6 * most.0, "{name}: dv {i} off by {dv}");
         assert!(drho <= 2e-5 * size.1 + 2e-6 * most.1, "{name}: drho {i} off by {drho}");
     }
     // What the water loses, walls and bodies get: the rest is rounding of the sums.
-    let water: Vector<D> = (0..n).map(|i| with.fluid_dv(i) - with.gravity()).sum::<Vector<D>>();
+    let water: Vector<D> = (0..n).map(|i| with.fluid_acceleration(i) - with.gravity()).sum::<Vector<D>>();
     let solids: Vector<D> = with.solids().iter().map(|s| s.load.force).sum();
     let rest = (water * with.particle_mass() + solids).norm();
     assert!(rest < 1e-7 * all_forces, "{name}: {rest} N of {all_forces} N made of nothing");
@@ -124,7 +127,7 @@ fn dam<const D: usize>(model: Model, size: [f64; D], origin: f64) -> Setup<D> {
 #[test]
 fn a_dam_break_after_impact() {
     let mut model = Model::water(2, 0.0125, 0.3);
-    model.scheme = Scheme::Verlet { euler_every: 50 };
+    model.scheme = TimeScheme::Verlet { euler_every: 50 };
     let setup = dam(model, [0.8, 0.3], 0.0);
     agrees("2-D", &setup, &run(&setup, 0.35));
     let setup = dam(Model::water(3, 0.025, 0.3), [0.6, 0.15, 0.3], 0.0);
@@ -143,7 +146,7 @@ fn a_floating_box_and_a_light_one() {
         let mut setup = dam(Model::water(2, 0.02, 0.3), [1.0, 0.3], 0.0);
         setup.water = rig::lattice([0.0, 0.0], [1.0, 0.3], 0.02);
         setup.water.retain(|r| !((r[0] - 0.5).abs() < 0.1 && r[1] > 0.26));
-        setup.levels = vec![0.3; setup.water.len()];
+        setup.surface_levels = vec![0.3; setup.water.len()];
         setup.solids.push(rig::float(Shape::Box { size: Vector::from([0.2, 0.1]) }, [0.5, 0.31], density));
         agrees("float", &setup, &run(&setup, 0.15));
     }
@@ -176,7 +179,7 @@ fn a_deep_column_at_rest() {
     let (dp, depth) = (0.01, 10.0);
     let mut setup = dam(Model::water(2, dp, depth), [0.12, depth], 0.0);
     setup.water = rig::lattice([0.0, 0.0], [0.12, depth], dp);
-    setup.levels = vec![depth; setup.water.len()];
+    setup.surface_levels = vec![depth; setup.water.len()];
     agrees("deep", &setup, &run(&setup, 1e-4));
 }
 
@@ -186,8 +189,11 @@ fn a_body_that_crosses_the_blocks() {
     let mut setup = dam(Model::water(2, 0.02, 0.3), [1.2, 0.3], 0.0);
     setup.water = rig::lattice([0.0, 0.0], [1.2, 0.3], 0.02);
     setup.water.retain(|r| (r[0] - 0.3).abs() > 0.06 || (r[1] - 0.15).abs() > 0.06);
-    setup.levels = vec![0.3; setup.water.len()];
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("4*t*t").expect("a formula")));
+    setup.surface_levels = vec![0.3; setup.water.len()];
+    let motion = PrescribedMotion::slide(
+        Vector::from([1.0, 0.0]),
+        TimeFunction::Formula(Formula::parse("4*t*t").expect("a formula")),
+    );
     let shape = Shape::Box { size: Vector::from([0.12, 0.12]) };
     setup.solids.push(rig::solid("box", shape, Pose::at(Vector::from([0.3, 0.15])), Role::Driven(motion)));
     agrees("crossing", &setup, &run(&setup, 0.26));
@@ -198,7 +204,11 @@ fn one_particle_and_a_drop_that_flies_through_many_columns() {
     let mut model = Model::water(3, 0.02, 0.3);
     let alone = Setup::new(model.clone(), vec![Vector::<3>::zeros()], vec![0.0], vec![]);
     let sim = Simulation::new(alone).expect("a sound setup");
-    assert_eq!(sim.system().fluid_dv(0), sim.system().gravity(), "a pad is no neighbour, and nobody is their own");
+    assert_eq!(
+        sim.system().fluid_acceleration(0),
+        sim.system().gravity(),
+        "a pad is no neighbour, and nobody is their own"
+    );
     // Without gravity a drop keeps its shape as it flies ten columns far; its lists are made anew on the way.
     model.gravity = vec![0.0; 3];
     let water = rig::lattice([0.0; 3], [0.1, 0.1, 0.1], 0.02);
@@ -227,8 +237,8 @@ where
     Dim<D>: Dimension<D>,
 {
     let mut model = Model::water(D, 0.05, 0.3);
-    model.scheme = Scheme::Verlet { euler_every: 50 };
-    let kernels = [Kernel::Wendland, Kernel::Cubic { tensile: true }, Kernel::Cubic { tensile: false }];
+    model.scheme = TimeScheme::Verlet { euler_every: 50 };
+    let kernels = [KernelKind::Wendland, KernelKind::Cubic { tensile: true }, KernelKind::Cubic { tensile: false }];
     let viscosities = [
         Viscosity::None,
         Viscosity::Artificial(Artificial { alpha: 0.1 }),
@@ -244,9 +254,9 @@ where
         {
             (model.kernel, model.viscosity) = (kernel, viscosity);
             (model.diffusion, model.shifting) = (diffusion, shifting);
-            model.gradient = Gradient::Plain;
+            model.gradient = PressureGradient::Plain;
             ends_as_the_oracle(&model, size);
-            model.gradient = Gradient::Corrected;
+            model.gradient = PressureGradient::Corrected;
             if model.conflict().is_none() {
                 ends_as_the_oracle(&model, size);
             }

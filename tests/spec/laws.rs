@@ -3,13 +3,13 @@
 
 use pontoon::{
     math::Vector,
-    model::{Diffusion, Kernel, Model, PairLoopKind, Viscosity},
+    model::{Diffusion, KernelKind, Model, PairLoopKind, Viscosity},
     sph::{
         AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units,
         boundary::{Repulsion, SupportCoverage, WallExtrapolation, no_slip_velocity, relaxation},
         continuity::Continuity,
         density_diffusion::{Fourtakas, Molteni},
-        gradient_correction::{CorrectedGradient, RenormalizationMatrix},
+        gradient_correction::{CorrectedGradientTerm, RenormalizationTerm},
         kernel::{Kernel as _, Wendland},
         particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
@@ -68,8 +68,12 @@ fn odd_under_swap(name: &str, term: impl Term<3>) {
         assert_eq!(term.vector(&ab, [0.0; 3]), term.vector(&ba, [0.0; 3]).map(|x| -x), "{name}: vector");
         let (there, back) = (term.rate(&ab, (0.0, 0.0)), term.rate(&ba, (0.0, 0.0)));
         assert_eq!((there.0, there.1), (back.1, back.0), "{name}: rates");
-        let (mut a, mut b, mut c, mut d) =
-            (AuxiliarySums::all(0.0), AuxiliarySums::all(0.0), AuxiliarySums::all(0.0), AuxiliarySums::all(0.0));
+        let (mut a, mut b, mut c, mut d) = (
+            AuxiliarySums::filled_with(0.0),
+            AuxiliarySums::filled_with(0.0),
+            AuxiliarySums::filled_with(0.0),
+            AuxiliarySums::filled_with(0.0),
+        );
         term.auxiliary(&ab, -2.0, &mut a, &mut b);
         term.auxiliary(&ba, -2.0, &mut c, &mut d);
         assert_eq!((a, b), (d, c), "{name}: extra sums");
@@ -89,8 +93,8 @@ fn swapping_the_particles_changes_the_sign_and_no_bit() {
     odd_under_swap("fourtakas", Fourtakas::default().term(&m));
     odd_under_swap("shifting", ShiftTerm);
     odd_under_swap("held", ShiftingSuppressionTerm);
-    odd_under_swap("corrected", CorrectedGradient);
-    odd_under_swap("moments", RenormalizationMatrix);
+    odd_under_swap("corrected", CorrectedGradientTerm);
+    odd_under_swap("moments", RenormalizationTerm);
 }
 
 #[test]
@@ -159,7 +163,7 @@ fn shifting_stops_at_the_free_surface_and_is_held_to_a_tenth_of_dp() {
     let sums = |div_r| AuxiliarySums {
         concentration_gradient: [1e6, -1e6, 0.0],
         position_divergence: div_r,
-        ..AuxiliarySums::all(0.0)
+        ..AuxiliarySums::filled_with(0.0)
     };
     let shift = Shift::default();
     assert_eq!(shift.displacement(&sums(2.7), 1.0, 1e-4, &m), Vector::<3>::zeros());
@@ -175,7 +179,7 @@ fn the_sweep_agrees_with_a_loop_over_all_pairs() {
     let mut model = Model::water(2, dp, 0.3);
     model.viscosity = Viscosity::Artificial(Artificial { alpha: 0.1 });
     model.diffusion = Diffusion::Molteni(Molteni::default());
-    model.kernel = Kernel::Wendland;
+    model.kernel = KernelKind::Wendland;
     model.pair_loop = PairLoopKind::Reference;
     let mut dice = Dice(5);
     let water: Vec<Vector<2>> = rig::lattice([0.0, 0.0], [0.4, 0.3], dp)
@@ -218,8 +222,8 @@ fn the_sweep_agrees_with_a_loop_over_all_pairs() {
             drho += d * mass / rho_b;
         }
         scale = (scale.0.max(dv.norm()), scale.1.max(drho.abs()));
-        worst.0 = worst.0.max((dv - sim.system().fluid_dv(a)).norm());
-        worst.1 = worst.1.max((drho - sim.system().fluid_drho(a)).abs());
+        worst.0 = worst.0.max((dv - sim.system().fluid_acceleration(a)).norm());
+        worst.1 = worst.1.max((drho - sim.system().fluid_density_rate(a)).abs());
     }
     // Some 30 neighbours of mixed sign, and P here loses digits in (ρ/ρ₀)⁷ − 1: 1e-11 of the largest.
     assert!(worst.0 < 1e-11 * scale.0 && worst.1 < 1e-11 * scale.1, "{worst:?} of {scale:?}");
@@ -240,12 +244,12 @@ fn diffusion_flattens_a_bump() {
         sim.update_rates();
         let fluid = sim.system().fluid();
         let top = (0..fluid.len()).max_by(|&a, &b| fluid.rho[a].total_cmp(&fluid.rho[b])).unwrap();
-        let sum: f64 = (0..fluid.len()).map(|i| sim.system().fluid_drho(i)).sum();
-        let size: f64 = (0..fluid.len()).map(|i| sim.system().fluid_drho(i).abs()).sum();
+        let sum: f64 = (0..fluid.len()).map(|i| sim.system().fluid_density_rate(i)).sum();
+        let size: f64 = (0..fluid.len()).map(|i| sim.system().fluid_density_rate(i).abs()).sum();
         if diffusion == Diffusion::None {
             assert_eq!(size, 0.0, "water at rest and nothing to diffuse");
         } else {
-            assert!(sim.system().fluid_drho(top) < 0.0, "the top of the bump falls");
+            assert!(sim.system().fluid_density_rate(top) < 0.0, "the top of the bump falls");
             // V_a V_b is symmetric and the rate is per ρ: what one side loses the other gains but for Δρ/ρ = 5e-4.
             assert!(sum.abs() < 1e-3 * size, "diffusion moves density and makes none: {sum} of {size}");
         }
@@ -254,7 +258,7 @@ fn diffusion_flattens_a_bump() {
 
 /// What a boundary particle at the origin sees of water in random places, of pressure `p` (P/ρ₀).
 fn fit(p: impl Fn(&Vector<3>) -> f64) -> WallExtrapolation<f64, 3> {
-    let (mut dice, mut fit) = (Dice(5), WallExtrapolation::all(0.0));
+    let (mut dice, mut fit) = (Dice(5), WallExtrapolation::filled_with(0.0));
     for _ in 0..40 {
         let r = (dice.point::<3>() - Vector::repeat(0.5)) * 0.02;
         fit.add(dice.roll(), p(&r), 1.0, (-r).into());
@@ -268,14 +272,18 @@ fn the_pressure_of_water_that_moves_with_a_wall_is_extrapolated_to_it_exactly() 
     // ∇P = ρ₀ (g − a): linear.
     let p = fit(|r| 7.0 + pull.dot(r)).pressure(&pull, &pull, 0.01);
     assert!((p - 7.0).abs() < 1e-12, "{p}");
-    assert_eq!(WallExtrapolation::<f64, 3>::all(0.0).pressure(&pull, &pull, 0.01), 0.0, "no water, no pressure");
+    assert_eq!(
+        WallExtrapolation::<f64, 3>::filled_with(0.0).pressure(&pull, &pull, 0.01),
+        0.0,
+        "no water, no pressure"
+    );
 }
 
 #[test]
 fn a_face_is_never_sucked_at() {
     let (g, deep) = (Vector::from([0.0, 0.0, -9.81]), 0.004);
     let at = |below: f64, p: f64| {
-        let mut fit = WallExtrapolation::all(0.0);
+        let mut fit = WallExtrapolation::filled_with(0.0);
         fit.add(0.3, p, 1.0, [0.0, 0.0, below]);
         fit.pressure(&g, &g, deep)
     };
@@ -284,7 +292,7 @@ fn a_face_is_never_sucked_at() {
     // With 0.03 m²/s² it has 0.03 − g · 2 mm.
     assert!((at(0.006, 0.03) - (0.03 - 9.81 * 0.006)).abs() < 1e-15);
     // However a body is thrown about, its weight is all that counts.
-    let mut fit = WallExtrapolation::all(0.0);
+    let mut fit = WallExtrapolation::filled_with(0.0);
     fit.add(0.3, 0.0, 1.0, [0.0, 0.0, 0.006]);
     assert!((fit.pressure(&(g * 1e6), &g, deep) + 9.81 * deep).abs() < 1e-15);
     // Above a bed the particle has at least none itself.
@@ -333,7 +341,7 @@ fn a_shear_along_a_face_is_continued_behind_it_exactly() {
     // A wall that moves, its face 0.004 m above the boundary particle at the origin, and water that shears and approaches.
     let (wall, depth, normal) = (Vector::from([0.3, 0.1, 0.2]), 0.004, Vector::<3>::z());
     let moves = |r: &Vector<3>| wall + Vector::from([5.0, -3.0, 2.0]) * (r[2] - depth);
-    let mut fit = WallExtrapolation::all(0.0);
+    let mut fit = WallExtrapolation::filled_with(0.0);
     for _ in 0..40 {
         let r = (dice.point::<3>() - Vector::from([0.5, 0.5, -0.4])).component_mul(&Vector::from([0.02, 0.02, 0.01]));
         let w = dice.roll();
@@ -344,7 +352,7 @@ fn a_shear_along_a_face_is_continued_behind_it_exactly() {
     let shown = no_slip_velocity(&fit, wall, &normal, depth);
     assert!((shown - continued).norm() < 1e-14, "{shown}");
     assert_eq!(
-        no_slip_velocity(&WallExtrapolation::<f64, 3>::all(0.0), wall, &normal, depth),
+        no_slip_velocity(&WallExtrapolation::<f64, 3>::filled_with(0.0), wall, &normal, depth),
         wall,
         "no water, no continuation"
     );

@@ -69,7 +69,7 @@ fn a_body_heavier_than_a_kernel_of_water_is_left_as_it_is() {
 #[test]
 fn a_sheet_of_foam_comes_to_rest_on_the_water() {
     // Let fall 1 dp on water it is at rest after a second: 5 mm/s, a third of a per cent of √(g depth). It should not hop at
-    // all, and hops by a dp (docs/stability.md): 2 dp. A tenth of a dp of draft cannot be seen by particles: within 1.5 dp of it.
+    // all, and hops by a dp (docs/explanation/stability.md): 2 dp. A tenth of a dp of draft cannot be seen by particles: within 1.5 dp of it.
     let (dp, thick) = (0.01, 0.02);
     let water = rig::lattice([0.0, 0.0], [0.8, 0.3], dp);
     let float = rig::float(Shape::Box { size: Vector::from([0.16, thick]) }, [0.4, 0.3 + dp + 0.5 * thick], 10.0);
@@ -138,7 +138,7 @@ fn a_light_body_held_down_weighs_what_archimedes_says() {
     while sim.time() < 1.5 {
         sim.step().unwrap();
         if sim.time() > 0.5 {
-            sum += sim.contacts().iter().map(|contact| contact.pressing).sum::<f64>();
+            sum += sim.contacts().iter().map(|contact| contact.normal_force).sum::<f64>();
             count += 1;
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pontoon::{
     math::Vector,
     model::PairLoopKind,
-    neighbours::{CHUNK, Clusters, NeighbourLists, PAD, Pairs},
+    neighbours::{CHUNK, Clusters, NeighbourLists, PAD, PairLists},
 };
 
 use crate::rig::Dice;
@@ -41,12 +41,12 @@ fn all_pairs<const D: usize>(water: &[Vector<D>], skin: &[Vector<D>]) -> Met {
 
 /// The pairs nearer than the support that the lists know.
 fn listed<const D: usize>(near: &NeighbourLists<D>, water: &[Vector<D>], skin: &[Vector<D>]) -> Met {
-    let mut met = match near.pairs() {
-        Pairs::Clusters(clusters, _) => from_clusters(clusters),
-        Pairs::Lists(lists) => {
+    let mut met = match near.pair_lists() {
+        PairLists::Clusters(clusters, _) => from_clusters(clusters),
+        PairLists::Lists(lists) => {
             let mut met = Met::default();
             for i in 0..water.len() {
-                let (among, beside) = lists.water[i / CHUNK].of(i % CHUNK);
+                let (among, beside) = lists.fluid[i / CHUNK].neighbours_of(i % CHUNK);
                 // Here each of two waters lists the other.
                 for &j in among.iter().filter(|&&j| j > i as u32) {
                     *met.among.entry((i as u32, j)).or_default() += 1;

@@ -1,4 +1,4 @@
-//! Periods of heave and roll, against runs with finer particles (docs/validation.md, *Heave and roll*).
+//! Periods of heave and roll, against runs with finer particles (docs/explanation/validation.md, *Heave and roll*).
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Still water stays still.
 
 use pontoon::{
-    model::{Gradient, Model, Scheme, Shifting, Walls},
+    model::{Model, PressureGradient, Shifting, TimeScheme, Walls},
     simulation::Simulation,
     sph::particle_shifting::Shift,
 };
@@ -40,7 +40,7 @@ fn profile(sim: &Simulation<2>) -> Vec<(f64, f64)> {
 fn the_pressure_is_hydrostatic_and_the_level_stands() {
     for walls in [Walls::Dynamic, Walls::RelaxedAdami] {
         stands(&still_tank(Model { walls, ..Model::water(2, DP, DEPTH) }, 5.0));
-        stands(&still_tank(Model { walls, gradient: Gradient::Corrected, ..Model::water(2, DP, DEPTH) }, 5.0));
+        stands(&still_tank(Model { walls, gradient: PressureGradient::Corrected, ..Model::water(2, DP, DEPTH) }, 5.0));
         // At h = 1.7 dp rows of the lattice fall out of step now and then, and stir the water by up to 3 % of √(g depth).
         let wide = Model { walls, h: 2.0 * DP, ..Model::water(2, DP, DEPTH) };
         let mut sim = still_tank(wide, 1.0);
@@ -70,13 +70,13 @@ fn stands(sim: &Simulation<2>) {
 #[test]
 fn verlet_and_shifting_keep_still_water_too() {
     for (scheme, shifting) in [
-        (Scheme::Verlet { euler_every: 50 }, Shifting::None),
-        (Scheme::Symplectic, Shifting::Everywhere(Shift::default())),
+        (TimeScheme::Verlet { euler_every: 50 }, Shifting::None),
+        (TimeScheme::Symplectic, Shifting::Everywhere(Shift::default())),
     ] {
         let dp = 0.04;
         let mut model = Model::water(2, dp, DEPTH);
         (model.scheme, model.shifting, model.walls) = (scheme, shifting, Walls::Dynamic);
-        if scheme != Scheme::Symplectic {
+        if scheme != TimeScheme::Symplectic {
             model.cfl = 0.2;
         }
         let sim = still_tank(model, 1.0);

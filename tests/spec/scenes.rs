@@ -125,9 +125,9 @@ fn the_raft_resumed_goes_on_to_the_same_bits() {
 }
 
 #[test]
-fn scatter_moves_every_particle_by_no_more_than_it_says_and_always_the_same() {
-    let water = |scatter: Option<&str>| {
-        let sets: Vec<_> = scatter.into_iter().map(|s| ("scatter".to_string(), s.to_string())).collect();
+fn jitter_moves_every_particle_by_no_more_than_it_says_and_always_the_same() {
+    let water = |jitter: Option<&str>| {
+        let sets: Vec<_> = jitter.into_iter().map(|s| ("jitter".to_string(), s.to_string())).collect();
         let scene = Scene::read(&home().join("still-tank"), &sets).unwrap();
         (scene.build::<2>().unwrap().setup.water, scene.dp)
     };

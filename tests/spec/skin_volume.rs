@@ -3,7 +3,7 @@
 use std::{f64::consts::PI, sync::Arc};
 
 use pontoon::{
-    geometry::{Mesh, Shape, Touchable},
+    geometry::{ContactGeometry, Mesh, Shape},
     math::{Matrix, Vector},
     solid::FreeBody,
 };
@@ -55,7 +55,7 @@ fn lobes(radius: f64) -> Shape<3> {
 }
 
 fn shape(points: &[Vector<3>], facets: &[[u32; 3]]) -> Shape<3> {
-    Shape::Mesh { mesh: Arc::new(Mesh::new(points, facets).expect("a solid")), contact: Touchable::default() }
+    Shape::Mesh { mesh: Arc::new(Mesh::new(points, facets).expect("a solid")), contact: ContactGeometry::default() }
 }
 
 #[test]
@@ -97,8 +97,8 @@ fn the_skin_of_a_concave_hull_stands_for_its_volume() {
         ("three lobes", lobes(0.5), 0.05),
     ];
     for (what, shape, dp) in cases {
-        let skin = shape.skin(dp, 99);
-        let off = skin.len() as f64 * dp.powi(3) / shape.volume().volume - 1.0;
+        let skin = shape.boundary_points(dp, 99);
+        let off = skin.len() as f64 * dp.powi(3) / shape.volume_properties().volume - 1.0;
         assert!(off.abs() < 0.005, "{what}: {off} of its volume");
         // They fill it: none lies outside.
         let highest = skin.iter().map(|point| shape.signed_distance(&point.r)).fold(f64::NEG_INFINITY, f64::max);

@@ -52,7 +52,7 @@ fn engine<const D: usize>(solids: &[SolidSpec<D>], g: f64) -> Result<Box<dyn Eng
 where
     Dim<D>: HasEngine<D>,
 {
-    let start: Vec<Kinematics<D>> = solids.iter().map(SolidSpec::start).collect();
+    let start: Vec<Kinematics<D>> = solids.iter().map(SolidSpec::initial_kinematics).collect();
     let gravity = Vector::from_fn(|i, _| if i == D - 1 { -g } else { 0.0 });
     Dim::<D>::engine(solids, &start, &Constraints::default(), &gravity, 0.01)
 }
@@ -86,7 +86,7 @@ where
     // Each bears what is above it; where it does is where the skins meet: on the bare floor, and in the middle between two skins.
     let weights = [mass(&solids[1]) + mass(&solids[2]), mass(&solids[2])].map(|mass| mass * G);
     for ((contact, weight), place) in contacts.iter().zip(weights).zip([0.0, 0.1 + 2.0 * SKIN]) {
-        assert!((contact.pressing / weight - 1.0).abs() < 1e-3, "{contact:?} for {weight} N");
+        assert!((contact.normal_force / weight - 1.0).abs() < 1e-3, "{contact:?} for {weight} N");
         assert!((contact.at[D - 1] - place).abs() < 1e-4, "{contact:?} at {place} m");
     }
 }
@@ -157,10 +157,10 @@ where
     // What comes later is held to the same.
     let there = engine(&near(0.06), G).unwrap();
     let late = free("late", cube(), 0.16, SKIN);
-    let (who, depth) = there.overlap(&late, &late.start()).unwrap().unwrap();
+    let (who, depth) = there.deepest_overlap(&late, &late.initial_kinematics()).unwrap().unwrap();
     assert!(who == 1 && (depth - 2.0 * SKIN).abs() < 1e-6, "{who}: {depth} m");
     let late = free("late", cube(), 0.1701, SKIN);
-    assert_eq!(there.overlap(&late, &late.start()).unwrap(), None);
+    assert_eq!(there.deepest_overlap(&late, &late.initial_kinematics()).unwrap(), None);
 }
 
 #[test]
@@ -202,11 +202,14 @@ fn a_skin_is_half_of_the_smallest_extent_at_most_and_inspect_lists_it() -> Resul
         let scene = Scene::parse(&scene(skin), Path::new(""), &[])?;
         scene.build::<2>().map(|_| scene)
     };
-    let values = built("skin = 0.05")?.resolve()?;
-    assert!(values.iter().any(|value| value.key == "solid.box.skin" && value.value == "0.05"), "it is in force");
-    assert!(!built("")?.resolve()?.iter().any(|value| value.key.ends_with(".skin")), "none is none");
+    let values = built("contact_skin = 0.05")?.resolve()?;
+    assert!(
+        values.iter().any(|value| value.key == "solid.box.contact_skin" && value.value == "0.05"),
+        "it is in force"
+    );
+    assert!(!built("")?.resolve()?.iter().any(|value| value.key.ends_with("skin")), "none is none");
     for skin in ["-0.001", "0.051"] {
-        let error = built(&format!("skin = {skin}")).err().unwrap_or_else(|| panic!("{skin} passes"));
+        let error = built(&format!("contact_skin = {skin}")).err().unwrap_or_else(|| panic!("{skin} passes"));
         let (text, help) = (error.to_string(), error.help.clone().unwrap_or_default());
         assert!(text.contains("\"box\": its contact skin is"), "{text}");
         assert!(help.contains("0.0500 m, half of its smallest extent"), "{help}");
@@ -224,7 +227,7 @@ fn the_page_and_the_picture_show_the_skin_outside_the_face() {
         let options = RunOptions { out: Some(home.join(name)), threads: Some(1), ..RunOptions::default() };
         run::run(&home.join("scene.toml"), &options, &mut |_: &Progress| true).unwrap().folder
     };
-    let (padded, bare) = (ran("padded", "skin = 0.02"), ran("bare", ""));
+    let (padded, bare) = (ran("padded", "contact_skin = 0.02"), ran("bare", ""));
     let page = fs::read_to_string(report::write(&padded).unwrap().path).unwrap();
     let (_, told) = page.split_once("id=\"told\">").unwrap();
     let told: Value = serde_json::from_str(told.split_once("</script>").unwrap().0).unwrap();

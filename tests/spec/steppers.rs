@@ -3,7 +3,7 @@
 use pontoon::{
     coupling::stiffest_frequency,
     math::Vector,
-    model::{Diffusion, Model, Scheme, Viscosity},
+    model::{Diffusion, Model, TimeScheme, Viscosity},
     simulation::Simulation,
     sph::viscosity::Laminar,
     time_integration::step_size,
@@ -11,10 +11,10 @@ use pontoon::{
 
 use crate::rig;
 
-const SCHEMES: [Scheme; 2] = [Scheme::Verlet { euler_every: 1_000_000 }, Scheme::Symplectic];
+const SCHEMES: [TimeScheme; 2] = [TimeScheme::Verlet { euler_every: 1_000_000 }, TimeScheme::Symplectic];
 
 /// A small drop that swings between round and flat, stepped by `dt` up to `until`.
-fn drop(scheme: Scheme, dt: f64, until: f64) -> Simulation<2> {
+fn drop(scheme: TimeScheme, dt: f64, until: f64) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.2);
     (model.scheme, model.cfl, model.dt_max) = (scheme, 1e3, dt);
@@ -79,10 +79,10 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
     let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
     assert_eq!(thick.viscosity.step_limit(model.h), model.h * model.h / 4.0);
     let peaks = pontoon::system::StepLimits { acceleration: 1e7, approach_rate: 0.0 };
-    assert_eq!(step_size::water(&peaks, sim.system().properties(), 0.2), 0.2 * (model.h / 1e7).sqrt());
+    assert_eq!(step_size::fluid_step_limit(&peaks, sim.system().properties(), 0.2), 0.2 * (model.h / 1e7).sqrt());
     let peaks = pontoon::system::StepLimits { acceleration: 0.0, approach_rate: 100.0 };
     assert_eq!(
-        step_size::water(&peaks, sim.system().properties(), 0.2),
+        step_size::fluid_step_limit(&peaks, sim.system().properties(), 0.2),
         0.2 * (model.h / (model.c0 + model.h * 100.0))
     );
 }

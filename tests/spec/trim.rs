@@ -56,7 +56,7 @@ fn trimmed(hull: &SolidSpec<3>) -> Result<[f64; 2]> {
     for _ in 0..80 {
         pose = Pose::rotated(Vector::zeros(), &turn);
         pose.position[2] += equilibrium_height(&hull.shape, &pose, body.mass, 1000.0, 0.0)?;
-        let lever = hull.shape.submerged(&pose, 0.0).1 - pose.point(&body.centre);
+        let lever = hull.shape.submerged_volume(&pose, 0.0).1 - pose.point(&body.centre);
         turn[0] += 5.0 * lever[1];
         turn[1] -= 5.0 * lever[0];
     }

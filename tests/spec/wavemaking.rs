@@ -1,5 +1,5 @@
 //! That the water makes the waves that were ordered: height, crests and harmonics of regular ones, height and speed of a
-//! solitary one, place and time of a group. Coarse, so that they take seconds; finer runs stand in docs/validation.md,
+//! solitary one, place and time of a group. Coarse, so that they take seconds; finer runs stand in docs/explanation/validation.md,
 //! "Waves by name".
 
 use std::{f64::consts::TAU, path::Path};
@@ -7,7 +7,7 @@ use std::{f64::consts::TAU, path::Path};
 use pontoon::{
     analysis::{Harmonic, harmonic},
     math::Vector,
-    math::time_series::Series,
+    math::time_series::TimeSeries,
     scene::Scene,
     simulation::Simulation,
     wavemaker::wave_number,
@@ -17,7 +17,7 @@ use pontoon::{
 const EVERY: f64 = 0.01;
 
 /// Water `length` (m) long and `depth` (m) deep, at rest, with a solid at its left end that is `driven`, and what is `more` in
-/// the scene. As long as a wave travels the water's own viscosity and h = 2 dp are what docs/waves.md advises.
+/// the scene. As long as a wave travels the water's own viscosity and h = 2 dp are what docs/how-to/waves.md advises.
 fn flume(dp: f64, [length, depth]: [f64; 2], driven: &str, more: &str) -> Simulation<2> {
     let text = format!(
         "dimension = 2\ndp = {dp}\nuntil = 9.0\nframes = \"off\"\nmodel = {{ h_over_dp = 2.0, viscosity = {{ laminar = {{ nu0 = \
@@ -35,8 +35,9 @@ fn flume(dp: f64, [length, depth]: [f64; 2], driven: &str, more: &str) -> Simula
 }
 
 /// The elevation (m) at each of `places` (m) from `from` to `until` (s).
-fn gauges<const N: usize>(sim: &mut Simulation<2>, places: [f64; N], from: f64, until: f64) -> [Series; N] {
-    let level = |sim: &Simulation<2>, x: f64| sim.system().surfaces(&Vector::from([x, 0.0])).next().expect("water");
+fn gauges<const N: usize>(sim: &mut Simulation<2>, places: [f64; N], from: f64, until: f64) -> [TimeSeries; N] {
+    let level =
+        |sim: &Simulation<2>, x: f64| sim.system().surface_heights(&Vector::from([x, 0.0])).next().expect("water");
     let still = places.map(|x| level(sim, x));
     let (mut t, mut eta) = (Vec::new(), [(); N].map(|()| Vec::new()));
     while sim.time() < until {
@@ -46,14 +47,14 @@ fn gauges<const N: usize>(sim: &mut Simulation<2>, places: [f64; N], from: f64, 
             (0..N).for_each(|i| eta[i].push(level(sim, places[i]) - still[i]));
         }
     }
-    eta.map(|eta| Series::new(t.clone(), eta).unwrap())
+    eta.map(|eta| TimeSeries::new(t.clone(), eta).unwrap())
 }
 
 /// Time (s) and height (m) of the highest crest: the parabola through it and what is 0.05 s before and after.
-fn crest(eta: &Series) -> (f64, f64) {
+fn crest(eta: &TimeSeries) -> (f64, f64) {
     let highest = (0..eta.times().len()).max_by(|&a, &b| eta.values()[a].total_cmp(&eta.values()[b])).unwrap();
     let (t, top) = (eta.times()[highest], eta.values()[highest]);
-    let (before, after) = (eta.at(t - 0.05), eta.at(t + 0.05));
+    let (before, after) = (eta.value_at(t - 0.05), eta.value_at(t + 0.05));
     (t + 0.025 * (before - after) / (before - 2.0 * top + after), top)
 }
 

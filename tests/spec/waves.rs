@@ -5,13 +5,13 @@ use std::{f64::consts::TAU, path::Path};
 use pontoon::{
     Error,
     math::Vector,
-    model::{Dimension, Model, Scheme, Viscosity},
+    model::{Dimension, Model, TimeScheme, Viscosity},
     preflight::{self, Finding, GeneratedWave, Preflight},
-    scene::{BuiltScene, DampingConfig, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, WaveConfig},
+    scene::{BuiltScene, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, SpongeLayerConfig, WaveConfig},
     simulation::{Setup, Simulation},
     solid::Dim,
     system::SpongeLayer,
-    wavemaker::Region,
+    wavemaker::TheoryRegion,
 };
 
 use crate::rig;
@@ -144,7 +144,7 @@ fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
     let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
     assert_eq!(piston, again);
     let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
-        .with_damping(DampingConfig::between([4.0, 0.0], [5.0, 0.0]))
+        .with_damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
         .probe(ProbeConfig::motion("paddle"));
     assert_eq!(look(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
 }
@@ -160,14 +160,14 @@ fn what_is_told_of_a_wave_is_what_the_books_say() {
     assert!((wave.group_mps - group).abs() < 1e-9);
     // 5 m of water less the half dp to the last particle, there and back.
     assert!((wave.back_s - 2.0 * 4.99 / group).abs() < 1e-3, "{wave:?}");
-    assert!((wave.height_dp - 5.0).abs() < 1e-9 && wave.region == Region::Stokes5 && wave.order == 2);
+    assert!((wave.height_dp - 5.0).abs() < 1e-9 && wave.region == TheoryRegion::Stokes5 && wave.order == 2);
     // S = H (sinh 2kd + 2kd)/2(cosh 2kd − 1), and a tenth of a per cent of the second order's.
     let stroke = 0.1 * ((2.0 * kd).sinh() + 2.0 * kd) / (2.0 * ((2.0 * kd).cosh() - 1.0));
     assert!((wave.stroke_m / stroke - 1.0).abs() < 0.02, "{} against {stroke}", wave.stroke_m);
     assert!((wave.paddle_mps / (0.5 * stroke * TAU / 1.2) - 1.0).abs() < 0.2);
     let lone = self::wave("along = [1.0, 0.0], wave = { solitary = { height = 0.1 } }");
     assert!((lone.celerity_mps - (9.81_f64 * 0.4).sqrt()).abs() < 1e-12 && lone.period_s.is_none());
-    assert_eq!(lone.region, Region::Solitary);
+    assert_eq!(lone.region, TheoryRegion::Solitary);
 }
 
 #[test]
@@ -359,7 +359,7 @@ fn a_piston_makes_waves_of_the_height_that_was_asked_for() {
 #[test]
 fn a_damping_zone_slows_water_by_its_law_whatever_the_scheme() {
     let water = rig::lattice([0.0, 0.0], [0.4, 0.4], 0.05);
-    for scheme in [Scheme::Symplectic, Scheme::Verlet { euler_every: 50 }] {
+    for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 50 }] {
         let mut model = Model::water(2, 0.05, 1.0);
         (model.c0, model.gravity, model.viscosity, model.scheme) = (20.0, vec![0.0, 0.0], Viscosity::None, scheme);
         let levels = vec![0.0; water.len()];

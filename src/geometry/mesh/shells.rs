@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::welding::place;
+use super::welding::format_position;
 use crate::{
     error::{Error, Result},
     math::{Bounds, Vector},
@@ -29,7 +29,7 @@ struct Shell {
 
 /// Refuses a shell whose inside counts twice, or is taken off where nothing is. The surface is closed and nowhere crosses
 /// itself.
-pub fn nested(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
+pub fn check_orientation(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
     let shells = shells(points, facets);
     let whole: f64 = shells.iter().map(|shell| shell.volume).sum();
     let judged = |i: usize| {
@@ -42,7 +42,7 @@ pub fn nested(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
 }
 
 fn refusal(volume: f64, x: &Vector<3>, turns: f64) -> Error {
-    let (at, size) = (place(x), volume.abs());
+    let (at, size) = (format_position(x), volume.abs());
     if volume < 0.0 && turns == 0.0 {
         let what = format!(
             "a shell of the mesh about {at} m is inside out: its {size:.3e} m³ are taken off, and nothing is there"

@@ -1,7 +1,7 @@
 //! The nearest place of a mesh, by parry's tree of boxes; without `dim3` there is none, and no mesh.
 
 #[cfg(feature = "dim3")]
-pub use with_parry::Tree;
+pub use with_parry::FacetTree;
 #[cfg(not(feature = "dim3"))]
 pub use without::Tree;
 
@@ -26,9 +26,9 @@ mod with_parry {
 
     /// The facets in a tree of boxes, with the normals of facets, edges and corners.
     #[derive(Clone)]
-    pub struct Tree(TriMesh);
+    pub struct FacetTree(TriMesh);
 
-    impl Tree {
+    impl FacetTree {
         pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
             let points = points.iter().map(|p| Point::from_array((*p).into())).collect();
             TriMesh::with_flags(points, facets.to_vec(), TriMeshFlags::ORIENTED)
@@ -36,8 +36,8 @@ mod with_parry {
                 .map_err(|why| Error::scene(format!("the mesh is no surface: {why}")))
         }
 
-        /// See [`Mesh::distance`].
-        pub fn distance(&self, x: &Vector<3>) -> (f64, Vector<3>) {
+        /// See [`Mesh::distance_and_normal`].
+        pub fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
             let at = Point::from_array((*x).into());
             let (foot, (facet, location)) = self.0.project_local_point_and_get_location(at, false);
             let way = x - Vector::from(foot.point.to_array());
@@ -63,13 +63,13 @@ mod with_parry {
         }
 
         /// Two facets without a common corner that pass through each other.
-        pub fn crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> {
+        pub fn find_crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> {
             let apart = |a: usize, b: usize| mesh.facets[a].iter().all(|p| !mesh.facets[b].contains(p));
             (0..mesh.facets.len()).into_par_iter().find_map_first(|a| {
                 let around = self.0.triangle(a as u32).local_aabb();
                 let near = self.0.bvh().leaves(|node| node.aabb().intersects(&around)).take(MOST_NEAR);
                 let mut later = near.map(|b| b as usize).filter(|b| *b > a && apart(a, *b));
-                later.find(|&b| ray::cross(&mesh.corners(a), &mesh.corners(b))).map(|b| (a, b))
+                later.find(|&b| ray::facets_cross(&mesh.facet_corners(a), &mesh.facet_corners(b))).map(|b| (a, b))
             })
         }
     }
@@ -85,7 +85,7 @@ mod without {
 
     /// There is none.
     #[derive(Clone)]
-    pub enum Tree {}
+    pub enum FacetTree {}
 
     impl Tree {
         pub fn new(_: &[Vector<3>], _: &[[u32; 3]]) -> Result<Self> {
@@ -93,11 +93,11 @@ mod without {
                 .help("build it with the feature dim3"))
         }
 
-        pub fn distance(&self, _: &Vector<3>) -> (f64, Vector<3>) {
+        pub fn distance_and_normal(&self, _: &Vector<3>) -> (f64, Vector<3>) {
             match *self {}
         }
 
-        pub fn crossing(&self, _: &Mesh) -> Option<(usize, usize)> {
+        pub fn find_crossing(&self, _: &Mesh) -> Option<(usize, usize)> {
             match *self {}
         }
     }

@@ -9,7 +9,7 @@ use crate::{
 type Edge = (u32, u32, bool);
 
 /// Refuses an open surface, and facets that are turned over.
-pub fn closed(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
+pub fn check_closed(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
     if facets.is_empty() {
         return Err(Error::scene("a mesh without a facet").help("give it at least four"));
     }
@@ -17,7 +17,9 @@ pub fn closed(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
     let mut edges: Vec<Edge> = sides.map(|(&a, &b)| (a.min(b), a.max(b), a < b)).collect();
     edges.sort_unstable();
     let groups = || edges.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1));
-    let line = |edge: &Edge| format!("{} – {} m", place(&points[edge.0 as usize]), place(&points[edge.1 as usize]));
+    let line = |edge: &Edge| {
+        format!("{} – {} m", format_position(&points[edge.0 as usize]), format_position(&points[edge.1 as usize]))
+    };
     let refuse = |bad: &dyn Fn(&[Edge]) -> bool, what: &dyn Fn(usize, String) -> String, help: &str| {
         let first = groups().find(|group| bad(group))?;
         let count = groups().filter(|group| bad(group)).count();
@@ -45,14 +47,14 @@ pub fn closed(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
 }
 
 /// The refusal of two facets that pass through each other.
-pub fn crossed(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> Error {
-    let middle = |f: &[Vector<3>; 3]| place(&((f[0] + f[1] + f[2]) / 3.0));
+pub fn crossing_error(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> Error {
+    let middle = |f: &[Vector<3>; 3]| format_position(&((f[0] + f[1] + f[2]) / 3.0));
     let what = format!("the mesh passes through itself: its facets about {} and {} m cross", middle(a), middle(b));
     Error::scene(what).help("unite its parts (a \"boolean union\") in the program that made it: volume counts once")
 }
 
 /// A place as a user reads it, to a part in ten thousand of a metre or finer.
-pub fn place(x: &Vector<3>) -> String {
+pub fn format_position(x: &Vector<3>) -> String {
     let number = |x: f64| if x != 0.0 && x.abs() < 0.01 { format!("{x:.3e}") } else { format!("{x:.4}") };
     format!("({}, {}, {})", number(x[0]), number(x[1]), number(x[2]))
 }

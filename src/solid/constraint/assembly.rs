@@ -1,13 +1,13 @@
-//! Joints, springs, ropes and forces in a running system: what they do in a step, and what they felt.
+//! All constraints of a running system: the loads that they apply in a step, and their readings.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
     jacobian::{ConstraintJacobian, Mobility},
     joint::Joint,
-    lines::{Elastic, Line, RopeSpec, SpringSpec, start_length},
-    links::{Constraints, Hold},
-    motor::Drive,
+    lines::{AttachedLine, RopeSpec, SpringParameters, SpringSpec, start_length},
+    links::{Constraints, InitialHold},
+    motor::MotorCommand,
     reactions::{Reaction, project},
 };
 use crate::{
@@ -18,10 +18,10 @@ use crate::{
 /// Δt times the highest frequency of the springs, at most: their period is right within 0.2 %.
 const SPRING_STEP: f64 = 0.2;
 
-/// What a joint felt in the last step.
+/// Loads and coordinate of a joint in the last step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointReading<const D: usize> {
-    /// Force of its locks and end stops on the second solid, N (N/m in 2-D); the motor's is not in it.
+    /// Force of its locks and end stops on the second solid, N (N/m in 2-D), without the motor.
     pub force: Vector<D>,
     /// Their torque on it about the joint, N m (N m/m in 2-D).
     pub torque: Bivector<D>,
@@ -30,19 +30,19 @@ pub struct JointReading<const D: usize> {
     /// Its rate, m/s or rad/s.
     pub rate: f64,
     /// Force of its motor, N or N m.
-    pub motor: f64,
+    pub motor_force: f64,
     /// Energy that its motor has taken from the solids since the start, J (J/m in 2-D).
-    pub absorbed: f64,
+    pub absorbed_energy: f64,
 }
 
 impl<const D: usize> JointReading<D> {
     /// Power that its motor takes from the solids now, −F ẋ, W (W/m in 2-D).
-    pub fn power(&self) -> f64 {
-        -self.motor * self.rate
+    pub fn absorbed_power(&self) -> f64 {
+        -self.motor_force * self.rate
     }
 }
 
-/// What a spring or a rope felt in the last step.
+/// Tension and length of a spring or a rope in the last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LineReading {
     /// Its length, m.
@@ -51,7 +51,7 @@ pub struct LineReading {
     pub tension: f64,
 }
 
-/// What the ties did to a solid in the last step, by their kind.
+/// Loads of the constraints on a solid in the last step, by kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ConstraintLoads<const D: usize> {
     pub(crate) joints: Load<D>,
@@ -59,28 +59,28 @@ pub(crate) struct ConstraintLoads<const D: usize> {
     pub(crate) springs: Load<D>,
     pub(crate) motors: Load<D>,
     pub(crate) forces: Load<D>,
-    /// Whether it was held still.
-    pub(crate) held: bool,
+    /// Whether it was held at rest.
+    pub(crate) is_held: bool,
 }
 
 impl<const D: usize> ConstraintLoads<D> {
     /// Nothing.
     pub(crate) fn zero() -> Self {
         let none = Load::zero();
-        Self { joints: none, ropes: none, springs: none, motors: none, forces: none, held: false }
+        Self { joints: none, ropes: none, springs: none, motors: none, forces: none, is_held: false }
     }
 }
 
-/// What of it must be kept to go on to the same bits.
+/// Its state in a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct AssemblyState<const D: usize> {
-    joints: Vec<(Option<Drive>, JointReading<D>)>,
-    springs: Vec<(Elastic, LineReading)>,
+    joints: Vec<(Option<MotorCommand>, JointReading<D>)>,
+    springs: Vec<(SpringParameters, LineReading)>,
     ropes: Vec<LineReading>,
 }
 
 struct Spring<const D: usize> {
-    line: Line<D>,
+    line: AttachedLine<D>,
     tension_only: bool,
 }
 
@@ -89,38 +89,43 @@ pub(crate) struct Assembly<const D: usize> {
     start: Vec<Kinematics<D>>,
     joints: Vec<Joint<D>>,
     springs: Vec<Spring<D>>,
-    ropes: Vec<Line<D>>,
+    ropes: Vec<AttachedLine<D>>,
     forces: Vec<ForceSpec<D>>,
-    holds: Vec<Hold>,
+    holds: Vec<InitialHold>,
     /// Rows of each joint's locks and of its coordinate in the present step.
     rows: Vec<Vec<ConstraintJacobian<D>>>,
-    /// What they did to each solid in the last step.
+    /// Loads on each solid in the last step.
     tied: Vec<ConstraintLoads<D>>,
     state: AssemblyState<D>,
 }
 
 impl<const D: usize> Assembly<D> {
-    /// The ties of solids that start as `start`.
+    /// The constraints of solids that start as `start`.
     pub(crate) fn new(links: &Constraints<D>, start: Vec<Kinematics<D>>) -> Self {
         let none = JointReading {
             force: Vector::zeros(),
             torque: Bivector::zero(),
             position: 0.0,
             rate: 0.0,
-            motor: 0.0,
-            absorbed: 0.0,
+            motor_force: 0.0,
+            absorbed_energy: 0.0,
         };
         let spring = |s: &SpringSpec<D>| {
             let length = start_length(&s.ends);
-            let elastic = Elastic { stiffness: s.stiffness, damping: s.damping, length: s.length.unwrap_or(length) };
+            let elastic = SpringParameters {
+                stiffness: s.stiffness,
+                damping: s.damping,
+                rest_length: s.rest_length.unwrap_or(length),
+            };
             (elastic, LineReading { length, tension: 0.0 })
         };
         let rope = |r: &RopeSpec<D>| LineReading { length: start_length(&r.ends), tension: 0.0 };
-        let made = |s: &SpringSpec<D>| Spring { line: Line::new(&s.ends, &start), tension_only: s.tension_only };
+        let made =
+            |s: &SpringSpec<D>| Spring { line: AttachedLine::new(&s.ends, &start), tension_only: s.tension_only };
         Self {
             joints: links.joints.iter().map(|joint| Joint::new(joint.clone(), &start)).collect(),
             springs: links.springs.iter().map(made).collect(),
-            ropes: links.ropes.iter().map(|r| Line::new(&r.ends, &start)).collect(),
+            ropes: links.ropes.iter().map(|r| AttachedLine::new(&r.ends, &start)).collect(),
             forces: links.forces.clone(),
             holds: links.holds.clone(),
             rows: Vec::new(),
@@ -134,13 +139,13 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
-    /// Takes up a solid that has come as `start`.
+    /// Adds a solid that starts as `start`.
     pub(crate) fn add_body(&mut self, start: Kinematics<D>) {
         self.start.push(start);
         self.tied.push(ConstraintLoads::zero());
     }
 
-    /// Whether there is nothing that acts.
+    /// Whether there is no constraint.
     pub(crate) fn is_empty(&self) -> bool {
         self.joints.is_empty()
             && self.springs.is_empty()
@@ -160,41 +165,42 @@ impl<const D: usize> Assembly<D> {
     ) {
         self.tied.fill(ConstraintLoads::zero());
         for hold in &self.holds {
-            self.tied[hold.solid].held = hold.holds(t);
-            engine.hold(hold.solid, hold.holds(t));
+            self.tied[hold.solid].is_held = hold.is_active(t);
+            engine.set_held(hold.solid, hold.is_active(t));
         }
         for (spring, (elastic, reading)) in self.springs.iter().zip(&mut self.state.springs) {
-            let (ends, mobility) = (spring.line.ends(solids), spring.line.mobility(engine));
-            let (length, row) = spring.line.along(&ends);
+            let (ends, mobility) = (spring.line.end_kinematics(solids), spring.line.mobility(engine));
+            let (length, row) = spring.line.length_and_jacobian(&ends);
             if let Some(row) = row {
-                let ease = row.with(&row, &mobility);
+                let ease = row.inverse_effective_mass(&row, &mobility);
                 let wet = spring.line.solids().into_iter().flatten().any(|i| around.wet[i]);
-                let elastic = if wet { elastic.in_water(around.crossing, ease) } else { *elastic };
+                let elastic = if wet { elastic.damped_in_water(around.sound_crossing_time, ease) } else { *elastic };
                 reading.tension = elastic.tension(length, row.rate(&ends), ease, dt, spring.tension_only);
                 give(engine, spring.line.solids(), &row.loads(-reading.tension));
                 note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
             }
         }
         for force in &self.forces {
-            let load = force.load(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
+            let load = force.load_at(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
             engine.add_load(force.solid, &load);
             self.tied[force.solid].forces += load;
         }
-        // Last, so that they know of what the others do.
+        // Last, so that they include the loads of the others.
         self.rows.clear();
         for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
-            let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
-            let ((rows, _), free) = (joint.rows(&ends, &mobility), joint.free(&ends));
-            let drive = joint.drive(*set, t + 0.5 * dt);
+            let (ends, mobility) = (joint.end_kinematics(solids), joint.mobility(engine));
+            let ((rows, _), free) = (joint.jacobians(&ends, &mobility), joint.coordinate_jacobian(&ends));
+            let drive = joint.motor_command(*set, t + 0.5 * dt);
             if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
                 let loads = joint
                     .spec
                     .between
                     .map(|end| end.map_or_else(Load::zero, |i| around.loads[i] + engine.applied_push(i)));
-                let going = [free.rate(&ends), own.gain(&loads, &mobility), own.with(own, &mobility)];
-                reading.motor = joint.force(&drive, &ends, going, dt);
-                give(engine, joint.spec.between, &free.loads(reading.motor));
-                note(&mut self.tied, joint.spec.between, &free.loads(reading.motor), |tied| &mut tied.motors);
+                let going =
+                    [free.rate(&ends), own.acceleration(&loads, &mobility), own.inverse_effective_mass(own, &mobility)];
+                reading.motor_force = joint.motor_force(&drive, &ends, going, dt);
+                give(engine, joint.spec.between, &free.loads(reading.motor_force));
+                note(&mut self.tied, joint.spec.between, &free.loads(reading.motor_force), |tied| &mut tied.motors);
             }
             self.rows.push(rows);
         }
@@ -211,21 +217,21 @@ impl<const D: usize> Assembly<D> {
     ) {
         let pulls = self.pulls(engine, before, dt, told);
         for (i, (joint, (_, reading))) in self.joints.iter().zip(&mut self.state.joints).enumerate() {
-            let (was, is) = (joint.ends(before), joint.ends(after));
+            let (was, is) = (joint.end_kinematics(before), joint.end_kinematics(after));
             let held: Load<D> = pulls[i].iter().map(|pull| pull.loads()[1]).sum();
-            let arm = joint.point(&was) - was[1].centre;
+            let arm = joint.position_on_second(&was) - was[1].centre;
             (reading.force, reading.torque) = (held.force, held.torque + Bivector::torque(&arm, &held.force) * -1.0);
             reading.position = joint.position(&is);
-            let rate = |ends: &[Kinematics<D>; 2]| joint.free(ends).map_or(0.0, |row| row.rate(ends));
-            reading.absorbed -= reading.motor * 0.5 * (rate(&was) + rate(&is)) * dt;
+            let rate = |ends: &[Kinematics<D>; 2]| joint.coordinate_jacobian(ends).map_or(0.0, |row| row.rate(ends));
+            reading.absorbed_energy -= reading.motor_force * 0.5 * (rate(&was) + rate(&is)) * dt;
             reading.rate = rate(&is);
         }
         for (spring, (_, reading)) in self.springs.iter().zip(&mut self.state.springs) {
-            reading.length = spring.line.along(&spring.line.ends(after)).0;
+            reading.length = spring.line.length_and_jacobian(&spring.line.end_kinematics(after)).0;
         }
         let (of_joints, of_ropes) = pulls.split_at(self.joints.len());
         for ((rope, reading), pull) in self.ropes.iter().zip(&mut self.state.ropes).zip(of_ropes) {
-            let length = rope.along(&rope.ends(after)).0;
+            let length = rope.length_and_jacobian(&rope.end_kinematics(after)).0;
             *reading = LineReading { length, tension: pull.first().map_or(0.0, |pull| -pull.force) };
         }
         for pull in of_joints.iter().flatten() {
@@ -236,7 +242,7 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
-    /// The pulls of each joint and then of each rope in a step `dt` (s) long.
+    /// The reactions of each joint and then of each rope in a step `dt` (s) long.
     fn pulls(
         &self,
         engine: &dyn Engine<D>,
@@ -246,14 +252,14 @@ impl<const D: usize> Assembly<D> {
     ) -> Vec<Vec<Reaction<D>>> {
         let of_joint = |(i, joint): (usize, &Joint<D>)| {
             let (between, mobility) = (joint.spec.between, joint.mobility(engine));
-            let rows = self.rows[i].iter().zip(engine.impulses(i));
-            rows.map(|(row, impulse)| Reaction { between, row: *row, mobility, force: impulse / dt }).collect()
+            let rows = self.rows[i].iter().zip(engine.joint_impulses(i));
+            rows.map(|(row, impulse)| Reaction { between, jacobian: *row, mobility, force: impulse / dt }).collect()
         };
-        let of_rope = |(i, rope): (usize, &Line<D>)| {
+        let of_rope = |(i, rope): (usize, &AttachedLine<D>)| {
             let (between, mobility) = (rope.solids(), rope.mobility(engine));
             let force = -engine.rope_impulse(i) / dt;
-            let pull = |row| Reaction { between, row, mobility, force };
-            rope.along(&rope.ends(before)).1.map(pull).into_iter().collect()
+            let pull = |row| Reaction { between, jacobian: row, mobility, force };
+            rope.length_and_jacobian(&rope.end_kinematics(before)).1.map(pull).into_iter().collect()
         };
         let joints = self.joints.iter().enumerate().map(of_joint);
         let ropes = self.ropes.iter().enumerate().map(of_rope);
@@ -276,7 +282,7 @@ impl<const D: usize> Assembly<D> {
         let mut squares = vec![0.0; solids.len()];
         let mut stiffen =
             |ends: [Option<usize>; 2], row: &ConstraintJacobian<D>, mobility: &[Mobility<D>; 2], stiffness: f64| {
-                let own = row.ease(mobility).map(f64::sqrt);
+                let own = row.inverse_effective_mass_of_ends(mobility).map(f64::sqrt);
                 for (solid, ease) in ends.iter().zip(own) {
                     if let Some(solid) = solid {
                         squares[*solid] += stiffness * ease * (own[0] + own[1]);
@@ -284,26 +290,26 @@ impl<const D: usize> Assembly<D> {
                 }
             };
         for (joint, (set, _)) in self.joints.iter().zip(&self.state.joints) {
-            let Some(drive) = joint.drive(*set, t).filter(|drive| drive.stiffness > 0.0) else { continue };
-            let (ends, mobility) = (joint.ends(solids), joint.mobility(engine));
-            if let (rows, locks) = joint.rows(&ends, &mobility)
+            let Some(drive) = joint.motor_command(*set, t).filter(|drive| drive.stiffness > 0.0) else { continue };
+            let (ends, mobility) = (joint.end_kinematics(solids), joint.mobility(engine));
+            if let (rows, locks) = joint.jacobians(&ends, &mobility)
                 && let Some(row) = rows.get(locks)
             {
                 stiffen(joint.spec.between, row, &mobility, drive.stiffness);
             }
         }
         for (spring, (elastic, _)) in self.springs.iter().zip(&self.state.springs) {
-            let (ends, mobility) = (spring.line.ends(solids), spring.line.mobility(engine));
-            if let Some(row) = spring.line.along(&ends).1 {
+            let (ends, mobility) = (spring.line.end_kinematics(solids), spring.line.mobility(engine));
+            if let Some(row) = spring.line.length_and_jacobian(&ends).1 {
                 stiffen(spring.line.solids(), &row, &mobility, elastic.stiffness);
             }
         }
         SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt()
     }
 
-    /// How long (s) from time `t` (s) on until the next solid is let go; no step goes past that.
+    /// Time (s) from `t` (s) until the next held solid is released; no step extends past it.
     pub(crate) fn next_release(&self, t: f64) -> f64 {
-        self.holds.iter().filter(|hold| hold.holds(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
+        self.holds.iter().filter(|hold| hold.is_active(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether there is a joint or a rope.
@@ -311,54 +317,54 @@ impl<const D: usize> Assembly<D> {
         !(self.joints.is_empty() && self.ropes.is_empty())
     }
 
-    /// What the ties did to solid number `i` in the last step.
+    /// Loads of the constraints on solid number `i` in the last step.
     pub(crate) fn loads_on(&self, i: usize) -> ConstraintLoads<D> {
         self.tied[i]
     }
 
-    /// What joint number `i` felt in the last step.
-    pub(crate) fn joint(&self, i: usize) -> JointReading<D> {
+    /// Reading of joint number `i` in the last step.
+    pub(crate) fn joint_reading(&self, i: usize) -> JointReading<D> {
         self.state.joints[i].1
     }
 
     /// The coordinates of the modes that generic joint number `i` leaves free, m or rad (−π to π), where the solids are.
-    pub(crate) fn coordinates(&self, i: usize, solids: &[Kinematics<D>]) -> Vec<f64> {
+    pub(crate) fn joint_coordinates(&self, i: usize, solids: &[Kinematics<D>]) -> Vec<f64> {
         let joint = &self.joints[i];
-        let ends = joint.ends(solids);
-        joint.spec.free.iter().map(|free| joint.coordinate(free.mode, &ends)).collect()
+        let ends = joint.end_kinematics(solids);
+        joint.spec.free_modes.iter().map(|free| joint.coordinate(free.mode, &ends)).collect()
     }
 
-    /// How far (m) and by what angle (rad) joint number `i` is torn where the solids are.
+    /// Distance (m) and angle (rad) by which joint number `i` is violated.
     pub(crate) fn joint_gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
-        self.joints[i].gap(&self.joints[i].ends(solids))
+        self.joints[i].gap(&self.joints[i].end_kinematics(solids))
     }
 
-    /// What spring number `i` felt in the last step.
-    pub(crate) fn spring(&self, i: usize) -> LineReading {
+    /// Reading of spring number `i` in the last step.
+    pub(crate) fn spring_reading(&self, i: usize) -> LineReading {
         self.state.springs[i].1
     }
 
-    /// What rope number `i` felt in the last step.
-    pub(crate) fn rope(&self, i: usize) -> LineReading {
+    /// Reading of rope number `i` in the last step.
+    pub(crate) fn rope_reading(&self, i: usize) -> LineReading {
         self.state.ropes[i]
     }
 
-    /// What spring number `i` is made of, to be changed.
-    pub(crate) fn elastic(&mut self, i: usize) -> &mut Elastic {
+    /// Parameters of spring number `i`, to be changed.
+    pub(crate) fn spring_parameters(&mut self, i: usize) -> &mut SpringParameters {
         &mut self.state.springs[i].0
     }
 
-    /// Drives joint number `i` from now on, in place of its motor; `None` gives it back to that.
-    pub(crate) fn drive(&mut self, i: usize, drive: Option<Drive>) {
+    /// Sets the motor command of joint number `i` from now on; `None` restores its own motor.
+    pub(crate) fn set_motor(&mut self, i: usize, drive: Option<MotorCommand>) {
         self.state.joints[i].0 = drive;
     }
 
-    /// What must be kept to go on to the same bits.
+    /// The state in a checkpoint.
     pub(crate) fn save(&self) -> AssemblyState<D> {
         self.state.clone()
     }
 
-    /// Goes back to what was kept; says whether it is of these ties.
+    /// Returns to a saved state; whether it belongs to these constraints.
     pub(crate) fn restore(&mut self, kept: AssemblyState<D>) -> bool {
         let same = kept.joints.len() == self.joints.len()
             && kept.springs.len() == self.springs.len()
@@ -370,7 +376,7 @@ impl<const D: usize> Assembly<D> {
     }
 }
 
-/// Gives a load each to the solids at both ends; what is not free does not care.
+/// Applies a load to the solid at each end; without effect on solids that are not free.
 fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], loads: &[Load<D>; 2]) {
     for (end, load) in ends.iter().zip(loads) {
         if let Some(solid) = end {
@@ -379,7 +385,7 @@ fn give<const D: usize>(engine: &mut dyn Engine<D>, ends: [Option<usize>; 2], lo
     }
 }
 
-/// Notes a load each for the solids at both ends.
+/// Records a load for the solid at each end.
 fn note<const D: usize>(
     tied: &mut [ConstraintLoads<D>],
     ends: [Option<usize>; 2],

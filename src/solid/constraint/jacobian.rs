@@ -1,7 +1,7 @@
-//! Rows of what ties two solids: directions in which one moves against the other, and the loads along them.
+//! Constraint rows between two solids: directions of relative motion, and the loads along them.
 //!
-//! A row J takes the velocities of two solids to a rate, ẋ = J v, and an impulse λ along it to a load on each, λ Jᵀ on the second
-//! and its opposite on the first. With M⁻¹ of both solids J M⁻¹ Jᵀ is how easily the pair gives way there, 1/kg or 1/(kg m²).
+//! A row J maps the velocities of two solids to a rate, ẋ = J v, and an impulse λ along it to a load on each, λ Jᵀ on the second
+//! and its opposite on the first. With M⁻¹ of both solids, J M⁻¹ Jᵀ is the inverse effective mass, 1/kg or 1/(kg m²).
 
 use nalgebra::SMatrix;
 
@@ -10,7 +10,7 @@ use crate::{
     solid::{Kinematics, Load},
 };
 
-/// How easily a solid is moved: zero where it is not free.
+/// Inverse mass and inertia of a solid: zero where it is not free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mobility<const D: usize> {
     /// One over the mass, along each axis, 1/kg.
@@ -20,13 +20,13 @@ pub struct Mobility<const D: usize> {
 }
 
 impl<const D: usize> Mobility<D> {
-    /// That of a solid that nothing moves.
+    /// The mobility of a solid that is not free.
     pub fn none() -> Self {
         Self { linear: Vector::zeros(), angular: SMatrix::zeros() }
     }
 
     /// The spin (rad/s) that the angular impulse `torque` (N m s) gives.
-    pub(in crate::solid) fn spin(&self, torque: &Bivector<D>) -> Bivector<D> {
+    pub(in crate::solid) fn spin_change(&self, torque: &Bivector<D>) -> Bivector<D> {
         let torque = torque.axial();
         let mut spin = [0.0; 3];
         for (i, spin) in spin.iter_mut().enumerate() {
@@ -45,32 +45,32 @@ pub(in crate::solid) struct ConstraintJacobian<const D: usize> {
 
 impl<const D: usize> ConstraintJacobian<D> {
     /// Along the unit vector `n`, at the world point `x` (m) of both.
-    pub(in crate::solid) fn along(n: Vector<D>, x: &Vector<D>, ends: &[Kinematics<D>; 2]) -> Self {
-        Self::between(n, &[*x, *x], ends)
+    pub(in crate::solid) fn at_point(n: Vector<D>, x: &Vector<D>, ends: &[Kinematics<D>; 2]) -> Self {
+        Self::between_points(n, &[*x, *x], ends)
     }
 
     /// Along the unit vector `n`, at a world point (m) of each.
-    pub(in crate::solid) fn between(n: Vector<D>, places: &[Vector<D>; 2], ends: &[Kinematics<D>; 2]) -> Self {
+    pub(in crate::solid) fn between_points(n: Vector<D>, places: &[Vector<D>; 2], ends: &[Kinematics<D>; 2]) -> Self {
         Self { along: n, about: [0, 1].map(|k| Bivector::torque(&(places[k] - ends[k].centre), &n)) }
     }
 
     /// About the axis `a`.
-    pub(in crate::solid) fn about(a: Bivector<D>) -> Self {
+    pub(in crate::solid) fn about_axis(a: Bivector<D>) -> Self {
         Self { along: Vector::zeros(), about: [a, a] }
     }
 
-    /// How fast the second moves against the first along it, m/s or rad/s.
+    /// Rate of the second solid relative to the first along it, m/s or rad/s.
     pub(in crate::solid) fn rate(&self, ends: &[Kinematics<D>; 2]) -> f64 {
         let [first, second] = ends;
         self.along.dot(&(second.velocity - first.velocity)) + self.about[1].power(&second.spin)
             - self.about[0].power(&first.spin)
     }
 
-    /// How its rate changes under a load on the first and one on the second, m/s² or rad/s².
-    pub(in crate::solid) fn gain(&self, loads: &[Load<D>; 2], mobility: &[Mobility<D>; 2]) -> f64 {
+    /// Acceleration along it under a load on each solid, m/s² or rad/s².
+    pub(in crate::solid) fn acceleration(&self, loads: &[Load<D>; 2], mobility: &[Mobility<D>; 2]) -> f64 {
         let [first, second] = [0, 1].map(|k| {
             let velocity = mobility[k].linear.component_mul(&loads[k].force);
-            self.along.dot(&velocity) + self.about[k].power(&mobility[k].spin(&loads[k].torque))
+            self.along.dot(&velocity) + self.about[k].power(&mobility[k].spin_change(&loads[k].torque))
         });
         second - first
     }
@@ -82,15 +82,15 @@ impl<const D: usize> ConstraintJacobian<D> {
     }
 
     /// J M⁻¹ J'ᵀ with another row.
-    pub(in crate::solid) fn with(&self, other: &Self, mobility: &[Mobility<D>; 2]) -> f64 {
+    pub(in crate::solid) fn inverse_effective_mass(&self, other: &Self, mobility: &[Mobility<D>; 2]) -> f64 {
         let each = mobility.iter().zip(self.about.iter().zip(&other.about));
-        each.map(|(m, (a, b))| self.along.dot(&m.linear.component_mul(&other.along)) + a.power(&m.spin(b))).sum()
+        each.map(|(m, (a, b))| self.along.dot(&m.linear.component_mul(&other.along)) + a.power(&m.spin_change(b))).sum()
     }
 
-    /// How easily each end alone gives way.
-    pub(in crate::solid) fn ease(&self, mobility: &[Mobility<D>; 2]) -> [f64; 2] {
+    /// Inverse effective mass of each end alone.
+    pub(in crate::solid) fn inverse_effective_mass_of_ends(&self, mobility: &[Mobility<D>; 2]) -> [f64; 2] {
         let still = Mobility::none();
-        [[mobility[0], still], [still, mobility[1]]].map(|one| self.with(self, &one))
+        [[mobility[0], still], [still, mobility[1]]].map(|one| self.inverse_effective_mass(self, &one))
     }
 
     fn less(&self, other: &Self, part: f64) -> Self {
@@ -99,8 +99,11 @@ impl<const D: usize> ConstraintJacobian<D> {
     }
 }
 
-/// How the solid at an end moves; the world does not.
-pub(in crate::solid) fn of<const D: usize>(end: Option<usize>, solids: &[Kinematics<D>]) -> Kinematics<D> {
+/// Kinematics of the solid at an end; the world is at rest.
+pub(in crate::solid) fn kinematics_of_end<const D: usize>(
+    end: Option<usize>,
+    solids: &[Kinematics<D>],
+) -> Kinematics<D> {
     let world = Kinematics {
         pose: Pose::identity(),
         centre: Vector::zeros(),
@@ -110,19 +113,19 @@ pub(in crate::solid) fn of<const D: usize>(end: Option<usize>, solids: &[Kinemat
     end.and_then(|solid| solids.get(solid)).copied().unwrap_or(world)
 }
 
-/// Takes out of each row what those before it among the first `locks` do already (Gram and Schmidt): the rows along which the
-/// engine gives its impulses.
-pub(in crate::solid) fn part<const D: usize>(
+/// Orthogonalises each row against those before it among the first `locks` (Gram–Schmidt): the rows along which the
+/// engine reports its impulses.
+pub(in crate::solid) fn orthogonalize<const D: usize>(
     rows: &mut [ConstraintJacobian<D>],
     locks: usize,
     mobility: &[Mobility<D>; 2],
 ) {
     for j in 0..locks {
         let done = rows[j];
-        let own = done.with(&done, mobility);
+        let own = done.inverse_effective_mass(&done, mobility);
         if own > 0.0 {
             for row in &mut rows[j + 1..] {
-                *row = row.less(&done, row.with(&done, mobility) / own);
+                *row = row.less(&done, row.inverse_effective_mass(&done, mobility) / own);
             }
         }
     }

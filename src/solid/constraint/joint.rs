@@ -1,54 +1,54 @@
-//! Joints: what they lock between two solids, the one coordinate that a hinge or a slider leaves, and end stops. The locks are the
-//! engine's, the motor on the coordinate is ours: see `motor`.
+//! Joints: locked modes between two solids, the free coordinate of a hinge or a slider, and end stops. The engine solves the
+//! locks; the motor on the coordinate is computed in `motor`.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::{
-    jacobian::{ConstraintJacobian, Mobility, of, part},
-    motor::{Drive, Going, Motor},
+    jacobian::{ConstraintJacobian, Mobility, kinematics_of_end, orthogonalize},
+    motor::{Motor, MotorCommand, MotorInput},
 };
 use crate::{
     math::{Bivector, Matrix, Pose, Vector},
     solid::{Engine, Kinematics},
 };
 
-/// What a joint leaves free.
+/// The free motion of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turning about an axis.
+    /// Rotation about an axis.
     Hinge,
     /// Moving along a line.
     Slider,
     /// Nothing.
     Fixed,
-    /// Turning any way; 3-D.
+    /// Rotation about all axes; 3-D.
     Ball,
     /// All but moving along a line: the second solid is towed along it.
     Tow,
-    /// What its list of modes says.
+    /// The modes in its list.
     Generic,
 }
 
 /// A mode of motion that a generic joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeMode {
-    /// Its number: 0 to D − 1 along the axes of the joint's frame, from D on about them; in 2-D the one turn is 2.
+    /// Its number: 0 to D − 1 along the axes of the joint's frame, from D on about them; in 2-D the rotation is 2.
     pub mode: usize,
     /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
     pub limits: Option<[f64; 2]>,
 }
 
-/// How many modes of motion a pair of solids has.
-pub(crate) const fn modes<const D: usize>() -> usize {
+/// Number of modes of motion of a pair of solids.
+pub(crate) const fn mode_count<const D: usize>() -> usize {
     D + D * (D - 1) / 2
 }
 
-/// The modes in the order of the engine: turns first.
-pub(in crate::solid) fn turns_first<const D: usize>() -> impl Iterator<Item = usize> {
-    (D..modes::<D>()).chain(0..D)
+/// The modes in the order of the engine: rotations first.
+pub(in crate::solid) fn modes_rotations_first<const D: usize>() -> impl Iterator<Item = usize> {
+    (D..mode_count::<D>()).chain(0..D)
 }
 
-/// A joint as it is to be made.
+/// The specification of a joint.
 #[derive(Clone, Debug)]
 pub struct JointSpec<const D: usize> {
     /// Its name.
@@ -62,14 +62,14 @@ pub struct JointSpec<const D: usize> {
     /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero. Of a generic
     /// joint the first axis of its frame; zero for the world's axes.
     pub axis: Vector<D>,
-    /// What a generic joint leaves free; empty of any other.
-    pub free: Vec<FreeMode>,
+    /// The free modes of a generic joint; empty for any other kind.
+    pub free_modes: Vec<FreeMode>,
     /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
     pub limits: Option<[f64; 2]>,
-    /// What moves or brakes it.
+    /// Its motor or brake.
     pub motor: Option<Motor>,
-    /// Whether the two solids touch one another.
-    pub contacts: bool,
+    /// Whether the two solids have contact with one another.
+    pub contacts_enabled: bool,
 }
 
 impl<const D: usize> JointSpec<D> {
@@ -88,28 +88,28 @@ impl<const D: usize> JointSpec<D> {
             between,
             at,
             axis,
-            free: Vec::new(),
+            free_modes: Vec::new(),
             limits: None,
             motor: None,
-            contacts: false,
+            contacts_enabled: false,
         }
     }
 
     /// The same joint, generic, with one more mode left free: 0 to D − 1 along the axes of its frame, from D on about them.
-    pub fn leaving(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
+    pub fn with_free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
         self.kind = JointKind::Generic;
-        self.free.push(FreeMode { mode, limits });
+        self.free_modes.push(FreeMode { mode, limits });
         self
     }
 
     /// The same joint with end stops, m or rad from the start.
-    pub fn limits(mut self, min: f64, max: f64) -> Self {
+    pub fn with_limits(mut self, min: f64, max: f64) -> Self {
         self.limits = Some([min, max]);
         self
     }
 
     /// The same joint with a motor.
-    pub fn motor(mut self, motor: Motor) -> Self {
+    pub fn with_motor(mut self, motor: Motor) -> Self {
         self.motor = Some(motor);
         self
     }
@@ -118,7 +118,7 @@ impl<const D: usize> JointSpec<D> {
 /// A joint in a running system.
 pub(in crate::solid) struct Joint<const D: usize> {
     pub(in crate::solid) spec: JointSpec<D>,
-    /// Where it sits in the two solids; x is its axis.
+    /// Its frames in the two solids; x is its axis.
     frames: [Pose<D>; 2],
 }
 
@@ -129,9 +129,9 @@ impl<const D: usize> Joint<D> {
         Self { spec, frames }
     }
 
-    /// How its two solids move.
-    pub(in crate::solid) fn ends(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
-        self.spec.between.map(|end| of(end, solids))
+    /// Kinematics of its two solids.
+    pub(in crate::solid) fn end_kinematics(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
+        self.spec.between.map(|end| kinematics_of_end(end, solids))
     }
 
     pub(in crate::solid) fn mobility(&self, engine: &dyn Engine<D>) -> [Mobility<D>; 2] {
@@ -143,13 +143,13 @@ impl<const D: usize> Joint<D> {
     }
 
     /// The world point of the second solid at which it sits, m.
-    pub(in crate::solid) fn point(&self, ends: &[Kinematics<D>; 2]) -> Vector<D> {
+    pub(in crate::solid) fn position_on_second(&self, ends: &[Kinematics<D>; 2]) -> Vector<D> {
         self.sits(ends)[1].position
     }
 
     /// Its coordinate, m or rad (−π to π); 0 if it has none.
     pub(in crate::solid) fn position(&self, ends: &[Kinematics<D>; 2]) -> f64 {
-        self.spec.own().map_or(0.0, |mode| self.coordinate(mode, ends))
+        self.spec.coordinate_mode().map_or(0.0, |mode| self.coordinate(mode, ends))
     }
 
     /// The coordinate of a mode, m or rad (−π to π): how far the second solid has gone along that axis of the frame in the first, or
@@ -164,17 +164,17 @@ impl<const D: usize> Joint<D> {
         (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
     }
 
-    /// How far (m) and by what angle (rad) its ends are apart where it locks them together.
+    /// Distance (m) and angle (rad) between its ends along the locked modes.
     pub(in crate::solid) fn gap(&self, ends: &[Kinematics<D>; 2]) -> [f64; 2] {
-        let locked = |modes: std::ops::Range<usize>| modes.filter(|&mode| self.spec.locks(mode));
+        let locked = |modes: std::ops::Range<usize>| modes.filter(|&mode| self.spec.is_locked(mode));
         let off = |mode: usize| self.coordinate(mode, ends);
         let apart = locked(0..D).map(|mode| off(mode).powi(2)).sum::<f64>().sqrt();
-        [apart, locked(D..modes::<D>()).map(|mode| off(mode).abs()).fold(0.0, f64::max)]
+        [apart, locked(D..mode_count::<D>()).map(|mode| off(mode).abs()).fold(0.0, f64::max)]
     }
 
     /// The row of its coordinate, if it has one.
-    pub(in crate::solid) fn free(&self, ends: &[Kinematics<D>; 2]) -> Option<ConstraintJacobian<D>> {
-        self.spec.own().map(|mode| self.row(mode, ends))
+    pub(in crate::solid) fn coordinate_jacobian(&self, ends: &[Kinematics<D>; 2]) -> Option<ConstraintJacobian<D>> {
+        self.spec.coordinate_mode().map(|mode| self.row(mode, ends))
     }
 
     /// The row of a mode's coordinate.
@@ -184,18 +184,18 @@ impl<const D: usize> Joint<D> {
             None => {
                 // The engine takes the first one, too, where the second is, but for what it holds of the way between them.
                 let off = first.local(&second.position);
-                let held = Vector::from_fn(|axis, _| if self.spec.locks(axis) { off[axis] } else { 0.0 });
+                let held = Vector::from_fn(|axis, _| if self.spec.is_locked(axis) { off[axis] } else { 0.0 });
                 let places = [second.position - first.rotation * held, second.position];
-                ConstraintJacobian::between(first.rotation.column(mode).into(), &places, ends)
+                ConstraintJacobian::between_points(first.rotation.column(mode).into(), &places, ends)
             }
-            Some(axis) => ConstraintJacobian::about(turning(&first.rotation.column(axis).into())),
+            Some(axis) => ConstraintJacobian::about_axis(turning(&first.rotation.column(axis).into())),
         }
     }
 
     /// The rows of its locks in the order of the engine. In 3-D the engine measures a locked turn by its part of the quaternion (w, v)
     /// between the frames, whose rate is ½ (w ω + ω × v).
-    fn locks(&self, ends: &[Kinematics<D>; 2]) -> Vec<ConstraintJacobian<D>> {
-        let locked = turns_first::<D>().filter(|&mode| self.spec.locks(mode));
+    fn lock_jacobians(&self, ends: &[Kinematics<D>; 2]) -> Vec<ConstraintJacobian<D>> {
+        let locked = modes_rotations_first::<D>().filter(|&mode| self.spec.is_locked(mode));
         if D == 2 {
             return locked.map(|mode| self.row(mode, ends)).collect();
         }
@@ -208,7 +208,7 @@ impl<const D: usize> Joint<D> {
             None => self.row(mode, ends),
             Some(axis) => {
                 let about: Vector<D> = first.rotation * Vector::from_fn(|i, _| rates[(axis, i)]);
-                ConstraintJacobian::about(Bivector::from_axial(about.as_slice()))
+                ConstraintJacobian::about_axis(Bivector::from_axial(about.as_slice()))
             }
         };
         locked.map(row).collect()
@@ -216,35 +216,42 @@ impl<const D: usize> Joint<D> {
 
     /// The rows of its locks, and after them that of its coordinate (of a generic joint those of its end stops) less what the locks do
     /// of it; and how many locks there are.
-    pub(in crate::solid) fn rows(
+    pub(in crate::solid) fn jacobians(
         &self,
         ends: &[Kinematics<D>; 2],
         mobility: &[Mobility<D>; 2],
     ) -> (Vec<ConstraintJacobian<D>>, usize) {
-        let mut rows = self.locks(ends);
+        let mut rows = self.lock_jacobians(ends);
         let locks = rows.len();
-        match self.spec.own() {
+        match self.spec.coordinate_mode() {
             Some(mode) => rows.push(self.row(mode, ends)),
-            None => rows.extend(self.spec.stops().iter().map(|(mode, _)| self.row(*mode, ends))),
+            None => rows.extend(self.spec.end_stops().iter().map(|(mode, _)| self.row(*mode, ends))),
         }
-        part(&mut rows, locks, mobility);
+        orthogonalize(&mut rows, locks, mobility);
         (rows, locks)
     }
 
-    /// What drives it at time `t` (s): a program's `set`, or its own motor.
-    pub(in crate::solid) fn drive(&self, set: Option<Drive>, t: f64) -> Option<Drive> {
-        set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.at(t)))
+    /// The motor command at time `t` (s): a program's `set`, or its own motor.
+    pub(in crate::solid) fn motor_command(&self, set: Option<MotorCommand>, t: f64) -> Option<MotorCommand> {
+        set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.command_at(t)))
     }
 
     /// The force of its motor, N or N m, over a step of `dt` (s) in which what is known to act lets its rate gain `gain` (m/s², rad/s²).
-    pub(in crate::solid) fn force(
+    pub(in crate::solid) fn motor_force(
         &self,
-        drive: &Drive,
+        drive: &MotorCommand,
         ends: &[Kinematics<D>; 2],
         [rate, gain, ease]: [f64; 3],
         dt: f64,
     ) -> f64 {
-        drive.force(&Going { angle: self.spec.kind == JointKind::Hinge, x: self.position(ends), rate, gain, ease, dt })
+        drive.force(&MotorInput {
+            angle: self.spec.kind == JointKind::Hinge,
+            position: self.position(ends),
+            rate,
+            free_acceleration: gain,
+            inverse_effective_mass: ease,
+            dt,
+        })
     }
 }
 
@@ -254,13 +261,13 @@ impl<const D: usize> JointSpec<D> {
         let axis = if D == 2 && self.kind == JointKind::Hinge { Vector::zeros() } else { self.axis };
         let world = Pose { position: self.at, rotation: frame(&axis) };
         self.between.map(|end| {
-            let pose = of(end, start).pose;
+            let pose = kinematics_of_end(end, start).pose;
             Pose { position: pose.local(&world.position), rotation: pose.rotation.transpose() * world.rotation }
         })
     }
 
     /// The mode of its one coordinate, if it is of a kind that has one.
-    pub(crate) fn own(&self) -> Option<usize> {
+    pub(crate) fn coordinate_mode(&self) -> Option<usize> {
         match self.kind {
             JointKind::Hinge => Some(D),
             JointKind::Slider => Some(0),
@@ -269,23 +276,23 @@ impl<const D: usize> JointSpec<D> {
     }
 
     /// Whether it locks a mode.
-    pub(crate) fn locks(&self, mode: usize) -> bool {
+    pub(crate) fn is_locked(&self, mode: usize) -> bool {
         match self.kind {
-            JointKind::Hinge | JointKind::Slider => self.own() != Some(mode),
+            JointKind::Hinge | JointKind::Slider => self.coordinate_mode() != Some(mode),
             JointKind::Fixed => true,
             JointKind::Ball => mode < D,
             JointKind::Tow => mode == 0,
-            JointKind::Generic => self.free.iter().all(|free| free.mode != mode),
+            JointKind::Generic => self.free_modes.iter().all(|free| free.mode != mode),
         }
     }
 
     /// The modes that have end stops, with these, in the order of the engine.
-    pub(in crate::solid) fn stops(&self) -> Vec<(usize, [f64; 2])> {
-        let of = |mode: usize| match self.own() == Some(mode) {
+    pub(in crate::solid) fn end_stops(&self) -> Vec<(usize, [f64; 2])> {
+        let of = |mode: usize| match self.coordinate_mode() == Some(mode) {
             true => self.limits,
-            false => self.free.iter().find(|free| free.mode == mode)?.limits,
+            false => self.free_modes.iter().find(|free| free.mode == mode)?.limits,
         };
-        turns_first::<D>().filter_map(|mode| Some((mode, of(mode)?))).collect()
+        modes_rotations_first::<D>().filter_map(|mode| Some((mode, of(mode)?))).collect()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Lines between two points of solids or of the ground: springs, ours, and ropes, the engine's.
+//! Lines between two points of solids or of the ground: springs, computed here, and ropes, solved by the engine.
 //!
 //! A spring of length l pulls with  T = k (l − l₀) + c l̇,  a mooring line (`tension_only`) never pushes. As an explicit force it
 //! bounds the step: a mode of frequency ω is stable while Δt ω < 2 and runs (Δt ω)²/24 too fast. The damping is taken at the rate at
@@ -9,7 +9,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::jacobian::{ConstraintJacobian, Mobility, of};
+use super::jacobian::{ConstraintJacobian, Mobility, kinematics_of_end};
 use crate::{
     math::Vector,
     solid::{Engine, Kinematics},
@@ -21,69 +21,72 @@ const SOUNDLESS: f64 = 2.0;
 /// What such a swing has of the critical damping, at least, –.
 const CALMED: f64 = 0.01;
 
-/// Where a line is made fast.
+/// The end of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End<const D: usize> {
+pub struct LineEnd<const D: usize> {
     /// Number of the solid; `None` is the ground.
     pub solid: Option<usize>,
-    /// The point of it that is here at the start, m.
+    /// World position of the attachment point at the start, m.
     pub at: Vector<D>,
 }
 
-/// A spring or a mooring line as it is to be made.
+/// The specification of a spring or a mooring line.
 #[derive(Clone, Debug)]
 pub struct SpringSpec<const D: usize> {
     /// Its name.
     pub name: String,
     /// Its two ends.
-    pub ends: [End<D>; 2],
+    pub ends: [LineEnd<D>; 2],
     /// k, N/m (N/m² in 2-D).
     pub stiffness: f64,
     /// c, N s/m.
     pub damping: f64,
     /// l₀, m; `None`: its length at the start.
-    pub length: Option<f64>,
+    pub rest_length: Option<f64>,
     /// Whether it goes slack instead of pushing.
     pub tension_only: bool,
 }
 
-/// A rope as it is to be made: it cannot be stretched.
+/// The specification of a rope, which cannot be stretched.
 #[derive(Clone, Debug)]
 pub struct RopeSpec<const D: usize> {
     /// Its name.
     pub name: String,
     /// Its two ends.
-    pub ends: [End<D>; 2],
+    pub ends: [LineEnd<D>; 2],
     /// The longest that it can be, m; `None`: its length at the start.
-    pub length: Option<f64>,
+    pub max_length: Option<f64>,
 }
 
-/// What a spring is made of; what a program may change during a run.
+/// Parameters of a spring, which a program may change during a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Elastic {
+pub struct SpringParameters {
     /// k, N/m.
     pub stiffness: f64,
     /// c, N s/m.
     pub damping: f64,
     /// l₀, m.
-    pub length: f64,
+    pub rest_length: f64,
 }
 
 /// A line in a running system.
-pub(in crate::solid) struct Line<const D: usize> {
+pub(in crate::solid) struct AttachedLine<const D: usize> {
     solids: [Option<usize>; 2],
     /// Its ends in their solids, m.
-    pub(in crate::solid) local: [Vector<D>; 2],
+    pub(in crate::solid) local_ends: [Vector<D>; 2],
 }
 
-impl<const D: usize> Line<D> {
-    /// The line whose ends are made fast where the solids start.
-    pub(in crate::solid) fn new(ends: &[End<D>; 2], start: &[Kinematics<D>]) -> Self {
-        Self { solids: ends.map(|end| end.solid), local: ends.map(|end| of(end.solid, start).pose.local(&end.at)) }
+impl<const D: usize> AttachedLine<D> {
+    /// The line between the starting points of its ends.
+    pub(in crate::solid) fn new(ends: &[LineEnd<D>; 2], start: &[Kinematics<D>]) -> Self {
+        Self {
+            solids: ends.map(|end| end.solid),
+            local_ends: ends.map(|end| kinematics_of_end(end.solid, start).pose.local(&end.at)),
+        }
     }
 
-    pub(in crate::solid) fn ends(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
-        self.solids.map(|end| of(end, solids))
+    pub(in crate::solid) fn end_kinematics(&self, solids: &[Kinematics<D>]) -> [Kinematics<D>; 2] {
+        self.solids.map(|end| kinematics_of_end(end, solids))
     }
 
     pub(in crate::solid) fn solids(&self) -> [Option<usize>; 2] {
@@ -91,10 +94,13 @@ impl<const D: usize> Line<D> {
     }
 
     /// Its length, m, and the row along it; none where it has no length.
-    pub(in crate::solid) fn along(&self, ends: &[Kinematics<D>; 2]) -> (f64, Option<ConstraintJacobian<D>>) {
-        let [a, b] = [0, 1].map(|k| ends[k].pose.point(&self.local[k]));
+    pub(in crate::solid) fn length_and_jacobian(
+        &self,
+        ends: &[Kinematics<D>; 2],
+    ) -> (f64, Option<ConstraintJacobian<D>>) {
+        let [a, b] = [0, 1].map(|k| ends[k].pose.point(&self.local_ends[k]));
         let length = (b - a).norm();
-        (length, (length > 0.0).then(|| ConstraintJacobian::along((b - a) / length, &b, ends)))
+        (length, (length > 0.0).then(|| ConstraintJacobian::at_point((b - a) / length, &b, ends)))
     }
 
     pub(in crate::solid) fn mobility(&self, engine: &dyn Engine<D>) -> [Mobility<D>; 2] {
@@ -102,9 +108,9 @@ impl<const D: usize> Line<D> {
     }
 }
 
-impl Elastic {
+impl SpringParameters {
     /// The same with ends in water that sound takes `crossing` (s) to cross by a smoothing length; they give way by `g` (1/kg).
-    pub(in crate::solid) fn in_water(&self, crossing: f64, g: f64) -> Self {
+    pub(in crate::solid) fn damped_in_water(&self, crossing: f64, g: f64) -> Self {
         let swings = (self.stiffness * g).sqrt() * crossing > SOUNDLESS;
         let calmed = if swings { CALMED * 2.0 * (self.stiffness / g).sqrt() } else { 0.0 };
         Self { damping: self.damping.max(calmed), ..*self }
@@ -112,7 +118,7 @@ impl Elastic {
 
     /// The tension (N) at this length (m), which grows at `rate` (m/s), over a step `dt` (s) of ends that give way by `g` (1/kg).
     pub(in crate::solid) fn tension(&self, length: f64, rate: f64, g: f64, dt: f64, tension_only: bool) -> f64 {
-        let stretch = length - self.length;
+        let stretch = length - self.rest_length;
         if tension_only && stretch <= 0.0 {
             return 0.0;
         }
@@ -122,7 +128,7 @@ impl Elastic {
 }
 
 /// Length of a line between the points at which its ends start, m.
-pub(in crate::solid) fn start_length<const D: usize>(ends: &[End<D>; 2]) -> f64 {
+pub(in crate::solid) fn start_length<const D: usize>(ends: &[LineEnd<D>; 2]) -> f64 {
     (ends[1].at - ends[0].at).norm()
 }
 

@@ -1,17 +1,17 @@
-//! What ties solids to one another and to the world: joints, springs, ropes, forces after a law, and who touches whom.
+//! The constraints of a simulation: joints, springs, ropes, prescribed forces, and contact pairs.
 
 use std::collections::BTreeMap;
 
 use super::{
-    joint::{JointKind, JointSpec, modes},
-    lines::{End, RopeSpec, SpringSpec, start_length},
+    joint::{JointKind, JointSpec, mode_count},
+    lines::{LineEnd, RopeSpec, SpringSpec, start_length},
 };
 use crate::{
     error::{Error, Result},
     solid::{ForceSpec, Role, SolidSpec},
 };
 
-/// All ties of a simulation. Solids are numbered as in its list of solids.
+/// All constraints of a simulation. Solids are numbered as in its list of solids.
 #[derive(Clone, Debug, Default)]
 pub struct Constraints<const D: usize> {
     /// Joints.
@@ -20,37 +20,37 @@ pub struct Constraints<const D: usize> {
     pub springs: Vec<SpringSpec<D>>,
     /// Ropes.
     pub ropes: Vec<RopeSpec<D>>,
-    /// Forces and torques after a law of time.
+    /// Prescribed forces and torques.
     pub forces: Vec<ForceSpec<D>>,
-    /// Free solids that are held still at first.
-    pub holds: Vec<Hold>,
-    /// Pairs of solids that touch otherwise than their own friction and restitution say, or not at all.
-    pub contacts: Contacts,
+    /// Free solids that are held at rest at first.
+    pub holds: Vec<InitialHold>,
+    /// Pairs of solids with their own friction and restitution, or without contact.
+    pub contacts: ContactPairs,
 }
 
-/// A free solid that is held still, whatever pushes it, until it is let go.
+/// A free solid that is held at rest until it is released.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
+pub struct InitialHold {
     /// Number of the solid.
     pub solid: usize,
-    /// When it is let go, s.
+    /// Time of release, s.
     pub until: f64,
 }
 
-impl Hold {
-    /// Whether it still holds at time `t` (s); a few last bits too early count as let go.
-    pub(in crate::solid) fn holds(&self, t: f64) -> bool {
+impl InitialHold {
+    /// Whether it is still held at time `t` (s), with room for round-off.
+    pub(in crate::solid) fn is_active(&self, t: f64) -> bool {
         t < self.until * (1.0 - 1e-12)
     }
 }
 
-/// How two solids touch.
+/// Contact properties of a pair of solids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSpec {
     /// Numbers of the two.
     pub between: [usize; 2],
-    /// Whether they touch at all, or pass through one another.
-    pub touch: bool,
+    /// Whether they have contact, or pass through one another.
+    pub can_touch: bool,
     /// Coulomb friction coefficient, –; by default the mean of both solids'.
     pub friction: Option<f64>,
     /// Restitution coefficient, –; by default the mean of both solids'.
@@ -59,9 +59,9 @@ pub struct ContactSpec {
 
 /// Contacts of pairs, found by the numbers of both in either order; of several of the same pair the last counts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Contacts(BTreeMap<[usize; 2], ContactSpec>);
+pub struct ContactPairs(BTreeMap<[usize; 2], ContactSpec>);
 
-impl Contacts {
+impl ContactPairs {
     /// How many pairs there are.
     pub fn len(&self) -> usize {
         self.0.len()
@@ -78,7 +78,7 @@ impl Contacts {
     }
 }
 
-impl Extend<ContactSpec> for Contacts {
+impl Extend<ContactSpec> for ContactPairs {
     fn extend<T: IntoIterator<Item = ContactSpec>>(&mut self, specs: T) {
         let keyed = |spec: ContactSpec| {
             let [a, b] = spec.between;
@@ -88,7 +88,7 @@ impl Extend<ContactSpec> for Contacts {
     }
 }
 
-impl FromIterator<ContactSpec> for Contacts {
+impl FromIterator<ContactSpec> for ContactPairs {
     fn from_iter<T: IntoIterator<Item = ContactSpec>>(specs: T) -> Self {
         let mut contacts = Self::default();
         contacts.extend(specs);
@@ -107,16 +107,16 @@ impl<const D: usize> Constraints<D> {
             && self.contacts.is_empty()
     }
 
-    /// Whether solids `a` and `b` may touch: not if a joint holds them without contacts, or a pair is told not to.
-    pub fn touch(&self, a: usize, b: usize) -> bool {
-        let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts;
-        self.contacts.find(a, b).is_none_or(|pair| pair.touch) && !self.joints.iter().any(jointed)
+    /// Whether solids `a` and `b` may have contact: not if a joint between them or a pair excludes it.
+    pub fn can_touch(&self, a: usize, b: usize) -> bool {
+        let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts_enabled;
+        self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }
 
-    /// The name of a tie of solid number `solid`, if it has one.
-    pub(crate) fn of(&self, solid: usize) -> Option<String> {
+    /// The name of a constraint of solid number `solid`, if it has one.
+    pub(crate) fn constraint_on(&self, solid: usize) -> Option<String> {
         let joints = self.joints.iter().map(|joint| (&joint.name, joint.between));
-        let ends = |ends: &[End<D>; 2]| ends.map(|end| end.solid);
+        let ends = |ends: &[LineEnd<D>; 2]| ends.map(|end| end.solid);
         let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends)));
         let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends)));
         let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None]));
@@ -125,7 +125,7 @@ impl<const D: usize> Constraints<D> {
         named.filter(|(_, ends)| ends.contains(&Some(solid))).map(|(name, _)| format!("{name:?}")).next().or(held)
     }
 
-    /// Refuses what cannot be meant of these solids.
+    /// Checks all constraints between these solids.
     ///
     /// # Errors
     /// `Scene`: names the tie, what is wrong with it, and what would be right.
@@ -138,10 +138,10 @@ impl<const D: usize> Constraints<D> {
         self.contacts.0.values().try_for_each(|pair| check_contact(pair, solids))
     }
 
-    /// Refuses joint number `i` if it cannot be meant.
+    /// Checks joint number `i`.
     ///
     /// # Errors
-    /// `Scene`, as [`Links::check`].
+    /// `Scene`, as [`Constraints::check`].
     pub fn check_joint(&self, i: usize, solids: &[SolidSpec<D>]) -> Result<()> {
         let joint = &self.joints[i];
         let who = format!("joint \"{}\"", joint.name);
@@ -162,17 +162,18 @@ impl<const D: usize> Constraints<D> {
         if D == 2 && joint.kind == JointKind::Ball {
             return refuse("is a ball joint, and a plane has none", "in 2-D a hinge turns freely about its point");
         }
-        if joint.own().is_none() && (joint.limits.is_some() || joint.motor.is_some()) {
+        if joint.coordinate_mode().is_none() && (joint.limits.is_some() || joint.motor.is_some()) {
             return refuse("has no coordinate to limit or to drive", "only a hinge or a slider has limits and a motor");
         }
         let generic = joint.kind == JointKind::Generic;
-        let known =
-            |mode: usize| mode < modes::<D>() && joint.free.iter().filter(|free| free.mode == mode).count() == 1;
-        if generic == joint.free.is_empty() || !joint.free.iter().all(|free| known(free.mode)) {
+        let known = |mode: usize| {
+            mode < mode_count::<D>() && joint.free_modes.iter().filter(|free| free.mode == mode).count() == 1
+        };
+        if generic == joint.free_modes.is_empty() || !joint.free_modes.iter().all(|free| known(free.mode)) {
             let help = "a generic joint leaves some modes free, each named once; no other joint has a list of them";
             return refuse("has modes that cannot be left free", help);
         }
-        if let Some((_, [min, max])) = joint.stops().into_iter().find(|(mode, stop)| !reaches(stop, *mode >= D)) {
+        if let Some((_, [min, max])) = joint.end_stops().into_iter().find(|(mode, stop)| !reaches(stop, *mode >= D)) {
             let help = "from 0 or less to 0 or more: 0 is where it starts; a turn less than a whole one";
             return refuse(&format!("has limits {min} to {max}"), help);
         }
@@ -191,17 +192,18 @@ fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
     min <= 0.0 && 0.0 <= max && min < max && max.is_finite() && min.is_finite() && !wide
 }
 
-/// Refuses a spring that cannot be meant.
+/// Checks a spring.
 ///
 /// # Errors
-/// `Scene`, as [`Links::check`].
+/// `Scene`, as [`Constraints::check`].
 pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("spring \"{}\"", spring.name);
     check_line(&who, &spring.ends, solids)?;
     let numbers = [("stiffness", spring.stiffness, 0.0), ("damping", spring.damping, 0.0)];
-    for (word, x, least) in numbers.into_iter().chain(spring.length.map(|l| ("length", l, 0.0))) {
+    for (word, x, least) in numbers.into_iter().chain(spring.rest_length.map(|l| ("length", l, 0.0))) {
         if !(x >= least && x.is_finite()) {
-            return Err(Error::scene(format!("{who} has a {word} of {x}")).help(format!("its {word} is 0 or more")));
+            let error = Error::scene(format!("{who} has a {word} of {x}"));
+            return Err(error.help(format!("its {word} is 0 or more")).at("", None, word));
         }
     }
     if spring.stiffness == 0.0 && spring.damping == 0.0 {
@@ -211,15 +213,15 @@ pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<
     Ok(())
 }
 
-/// Refuses a rope that cannot be meant.
+/// Checks a rope.
 ///
 /// # Errors
-/// `Scene`, as [`Links::check`].
+/// `Scene`, as [`Constraints::check`].
 pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("rope \"{}\"", rope.name);
     check_line(&who, &rope.ends, solids)?;
     let start = start_length(&rope.ends);
-    let length = rope.length.unwrap_or(start);
+    let length = rope.max_length.unwrap_or(start);
     if !(length > 0.0 && length.is_finite()) {
         return Err(Error::scene(format!("{who} is {length} m long")).help("give it a length above 0, m"));
     }
@@ -231,21 +233,21 @@ pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -
     Ok(())
 }
 
-/// Refuses a force that cannot be meant.
+/// Checks a force.
 ///
 /// # Errors
-/// `Scene`, as [`Links::check`].
+/// `Scene`, as [`Constraints::check`].
 pub fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("force \"{}\"", force.name);
     check_ends(&who, [Some(force.solid), None], solids)?;
-    let finite = |laws: &[crate::solid::Law]| laws.iter().all(|law| law.at(0.0).0.is_finite());
+    let finite = |laws: &[crate::solid::TimeFunction]| laws.iter().all(|law| law.value_and_rate(0.0).0.is_finite());
     if !finite(&force.force) || !finite(&force.torque) {
         return Err(Error::scene(format!("{who} is not finite at t = 0")).help("check its formula or table"));
     }
     Ok(())
 }
 
-fn check_hold<const D: usize>(hold: &Hold, solids: &[SolidSpec<D>]) -> Result<()> {
+fn check_hold<const D: usize>(hold: &InitialHold, solids: &[SolidSpec<D>]) -> Result<()> {
     check_ends("a hold", [Some(hold.solid), None], solids)?;
     let still = |body: &crate::solid::FreeBody<D>| body.velocity.norm() == 0.0 && body.spin.0.norm() == 0.0;
     let fine = matches!(&solids[hold.solid].role, Role::Free(body) if still(body));
@@ -271,7 +273,7 @@ fn check_contact<const D: usize>(pair: &ContactSpec, solids: &[SolidSpec<D>]) ->
     Ok(())
 }
 
-fn check_line<const D: usize>(who: &str, ends: &[End<D>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
+fn check_line<const D: usize>(who: &str, ends: &[LineEnd<D>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
     check_ends(who, ends.map(|end| end.solid), solids)?;
     match ends.iter().all(|end| end.at.norm().is_finite()) {
         true => Ok(()),
@@ -279,7 +281,7 @@ fn check_line<const D: usize>(who: &str, ends: &[End<D>; 2], solids: &[SolidSpec
     }
 }
 
-/// Refuses ends that are no solids, the same one, or none of them free.
+/// Refuses ends that are not solids, that are the same, or of which none is free.
 fn check_ends<const D: usize>(who: &str, ends: [Option<usize>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
     if ends.iter().flatten().any(|&i| i >= solids.len()) {
         return Err(Error::scene(format!("{who} names a solid that is not there")));

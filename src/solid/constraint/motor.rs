@@ -1,4 +1,4 @@
-//! The motor on a joint's coordinate, a load like any other on both solids:
+//! The motor on a joint's coordinate, a load on both solids:
 //!
 //!   F = F₀ + k (x* − x) + c (v* − ẋ)
 //!
@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use crate::solid::Law;
+use crate::solid::TimeFunction;
 
 /// s = Δt c g at which half of what the rate gains in a step is foreseen, –.
 const RESOLVED: f64 = 0.1;
@@ -26,30 +26,30 @@ const RESOLVED: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct Motor {
     /// F₀, N or N m.
-    pub force: Law,
+    pub force: TimeFunction,
     /// x*, m or rad from the start.
-    pub position: Law,
+    pub position: TimeFunction,
     /// v*, m/s or rad/s; by default the rate of `position`.
-    pub velocity: Option<Law>,
+    pub velocity: Option<TimeFunction>,
     /// k, N/m or N m/rad.
-    pub stiffness: Law,
+    pub stiffness: TimeFunction,
     /// c, N s/m or N m s/rad.
-    pub damping: Law,
-    /// The strongest that it can be, N or N m.
-    pub strongest: f64,
+    pub damping: TimeFunction,
+    /// Largest force, N or N m.
+    pub max_force: f64,
 }
 
 impl Default for Motor {
     /// None at all.
     fn default() -> Self {
-        let none = || Law::constant(0.0);
+        let none = || TimeFunction::constant(0.0);
         Self {
             force: none(),
             position: none(),
             velocity: None,
             stiffness: none(),
             damping: none(),
-            strongest: f64::INFINITY,
+            max_force: f64::INFINITY,
         }
     }
 }
@@ -57,26 +57,26 @@ impl Default for Motor {
 impl Motor {
     /// A linear power take-off: F = −c ẋ.
     pub fn damping(c: f64) -> Self {
-        Self { damping: Law::constant(c), ..Self::default() }
+        Self { damping: TimeFunction::constant(c), ..Self::default() }
     }
 
-    /// What it does at time `t` (s).
-    pub fn at(&self, t: f64) -> Drive {
-        let (position, rate) = self.position.at(t);
-        Drive {
-            force: self.force.at(t).0,
+    /// The command at time `t` (s).
+    pub fn command_at(&self, t: f64) -> MotorCommand {
+        let (position, rate) = self.position.value_and_rate(t);
+        MotorCommand {
+            force: self.force.value_and_rate(t).0,
             position,
-            velocity: self.velocity.as_ref().map_or(rate, |law| law.at(t).0),
-            stiffness: self.stiffness.at(t).0,
-            damping: self.damping.at(t).0,
-            strongest: self.strongest,
+            velocity: self.velocity.as_ref().map_or(rate, |law| law.value_and_rate(t).0),
+            stiffness: self.stiffness.value_and_rate(t).0,
+            damping: self.damping.value_and_rate(t).0,
+            max_force: self.max_force,
         }
     }
 }
 
-/// What a motor does at an instant; the names are those of [`Motor`].
+/// The command of a motor at an instant; the fields are those of [`Motor`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drive {
+pub struct MotorCommand {
     /// F₀, N or N m.
     pub force: f64,
     /// x*, m or rad.
@@ -87,37 +87,37 @@ pub struct Drive {
     pub stiffness: f64,
     /// c, N s/m or N m s/rad.
     pub damping: f64,
-    /// The strongest that it can be, N or N m.
-    pub strongest: f64,
+    /// Largest force, N or N m.
+    pub max_force: f64,
 }
 
-/// How a joint's coordinate goes when a motor is asked for its force.
-pub(in crate::solid) struct Going {
+/// State of a joint's coordinate for which a motor computes its force.
+pub(in crate::solid) struct MotorInput {
     /// Whether it is an angle: a difference is counted the short way round then.
     pub(in crate::solid) angle: bool,
-    /// Where it is, m or rad.
-    pub(in crate::solid) x: f64,
+    /// Its value, m or rad.
+    pub(in crate::solid) position: f64,
     /// Its rate, m/s or rad/s.
     pub(in crate::solid) rate: f64,
-    /// What that gains by what is known to act, m/s² or rad/s².
-    pub(in crate::solid) gain: f64,
-    /// g: how easily the pair gives way, 1/kg or 1/(kg m²).
-    pub(in crate::solid) ease: f64,
+    /// Its acceleration by the known loads, m/s² or rad/s².
+    pub(in crate::solid) free_acceleration: f64,
+    /// g, the inverse effective mass of the pair, 1/kg or 1/(kg m²).
+    pub(in crate::solid) inverse_effective_mass: f64,
     /// The step, s.
     pub(in crate::solid) dt: f64,
 }
 
-impl Drive {
+impl MotorCommand {
     /// Its force over a step, N or N m.
-    pub(in crate::solid) fn force(&self, going: &Going) -> f64 {
-        let mut off = self.position - going.x;
+    pub(in crate::solid) fn force(&self, going: &MotorInput) -> f64 {
+        let mut off = self.position - going.position;
         if going.angle {
             off -= TAU * (off / TAU).round();
         }
-        let stiff = going.dt * self.damping * going.ease;
+        let stiff = going.dt * self.damping * going.inverse_effective_mass;
         let foreseen = if self.stiffness > 0.0 { 0.0 } else { 1.0 / (1.0 + (RESOLVED / stiff).powi(2)) };
-        let gained = foreseen * going.dt * (going.gain + going.ease * self.force);
+        let gained = foreseen * going.dt * (going.free_acceleration + going.inverse_effective_mass * self.force);
         let damped = self.damping * (self.velocity - going.rate - gained) / (1.0 + stiff);
-        (self.force + self.stiffness * off + damped).clamp(-self.strongest, self.strongest)
+        (self.force + self.stiffness * off + damped).clamp(-self.max_force, self.max_force)
     }
 }

@@ -1,8 +1,8 @@
-//! The pull of a lock, an end stop or a rope along its row, where the engine does not tell all of it.
+//! Reactions of locks, end stops and ropes along their rows, where the engine reports only part of them.
 //!
-//! In a step of several iterations rapier keeps the impulse of the last one, and of one iteration it tells some 1e-6 too little where it
-//! mends places. What a joint gave is known from the momentum of the solids: with R what changed it and no other load explains, the pulls f are to give Σ f Jᵀ = R. From the last impulse times their
-//! number they are mended row after row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until nothing is left (Kaczmarz 1937).
+//! With several solver iterations rapier reports only the last impulse; with one, position correction leaves 1e-6 unreported.
+//! The momentum of the solids gives the rest: with R its unexplained change, the reactions f satisfy Σ f Jᵀ = R. Starting from the last impulse times the
+//! number of iterations they are corrected row by row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
 
 use super::jacobian::{ConstraintJacobian, Mobility};
 use crate::{
@@ -10,23 +10,23 @@ use crate::{
     solid::{Kinematics, Load},
 };
 
-/// Sweeps over all pulls, at most.
+/// Most iterations over all reactions.
 const SWEEPS: usize = 200;
 
-/// A pull along a row of two solids.
+/// A reaction along a row of two solids.
 pub(in crate::solid) struct Reaction<const D: usize> {
     /// Their numbers; `None` is the world.
     pub(in crate::solid) between: [Option<usize>; 2],
-    pub(in crate::solid) row: ConstraintJacobian<D>,
+    pub(in crate::solid) jacobian: ConstraintJacobian<D>,
     pub(in crate::solid) mobility: [Mobility<D>; 2],
     /// On the second, along the row, N or N m.
     pub(in crate::solid) force: f64,
 }
 
 impl<const D: usize> Reaction<D> {
-    /// The loads of it on both.
+    /// Its loads on both solids.
     pub(in crate::solid) fn loads(&self) -> [Load<D>; 2] {
-        self.row.loads(self.force)
+        self.jacobian.loads(self.force)
     }
 
     /// Takes `loads` from what is `left` of both.
@@ -44,10 +44,15 @@ impl<const D: usize> Reaction<D> {
             let load = self.between[k].map_or_else(Load::zero, |solid| left[solid]);
             let mobility = &self.mobility[k];
             let velocity = mobility.linear.component_mul(&load.force);
-            Kinematics { pose: Pose::identity(), centre: Vector::zeros(), velocity, spin: mobility.spin(&load.torque) }
+            Kinematics {
+                pose: Pose::identity(),
+                centre: Vector::zeros(),
+                velocity,
+                spin: mobility.spin_change(&load.torque),
+            }
         });
-        let ease = self.row.with(&self.row, &self.mobility);
-        if ease > 0.0 { self.row.rate(&ends) / ease } else { 0.0 }
+        let ease = self.jacobian.inverse_effective_mass(&self.jacobian, &self.mobility);
+        if ease > 0.0 { self.jacobian.rate(&ends) / ease } else { 0.0 }
     }
 }
 
@@ -60,7 +65,7 @@ pub(in crate::solid) fn project<const D: usize>(pulls: &mut [Reaction<D>], told:
         for pull in pulls.iter_mut() {
             let more = pull.lacks(&left);
             pull.force += more;
-            pull.take(pull.row.loads(more), &mut left);
+            pull.take(pull.jacobian.loads(more), &mut left);
             (change, largest) = (change.max(more.abs()), largest.max(pull.force.abs()));
         }
         if change <= 1e-14 * largest {
@@ -70,43 +75,5 @@ pub(in crate::solid) fn project<const D: usize>(pulls: &mut [Reaction<D>], told:
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::Bivector;
-
-    #[test]
-    fn pulls_are_found_from_what_they_did() {
-        // Two bodies of 2 and 3 kg and 0.1, 0.2 kg m² on two ropes, to one another and to the ground.
-        let body = |x: f64| Kinematics {
-            pose: Pose::at(Vector::<2>::new(x, 0.0)),
-            centre: Vector::<2>::new(x, 0.0),
-            velocity: Vector::zeros(),
-            spin: Bivector::zero(),
-        };
-        let mobility = |mass: f64, inertia: f64| {
-            let mut mobility = Mobility::<2>::none();
-            mobility.linear = Vector::<2>::repeat(1.0 / mass);
-            mobility.angular[(0, 0)] = 1.0 / inertia;
-            mobility
-        };
-        let (a, b, ground) = (mobility(2.0, 0.1), mobility(3.0, 0.2), Mobility::none());
-        let row = |n: [f64; 2], at: [f64; 2], ends: [f64; 2]| {
-            ConstraintJacobian::along(Vector::from(n), &Vector::from(at), &ends.map(body))
-        };
-        let pull = |between, row, mobility, force| Reaction { between, row, mobility, force };
-        let mut pulls = [
-            pull([Some(0), Some(1)], row([0.8, 0.6], [0.3, 0.1], [0.0, 1.0]), [a, b], 40.0),
-            pull([Some(1), None], row([0.0, 1.0], [1.1, 0.0], [1.0, 0.0]), [b, ground], -7.0),
-        ];
-        let mut told = [Load::zero(); 2];
-        for pull in &pulls {
-            for (end, load) in pull.between.iter().zip(pull.loads()) {
-                end.iter().for_each(|solid| told[*solid] += load);
-            }
-        }
-        pulls.iter_mut().for_each(|pull| pull.force = 1.0);
-        project(&mut pulls, &told);
-        // Each sweep leaves some part; what is left of forces of 40 N is round-off.
-        assert!((pulls[0].force - 40.0).abs() < 1e-9 && (pulls[1].force + 7.0).abs() < 1e-9);
-    }
-}
+#[path = "../../../tests/unit/solid/constraint/reactions.rs"]
+mod tests;

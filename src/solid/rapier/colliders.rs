@@ -15,15 +15,15 @@ use crate::{
     math::{Bounds, Pose, Vector},
     solid::{
         Constraints, Kinematics, Role, SolidSpec,
-        containment::{Placed, depth_inside_mesh},
+        containment::{PlacedSolid, depth_inside_mesh},
     },
 };
 
 /// A solid's convex parts in its own frame.
-pub(super) type Parts = Vec<(Frame, SharedShape)>;
+pub(super) type ConvexParts = Vec<(Frame, SharedShape)>;
 
 /// Adds the convex parts of `shape`, posed in the solid's frame; of a mesh that is `fixed` its surface.
-pub(super) fn collect(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut Parts) -> Result<()> {
+pub(super) fn collect_parts(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut ConvexParts) -> Result<()> {
     let frame = to_frame(pose);
     let mut cuboid = |min: Vector<D>, max: Vector<D>| {
         let centre = Frame::from_translation(to_point(&(0.5 * (min + max))));
@@ -51,7 +51,7 @@ pub(super) fn collect(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut
         }
         Shape::Compound(inner) => {
             for (place, shape) in inner {
-                collect(shape, &pose.then(place), fixed, found)?;
+                collect_parts(shape, &pose.then(place), fixed, found)?;
             }
         }
         Shape::Cylinder { .. } | Shape::Polygon { .. } | Shape::Polyline { .. } | Shape::Mesh { .. } => {
@@ -62,13 +62,13 @@ pub(super) fn collect(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut
 }
 
 /// The box around the parts at `frame`, its least and its largest corner (m), and none of no parts.
-fn around(parts: &Parts, frame: &Frame) -> Option<(Vector<D>, Vector<D>)> {
+fn around(parts: &ConvexParts, frame: &Frame) -> Option<(Vector<D>, Vector<D>)> {
     let boxes = parts.iter().map(|(inner, part)| part.compute_aabb(&(*frame * *inner)));
     boxes.reduce(|a, b| a.merged(&b)).map(|whole| (from_point(whole.mins), from_point(whole.maxs)))
 }
 
 /// Smallest edge of the box around the parts, m.
-pub(super) fn thickness(parts: &Parts) -> f64 {
+pub(super) fn thickness(parts: &ConvexParts) -> f64 {
     around(parts, &Frame::IDENTITY).map_or(f64::INFINITY, |(min, max)| (max - min).min())
 }
 
@@ -89,7 +89,12 @@ fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
 }
 
 /// What to do about a body that has no room in a tank or basin.
-fn cramped((inner, here): Placed<D>, parts: &Parts, (outer, there): Placed<D>, allowed: f64) -> Option<String> {
+fn cramped(
+    (inner, here): PlacedSolid<D>,
+    parts: &ConvexParts,
+    (outer, there): PlacedSolid<D>,
+    allowed: f64,
+) -> Option<String> {
     let ((min, max), own) = (room(&outer.shape, there)?, around(parts, &to_frame(here))?);
     let (body, tank, size, space) = (&inner.name, &outer.name, own.1 - own.0, max - min);
     if let Some(axis) = (0..D - 1).find(|&axis| size[axis] > space[axis]) {
@@ -111,17 +116,17 @@ fn cramped((inner, here): Placed<D>, parts: &Parts, (outer, there): Placed<D>, a
 }
 
 /// Refuses a free solid that starts deeper than `allowed` (m) inside another, contact skins counted.
-pub(super) fn refuse_overlap(
+pub(super) fn check_overlap(
     solids: &[SolidSpec<D>],
     start: &[Kinematics<D>],
-    parts: &[Parts],
+    parts: &[ConvexParts],
     links: &Constraints<D>,
     allowed: f64,
 ) -> Result<()> {
     let free = |i: usize| matches!(solids[i].role, Role::Free(_));
     for a in 0..solids.len() {
         for b in a + 1..solids.len() {
-            if !(free(a) || free(b)) || !links.touch(a, b) {
+            if !(free(a) || free(b)) || !links.can_touch(a, b) {
                 continue;
             }
             let (frame_a, frame_b) = (to_frame(&start[a].pose), to_frame(&start[b].pose));
@@ -154,58 +159,5 @@ pub(super) fn refuse_overlap(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::solid::FreeBody;
-
-    /// What is said of a free box of this length and height (m) with its centre here (m), in a tank a metre long or such a basin.
-    fn refusal(length: f64, height: f64, at: f64, basin: bool) -> String {
-        let mut size = Vector::repeat(0.2);
-        (size[0], size[D - 1]) = (length, height);
-        let shape = Shape::Box { size };
-        let role = Role::Free(FreeBody::from_density(&shape, 500.0));
-        let solid = |name: &str, shape: Shape<D>, at: Vector<D>, role: Role<D>| {
-            let (name, pose) = (name.into(), Pose::at(at));
-            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
-        };
-        let point = |x: f64, up: f64| {
-            Vector::from_fn(|i, _| {
-                if i == 0 {
-                    x
-                } else if i == D - 1 {
-                    up
-                } else {
-                    0.5
-                }
-            })
-        };
-        let points = vec![point(0.0, 1.0), point(0.0, 0.0), point(1.0, 0.0), point(1.0, 1.0)];
-        let tank = Shape::Tank { size: Vector::repeat(1.0), thickness: 0.1 };
-        let outer = if basin { Shape::Polyline { points, thickness: 0.1 } } else { tank };
-        let solids = [solid("tank", outer, Vector::zeros(), Role::Fixed), solid("box", shape, point(0.5, at), role)];
-        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
-        let parts: Vec<Parts> = solids
-            .iter()
-            .map(|solid| {
-                let mut parts = Parts::new();
-                collect(&solid.shape, &Pose::identity(), true, &mut parts).map(|()| parts).unwrap_or_default()
-            })
-            .collect();
-        let refused = refuse_overlap(&solids, &start, &parts, &Constraints::default(), 0.001);
-        refused.err().map(|e| e.to_string()).unwrap_or_default()
-    }
-
-    #[test]
-    fn a_body_without_room_is_named_with_what_there_is() {
-        for basin in [false, true] {
-            if basin && D == 3 {
-                continue; // a polyline is flat
-            }
-            assert_eq!(refusal(0.9, 0.3, 0.5, basin), "");
-            let long = refusal(1.05, 0.3, 0.5, basin);
-            assert!(long.contains("is 1.0500 m long along x and \"tank\" has room for 1.0000 m"), "{long}");
-            let high = refusal(0.9, 0.3, 0.1, basin);
-            assert!(high.contains("is 0.3000 m high and reaches 0.0500 m below the floor of \"tank\""), "{high}");
-        }
-    }
-}
+#[path = "../../../tests/unit/solid/rapier/colliders.rs"]
+mod tests;

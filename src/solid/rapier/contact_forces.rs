@@ -11,16 +11,16 @@ use super::{
 };
 use crate::{
     math::Vector,
-    solid::{Contact, Load},
+    solid::{ContactForce, Load},
 };
 
 /// The pairs that pressed on each other, in order of their numbers.
-pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[Impact]) -> Vec<Contact<D>> {
+pub(super) fn pair_forces(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[Impact]) -> Vec<ContactForce<D>> {
     let mut pairs = Pairs(BTreeMap::new());
     let rate = 1.0 / world.integration_parameters.dt;
     for met in met {
-        let (at, force) = (from_point(met.at), from_point(met.impulse) * rate);
-        pairs.add(met.between, met.along * rate, &at, met.arms.map(from_point), force);
+        let (at, force) = (from_point(met.position), from_point(met.impulse) * rate);
+        pairs.add(met.between, met.normal_impulse * rate, &at, met.arms.map(from_point), force);
     }
     for pair in world.narrow_phase.contact_pairs() {
         let between = [pair.collider1, pair.collider2].map(|c| world.colliders[c].user_data as usize);
@@ -40,9 +40,9 @@ pub(super) fn contacts(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[
             }
         }
     }
-    let mean = |(between, mut contact): ([usize; 2], Contact<D>)| {
-        contact.at /= contact.pressing;
-        Contact { between, ..contact }
+    let mean = |(between, mut contact): ([usize; 2], ContactForce<D>)| {
+        contact.at /= contact.normal_force;
+        ContactForce { between, ..contact }
     };
     pairs.0.into_iter().map(mean).collect()
 }
@@ -57,21 +57,21 @@ fn impulse(normal: Point, data: &ContactData) -> Point {
     normal * data.impulse - friction(-normal, data)
 }
 
-struct Pairs(BTreeMap<[usize; 2], Contact<D>>);
+struct Pairs(BTreeMap<[usize; 2], ContactForce<D>>);
 
 impl Pairs {
     /// Adds a contact of the solids `between`: `pressing` (N) along the normal, `force` (N) on the second, at `arms` (m) from their
     /// centres.
     fn add(&mut self, between: [usize; 2], pressing: f64, at: &Vector<D>, arms: [Vector<D>; 2], force: Vector<D>) {
         let [first, second] = arms;
-        let mut loads = [Load::at(&first, -force), Load::at(&second, force)];
+        let mut loads = [Load::from_force_at(&first, -force), Load::from_force_at(&second, force)];
         let [a, b] = between;
         if a > b {
             loads.reverse();
         }
-        let none = Contact { between, pressing: 0.0, at: Vector::zeros(), loads: [Load::zero(); 2] };
+        let none = ContactForce { between, normal_force: 0.0, at: Vector::zeros(), loads: [Load::zero(); 2] };
         let sum = self.0.entry([a.min(b), a.max(b)]).or_insert(none);
-        sum.pressing += pressing;
+        sum.normal_force += pressing;
         sum.at += at * pressing;
         sum.loads.iter_mut().zip(loads).for_each(|(sum, load)| *sum += load);
     }

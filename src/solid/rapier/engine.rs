@@ -3,7 +3,7 @@
 //! [`Dim`] picks the engine of a dimension: `Dim<2>` has one if the feature `dim2` is on, `Dim<3>` with `dim3`.
 
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     math::{Bivector, Vector},
     solid::{Constraints, Kinematics, Load, Mobility, SolidSpec},
 };
@@ -45,16 +45,16 @@ pub trait Engine<const D: usize>: Send + Sync {
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>);
 
     /// How the solids pressed on one another in the last step, pair by pair in order.
-    fn contacts(&self) -> Vec<Contact<D>>;
+    fn contacts(&self) -> Vec<ContactForce<D>>;
 
     /// Holds a free solid still, or lets it go as it was made.
-    fn hold(&mut self, solid: usize, held: bool);
+    fn set_held(&mut self, solid: usize, held: bool);
 
     /// With which solid, and how deep (m), a `solid` that starts as `start` would overlap most, contact skins counted.
     ///
     /// # Errors
     /// `Scene` if its shape cannot be touched.
-    fn overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>>;
+    fn deepest_overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>>;
 
     /// Lets a solid come that starts as `start`; it gets the next number.
     ///
@@ -73,11 +73,11 @@ pub trait Engine<const D: usize>: Send + Sync {
     fn mobility(&self, solid: usize) -> Mobility<D>;
 
     /// Iterations of the last step. Joints and ropes tell the impulses of its last iteration, times their number.
-    fn iterations(&self) -> usize;
+    fn solver_iterations(&self) -> usize;
 
     /// Impulses (N s, N m s) of joint number `joint` on its second solid in the last step: of its locks, turns first, then of
     /// its end stop. Each is along what the rows before it leave of its own: see `solid/rows.rs`.
-    fn impulses(&self, joint: usize) -> Vec<f64>;
+    fn joint_impulses(&self, joint: usize) -> Vec<f64>;
 
     /// Impulse (N s) of rope number `rope` in the last step.
     fn rope_impulse(&self, rope: usize) -> f64;
@@ -97,11 +97,11 @@ pub trait Engine<const D: usize>: Send + Sync {
 
 /// How two solids pressed on each other in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact<const D: usize> {
+pub struct ContactForce<const D: usize> {
     /// Their numbers, the lower first.
     pub between: [usize; 2],
     /// Sum of the normal forces at their contact points, N (N/m in 2-D).
-    pub pressing: f64,
+    pub normal_force: f64,
     /// Where they act: the mean of the contact points, weighed by the normal forces, m.
     pub at: Vector<D>,
     /// Loads on the first and on the second, friction included, each about its own centre.
@@ -159,7 +159,7 @@ impl HasEngine<2> for Dim<2> {
         gravity: &Vector<2>,
         dp: f64,
     ) -> Result<Box<dyn Engine<2>>> {
-        Ok(Box::new(super::rapier2d::World::new(solids, start, links, gravity, dp)?))
+        Ok(Box::new(super::rapier2d::RapierWorld::new(solids, start, links, gravity, dp)?))
     }
 }
 
@@ -174,7 +174,7 @@ impl HasEngine<3> for Dim<3> {
         gravity: &Vector<3>,
         dp: f64,
     ) -> Result<Box<dyn Engine<3>>> {
-        Ok(Box::new(super::rapier3d::World::new(solids, start, links, gravity, dp)?))
+        Ok(Box::new(super::rapier3d::RapierWorld::new(solids, start, links, gravity, dp)?))
     }
 }
 
@@ -183,14 +183,14 @@ const ITERATIONS_MAX: usize = 64;
 
 /// Iterations that keep contacts as firm under the heaviest of the free solids as under the lightest: a contact yields to what
 /// lies on the lighter body with 1/n².
-pub(super) fn iterations(masses: impl Iterator<Item = f64>) -> usize {
+pub(super) fn iterations_for_masses(masses: impl Iterator<Item = f64>) -> usize {
     let (lightest, heaviest) = masses.fold((f64::INFINITY, 0.0_f64), |(a, b), mass| (a.min(mass), b.max(mass)));
     let wanted = (heaviest / lightest).sqrt() / 1.5;
     if wanted > 1.0 { (wanted.ceil() as usize).next_power_of_two().min(ITERATIONS_MAX) } else { 1 }
 }
 
 /// The error of a state that cannot be saved or restored.
-pub(super) fn restart(why: impl std::fmt::Display) -> Error {
-    Error::new(Kind::Restart, format!("the rigid bodies of the checkpoint: {why}"))
+pub(super) fn restart_error(why: impl std::fmt::Display) -> Error {
+    Error::new(ErrorKind::Restart, format!("the rigid bodies of the checkpoint: {why}"))
         .help("a checkpoint is read only by the version and for the scene that wrote it; start the run anew")
 }

@@ -14,14 +14,14 @@ use crate::{
 };
 
 /// The solid that a body is: fixed if that is, else free, with its shape, place, mass, inertia, velocity and locks. Give it to a setup
-/// for [`Simulation::hosted`](crate::simulation::Simulation::hosted).
+/// for [`Simulation::with_external_bodies`](crate::simulation::Simulation::with_external_bodies).
 ///
 /// Its shape is that of the body's colliders, sensors left out. The water feels it at its true faces, whatever contact skin it has.
 ///
 /// # Errors
 /// `Scene` if there is no such body, it has no collider, one with a shape that water cannot feel (a half-space, a height field, a cone,
 /// a round shape: make the solid's shape by hand then), it is kinematic, or has no mass yet.
-pub fn solid(
+pub fn solid_from_body(
     name: impl Into<String>,
     body: RigidBodyHandle,
     bodies: &RigidBodySet,
@@ -35,7 +35,10 @@ pub fn solid(
     let mut parts = Vec::new();
     for collider in body.colliders().iter().filter_map(|&handle| colliders.get(handle)).filter(|c| !c.is_sensor()) {
         let place = collider.position_wrt_parent().map_or_else(Pose::identity, world::from_frame);
-        parts.push((place, shape(collider.shape()).map_err(|e| Error { what: format!("{name}: {}", e.what), ..e })?));
+        parts.push((
+            place,
+            shape(collider.shape()).map_err(|e| Error { message: format!("{name}: {}", e.message), ..e })?,
+        ));
     }
     let own = |place: &Pose<D>| *place == Pose::identity();
     let shape = match parts.pop() {
@@ -127,7 +130,7 @@ fn shape(geometry: &dyn Geometry) -> Result<Shape<D>> {
 }
 
 /// The error of a shape that water cannot feel.
-pub(super) fn unfelt(what: &TypedShape) -> Error {
+pub(super) fn unsupported_shape(what: &TypedShape) -> Error {
     let name = format!("{what:?}");
     let name = name.split(['(', ' ']).next().unwrap_or_default();
     Error::scene(format!("a collider of the kind {name} has no shape that the water can feel"))

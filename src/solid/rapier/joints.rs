@@ -19,9 +19,9 @@ use crate::{
     solid::{
         Kinematics,
         constraint::{
-            joint::turns_first,
-            lines::{Line, start_length},
-            links::{Constraints, ContactSpec, Contacts},
+            joint::modes_rotations_first,
+            lines::{AttachedLine, start_length},
+            links::{Constraints, ContactPairs, ContactSpec},
         },
     },
 };
@@ -34,7 +34,7 @@ pub(super) struct RapierJoints {
     joints: Vec<ImpulseJointHandle>,
     /// With the longest that each can be, m.
     ropes: Vec<(ImpulseJointHandle, f64)>,
-    pub(super) pairs: Pairs,
+    pub(super) contact_pairs: ContactPairHooks,
 }
 
 impl RapierJoints {
@@ -53,11 +53,14 @@ impl RapierJoints {
         let mut joints = Vec::new();
         for spec in &links.joints {
             let frames = spec.frames(start).each_ref().map(to_frame);
-            let bits = turns_first::<D>().filter(|&mode| spec.locks(mode)).fold(0, |bits, mode| bits | 1 << mode);
+            let bits = modes_rotations_first::<D>()
+                .filter(|&mode| spec.is_locked(mode))
+                .fold(0, |bits, mode| bits | 1 << mode);
             let mut joint = GenericJoint::new(JointAxesMask::from_bits_truncate(bits));
-            (joint.local_frame1, joint.local_frame2, joint.contacts_enabled) = (frames[0], frames[1], spec.contacts);
+            (joint.local_frame1, joint.local_frame2, joint.contacts_enabled) =
+                (frames[0], frames[1], spec.contacts_enabled);
             joint.softness = SpringCoefficients::new(LOCK, 1.0);
-            for (mode, limits) in spec.stops() {
+            for (mode, limits) in spec.end_stops() {
                 joint.limit_axes |= JointAxesMask::from_bits_truncate(1 << mode);
                 joint.limits[mode] = JointLimits::from(limits);
             }
@@ -66,8 +69,8 @@ impl RapierJoints {
         }
         let mut ropes = Vec::new();
         for spec in &links.ropes {
-            let longest = spec.length.unwrap_or_else(|| start_length(&spec.ends));
-            let local = Line::new(&spec.ends, start).local;
+            let longest = spec.max_length.unwrap_or_else(|| start_length(&spec.ends));
+            let local = AttachedLine::new(&spec.ends, start).local_ends;
             let mut joint = GenericJoint::new(JointAxesMask::empty());
             (joint.coupled_axes, joint.limit_axes) = (JointAxesMask::LIN_AXES, JointAxesMask::LIN_X);
             joint.limits[0] = JointLimits::from([0.0, longest]);
@@ -76,11 +79,11 @@ impl RapierJoints {
             let [first, second] = spec.ends.map(|end| body(end.solid));
             ropes.push((world.insert_impulse_joint(first, second, joint), longest));
         }
-        Self { joints, ropes, pairs: Pairs(links.contacts.clone()) }
+        Self { joints, ropes, contact_pairs: ContactPairHooks(links.contacts.clone()) }
     }
 
     /// Sets the limit of each rope for a step of `dt` (s).
-    pub(super) fn tighten(&self, world: &mut PhysicsWorld, dt: f64) {
+    pub(super) fn update_rope_limits(&self, world: &mut PhysicsWorld, dt: f64) {
         for (handle, longest) in &self.ropes {
             let Some(rope) = world.impulse_joints.get_mut(*handle, false) else { continue };
             let end = |body: RigidBodyHandle, frame: &Frame| {
@@ -97,32 +100,39 @@ impl RapierJoints {
     }
 
     /// Impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in order, then of its end stops.
-    pub(super) fn impulses(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> Vec<f64> {
+    pub(super) fn joint_impulses(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> Vec<f64> {
         let Some(joint) = world.impulse_joints.get(self.joints[i]) else { return Vec::new() };
         let (locked, limited) = (joint.data.locked_axes.bits(), joint.data.limit_axes.bits());
-        let locks = turns_first::<D>().filter(|i| locked >> i & 1 == 1).map(|i| joint.impulses[i]);
-        let stops = turns_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
+        let locks = modes_rotations_first::<D>().filter(|i| locked >> i & 1 == 1).map(|i| joint.impulses[i]);
+        let stops =
+            modes_rotations_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
         // The engine keeps those of the last of its iterations.
         locks.chain(stops).map(|impulse| -impulse * iterations as f64).collect()
     }
 
     /// Impulse (N s) of rope number `i` in the last step.
-    pub(super) fn rope(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
+    pub(super) fn rope_impulse(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
         world.impulse_joints.get(self.ropes[i].0).map_or(0.0, |rope| rope.data.limits[0].impulse * iterations as f64)
     }
 }
 
 /// Pairs of solids that touch in their own way.
-pub(super) struct Pairs(Contacts);
+pub(super) struct ContactPairHooks(ContactPairs);
 
-impl Pairs {
+impl ContactPairHooks {
     /// Whether there is none.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
     /// Restitution and friction of two solids, of which each has a `restitution` of its own and `friction` is the mean.
-    pub(super) fn bounce(&self, a: usize, b: usize, restitution: &[f64], friction: f64) -> (f64, f64) {
+    pub(super) fn restitution_and_friction(
+        &self,
+        a: usize,
+        b: usize,
+        restitution: &[f64],
+        friction: f64,
+    ) -> (f64, f64) {
         let own = self.0.find(a, b);
         let usual = 0.5 * (restitution[a] + restitution[b]);
         (own.and_then(|spec| spec.restitution).unwrap_or(usual), own.and_then(|spec| spec.friction).unwrap_or(friction))
@@ -135,10 +145,10 @@ impl Pairs {
     }
 }
 
-impl PhysicsHooks for Pairs {
+impl PhysicsHooks for ContactPairHooks {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
         let own = self.of(context.colliders, [context.collider1, context.collider2]);
-        own.is_none_or(|spec| spec.touch).then(SolverFlags::default)
+        own.is_none_or(|spec| spec.can_touch).then(SolverFlags::default)
     }
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {

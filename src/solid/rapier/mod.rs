@@ -6,4 +6,4 @@ pub mod rapier2d;
 #[cfg(feature = "dim3")]
 pub mod rapier3d;
 
-pub use engine::{Contact, Dim, Engine, EngineFault, HasEngine};
+pub use engine::{ContactForce, Dim, Engine, EngineFault, HasEngine};

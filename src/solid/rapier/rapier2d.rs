@@ -25,8 +25,8 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::{apply_load, kinematics, set_kinematic, solid};
-pub(super) use world::World;
+pub use external::{apply_load, kinematics, set_kinematic, solid_from_body};
+pub(super) use world::RapierWorld;
 
 use nalgebra::SMatrix;
 use rapier::{
@@ -133,7 +133,7 @@ fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
     match geometry {
         TypedShape::ConvexPolygon(polygon) => Ok(points(polygon.points())),
         TypedShape::Triangle(triangle) => Ok(points(&[triangle.a, triangle.b, triangle.c])),
-        other => Err(external::unfelt(other)),
+        other => Err(external::unsupported_shape(other)),
     }
 }
 

@@ -25,8 +25,8 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::{apply_load, kinematics, set_kinematic, solid};
-pub(super) use world::World;
+pub use external::{apply_load, kinematics, set_kinematic, solid_from_body};
+pub(super) use world::RapierWorld;
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -47,7 +47,7 @@ use rapier::{
 
 use crate::{
     error::{Error, Result},
-    geometry::{Mesh, Shape, Touchable},
+    geometry::{ContactGeometry, Mesh, Shape},
     math::{Bivector, Matrix, Vector},
     solid::FreeBody,
 };
@@ -251,7 +251,7 @@ fn inertia(own: &MassProperties) -> Matrix<D> {
 fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
     let mesh = |points: &[Point], facets: &[[u32; 3]]| {
         let points: Vec<Vector<D>> = points.iter().copied().map(world::from_point).collect();
-        Ok(Shape::Mesh { mesh: Arc::new(Mesh::new(&points, facets)?), contact: Touchable::None })
+        Ok(Shape::Mesh { mesh: Arc::new(Mesh::new(&points, facets)?), contact: ContactGeometry::None })
     };
     match geometry {
         TypedShape::Cylinder(c) => Ok(Shape::Cylinder { length: 2.0 * c.half_height, radius: c.radius, axis: 1 }),
@@ -260,7 +260,7 @@ fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
             let (points, facets) = hull.to_trimesh();
             mesh(&points, &facets)
         }
-        other => Err(external::unfelt(other)),
+        other => Err(external::unsupported_shape(other)),
     }
 }
 
@@ -278,20 +278,20 @@ fn parts(shape: &Shape<D>, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
 }
 
 /// What other bodies touch of a mesh.
-fn mesh_parts(mesh: &Mesh, contact: Touchable, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
+fn mesh_parts(mesh: &Mesh, contact: ContactGeometry, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     let points: Vec<Point> = mesh.points().iter().map(world::to_point).collect();
-    let solid = mesh.volume().volume;
+    let solid = mesh.volume_properties().volume;
     let hull = || SharedShape::convex_hull(&points).map(|part| vec![(Frame::IDENTITY, part)]);
     let convex = |hull: &[(Frame, SharedShape)]| {
         hull.iter().map(|(_, part)| part.mass_properties(1.0).mass()).sum::<f64>() <= NEARLY_CONVEX * solid
     };
     let make = || match contact {
-        Touchable::None => Some(Vec::new()),
-        Touchable::Surface => surface(&points, mesh),
-        Touchable::Fitting if fixed => surface(&points, mesh),
-        Touchable::Hull => hull(),
-        Touchable::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
-        Touchable::Decomposition => cut(&points, mesh),
+        ContactGeometry::None => Some(Vec::new()),
+        ContactGeometry::Surface => surface(&points, mesh),
+        ContactGeometry::Fitting if fixed => surface(&points, mesh),
+        ContactGeometry::Hull => hull(),
+        ContactGeometry::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
+        ContactGeometry::Decomposition => cut(&points, mesh),
     };
     // parry asserts what it hopes of points that lie nearly in a plane.
     catch_unwind(AssertUnwindSafe(make)).ok().flatten().ok_or_else(|| {

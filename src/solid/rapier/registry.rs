@@ -9,19 +9,23 @@ use super::super::rapier::{
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    D, HOOKS, World,
-    colliders::{Parts, collect, thickness},
+    D, HOOKS, RapierWorld,
+    colliders::{ConvexParts, collect_parts, thickness},
     lock, mass_properties, to_angular, to_frame, to_point,
 };
 use crate::{
     error::Result,
     math::{Bivector, Pose},
-    solid::{Kinematics, Role, SolidSpec, rapier::engine::iterations as for_masses},
+    solid::{Kinematics, Role, SolidSpec, rapier::engine::iterations_for_masses as for_masses},
 };
 
-impl World {
+impl RapierWorld {
     /// With which solid, and how deep (m), `solid` would overlap most, contact skins counted.
-    pub(super) fn overlap_of(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
+    pub(super) fn find_deepest_overlap(
+        &self,
+        solid: &SolidSpec<D>,
+        start: &Kinematics<D>,
+    ) -> Result<Option<(usize, f64)>> {
         let (parts, frame) = (parts(solid)?, to_frame(&start.pose));
         let mut deepest: Option<(usize, f64)> = None;
         for (_, other) in self.world.colliders.iter() {
@@ -43,10 +47,10 @@ impl World {
     }
 
     /// Lets a solid come, behind all others.
-    pub(super) fn admit_one(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+    pub(super) fn append_solid(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         let parts = parts(solid)?;
-        let hooks = if self.ties.pairs.is_empty() { HOOKS } else { ActiveHooks::all() };
-        let body = insert(&mut self.world, self.bodies.len(), solid, start, &parts, hooks);
+        let hooks = if self.ties.contact_pairs.is_empty() { HOOKS } else { ActiveHooks::all() };
+        let body = insert_solid(&mut self.world, self.bodies.len(), solid, start, &parts, hooks);
         if let Role::Free(_) = solid.role {
             self.reach = self.reach.min(0.1 * thickness(&parts));
         }
@@ -54,12 +58,12 @@ impl World {
         self.locks.push(self.world.bodies[body].locked_axes());
         self.restitution.push(solid.restitution);
         self.gone.push(false);
-        self.when_near = iterations(&self.world);
+        self.when_near = iterations_in_contact(&self.world);
         Ok(())
     }
 
     /// Takes a solid out.
-    pub(super) fn oust_one(&mut self, solid: usize) {
+    pub(super) fn disable_solid(&mut self, solid: usize) {
         let body = &mut self.world.bodies[self.bodies[solid]];
         if body.is_dynamic() {
             body.set_linvel(Point::ZERO, false);
@@ -68,30 +72,30 @@ impl World {
         body.set_enabled(false);
         self.gone[solid] = true;
         self.pushes.retain(|push| push.0 != solid);
-        self.when_near = iterations(&self.world);
+        self.when_near = iterations_in_contact(&self.world);
     }
 }
 
 /// The parts of `solid` that others touch.
-fn parts(solid: &SolidSpec<D>) -> Result<Parts> {
-    let mut parts = Parts::new();
-    collect(&solid.shape, &Pose::identity(), matches!(solid.role, Role::Fixed), &mut parts)?;
+fn parts(solid: &SolidSpec<D>) -> Result<ConvexParts> {
+    let mut parts = ConvexParts::new();
+    collect_parts(&solid.shape, &Pose::identity(), matches!(solid.role, Role::Fixed), &mut parts)?;
     Ok(parts)
 }
 
 /// Iterations for the masses that take part.
-pub(super) fn iterations(world: &PhysicsWorld) -> usize {
+pub(super) fn iterations_in_contact(world: &PhysicsWorld) -> usize {
     let free = world.bodies.iter().filter(|(_, body)| body.is_dynamic() && body.is_enabled());
     for_masses(free.map(|(_, body)| body.mass()))
 }
 
 /// Puts solid number `index` into `world`.
-pub(super) fn insert(
+pub(super) fn insert_solid(
     world: &mut PhysicsWorld,
     index: usize,
     solid: &SolidSpec<D>,
     start: &Kinematics<D>,
-    parts: &Parts,
+    parts: &ConvexParts,
     hooks: ActiveHooks,
 ) -> RigidBodyHandle {
     let builder = match &solid.role {

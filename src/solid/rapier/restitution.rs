@@ -14,11 +14,11 @@ pub(super) struct Impact {
     /// Their numbers.
     pub(super) between: [usize; 2],
     /// Where, m.
-    pub(super) at: Point,
+    pub(super) position: Point,
     /// From their centres of mass to there, m.
     pub(super) arms: [Point; 2],
     /// Impulse along the normal, N s.
-    pub(super) along: f64,
+    pub(super) normal_impulse: f64,
     /// The whole impulse on the second, N s.
     pub(super) impulse: Point,
 }
@@ -52,7 +52,7 @@ struct Touch {
 
 /// Lets the bodies of `world` that are to touch in a step `dt` (s) part again. `pair` gives restitution and friction of two solids
 /// whose mean friction it is told. Gives who met, point by point.
-pub(super) fn rebound(
+pub(super) fn apply_impacts(
     world: &mut PhysicsWorld,
     dt: f64,
     pair: impl Fn(usize, usize, f64) -> (f64, f64),
@@ -77,9 +77,9 @@ pub(super) fn rebound(
     }
     let met = |touch: &Touch| Impact {
         between: touch.owners,
-        at: touch.at,
+        position: touch.at,
         arms: touch.bodies.map(|body| touch.at - world.bodies[body].center_of_mass()),
-        along: touch.along,
+        normal_impulse: touch.along,
         impulse: touch.normal * touch.along + touch.across,
     };
     touches.iter().map(met).collect()

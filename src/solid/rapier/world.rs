@@ -40,10 +40,10 @@ use crate::{
     math::{Bivector, Pose, Vector},
     solid::{
         Constraints, Kinematics, Load, Mobility, Role, SolidSpec,
-        rapier::engine::{Contact, Engine, EngineFault, restart},
+        rapier::engine::{ContactForce, Engine, EngineFault, restart_error},
     },
 };
-use colliders::{Parts, collect, refuse_overlap, thickness};
+use colliders::{ConvexParts, check_overlap, collect_parts, thickness};
 use joints::RapierJoints;
 use restitution::Impact;
 
@@ -57,7 +57,7 @@ const CONTACT_DAMPING: f64 = 1.0;
 const ALONE: f64 = 1e-12;
 
 /// A world of rigid bodies in this dimension.
-pub(in crate::solid) struct World {
+pub(in crate::solid) struct RapierWorld {
     world: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
     restitution: Vec<f64>,
@@ -84,7 +84,7 @@ pub(in crate::solid) struct World {
 /// A load on a solid in the next step.
 type Push = (usize, Load<D>);
 
-impl World {
+impl RapierWorld {
     pub(in crate::solid) fn new(
         solids: &[SolidSpec<D>],
         start: &[Kinematics<D>],
@@ -97,23 +97,23 @@ impl World {
         let mut all_parts = Vec::new();
         for solid in solids {
             solid.check_role()?;
-            let mut parts = Parts::new();
+            let mut parts = ConvexParts::new();
             let fixed = matches!(solid.role, Role::Fixed);
-            collect(&solid.shape, &Pose::identity(), fixed, &mut parts)?;
+            collect_parts(&solid.shape, &Pose::identity(), fixed, &mut parts)?;
             all_parts.push(parts);
         }
-        refuse_overlap(solids, start, &all_parts, links, OVERLAP_MAX * dp)?;
+        check_overlap(solids, start, &all_parts, links, OVERLAP_MAX * dp)?;
         let mut world = PhysicsWorld { gravity: to_point(gravity), ..PhysicsWorld::default() };
         let free = solids.iter().zip(&all_parts).filter(|(solid, _)| matches!(solid.role, Role::Free(_)));
         let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
         settle(&mut world, reach);
         let hooks = if links.contacts.is_empty() { HOOKS } else { ActiveHooks::all() };
-        let insert = |i: usize| registry::insert(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
+        let insert = |i: usize| registry::insert_solid(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
         let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
         let ties = RapierJoints::new(&mut world, &bodies, links, start);
         let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let restitution = solids.iter().map(|solid| solid.restitution).collect();
-        let (when_near, met, pushes) = (registry::iterations(&world), Vec::new(), Vec::new());
+        let (when_near, met, pushes) = (registry::iterations_in_contact(&world), Vec::new(), Vec::new());
         let gone = vec![false; bodies.len()];
         Ok(Self {
             world,
@@ -240,7 +240,7 @@ impl World {
     }
 }
 
-impl Engine<D> for World {
+impl Engine<D> for RapierWorld {
     fn kinematics(&self, solid: usize) -> Kinematics<D> {
         let body = self.body(solid);
         Kinematics {
@@ -262,11 +262,12 @@ impl Engine<D> for World {
         self.drive(driven)?;
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
         let spins: Vec<Angular> = (0..self.bodies.len()).map(|i| self.body(i).angvel()).collect();
-        self.met =
-            restitution::rebound(&mut self.world, dt, |a, b, mu| self.ties.pairs.bounce(a, b, &self.restitution, mu));
-        self.ties.tighten(&mut self.world, dt);
+        self.met = restitution::apply_impacts(&mut self.world, dt, |a, b, mu| {
+            self.ties.contact_pairs.restitution_and_friction(a, b, &self.restitution, mu)
+        });
+        self.ties.update_rope_limits(&mut self.world, dt);
         let turnings = wind(&mut self.world, &self.bodies, dt);
-        self.world.step_with_events(&self.ties.pairs, &());
+        self.world.step_with_events(&self.ties.contact_pairs, &());
         self.turned = unwind(&mut self.world, &self.bodies, turnings, &spins, dt);
         self.iterations = self.world.integration_parameters.num_solver_iterations;
         self.fall(dt, &before);
@@ -293,23 +294,23 @@ impl Engine<D> for World {
         body.set_angvel(to_angular(spin), true);
     }
 
-    fn overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
-        self.overlap_of(solid, start)
+    fn deepest_overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
+        self.find_deepest_overlap(solid, start)
     }
 
     fn add_body(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
-        self.admit_one(solid, start)
+        self.append_solid(solid, start)
     }
 
     fn remove_body(&mut self, solid: usize) {
-        self.oust_one(solid);
+        self.disable_solid(solid);
     }
 
-    fn contacts(&self) -> Vec<Contact<D>> {
-        contact_forces::contacts(&self.world, &self.bodies, &self.met)
+    fn contacts(&self) -> Vec<ContactForce<D>> {
+        contact_forces::pair_forces(&self.world, &self.bodies, &self.met)
     }
 
-    fn hold(&mut self, solid: usize, held: bool) {
+    fn set_held(&mut self, solid: usize, held: bool) {
         let body = &mut self.world.bodies[self.bodies[solid]];
         if held {
             body.set_linvel(Point::ZERO, true);
@@ -330,35 +331,39 @@ impl Engine<D> for World {
         }
     }
 
-    fn iterations(&self) -> usize {
+    fn solver_iterations(&self) -> usize {
         self.iterations
     }
 
-    fn impulses(&self, joint: usize) -> Vec<f64> {
-        self.ties.impulses(&self.world, joint, self.iterations)
+    fn joint_impulses(&self, joint: usize) -> Vec<f64> {
+        self.ties.joint_impulses(&self.world, joint, self.iterations)
     }
 
     fn rope_impulse(&self, rope: usize) -> f64 {
-        self.ties.rope(&self.world, rope, self.iterations)
+        self.ties.rope_impulse(&self.world, rope, self.iterations)
     }
 
     fn save(&self) -> Result<Vec<u8>> {
-        postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.met, &self.pushes)).map_err(restart)
+        postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.met, &self.pushes)).map_err(restart_error)
     }
 
     fn restore(&mut self, bytes: &[u8]) -> Result<()> {
-        let (engine, rest): (&str, &[u8]) = postcard::take_from_bytes(bytes).map_err(restart)?;
+        let (engine, rest): (&str, &[u8]) = postcard::take_from_bytes(bytes).map_err(restart_error)?;
         if engine != ENGINE {
-            return Err(restart(format!("they were written by {engine}, this is {ENGINE}")));
+            return Err(restart_error(format!("they were written by {engine}, this is {ENGINE}")));
         }
         let (world, tuned_for, met, pushes): (PhysicsWorld, f64, Vec<Impact>, Vec<Push>) =
-            postcard::from_bytes(rest).map_err(restart)?;
+            postcard::from_bytes(rest).map_err(restart_error)?;
         let same = world.bodies.len() == self.world.bodies.len()
             && world.impulse_joints.len() == self.world.impulse_joints.len()
             && self.bodies.iter().all(|&h| world.bodies.contains(h))
             && pushes.iter().all(|push| push.0 < self.bodies.len());
         if !same {
-            return Err(restart(format!("{} solids, where the scene has {}", world.bodies.len(), self.bodies.len())));
+            return Err(restart_error(format!(
+                "{} solids, where the scene has {}",
+                world.bodies.len(),
+                self.bodies.len()
+            )));
         }
         (self.world, self.tuned_for, self.met, self.pushes) = (world, tuned_for, met, pushes);
         Ok(())

@@ -1,12 +1,12 @@
 //! Dynamic boundary particles: they obey continuity as water does, but not momentum, and their density is
-//! kept from falling below a least one, ρ₀ unless the wall settles, so that a wall never sucks.
+//! limited from below by ρ₀, or by the target of a relaxed wall, so that a wall exerts no suction.
 
-/// Dynamic boundary condition [@crespo2007].
+/// Dynamic boundary condition @crespo2007.
 #[derive(Clone, Copy, Debug)]
 pub struct DynamicBoundary;
 
 impl DynamicBoundary {
-    /// The density (kg/m³) that a boundary particle of density `rho` shows, `least` being that at which its face bears nothing.
+    /// The density `rho` (kg/m³) of a boundary particle, limited from below by `least`, the density of a face without load.
     #[inline(always)]
     pub fn limited_density(&self, rho: f64, least: f64) -> f64 {
         rho.max(least)

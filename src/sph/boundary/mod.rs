@@ -1,4 +1,4 @@
-//! Walls: by what density a boundary particle shows itself to the water.
+//! Walls: the density, velocity and repulsion with which a boundary particle acts on the water.
 
 mod dynamic;
 mod relaxed_adami;

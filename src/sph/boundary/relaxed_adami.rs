@@ -1,49 +1,49 @@
-//! Settling walls: a boundary particle obeys continuity as a dynamic one does, and its density settles to that of the
-//! pressure that the water near it would have at its place:
+//! Relaxed Adami walls: a boundary particle obeys continuity, and its density relaxes to that of the water's pressure
+//! extrapolated to it (Adami, Hu and Adams 2012):
 //!
 //!   P_w = [Σ_f V_f P_f W_wf + (g − a_w)·Σ_f m_f r_wf W_wf] / Σ_f V_f W_wf,   r_wf = r_w − r_f,
 //!   dρ_w/dt = continuity + (ρ(P_w) − ρ_w)/τ,   τ = 10 h/c₀.
 //!
-//! Water that strikes it meets the dynamic wall; water at rest, or carried along, presses on it as on more water, and no gap
-//! is remembered. P_w is never so low that the face itself would be sucked at, P_w ≥ min(0, ρ₀ g·n' d), d deep along n' from
-//! the water: a face that bears nothing has 0 there, and less behind it if it looks down. To more pressure a particle settles only with
-//! the part of its [`Cover`]: a particle of spray would leave with more energy than it brought, and so would a film.
+//! An impact meets the dynamic wall; water at rest or carried along has the pressure of continued water, and leaves no gap.
+//! P_w has a lower limit, so that the face exerts no suction: P_w ≥ min(0, ρ₀ g·n' d), with d the depth along n' from the
+//! water. Pressure may always decrease; an increase is scaled by the
+//! [`SupportCoverage`], since spray and thin films would otherwise gain energy.
 
 use crate::{math::Vector, sph::Num};
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
 const RELAXATION_TIME: f64 = 10.0;
 
-/// Depths at which [`Cover`] is tabled, less one.
+/// Depths at which [`SupportCoverage`] is tabled, less one.
 const DEPTHS: usize = 64;
 
-/// The parts of a full weight, –, up to which and from which on water is scanty or ample.
+/// Shares of the full weight, –, below which no increase is applied and above which all of it is.
 const COVERAGE_MIN: f64 = 0.8;
 const COVERAGE_FULL: f64 = 1.0;
 
-/// The part of the way (–) to its goal that a boundary particle goes in `dt` (s), with h (m) and c₀ (m/s).
+/// Share (–) of the difference to its target that a boundary particle relaxes in `dt` (s), with h (m) and c₀ (m/s).
 pub fn relaxation(dt: f64, h: f64, c0: f64) -> f64 {
     1.0 - (-dt * c0 / (RELAXATION_TIME * h)).exp()
 }
 
-/// The sums of a boundary particle over the water near it [@adami2012].
+/// The extrapolation sums of a boundary particle over the water near it @adami2012.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallExtrapolation<N, const D: usize> {
     /// Σ V_f W_wf, –.
-    pub weight: N,
+    pub weight_sum: N,
     /// Σ V_f W_wf P_f/ρ₀, m²/s².
-    pub head: N,
+    pub pressure_sum: N,
     /// Σ V₀ W_wf r_wf, m.
-    pub arm: [N; D],
+    pub offset_sum: [N; D],
     /// Σ V_f W_wf v_f, m/s; summed where the wall's [`Slip`](super::Slip) asks for it.
-    pub velocity: [N; D],
+    pub velocity_sum: [N; D],
 }
 
 impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     /// All sums `zero`.
     #[inline(always)]
-    pub fn all(zero: N) -> Self {
-        Self { weight: zero, head: zero, arm: [zero; D], velocity: [zero; D] }
+    pub fn filled_with(zero: N) -> Self {
+        Self { weight_sum: zero, pressure_sum: zero, offset_sum: [zero; D], velocity_sum: [zero; D] }
     }
 
     /// Adds a water particle of pressure `p` (P/ρ₀, m²/s²) and specific volume `s` (ρ₀/ρ) at r_w − `r_wf` (m), seen with
@@ -51,9 +51,9 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     #[inline(always)]
     pub fn add(&mut self, w: N, p: N, s: N, r_wf: [N; D]) {
         let share = w * s;
-        self.weight = self.weight + share;
-        self.head = share.fma(p, self.head);
-        for (arm, r) in self.arm.iter_mut().zip(r_wf) {
+        self.weight_sum = self.weight_sum + share;
+        self.pressure_sum = share.fma(p, self.pressure_sum);
+        for (arm, r) in self.offset_sum.iter_mut().zip(r_wf) {
             *arm = w.fma(r, *arm);
         }
     }
@@ -62,7 +62,7 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     #[inline(always)]
     pub fn add_velocity(&mut self, w: N, s: N, v: [N; D]) {
         let share = w * s;
-        for (flow, v) in self.velocity.iter_mut().zip(v) {
+        for (flow, v) in self.velocity_sum.iter_mut().zip(v) {
             *flow = share.fma(v, *flow);
         }
     }
@@ -73,20 +73,21 @@ impl<const D: usize> WallExtrapolation<f64, D> {
     /// `depth` (m) below the face.
     pub fn pressure(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 {
         // At the rim of the support the weight is the square of a rounding: no water.
-        if self.weight < 1e-9 {
+        if self.weight_sum < 1e-9 {
             return 0.0;
         }
-        let arm = Vector::from(self.arm);
+        let arm = Vector::from(self.offset_sum);
         // The face is where the water is: a thin plate has two.
         let least = arm.try_normalize(0.0).map_or(0.0, |away| (g.dot(&away) * depth).min(0.0));
-        ((self.head + pull.dot(&arm)) / self.weight).max(least)
+        ((self.pressure_sum + pull.dot(&arm)) / self.weight_sum).max(least)
     }
 }
 
-/// How far water fills what a boundary particle can see of it, as told by the weight of its [`Fit`].
+/// Share of a boundary particle's kernel support before the face that water fills, from the weight of its
+/// [`WallExtrapolation`].
 #[derive(Clone, Debug)]
 pub struct SupportCoverage {
-    /// Weights of boundary particles behind a flat face with water all before it, at depths from 0 on.
+    /// Weights of boundary particles behind a flat face under water, at depths from 0.
     full: Vec<f64>,
     /// From one depth to the next, m.
     step: f64,
@@ -112,7 +113,7 @@ impl SupportCoverage {
         Self { full: full.collect(), step }
     }
 
-    /// The part (0 to 1) with which a boundary particle `depth` (m) below the face may settle to more pressure, if its fit has
+    /// The factor (0 to 1) of an increase of pressure at a boundary particle `depth` (m) below the face whose extrapolation has
     /// `weight`: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
     pub fn fraction(&self, weight: f64, depth: f64) -> f64 {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);

@@ -1,4 +1,4 @@
-//! The barrier: what keeps water out of a face when pressure alone does not, as in a film that a heavy body squeezes.
+//! Repulsion: keeps water out of a face where pressure alone does not, as in a film under a heavy body.
 //!
 //! Water nearer than r₀ = ¾ dp to a boundary particle is pushed away from it with (A c₀²/dp²)(1 − r²/r₀²)² r, at any pressure. Water
 //! before a face comes nearer only if it is pressed a quarter of dp into it: first rows are dp from the boundary particles, and
@@ -13,7 +13,7 @@ const RANGE: f64 = 0.75;
 /// no stiffer in a step than sound is.
 const STRENGTH: f64 = 2.0;
 
-/// The barrier of one kernel.
+/// The repulsion under one kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct Repulsion {
     /// 1/r₀², 1/m².
@@ -23,7 +23,7 @@ pub struct Repulsion {
 }
 
 impl Repulsion {
-    /// The barrier under `kernel`.
+    /// The repulsion under `kernel`.
     pub fn new<K: Kernel, const D: usize>(kernel: K, medium: &FluidProperties<D>) -> Self {
         let range2 = (RANGE * medium.dp).powi(2);
         let slope: f64 = kernel.normalised_on_lattice(medium).slope(0.25 * range2);

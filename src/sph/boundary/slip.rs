@@ -1,11 +1,11 @@
-//! Slip: how the water is held along a face.
+//! Slip: the tangential velocity of the water at a face.
 //!
-//! Partial: boundary particles show the water their solid's velocity v_w. No slip: where the water near a boundary particle, which
-//! lies d below the face, moves on the mean with ⟨v⟩ at a height d̄ above it, the particle shows along the face
+//! Partial: boundary particles act with the velocity v_w of their solid. No slip: where the water near a boundary particle, which
+//! lies d below the face, has the mean velocity ⟨v⟩ at a height d̄ above it, the particle acts along the face with
 //!
 //!   u_t = v_w − (d/d̄)(⟨v⟩ − v_w)_t,
 //!
-//! which continues a shear that is linear from the face on exactly. Free slip: no viscous force between water and solid.
+//! which continues a linear shear exactly. Free slip: no viscous force between water and solid.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,21 +13,21 @@ use serde::{Deserialize, Serialize};
 use super::WallExtrapolation;
 use crate::math::Vector;
 
-/// How the water is held along solids. Scene word `model.slip`.
+/// Slip along solids. Scene key `model.slip`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Slip {
-    /// The water sticks to the boundary particles, half a dp and more behind the face.
+    /// No slip at the boundary particles, which lie half a dp and more behind the face.
     Partial,
-    /// The water sticks to the face [@morris1997].
+    /// No slip at the face @morris1997.
     None,
-    /// Nothing holds it.
+    /// No tangential force.
     Free,
 }
 
 impl Slip {
     /// Share of the viscosity that acts between water and solids, –.
-    pub fn wall_share(self) -> f64 {
+    pub fn wall_viscosity_factor(self) -> f64 {
         if self == Self::Free { 0.0 } else { 1.0 }
     }
 }
@@ -43,15 +43,15 @@ pub fn no_slip_velocity<const D: usize>(
     normal: &Vector<D>,
     depth: f64,
 ) -> Vector<D> {
-    if fit.weight < 1e-9 {
+    if fit.weight_sum < 1e-9 {
         return v;
     }
     // r_wf points from the water to the wall.
-    let height = -normal.dot(&Vector::from(fit.arm)) / fit.weight - depth;
+    let height = -normal.dot(&Vector::from(fit.offset_sum)) / fit.weight_sum - depth;
     if height <= 0.0 {
         return v;
     }
-    let past = Vector::from(fit.velocity) / fit.weight - v;
+    let past = Vector::from(fit.velocity_sum) / fit.weight_sum - v;
     let along = past - normal * normal.dot(&past);
     v - along * (depth / height).min(MAX_RATIO)
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sph::{FluidProperties, Num, Pair, Term};
 
-/// Fourtakas' diffusion [@fourtakas2019]: still water stays still.
+/// Fourtakas' diffusion @fourtakas2019: still water stays still.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Fourtakas {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Fourtakas, FourtakasTerm};
 use crate::{math::Vector, sph::FluidProperties};
 
-/// Molteni & Colagrossi's diffusion [@molteni2009]; eq. (15) of [@pirkhalili2023] with the sign that diffuses.
+/// Molteni & Colagrossi's diffusion @molteni2009; eq. (15) of @pirkhalili2023 with the sign that diffuses.
 /// It lets a deep tank at rest sink slowly: see [`super::Fourtakas`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use super::{Kernel, Num};
 
-/// The cubic spline [@monaghan1985]; eq. (3) of [@pirkhalili2023].
+/// The cubic spline @monaghan1985; eq. (3) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic {
     half_inv_h: f64,

@@ -3,7 +3,7 @@
 //! A lattice of pressure P whose particles are displaced by u exp(ik·r) is pulled back, besides by sound, by
 //! (2P/ρ₀) H(k) u, H(k) = Σ V ∇∇W (1 − cos k·r): the pressure force of the displaced places at the densities of before. Where H has
 //! less than nothing across the direction in which sound acts, S = Σ V ∇W sin k·r, a shear of the lattice grows like
-//! exp(t √(2 P |μ|/ρ₀)/dp), μ = dp² H, and the water rearranges itself [@monaghan2000]. Pairing is one such mode.
+//! exp(t √(2 P |μ|/ρ₀)/dp), μ = dp² H, and the water rearranges itself @monaghan2000. Pairing is one such mode.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::{Kernel, Num};
 
-/// Wendland's C2 kernel [@wendland1995]: particles do not pair under it at any h.
+/// Wendland's C2 kernel @wendland1995: particles do not pair under it at any h.
 #[derive(Clone, Copy, Debug)]
 pub struct Wendland {
     half_inv_h: f64,

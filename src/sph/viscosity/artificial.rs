@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sph::{FluidProperties, Num, Pair, Term};
 
-/// Monaghan's artificial viscosity [@monaghan1992]; eqs. (4), (5) of [@pirkhalili2023]. c̄ is c₀: both
+/// Monaghan's artificial viscosity @monaghan1992; eqs. (4), (5) of @pirkhalili2023. c̄ is c₀: both
 /// particles' speeds of sound differ from it by less than 3 % as density varies below 1 %.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -38,6 +38,6 @@ pub struct ArtificialTerm {
 impl<const D: usize> Term<D> for ArtificialTerm {
     #[inline(always)]
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        (ab.constant(self.alpha_c_h) * ab.velocity_along_r.min(ab.constant(0.0))).fma(ab.drag, sum)
+        (ab.constant(self.alpha_c_h) * ab.velocity_along_r.min(ab.constant(0.0))).fma(ab.viscous_factor, sum)
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sph::{Num, Pair, Term, Units};
 
-/// Laminar viscosity [@lo2002]; eqs. (6), (7) of [@pirkhalili2023].
+/// Laminar viscosity @lo2002; eqs. (6), (7) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Laminar {
@@ -35,10 +35,10 @@ pub struct LaminarTerm {
 }
 
 impl<const D: usize> Term<D> for LaminarTerm {
-    const DRAG: bool = true;
+    const ALONG_V: bool = true;
 
     #[inline(always)]
     fn along_v<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
-        (ab.constant(2.0 * self.nu0) * ab.r2).fma(ab.drag, sum)
+        (ab.constant(2.0 * self.nu0) * ab.r2).fma(ab.viscous_factor, sum)
     }
 }

@@ -29,7 +29,7 @@ pub enum Viscosity {
 }
 
 /// Continues with the terms of a viscosity: `fluid` between water particles, `wall` between water and solids.
-pub trait WithTerms<const D: usize> {
+pub trait TermConsumer<const D: usize> {
     /// The result.
     type Output;
     /// Continues.
@@ -39,7 +39,7 @@ pub trait WithTerms<const D: usize> {
 impl Viscosity {
     /// Calls `next` with the terms in the given units. `wall_share` (–) is the part of the viscosity that acts between water and
     /// solids, `viscous_sum` that of a viscous force that η² leaves on the lattice.
-    pub fn terms<const D: usize, N: WithTerms<D>>(
+    pub fn terms<const D: usize, N: TermConsumer<D>>(
         self,
         properties: &FluidProperties<D>,
         units: &Units,
@@ -64,7 +64,7 @@ impl Viscosity {
         }
     }
 
-    /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity [@morris1997].
+    /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity @morris1997.
     pub fn step_limit(&self, h: f64) -> f64 {
         let nu0 = match self {
             Self::Laminar(law) => law.nu0,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{Laminar, LaminarTerm};
 use crate::sph::{AuxiliarySums, FluidProperties, Num, Pair, Term, Units};
 
-/// Laminar viscosity with a Smagorinsky stress [@dalrymple2006]; eqs. (6)–(8) of [@pirkhalili2023]. The
+/// Laminar viscosity with a Smagorinsky stress @dalrymple2006; eqs. (6)–(8) of @pirkhalili2023. The
 /// paper's k is the trace S_kk: only so do its units agree with 2 S_ij beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -21,7 +21,7 @@ pub struct Sps {
 }
 
 impl Default for Sps {
-    /// Water with the constants of [@dalrymple2006].
+    /// Water with the constants of @dalrymple2006.
     fn default() -> Self {
         Self { nu0: 1e-6, smagorinsky: 0.12, isotropic: 0.0066 }
     }

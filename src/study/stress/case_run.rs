@@ -11,7 +11,7 @@ use super::{
     measurements::Measurements,
 };
 use crate::{
-    error::{Error, Kind, Result},
+    error::{Error, ErrorKind, Result},
     model::Dimension,
     run::{missing_dimension, thread_pool},
     simulation::Simulation,
@@ -91,7 +91,7 @@ impl CaseRun {
             }));
             trial.end = match end {
                 Ok(Ok(end)) => end,
-                Ok(Err(error)) if error.kind == Kind::Fault => CaseEnd::Stopped(one_line(&error)),
+                Ok(Err(error)) if error.kind == ErrorKind::Fault => CaseEnd::Stopped(one_line(&error)),
                 Ok(Err(error)) => CaseEnd::Refused(one_line(&error)),
                 Err(panic) => CaseEnd::Panicked(panic_message(panic.as_ref())),
             };
@@ -117,7 +117,7 @@ impl CaseRun {
         Dim<D>: Dimension<D>,
     {
         let built = case.scene.build::<D>()?;
-        let level = built.setup.levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let level = built.setup.surface_levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         // A rescue would move the border that is asked for.
         let tied = !built.setup.constraints.is_empty();
         let mut sim = Simulation::new(built.setup)?.without_rollback();
@@ -127,7 +127,7 @@ impl CaseRun {
         }
         self.water = sim.system().fluid().len();
         let mut measure = Measurements::new(case, &sim, level)?;
-        let (mut spent, mut passes) = (0.0, sim.passes());
+        let (mut spent, mut passes) = (0.0, sim.force_passes());
         let end = loop {
             if sim.time() >= case.scene.until {
                 break Ok(CaseEnd::Reached);
@@ -140,8 +140,9 @@ impl CaseRun {
                 break Err(error);
             }
             measure.step(&sim, sim.time() - before)?;
-            spent += ((sim.passes() - passes) as f64) * (self.water + sim.system().boundary_near_fluid_count()) as f64;
-            passes = sim.passes();
+            spent +=
+                ((sim.force_passes() - passes) as f64) * (self.water + sim.system().boundary_near_fluid_count()) as f64;
+            passes = sim.force_passes();
         };
         (self.time_s, self.steps) = (sim.time(), sim.steps());
         self.figures = measure.figures();
@@ -156,7 +157,7 @@ impl CaseRun {
 
 /// An error in one line.
 fn one_line(error: &Error) -> String {
-    error.what.lines().next().unwrap_or_default().into()
+    error.message.lines().next().unwrap_or_default().into()
 }
 
 fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {

@@ -9,8 +9,8 @@ use serde::Deserialize;
 
 use super::criteria::{Bound, Criteria, MotionBound, SolidBound};
 use crate::{
-    error::{Error, Kind, Result, nearest},
-    math::expression::Field,
+    error::{Error, ErrorKind, Result, nearest_name},
+    math::expression::ScalarField,
     output::checkpoint::fnv1a,
     scene::Scene,
 };
@@ -93,8 +93,9 @@ struct MapsFile {
 /// `File` if it cannot be read; `Scene` if it is no list of maps.
 pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> {
     let Some(path) = file else { return read(TEXT, NAME) };
-    let text = std::fs::read_to_string(path)
-        .map_err(|why| Error::file(path, why).help("name a file of [[map]] entries; docs/stability.md shows one"))?;
+    let text = std::fs::read_to_string(path).map_err(|why| {
+        Error::file(path, why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
+    })?;
     read(&text, &path.display().to_string())
 }
 
@@ -123,11 +124,11 @@ pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result
     let map = |name: &String| {
         all.iter().find(|map| map.name == *name).cloned().ok_or_else(|| {
             let list = "`pontoon stress --list` lists all";
-            let help = match nearest(name, all.iter().map(|map| map.name.as_str())) {
+            let help = match nearest_name(name, all.iter().map(|map| map.name.as_str())) {
                 Some(near) => format!("did you mean {near:?}? {list}"),
                 None => list.into(),
             };
-            Error::new(Kind::Usage, format!("there is no map {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no map {name:?}")).help(help)
         })
     };
     names.iter().map(map).collect()
@@ -164,7 +165,7 @@ impl StressMap {
         let here = |error: Error| error.at(self.file.clone(), None, format!("{} at {}", self.name, words.join(", ")));
         let fill = |text: &str| self.substituted(text, &values, 0).map_err(here);
         let scene = Scene::parse(&fill(&self.scene)?, Path::new(""), &[]).map_err(|mut error| {
-            error.what = format!("map {} at {}: {}", self.name, words.join(", "), error.what);
+            error.message = format!("map {} at {}: {}", self.name, words.join(", "), error.message);
             error
         })?;
         let judge = self.judge.clone().with_defaults(&self.default_criteria);
@@ -202,7 +203,7 @@ impl StressMap {
             return self.substituted(part, values, depth + 1);
         }
         let number = |i: usize| values.get(i).and_then(|value| number(value)).unwrap_or(f64::NAN);
-        let value = Field::<2>::parse(hole)?.at(&[number(0), number(1)].into());
+        let value = ScalarField::<2>::parse(hole)?.value_at(&[number(0), number(1)].into());
         if !value.is_finite() {
             let help = "a formula of x and y, the numbers along the axes, or the name of a part";
             return Err(Error::scene(format!("the hole \"{hole}\" is {value}")).help(help));
@@ -237,73 +238,5 @@ fn number(value: &toml::Value) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const TINY: &str = r#"
-        [part]
-        tank = "name = \"tank\"\nfixed = true\nshape = { tank = { size = [${0.02*x}, 0.3] } }"
-        [[map]]
-        name = "tiny"
-        about = "A tank."
-        x = { label = "width", unit = "dp", values = [10, 20, 30] }
-        y = { label = "kernel", unit = "", values = ["wendland", "cubic"] }
-        scene = '''
-        dimension = 2
-        dp = 0.02
-        until = 0.1
-        model = { kernel = "${y}" }
-        water = [{ fill = { box = { min = [0, 0], max = [${0.02*x}, 0.1] } } }]
-        [[solid]]
-        ${tank}
-        '''"#;
-
-    #[test]
-    fn the_holes_of_a_scene_are_filled_with_formulae_words_and_parts() -> Result<()> {
-        let map = read(TINY, "tiny")?.remove(0);
-        let cases = map.cases(false)?;
-        assert_eq!((cases.len(), map.count(), map.cases(true)?.len()), (6, 6, 4));
-        let text = cases[5].scene.to_toml()?;
-        assert!(text.contains("cubic") && text.contains("0.6"), "{text}");
-        assert_eq!(cases[5].values, ["30", "cubic"]);
-        assert!((0..6).all(|i| cases[..i].iter().all(|case| case.key != cases[i].key)), "each has its own key");
-        Ok(())
-    }
-
-    #[test]
-    fn a_hole_that_cannot_be_filled_is_told_with_its_map() -> Result<()> {
-        for (from, to, said) in
-            [("${y}", "${1/0}", "is inf"), ("${y}", "${ypsilon}", "not known"), ("${tank}", "${tank", "not closed")]
-        {
-            let map = read(&TINY.replace(from, to), "tiny")?.remove(0);
-            let error = map.cases(false).err().map(|e| e.to_string()).unwrap_or_default();
-            assert!(error.contains(said) && error.contains("tiny"), "{error}");
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn every_case_of_the_program_can_be_built_or_is_refused_in_words() -> Result<()> {
-        let all = maps(None)?;
-        let cases = all.iter().map(|map| map.cases(false)).collect::<Result<Vec<_>>>()?.concat();
-        assert!(cases.len() >= 200, "{} cases: the matrix is to have 200", cases.len());
-        for case in &cases {
-            assert!(case.criteria.energy.is_some() && case.criteria.walls.is_some(), "{}", case.map);
-            // A refusal is an outcome too, as long as it says what to write.
-            if let Err(error) = case.scene.plan() {
-                assert!(error.kind == Kind::Scene && error.help.is_some(), "{}: {error}", case.map);
-            }
-        }
-        for map in &all {
-            assert!(map.about.ends_with('.'), "{}: {:?}", map.name, map.about);
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn a_map_that_is_not_there_names_the_nearest() -> Result<()> {
-        let error = select_maps(maps(None)?, &["flaot".to_string()], false).err();
-        assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"float\"?")));
-        Ok(())
-    }
-}
+#[path = "../../../tests/unit/study/stress/maps.rs"]
+mod tests;

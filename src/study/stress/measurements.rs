@@ -102,7 +102,7 @@ impl<'a, const D: usize> Measurements<'a, D> {
             self.record_max("momentum", off / self.momentum.1.max(pushed.norm()).max(f64::MIN_POSITIVE));
         }
         let courses = self.known_motions.iter().zip(&judge.motion).map(|((probe, column, formula), course)| {
-            let off = probe.sample(sim)[*column] - formula.at(sim.time()).0;
+            let off = probe.sample(sim)[*column] - formula.value_and_rate(sim.time()).0;
             (motion_figure(course), off.abs())
         });
         for (name, off) in courses.collect::<Vec<_>>() {

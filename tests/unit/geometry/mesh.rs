@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    geometry::{Shape, SkinPoint},
+    geometry::{BoundaryPoint, Shape},
     math::Pose,
 };
 
@@ -43,7 +43,7 @@ fn ball(radius: f64, n: u32) -> Mesh {
 }
 
 fn shape(mesh: Mesh) -> Shape<3> {
-    Shape::Mesh { mesh: Arc::new(mesh), contact: Touchable::default() }
+    Shape::Mesh { mesh: Arc::new(mesh), contact: ContactGeometry::default() }
 }
 
 fn boxes(size: [f64; 3]) -> (Shape<3>, Shape<3>) {
@@ -58,23 +58,25 @@ fn refusal(points: &[Vector<3>], facets: &[[u32; 3]]) -> String {
 #[test]
 fn a_mesh_that_draws_a_box_has_its_moments() {
     let (drawn, block) = boxes([0.3, 0.2, 0.5]);
-    let (a, b) = (drawn.volume(), block.volume());
+    let (a, b) = (drawn.volume_properties(), block.volume_properties());
     // Thirty sums and products: a few units in the last place.
     assert!((a.volume - b.volume).abs() < 1e-15 && a.centroid.norm() < 1e-15);
     assert!((a.second_moment - b.second_moment).norm() < 1e-12 * b.second_moment.norm());
-    assert!((drawn.surface() - block.surface()).abs() < 1e-15);
+    assert!((drawn.surface_area() - block.surface_area()).abs() < 1e-15);
     assert_eq!(drawn.bounds(), block.bounds());
 }
 
 #[test]
 fn round_meshes_have_the_moments_of_their_polyhedra() {
     // An octahedron: V = 4/3 r³, ∫x² = V r²/10.
-    let eight = ball(2.0, 1).volume();
+    let eight = ball(2.0, 1).volume_properties();
     let volume = 4.0 / 3.0 * 8.0;
     assert!((eight.volume - volume).abs() < 1e-13 * volume);
     assert!((eight.second_moment - Matrix::identity() * (volume * 0.4)).norm() < 1e-12 * volume);
     // What a fine polyhedron lacks to its ball falls with the square of its edges.
-    let lack = |n: u32| 1.0 - ball(2.0, n).volume().volume / Shape::<3>::Ball { radius: 2.0 }.volume().volume;
+    let lack = |n: u32| {
+        1.0 - ball(2.0, n).volume_properties().volume / Shape::<3>::Ball { radius: 2.0 }.volume_properties().volume
+    };
     let (coarse, fine) = (lack(15), lack(31));
     assert!(fine > 0.0 && (coarse / fine - 4.0).abs() < 0.1, "{coarse} {fine}");
 }
@@ -83,7 +85,10 @@ fn round_meshes_have_the_moments_of_their_polyhedra() {
 fn moments_do_not_depend_on_where_the_mesh_lies() {
     let (points, facets) = cuboid([0.3, 0.2, 0.5]);
     let there: Vec<_> = points.iter().map(|p| p + Vector::from([100.0, -50.0, 20.0])).collect();
-    let (near, far) = (Mesh::new(&points, &facets).unwrap().volume(), Mesh::new(&there, &facets).unwrap().volume());
+    let (near, far) = (
+        Mesh::new(&points, &facets).unwrap().volume_properties(),
+        Mesh::new(&there, &facets).unwrap().volume_properties(),
+    );
     // The places themselves are only exact to 1e-14 m.
     assert!((near.second_moment - far.second_moment).norm() < 1e-12 * near.second_moment.norm());
 }
@@ -94,7 +99,7 @@ fn a_drawn_box_displaces_what_the_box_does() {
     for (turn, level) in [([0.0; 3], 0.05), ([0.3, -0.4, 0.5], 0.11), ([1.2, 0.1, 0.0], -0.08), ([0.0, 0.0, 1.0], 9.0)]
     {
         let pose = Pose::rotated(Vector::from([0.1, 0.2, 0.03]), &turn);
-        let (a, b) = (drawn.submerged(&pose, level), block.submerged(&pose, level));
+        let (a, b) = (drawn.submerged_volume(&pose, level), block.submerged_volume(&pose, level));
         assert!((a.0 - b.0).abs() < 1e-15 && (a.1 - b.1).norm() < 1e-12, "{a:?} {b:?}");
     }
 }
@@ -117,7 +122,7 @@ proptest! {
         let sides = (0..5).map(|i| (i, (i + 1) % 5)).flat_map(|(a, b)| [[a, b, b + 5], [a, b + 5, a + 5]]);
         let prism = Mesh::new(&points, &ends.chain(sides).collect::<Vec<_>>()).unwrap();
         let exact = flat.signed_distance(&Vector::from(x));
-        prop_assert!((prism.distance(&Vector::from([x[0], x[1], z])).0 - exact).abs() < 1e-12);
+        prop_assert!((prism.distance_and_normal(&Vector::from([x[0], x[1], z])).0 - exact).abs() < 1e-12);
     }
 }
 
@@ -125,7 +130,7 @@ proptest! {
 fn on_the_surface_the_normal_is_that_of_the_surface() {
     let (points, facets) = cuboid([0.3, 0.2, 0.5]);
     let mesh = Mesh::new(&points, &facets).unwrap();
-    let normal = |x: [f64; 3]| mesh.distance(&Vector::from(x)).1;
+    let normal = |x: [f64; 3]| mesh.distance_and_normal(&Vector::from(x)).1;
     assert!((normal([0.02, 0.03, 0.25]) - Vector::from([0.0, 0.0, 1.0])).norm() < 1e-12);
     // On an edge or a corner it is a face's, or between: it points out of all of them, or along.
     for x in [[0.15, 0.1, 0.0], [0.15, 0.1, 0.25]] {
@@ -147,7 +152,7 @@ fn what_is_no_solid_is_refused_with_the_place() {
     assert!(refusal(&points, &doubled).contains("more than two facets"));
     assert!(refusal(&points, &[[0, 1, 8]]).contains("a corner that is not there"));
     assert!(refusal(&points, &[[0, 1, 1]]).contains("without a facet"));
-    assert!(refusal(&points, &vec![[0, 1, 2]; MOST_FACETS + 1]).contains("the most is"));
+    assert!(refusal(&points, &vec![[0, 1, 2]; MAX_FACETS + 1]).contains("the most is"));
     assert!(refusal(&points, &[[0, 1, 2], [1, 0, 2]]).contains("no volume"));
     let mut lost = points.clone();
     lost[5][1] = f64::NAN;
@@ -175,7 +180,7 @@ fn a_shell_within_a_shell_faces_the_other_way() {
         };
         let (points, facets): (Vec<_>, Vec<_>) =
             (boxes.iter().flat_map(place).collect(), (0..).zip(boxes).flat_map(facet).collect());
-        Mesh::new(&points, &facets).map(|mesh| mesh.volume().volume).map_err(|e| e.to_string())
+        Mesh::new(&points, &facets).map(|mesh| mesh.volume_properties().volume).map_err(|e| e.to_string())
     };
     let twice = of(&[(1.0, false, 0.0), (0.5, false, 0.0)]).unwrap_err();
     assert!(twice.contains("1.000e0 m³ count twice") && twice.contains("has to face inward"), "{twice}");
@@ -199,8 +204,8 @@ fn corners_in_one_place_are_one_and_facets_without_area_are_left_out() {
 }
 
 /// The smallest distance between two points, and the largest from one to its nearest neighbour.
-fn spacing(skin: &[SkinPoint<3>]) -> (f64, f64) {
-    let nearest = |p: &SkinPoint<3>| {
+fn spacing(skin: &[BoundaryPoint<3>]) -> (f64, f64) {
+    let nearest = |p: &BoundaryPoint<3>| {
         let others = skin.iter().map(|q| (q.r - p.r).norm()).filter(|d| *d > 0.0);
         others.fold(f64::INFINITY, f64::min)
     };
@@ -210,25 +215,26 @@ fn spacing(skin: &[SkinPoint<3>]) -> (f64, f64) {
 /// The skin's volume over the solid's, when it has all layers; asserts that it lies as it should: at its depth, or up to
 /// a quarter dp short of it where farther from the nearest face is nearer to the one opposite.
 fn filled(shape: &Shape<3>, dp: f64) -> f64 {
-    let skin = shape.skin(dp, 99);
+    let skin = shape.boundary_points(dp, 99);
     for p in &skin {
         let depth = |x: &Vector<3>| -shape.signed_distance(x) / dp;
         let short = f64::from(p.layer) + 0.5 - depth(&p.r);
-        let farther = depth(&(p.r - shape.outward(&p.r, 1e-3 * dp) * (0.1 * dp)));
+        let farther = depth(&(p.r - shape.outward_normal(&p.r, 1e-3 * dp) * (0.1 * dp)));
         let halfway = p.layer > 0 && (0.0..0.251).contains(&short) && farther < depth(&p.r);
         assert!(short.abs() < 1e-3 || halfway, "layer {} is {short} dp short", p.layer);
     }
     let (least, most) = spacing(&skin);
     // As the skins of the other shapes.
     assert!(least >= 0.7 * dp && most <= 1.2 * dp, "points {} to {} dp apart", least / dp, most / dp);
-    skin.len() as f64 * dp.powi(3) / shape.volume().volume
+    skin.len() as f64 * dp.powi(3) / shape.volume_properties().volume
 }
 
 #[test]
 fn a_drawn_cube_has_as_many_boundary_particles_as_the_cube() {
     let (drawn, block) = boxes([1.0; 3]);
     for layers in 1..=4 {
-        let (a, b) = (drawn.skin(0.05, layers).len() as f64, block.skin(0.05, layers).len() as f64);
+        let (a, b) =
+            (drawn.boundary_points(0.05, layers).len() as f64, block.boundary_points(0.05, layers).len() as f64);
         assert!((a / b - 1.0).abs() < 0.005, "{a} for {b} in {layers} layers");
     }
     let volume = filled(&drawn, 0.05);

@@ -8,8 +8,9 @@ use crate::{
     geometry::Shape,
     math::{Bivector, Pose, Vector, expression::Formula},
     solid::{
-        Constraints, ContactSpec, Dim, Drive, Elastic, End, Engine, ForceSpec, FreeBody, HasEngine, Hold, JointKind,
-        JointSpec, Kinematics, Law, Load, Motion, Motor, Role, RopeSpec, SolidSpec, SpringSpec,
+        Constraints, ContactSpec, Dim, Engine, ForceSpec, FreeBody, HasEngine, InitialHold, JointKind, JointSpec,
+        Kinematics, LineEnd, Load, Motor, MotorCommand, PrescribedMotion, Role, RopeSpec, SolidSpec, SpringParameters,
+        SpringSpec, TimeFunction,
     },
 };
 
@@ -33,7 +34,7 @@ where
     }
 
     fn made(solids: Vec<SolidSpec<D>>, links: Constraints<D>, gravity: f64) -> Result<Self> {
-        let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+        let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
         let mut down = Vector::zeros();
         down[D - 1] = -gravity;
         let engine = Dim::<D>::engine(&solids, &start, &links, &down, 0.01)?;
@@ -42,7 +43,7 @@ where
 
     pub(in crate::solid) fn now(&self) -> Vec<Kinematics<D>> {
         let one = |(i, solid): (usize, &SolidSpec<D>)| match &solid.role {
-            Role::Fixed => solid.start(),
+            Role::Fixed => solid.initial_kinematics(),
             Role::Driven(motion) => motion.kinematics(&solid.pose, self.t),
             Role::Free(_) => self.engine.kinematics(i),
         };
@@ -56,7 +57,7 @@ where
             _ => Load::zero(),
         };
         let loads: Vec<_> = self.solids.iter().map(weight).collect();
-        let around = LoadContext { wet: vec![false; loads.len()], loads, crossing: 0.0 };
+        let around = LoadContext { wet: vec![false; loads.len()], loads, sound_crossing_time: 0.0 };
         self.rig.apply_loads(&mut *self.engine, &before, &around, [self.t, dt]);
         self.t += dt;
         let driven = |solid: &SolidSpec<D>| match &solid.role {
@@ -148,8 +149,9 @@ pub(in crate::solid) fn joined<const D: usize>(joint: JointSpec<D>) -> Constrain
 fn a_thrust_turns_with_its_body_and_wind_does_not() {
     let run = |turns: bool, at: Option<Vector<2>>| {
         let solids = vec![bar::<2>("boat", 0.4, point(0.0, 0.0), true)];
-        let force = vec![Law::constant(12.0), Law::constant(0.0)];
-        let thrust = ForceSpec { name: "thrust".into(), solid: 0, at, force, torque: vec![], turns };
+        let force = vec![TimeFunction::constant(12.0), TimeFunction::constant(0.0)];
+        let thrust =
+            ForceSpec { name: "thrust".into(), solid: 0, at, force, torque: vec![], rotates_with_solid: turns };
         let mut air = Air::new(solids, Constraints { forces: vec![thrust], ..Constraints::default() }, 0.0);
         air.engine.set_velocity(0, &Vector::zeros(), &Bivector::from_axial(&[PI]));
         air.run(1e-4, 1.0);
@@ -184,7 +186,7 @@ fn slides(contact: Option<ContactSpec>) -> f64 {
 #[test]
 fn a_box_slides_above_the_angle_of_friction_and_sticks_below() {
     let pair =
-        |friction: f64| ContactSpec { between: [1, 0], touch: true, friction: Some(friction), restitution: None };
+        |friction: f64| ContactSpec { between: [1, 0], can_touch: true, friction: Some(friction), restitution: None };
     let (limit, slope) = (20f64.to_radians().tan(), 20f64.to_radians());
     assert!(slides(None) < 1e-6, "tan 20° is below the mean of both frictions, 0.5");
     assert!(slides(Some(pair(1.02 * limit))) < 1e-3, "sticks");
@@ -194,15 +196,18 @@ fn a_box_slides_above_the_angle_of_friction_and_sticks_below() {
         let found = slides(Some(pair(friction)));
         assert!((found - exact).abs() < 1e-2 * exact + 1e-3, "{friction}: {found}, exact {exact}");
     }
-    let apart = ContactSpec { touch: false, ..pair(0.0) };
+    let apart = ContactSpec { can_touch: false, ..pair(0.0) };
     assert!((slides(Some(apart)) / G - 1.0).abs() < 1e-9, "falls through");
 }
 
 #[test]
 fn a_held_body_stays_until_it_is_let_go() {
     let solids = vec![bar::<2>("stone", 0.2, point(0.0, 0.0), true)];
-    let mut air =
-        Air::new(solids, Constraints { holds: vec![Hold { solid: 0, until: 0.5 }], ..Constraints::default() }, G);
+    let mut air = Air::new(
+        solids,
+        Constraints { holds: vec![InitialHold { solid: 0, until: 0.5 }], ..Constraints::default() },
+        G,
+    );
     air.engine.push(0, &Vector::from([50.0, 0.0]), &Vector::from([0.0, 0.3]));
     air.run(1e-3, 0.4999);
     assert_eq!((air.now()[0].velocity, air.now()[0].centre), (Vector::zeros(), Vector::zeros()));
@@ -218,35 +223,37 @@ where
     let make = || {
         let mut solids: Vec<SolidSpec<D>> =
             (0..4).map(|i| bar(&format!("link{i}"), 0.3, point(0.15 + 0.3 * f64::from(i), 0.0), true)).collect();
-        let motion = Motion::slide(point(0.0, 1.0), Law::Formula(Formula::parse("0.05*sin(3*t)").unwrap()));
+        let motion =
+            PrescribedMotion::slide(point(0.0, 1.0), TimeFunction::Formula(Formula::parse("0.05*sin(3*t)").unwrap()));
         solids.push(SolidSpec { role: Role::Driven(motion), ..bar("cart", 0.3, point(1.35, 0.0), true) });
         let mut joints: Vec<_> =
             (0..4).map(|i| hinge([Some(i), Some(i + 1)], point(0.3 * (i + 1) as f64, 0.0))).collect();
         joints[1].motor =
-            Some(Motor { force: Law::Formula(Formula::parse("sin(5*t)").unwrap()), ..Motor::damping(3.0) });
+            Some(Motor { force: TimeFunction::Formula(Formula::parse("sin(5*t)").unwrap()), ..Motor::damping(3.0) });
         joints[2].limits = Some([-0.3, 0.3]);
         for (i, joint) in joints.iter_mut().enumerate() {
             joint.name = format!("hinge{i}");
         }
         let line = |a: Option<usize>, x: f64, y: f64| {
-            [End { solid: Some(0), at: point(0.1, 0.0) }, End { solid: a, at: point(x, y) }]
+            [LineEnd { solid: Some(0), at: point(0.1, 0.0) }, LineEnd { solid: a, at: point(x, y) }]
         };
         let spring = SpringSpec {
             name: "spring".into(),
             ends: line(None, 0.1, 1.0),
             stiffness: 200.0,
             damping: 5.0,
-            length: None,
+            rest_length: None,
             tension_only: true,
         };
-        let rope = RopeSpec { name: "rope".into(), ends: line(None, 0.1, 0.3), length: None };
+        let rope = RopeSpec { name: "rope".into(), ends: line(None, 0.1, 0.3), max_length: None };
         Air::new(solids, Constraints { joints, springs: vec![spring], ropes: vec![rope], ..Constraints::default() }, G)
     };
     let mut whole = make();
     whole.run(5e-4, 0.3);
-    let drive = Drive { force: 1.0, position: 0.1, velocity: 0.0, stiffness: 10.0, damping: 1.0, strongest: 5.0 };
-    whole.rig.drive(0, Some(drive));
-    *whole.rig.elastic(0) = Elastic { stiffness: 300.0, damping: 1.0, length: 0.9 };
+    let drive =
+        MotorCommand { force: 1.0, position: 0.1, velocity: 0.0, stiffness: 10.0, damping: 1.0, max_force: 5.0 };
+    whole.rig.set_motor(0, Some(drive));
+    *whole.rig.spring_parameters(0) = SpringParameters { stiffness: 300.0, damping: 1.0, rest_length: 0.9 };
     whole.run(5e-4, 0.4);
     let (kept, state, t) = (whole.engine.save().unwrap(), whole.rig.save(), whole.t);
     let mut other = make();
@@ -256,13 +263,13 @@ where
     whole.run(5e-4, 0.8);
     other.run(5e-4, 0.8);
     assert_eq!(whole.now(), other.now());
-    let readings = |air: &Air<D>| (0..4).map(|i| air.rig.joint(i)).collect::<Vec<JointReading<D>>>();
+    let readings = |air: &Air<D>| (0..4).map(|i| air.rig.joint_reading(i)).collect::<Vec<JointReading<D>>>();
     assert_eq!(readings(&whole), readings(&other));
     assert_eq!(whole.engine.save().unwrap(), other.engine.save().unwrap());
-    assert!(readings(&whole)[1].absorbed != 0.0 && whole.rig.rope(0).tension > 0.0);
+    assert!(readings(&whole)[1].absorbed_energy != 0.0 && whole.rig.rope_reading(0).tension > 0.0);
     // The chain holds together: no hinge opens by more than 10 µm.
     for i in 0..4 {
-        let ends = whole.rig.joints[i].ends(&whole.now());
+        let ends = whole.rig.joints[i].end_kinematics(&whole.now());
         let gap = ends[0].pose.point(&point(0.15, 0.0)) - ends[1].pose.point(&point(-0.15, 0.0));
         assert!(gap.norm() < 1e-5, "{D}-D, hinge {i}: {}", gap.norm());
     }
@@ -287,21 +294,21 @@ fn ties_that_cannot_be_meant_are_refused_in_words() {
     assert!(joint(hinge([Some(0), Some(0)], at)).contains("to itself"));
     assert!(joint(hinge([None, Some(7)], at)).contains("not there"));
     assert!(joint(slider([None, Some(0)], at, Vector::zeros())).contains("has no axis"));
-    assert!(joint(hinge([None, Some(0)], at).limits(0.1, 0.5)).contains("has limits 0.1 to 0.5"));
+    assert!(joint(hinge([None, Some(0)], at).with_limits(0.1, 0.5)).contains("has limits 0.1 to 0.5"));
     assert!(
-        joint(JointSpec { kind: JointKind::Fixed, ..hinge([None, Some(0)], at).limits(-0.1, 0.5) })
+        joint(JointSpec { kind: JointKind::Fixed, ..hinge([None, Some(0)], at).with_limits(-0.1, 0.5) })
             .contains("no coordinate")
     );
     let twice =
         Constraints { joints: vec![hinge([None, Some(0)], at), hinge([None, Some(0)], at)], ..Constraints::default() };
     assert!(said(twice).contains("sits where joint \"hinge\""));
-    let ends = [End { solid: Some(0), at }, End { solid: None, at: point(0.0, 1.0) }];
+    let ends = [LineEnd { solid: Some(0), at }, LineEnd { solid: None, at: point(0.0, 1.0) }];
     let spring = |stiffness: f64, damping: f64| {
-        let spring = SpringSpec { name: "s".into(), ends, stiffness, damping, length: None, tension_only: false };
+        let spring = SpringSpec { name: "s".into(), ends, stiffness, damping, rest_length: None, tension_only: false };
         said(Constraints { springs: vec![spring], ..Constraints::default() })
     };
     assert!(spring(-1.0, 0.0).contains("stiffness of -1") && spring(1.0, -2.0).contains("damping of -2"));
     assert!(spring(0.0, 0.0).contains("neither stiff nor damped"));
-    let rope = RopeSpec { name: "r".into(), ends, length: Some(0.9) };
+    let rope = RopeSpec { name: "r".into(), ends, max_length: Some(0.9) };
     assert!(said(Constraints { ropes: vec![rope], ..Constraints::default() }).contains("start 1 m apart"));
 }

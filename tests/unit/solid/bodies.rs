@@ -5,10 +5,12 @@ use std::sync::Arc;
 #[path = "contact.rs"]
 mod contact;
 
-use super::{Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Law, Load, Motion, Role, SolidSpec};
+use super::{
+    Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Load, PrescribedMotion, Role, SolidSpec, TimeFunction,
+};
 use crate::{
-    error::{Kind, Result},
-    geometry::{Mesh, Shape, Touchable},
+    error::{ErrorKind, Result},
+    geometry::{ContactGeometry, Mesh, Shape},
     math::expression::Formula,
     math::{Bivector, Matrix, Pose, Vector},
 };
@@ -60,7 +62,7 @@ fn engine<const D: usize>(solids: &[SolidSpec<D>], gravity: Vector<D>) -> Result
 where
     Dim<D>: HasEngine<D>,
 {
-    let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+    let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
     Dim::<D>::engine(solids, &start, &Constraints::default(), &gravity, 0.01)
 }
 
@@ -147,7 +149,7 @@ where
 {
     rests_on(floor::<D>());
     // A driven floor that stands is no other floor.
-    let stands = Motion::slide(at_height(1.0).into(), Law::constant(0.0));
+    let stands = PrescribedMotion::slide(at_height(1.0).into(), TimeFunction::constant(0.0));
     rests_on(SolidSpec { role: Role::Driven(stands), ..floor::<D>() });
 }
 
@@ -155,7 +157,7 @@ fn rests_on<const D: usize>(floor: SolidSpec<D>)
 where
     Dim<D>: HasEngine<D>,
 {
-    let driven = matches!(floor.role, Role::Driven(_)).then(|| floor.start());
+    let driven = matches!(floor.role, Role::Driven(_)).then(|| floor.initial_kinematics());
     let solids = [floor, solid("box", cube(0.1), at_height(0.05), Role::Free(light()))];
     let mut engine = engine(&solids, down()).unwrap();
     for _ in 0..5000 {
@@ -166,7 +168,7 @@ where
     assert!((0.0..50e-6).contains(&sink), "sinks {sink} m");
     let contacts = engine.contacts();
     assert_eq!((contacts.len(), contacts[0].between), (1, [0, 1]));
-    assert!((contacts[0].pressing / (2.0 * G) - 1.0).abs() < 1e-3, "{contacts:?}");
+    assert!((contacts[0].normal_force / (2.0 * G) - 1.0).abs() < 1e-3, "{contacts:?}");
     // Between the faces in the middle of the box, within what it sinks and creeps; the floor's centre is half a metre below.
     assert!(contacts[0].at.norm() < 1e-3, "{contacts:?}");
     // So the floor, whose centre is straight below, feels the weight and no moment.
@@ -178,13 +180,14 @@ fn a_box_at_rest_weighs_on_the_floor() {
     rests::<2>();
     rests::<3>();
     // Where two facets meet, the engine solves the points of both as one face's.
-    let seabed = meshed([1.0, 1.0, 1.0], false, Touchable::Fitting);
+    let seabed = meshed([1.0, 1.0, 1.0], false, ContactGeometry::Fitting);
     rests_on(solid("seabed", seabed, [0.0, 0.0, -0.5], Role::Fixed));
 }
 
 #[test]
 fn a_paddle_pushes_what_it_meets() {
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.5*t").unwrap()));
+    let motion =
+        PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse("0.5*t").unwrap()));
     let paddle = solid("paddle", cube(0.1), [-0.101, 0.0], Role::Driven(motion.clone()));
     let solids = [paddle, solid("box", cube(0.1), [0.0, 0.0], Role::Free(light()))];
     let mut engine = engine(&solids, Vector::zeros()).unwrap();
@@ -222,14 +225,14 @@ where
     let unbroken: Vec<_> = (1..3).map(|i| engine.kinematics(i)).collect();
     let contacts = engine.contacts();
     assert!(contacts.len() == 2, "both contacts last: {contacts:?}");
-    let start: Vec<_> = solids.iter().map(SolidSpec::start).collect();
+    let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
     let mut other = Dim::<D>::engine(&solids, &start, &Constraints::default(), &down(), 0.01).unwrap();
     other.restore(&saved).unwrap();
     run(&mut *other, 400);
     assert_eq!(unbroken, (1..3).map(|i| other.kinematics(i)).collect::<Vec<_>>());
     assert_eq!(contacts, other.contacts());
-    assert_eq!(other.restore(&saved[..saved.len() / 2]).unwrap_err().kind, Kind::Restart);
-    assert_eq!(other.restore(b"\x03abc").unwrap_err().kind, Kind::Restart);
+    assert_eq!(other.restore(&saved[..saved.len() / 2]).unwrap_err().kind, ErrorKind::Restart);
+    assert_eq!(other.restore(b"\x03abc").unwrap_err().kind, ErrorKind::Restart);
 }
 
 #[test]
@@ -335,7 +338,7 @@ fn every_shape_is_felt_at_its_true_face() {
 }
 
 /// A block around the origin as a mesh; with `notch` its top has a groove along y, down to the middle.
-fn meshed(size: [f64; 3], notch: bool, contact: Touchable) -> Shape<3> {
+fn meshed(size: [f64; 3], notch: bool, contact: ContactGeometry) -> Shape<3> {
     let [x, y, z] = size.map(|s| 0.5 * s);
     let mut outline = vec![[-x, -z], [x, -z], [x, z], [-x, z]];
     if notch {
@@ -359,13 +362,13 @@ fn meshed(size: [f64; 3], notch: bool, contact: Touchable) -> Shape<3> {
 #[test]
 fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
     let size = [0.4, 0.4, 0.2];
-    for contact in [Touchable::Fitting, Touchable::Surface, Touchable::Hull] {
+    for contact in [ContactGeometry::Fitting, ContactGeometry::Surface, ContactGeometry::Hull] {
         let height = settled(meshed(size, false, contact), [0.03, 0.02, 0.0], 0.1);
         assert!((height - 0.1).abs() < 20e-6, "{contact:?}: {height}");
     }
-    let height = settled(meshed(size, true, Touchable::Fitting), [0.0, 0.02, 0.0], 0.0);
+    let height = settled(meshed(size, true, ContactGeometry::Fitting), [0.0, 0.02, 0.0], 0.0);
     assert!(height.abs() < 20e-6, "a ball lies in the groove: {height}");
-    let height = settled(meshed(size, true, Touchable::Hull), [0.0, 0.02, 0.0], 0.1);
+    let height = settled(meshed(size, true, ContactGeometry::Hull), [0.0, 0.02, 0.0], 0.1);
     assert!((height - 0.1).abs() < 20e-6, "the hull has no groove: {height}");
 }
 
@@ -373,10 +376,11 @@ fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
 fn a_moving_mesh_stands_on_its_hull_or_its_parts_and_is_saved_with_them() {
     let size = [0.1, 0.1, 0.1];
     for (shape, off) in [
-        (meshed(size, false, Touchable::Fitting), 20e-6),
-        (meshed(size, true, Touchable::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
+        (meshed(size, false, ContactGeometry::Fitting), 20e-6),
+        (meshed(size, true, ContactGeometry::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
     ] {
-        let seabed = solid("seabed", meshed([1.0, 1.0, 1.0], false, Touchable::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
+        let seabed =
+            solid("seabed", meshed([1.0, 1.0, 1.0], false, ContactGeometry::Fitting), [0.0, 0.0, -0.5], Role::Fixed);
         let solids = [seabed, solid("body", shape, [0.0, 0.0, 0.055], Role::Free(light()))];
         let (mut first, mut second) = (engine(&solids, down()).unwrap(), engine(&solids, down()).unwrap());
         let run = |engine: &mut Box<dyn Engine<3>>, n: usize| {

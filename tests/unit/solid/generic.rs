@@ -3,7 +3,7 @@
 use crate::{
     math::{Bivector, Vector},
     solid::{
-        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Law,
+        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, TimeFunction,
         constraint::assembly::tests::{Air, G, bar, body, hinge, joined, point},
     },
 };
@@ -20,23 +20,24 @@ where
     // Free to go up and down and to pitch, between stops: its weight takes it to the lower one, a torque to the one ahead.
     let solids = vec![bar::<D>("float", 0.4, Vector::zeros(), true)];
     let guide = JointSpec::new("guide", JointKind::Generic, [None, Some(0)], Vector::zeros(), Vector::zeros())
-        .leaving(D - 1, Some([-0.05, 0.3]))
-        .leaving(pitch::<D>(), Some([-0.2, 0.1]));
-    let torque = (0..D * (D - 1) / 2).map(|i| Law::constant(if D == 2 || i == 1 { 8.0 } else { 0.0 })).collect();
-    let force = (0..D).map(|i| Law::constant(if i == 0 { 5.0 } else { 0.0 })).collect();
-    let push = ForceSpec { name: "push".into(), solid: 0, at: None, force, torque, turns: false };
+        .with_free_mode(D - 1, Some([-0.05, 0.3]))
+        .with_free_mode(pitch::<D>(), Some([-0.2, 0.1]));
+    let torque =
+        (0..D * (D - 1) / 2).map(|i| TimeFunction::constant(if D == 2 || i == 1 { 8.0 } else { 0.0 })).collect();
+    let force = (0..D).map(|i| TimeFunction::constant(if i == 0 { 5.0 } else { 0.0 })).collect();
+    let push = ForceSpec { name: "push".into(), solid: 0, at: None, force, torque, rotates_with_solid: false };
     let mut air =
         Air::new(solids, Constraints { joints: vec![guide], forces: vec![push], ..Constraints::default() }, G);
     air.run(1e-4, 0.05);
     // First order in the step: ½ g t Δt.
-    let (free, fallen) = (air.rig.coordinates(0, &air.now()), 0.5 * G * 0.05 * 0.05);
+    let (free, fallen) = (air.rig.joint_coordinates(0, &air.now()), 0.5 * G * 0.05 * 0.05);
     assert!((free[0] + fallen).abs() < 3e-5, "between its stops it falls freely: {free:?} for {fallen}");
     air.run(1e-4, 1.0);
-    let (at, now, weight) = (air.rig.coordinates(0, &air.now()), air.now()[0], body(&air.solids[0]).mass * G);
+    let (at, now, weight) = (air.rig.joint_coordinates(0, &air.now()), air.now()[0], body(&air.solids[0]).mass * G);
     // Stops are a lock while they are met: rigid to round-off, and met again in each step.
     assert!((at[0] + 0.05).abs() < 1e-6 && (at[1] - 0.1).abs() < 1e-6, "{at:?}");
     assert!(now.centre[0].abs() < 1e-6 && now.velocity.norm() < 1e-6, "{now:?}");
-    let reading = air.rig.joint(0);
+    let reading = air.rig.joint_reading(0);
     let carried = point::<D>(-5.0, weight);
     assert!((reading.force - carried).norm() < 1e-3 * weight, "{reading:?} for {carried:?}");
     let about = reading.torque.axial();
@@ -56,10 +57,11 @@ where
     let run = |joint: JointSpec<D>| {
         let mut air = Air::new(vec![bar("bar", 0.4, point(0.2, 0.0), true)], joined(joint), G);
         air.run(1e-4, 0.7);
-        (air.now()[0], air.rig.joint(0).force)
+        (air.now()[0], air.rig.joint_reading(0).force)
     };
     let generic = JointSpec::new("joint", JointKind::Generic, [None, Some(0)], Vector::zeros(), Vector::zeros());
-    let (free, hinged) = (run(generic.leaving(pitch::<D>(), None)), run(hinge([None, Some(0)], Vector::zeros())));
+    let (free, hinged) =
+        (run(generic.with_free_mode(pitch::<D>(), None)), run(hinge([None, Some(0)], Vector::zeros())));
     // The same locks in other axes: round-off alone parts them.
     assert!((free.0.centre - hinged.0.centre).norm() < 1e-9, "{D}-D: {free:?} {hinged:?}");
     assert!((free.1 - hinged.1).norm() < 1e-6 * hinged.1.norm(), "{D}-D: {free:?} {hinged:?}");
@@ -78,8 +80,8 @@ fn a_universal_joint_tells_the_torque_that_it_carries_at_any_angle() {
     let solids = vec![bar::<3>("cube", 0.1, Vector::zeros(), false)];
     let inertia = body(&solids[0]).inertia[(0, 0)];
     let cardan = JointSpec::new("cardan", JointKind::Generic, [None, Some(0)], Vector::zeros(), Vector::zeros())
-        .leaving(4, None)
-        .leaving(5, None);
+        .with_free_mode(4, None)
+        .with_free_mode(5, None);
     let mut air = Air::new(solids, joined(cardan), 0.0);
     let start = [0.0, 3.0, 2.0];
     air.engine.set_velocity(0, &Vector::zeros(), &Bivector::from_axial(&start));
@@ -88,11 +90,11 @@ fn a_universal_joint_tells_the_torque_that_it_carries_at_any_angle() {
     while air.t < 0.4 {
         let before = momentum(&air);
         air.step(dt);
-        let told = Vector::<3>::from_column_slice(&air.rig.joint(0).torque.axial());
+        let told = Vector::<3>::from_column_slice(&air.rig.joint_reading(0).torque.axial());
         let off = (momentum(&air) - before - told * dt).norm();
         // Round-off of the momentum: the torque itself is of first order in the angles.
         assert!(off < 1e-12 * before.norm(), "{off} of {before:?} at {} s: {told:?}", air.t);
-        turned = turned.max(air.rig.coordinates(0, &air.now())[0].abs());
+        turned = turned.max(air.rig.joint_coordinates(0, &air.now())[0].abs());
     }
     assert!(turned > 1.0, "it has turned far: {turned} rad");
 }

@@ -7,7 +7,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use crate::{
     math::{Bivector, Vector, expression::Formula},
     solid::{
-        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Law, Motion, Motor, Role, SolidSpec,
+        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Motor, PrescribedMotion, Role, SolidSpec,
+        TimeFunction,
         constraint::assembly::tests::{Air, G, bar, body, hinge, inertia, joined, point, slider},
     },
 };
@@ -34,7 +35,7 @@ where
     let w = 0.01 * TAU / exact;
     let spin = Bivector::torque(&point(0.0, -1.0), &point(1.0, 0.0)) * w;
     air.engine.set_velocity(0, &spin.velocity_at(&point(0.0, -0.2)), &spin);
-    let period = air.period(1e-3, 3, |air| air.rig.joint(0).position);
+    let period = air.period(1e-3, 3, |air| air.rig.joint_reading(0).position);
     assert!((period / exact - 1.0).abs() < 1e-4, "{D}-D: {period} s, exact {exact} s");
     // The hinge stays where it is.
     assert!((air.now()[0].pose.point(&point(0.0, 0.2))).norm() < 1e-7);
@@ -56,14 +57,14 @@ where
     let mut air = Air::new(solids, joined(hinge([None, Some(0)], Vector::<D>::zeros())), G);
     air.step(1e-4);
     // Just let go, the hinge carries m (g − d α) with α = m g d/I.
-    let first = air.rig.joint(0);
+    let first = air.rig.joint_reading(0);
     assert!((first.force[D - 1] / (m * G * (1.0 - 0.04 * m / i)) - 1.0).abs() < 1e-6, "{D}-D: {first:?}");
-    let mut before = air.rig.joint(0).position;
-    while (air.rig.joint(0).position.abs() - FRAC_PI_2) * (before.abs() - FRAC_PI_2) > 0.0 {
-        before = air.rig.joint(0).position;
+    let mut before = air.rig.joint_reading(0).position;
+    while (air.rig.joint_reading(0).position.abs() - FRAC_PI_2) * (before.abs() - FRAC_PI_2) > 0.0 {
+        before = air.rig.joint_reading(0).position;
         air.step(1e-4);
     }
-    let reading = air.rig.joint(0);
+    let reading = air.rig.joint_reading(0);
     let w2 = 2.0 * m * G * 0.2 / i;
     assert!((reading.rate.powi(2) / w2 - 1.0).abs() < 1e-3, "{D}-D: {reading:?}");
     assert!((reading.force[D - 1] / (m * (G + w2 * 0.2)) - 1.0).abs() < 1e-3, "{D}-D: {reading:?}");
@@ -90,7 +91,7 @@ where
     let mut air = Air::new(solids, Constraints { joints, ..Constraints::default() }, G);
     air.run(1e-4, 0.2);
     for (joint, weights, moment) in [(0, 2.0, 0.2 + 0.6), (1, 1.0, 0.2)] {
-        let reading = air.rig.joint(joint);
+        let reading = air.rig.joint_reading(joint);
         assert!((reading.force - point(0.0, weights * weight)).norm() < 1e-3 * weight, "{D}-D: {reading:?}");
         let lever = Bivector::torque(&point(moment, 0.0), &point(0.0, weight));
         assert!((reading.torque + lever * -1.0).0.norm() < 1e-3 * weight, "{D}-D: {reading:?} for {lever:?}");
@@ -112,22 +113,22 @@ where
     let flap = bar("flap", 0.4, point(0.0, 0.2), false);
     let i = inertia(&flap) + body(&flap).mass * 0.04;
     let c = 3.0 * i;
-    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).motor(Motor::damping(c));
+    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).with_motor(Motor::damping(c));
     let mut air = Air::new(vec![flap], joined(joint), 0.0);
     let spin = Bivector::torque(&point(0.0, -1.0), &point(1.0, 0.0)) * 0.5;
     air.engine.set_velocity(0, &spin.velocity_at(&point(0.0, 0.2)), &spin);
     air.run(1e-4, 1.0);
-    let reading = air.rig.joint(0);
+    let reading = air.rig.joint_reading(0);
     assert!((reading.rate / (0.5 * (-c / i).exp()) - 1.0).abs() < 1e-3, "{D}-D: {reading:?}");
-    assert!((reading.motor / (-c * reading.rate) - 1.0).abs() < 1e-3);
+    assert!((reading.motor_force / (-c * reading.rate) - 1.0).abs() < 1e-3);
     let lost = 0.5 * i * (0.25 - reading.rate.powi(2));
-    assert!((reading.absorbed / lost - 1.0).abs() < 1e-5, "{} of {lost} J", reading.absorbed);
+    assert!((reading.absorbed_energy / lost - 1.0).abs() < 1e-5, "{} of {lost} J", reading.absorbed_energy);
 
     // A float on an oblique guide, its line of motion beside its centre: m v̇ = −c v.
     let float = bar("float", 0.2, point(0.1, 0.0), false);
     let (m, along) = (body(&float).mass, point::<D>(0.6, 0.8));
     let c = 2.0 * m;
-    let joint = slider([None, Some(0)], Vector::zeros(), along * 3.0).motor(Motor::damping(c));
+    let joint = slider([None, Some(0)], Vector::zeros(), along * 3.0).with_motor(Motor::damping(c));
     let mut air = Air::new(vec![float], joined(joint), 0.0);
     air.engine.set_velocity(0, &(along * 0.5), &Bivector::zero());
     air.run(1e-4, 1.0);
@@ -136,7 +137,7 @@ where
     // Along the line only, (1 − e⁻²)/2 · 0.5 m far.
     let way = now.pose.position - point(0.1, 0.0);
     assert!((way - along * (0.25 * (1.0 - (-2.0f64).exp()))).norm() < 1e-4, "{way:?}");
-    assert!((air.rig.joint(0).position - way.norm()).abs() < 1e-9);
+    assert!((air.rig.joint_reading(0).position - way.norm()).abs() < 1e-9);
 }
 
 #[test]
@@ -149,35 +150,39 @@ fn motors<const D: usize>()
 where
     Dim<D>: HasEngine<D>,
 {
-    let formula = |text: &str| Law::Formula(Formula::parse(text).unwrap());
+    let formula = |text: &str| TimeFunction::Formula(Formula::parse(text).unwrap());
     // A torque by a law: the bar gets ∫ F dt/I.
     let bar = bar("bar", 0.4, point::<D>(0.0, -0.2), false);
     let i = inertia(&bar) + body(&bar).mass * 0.04;
     let push = Motor { force: formula("3*t"), ..Motor::default() };
-    let mut air = Air::new(vec![bar], joined(hinge([None, Some(0)], Vector::zeros()).motor(push)), 0.0);
+    let mut air = Air::new(vec![bar], joined(hinge([None, Some(0)], Vector::zeros()).with_motor(push)), 0.0);
     air.run(1e-4, 0.2);
     // In space the locks, found in four sweeps, leave 1e-7; a law read half a step late would be 2.5e-4 off.
-    assert!((air.rig.joint(0).rate / (1.5 * 0.04 / i) - 1.0).abs() < 1e-6, "{:?}", air.rig.joint(0));
+    assert!((air.rig.joint_reading(0).rate / (1.5 * 0.04 / i) - 1.0).abs() < 1e-6, "{:?}", air.rig.joint_reading(0));
     // A servo holds its angle against the weight but for the sag F/k, and a drive keeps its pace.
     let servo = Motor { position: formula("0.4*min(t, 1)"), ..Motor::damping(300.0) };
-    let mut air = pendulum::<D>(Some(Motor { stiffness: Law::constant(2e4), ..servo }));
+    let mut air = pendulum::<D>(Some(Motor { stiffness: TimeFunction::constant(2e4), ..servo }));
     air.run(1e-3, 2.0);
-    let (reading, m) = (air.rig.joint(0), body(&air.solids[0]).mass);
+    let (reading, m) = (air.rig.joint_reading(0), body(&air.solids[0]).mass);
     let weight = m * G * 0.2 * reading.position.sin();
-    assert!((reading.motor / weight - 1.0).abs() < 1e-3, "{D}-D: {reading:?} for {weight}");
+    assert!((reading.motor_force / weight - 1.0).abs() < 1e-3, "{D}-D: {reading:?} for {weight}");
     assert!((0.4 - reading.position - weight / 2e4).abs() < 1e-5, "{D}-D: {reading:?}");
-    let drive = Motor { velocity: Some(Law::constant(-1.5)), ..Motor::damping(1e9) };
+    let drive = Motor { velocity: Some(TimeFunction::constant(-1.5)), ..Motor::damping(1e9) };
     let mut air = pendulum::<D>(Some(drive.clone()));
     air.run(1e-3, 4.0);
     // Stiffer than any step, and past half a turn.
-    let turned = air.rig.joint(0).position;
+    let turned = air.rig.joint_reading(0).position;
     // As fast as it should but for what the weight gathers in a step.
-    assert!((air.rig.joint(0).rate + 1.5).abs() < 1e-3 * m * G * 0.2 / i, "{D}-D: {:?}", air.rig.joint(0));
+    assert!(
+        (air.rig.joint_reading(0).rate + 1.5).abs() < 1e-3 * m * G * 0.2 / i,
+        "{D}-D: {:?}",
+        air.rig.joint_reading(0)
+    );
     assert!((turned - (TAU - 6.0)).abs() < 1e-2, "{D}-D: {turned}");
     // One that is too weak does not lift the bar.
-    let mut air = pendulum::<D>(Some(Motor { strongest: 0.1 * m * G * 0.2, ..drive }));
+    let mut air = pendulum::<D>(Some(Motor { max_force: 0.1 * m * G * 0.2, ..drive }));
     air.run(1e-3, 2.0);
-    assert!(air.rig.joint(0).position.abs() < 0.25, "{D}-D: {:?}", air.rig.joint(0));
+    assert!(air.rig.joint_reading(0).position.abs() < 0.25, "{D}-D: {:?}", air.rig.joint_reading(0));
 }
 
 #[test]
@@ -195,29 +200,34 @@ where
     let m = body(&weight).mass;
     for stiff in [0.05, 0.1, 0.5, 5.0, 500.0, 5e6] {
         let c = stiff * m / 1e-3;
-        let rail = slider([None, Some(0)], Vector::zeros(), point(0.0, 1.0)).motor(Motor::damping(c));
+        let rail = slider([None, Some(0)], Vector::zeros(), point(0.0, 1.0)).with_motor(Motor::damping(c));
         let mut air = Air::new(vec![weight.clone()], joined(rail), G);
         air.run(1e-3, 0.5);
         // After 25 and more of its times m/c it yields with m g/c. What a step does not foresee of the weight is at most half of 0.1.
-        let speed = -air.rig.joint(0).rate / (m * G / c);
+        let speed = -air.rig.joint_reading(0).rate / (m * G / c);
         assert!((speed - 1.0).abs() < 0.051, "{D}-D, Δt c/m = {stiff}: {speed} of m g/c");
-        assert!((air.rig.joint(0).motor / (m * G) - 1.0).abs() < 1e-6, "{D}-D, {stiff}: {:?}", air.rig.joint(0));
+        assert!(
+            (air.rig.joint_reading(0).motor_force / (m * G) - 1.0).abs() < 1e-6,
+            "{D}-D, {stiff}: {:?}",
+            air.rig.joint_reading(0)
+        );
     }
     // Two on one rail: the second knows of the first, and they do not throw the weight to and fro.
     let along = point(0.0, 1.0);
-    let second = slider([None, Some(0)], point(0.0, 0.05), along).motor(Motor::damping(1e9));
+    let second = slider([None, Some(0)], point(0.0, 0.05), along).with_motor(Motor::damping(1e9));
     let second = JointSpec { name: "second".into(), ..second };
-    let first = slider([None, Some(0)], Vector::zeros(), along).motor(Motor::damping(1e9));
+    let first = slider([None, Some(0)], Vector::zeros(), along).with_motor(Motor::damping(1e9));
     let mut air =
         Air::new(vec![weight.clone()], Constraints { joints: vec![first, second], ..Constraints::default() }, G);
     air.run(1e-3, 0.5);
     assert!(air.now()[0].velocity.norm() < 1e-6, "{D}-D: {:?}", air.now());
     // An ordinary power take-off leaves what rests on its end stop to that: a step of weight against it is 5e-5 of m g.
-    let rail = slider([None, Some(0)], Vector::zeros(), along).limits(-0.01, 0.01).motor(Motor::damping(5.0 * m));
+    let rail =
+        slider([None, Some(0)], Vector::zeros(), along).with_limits(-0.01, 0.01).with_motor(Motor::damping(5.0 * m));
     let mut air = Air::new(vec![weight], joined(rail), G);
     air.run(1e-4, 1.0);
-    let reading = air.rig.joint(0);
-    assert!(reading.motor.abs() < 1e-3 * m * G && (reading.position + 0.01).abs() < 1e-6, "{D}-D: {reading:?}");
+    let reading = air.rig.joint_reading(0);
+    assert!(reading.motor_force.abs() < 1e-3 * m * G && (reading.position + 0.01).abs() < 1e-6, "{D}-D: {reading:?}");
 }
 
 #[test]
@@ -232,21 +242,21 @@ where
 {
     let solids = vec![bar("bar", 0.4, point(0.2, 0.0), true)];
     let m = body(&solids[0]).mass;
-    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).limits(-0.5, 0.5);
+    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).with_limits(-0.5, 0.5);
     let mut air = Air::new(solids, joined(joint), G);
     air.run(1e-4, 1.5);
-    let reading = air.rig.joint(0);
+    let reading = air.rig.joint_reading(0);
     assert!((reading.position.abs() - 0.5).abs() < 1e-5, "{D}-D: {reading:?}");
     // At rest on its stop: that carries the moment of the weight.
     let moment = Bivector::torque(&point(0.2 * 0.5f64.cos(), 0.0), &point(0.0, m * G));
     assert!((reading.torque + moment * -1.0).0.norm() < 1e-3 * m * G, "{D}-D: {reading:?} for {moment:?}");
 
     let weight = bar("weight", 0.2, point(0.3, 1.0), false);
-    let joint = slider([None, Some(0)], point(0.0, 1.0), point::<D>(0.0, 1.0)).limits(-0.25, 0.1);
+    let joint = slider([None, Some(0)], point(0.0, 1.0), point::<D>(0.0, 1.0)).with_limits(-0.25, 0.1);
     let mut air = Air::new(vec![weight], joined(joint), G);
     air.run(1e-4, 1.0);
     assert!((air.now()[0].pose.position[D - 1] - 0.75).abs() < 1e-6, "{:?}", air.now());
-    assert!((air.rig.joint(0).force[D - 1] / (body(&air.solids[0]).mass * G) - 1.0).abs() < 1e-3);
+    assert!((air.rig.joint_reading(0).force[D - 1] / (body(&air.solids[0]).mass * G) - 1.0).abs() < 1e-3);
 }
 
 #[test]
@@ -276,15 +286,16 @@ fn a_ball_joint_turns_every_way_and_a_hinge_one() {
 
 #[test]
 fn a_hinge_goes_where_what_it_is_pinned_to_is_driven() {
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.1*t^2").unwrap()));
+    let motion =
+        PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse("0.1*t^2").unwrap()));
     let cart = SolidSpec { role: Role::Driven(motion), ..bar::<2>("cart", 0.2, point(0.0, 0.0), true) };
     let solids = vec![cart, bar("bar", 0.4, point(0.0, -0.2), false)];
     let m = body(&solids[1]).mass;
-    let joint = hinge([Some(0), Some(1)], Vector::zeros()).motor(Motor::damping(30.0));
+    let joint = hinge([Some(0), Some(1)], Vector::zeros()).with_motor(Motor::damping(30.0));
     let mut air = Air::new(solids, joined(joint), G);
     air.run(1e-4, 3.0);
     // It trails behind by atan(a/g), towed with a = 0.2 m/s² at the speed of the cart.
-    let reading = air.rig.joint(0);
+    let reading = air.rig.joint_reading(0);
     assert!((reading.position.abs() - (0.2f64 / G).atan()).abs() < 1e-4, "{reading:?}");
     assert!((reading.force - Vector::from([0.2 * m, G * m])).norm() < 1e-2 * m, "{reading:?}");
     assert!((air.now()[1].velocity[0] - 0.6).abs() < 1e-3);
@@ -315,7 +326,8 @@ fn jointed_bodies_that_are_hit_keep_momentum_and_angular_momentum() {
 
 #[test]
 fn a_towed_body_goes_with_its_carriage_and_is_free_in_all_else() {
-    let motion = Motion::slide(Vector::from([1.0, 0.0]), Law::Formula(Formula::parse("0.2*t^2").unwrap()));
+    let motion =
+        PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse("0.2*t^2").unwrap()));
     let carriage = SolidSpec { role: Role::Driven(motion), ..bar::<2>("carriage", 0.2, point(0.0, 1.0), true) };
     let mut solids = vec![carriage, bar("model", 0.4, point(0.1, 0.0), true)];
     let Role::Free(model) = &mut solids[1].role else { panic!() };
@@ -327,7 +339,7 @@ fn a_towed_body_goes_with_its_carriage_and_is_free_in_all_else() {
     // First order in the step: ½ g t Δt of the fall.
     assert!((now.centre - Vector::from([0.3, -0.5 * G])).norm() < 1e-3, "{now:?}");
     assert!((now.spin.axial()[0] - 0.7).abs() < 1e-9 && (now.velocity[0] - 0.4).abs() < 1e-3);
-    let reading = air.rig.joint(0);
+    let reading = air.rig.joint_reading(0);
     assert!((reading.force - Vector::from([0.4 * m, 0.0])).norm() < 1e-2 * m, "it is towed with m a: {reading:?}");
 }
 
@@ -342,8 +354,8 @@ where
     let mut solids = vec![carriage, bar("buoy", 0.4, Vector::zeros(), true)];
     let Role::Free(buoy) = &mut solids[1].role else { panic!() };
     buoy.spin = Bivector::from_axial(&[0.7, 0.0, 0.0][..if D == 2 { 1 } else { 3 }]);
-    let force = (0..D).map(|i| Law::constant(if i == 0 || i == D - 1 { 12.0 } else { 0.0 })).collect();
-    let push = ForceSpec { name: "push".into(), solid: 1, at: None, force, torque: vec![], turns: false };
+    let force = (0..D).map(|i| TimeFunction::constant(if i == 0 || i == D - 1 { 12.0 } else { 0.0 })).collect();
+    let push = ForceSpec { name: "push".into(), solid: 1, at: None, force, torque: vec![], rotates_with_solid: false };
     let tow = JointSpec::new("rail", JointKind::Tow, [Some(0), Some(1)], Vector::zeros(), point(1.0, 0.0));
     let links = Constraints { joints: vec![tow], forces: vec![push], ..Constraints::default() };
     let mut air = Air::new(solids, links, 0.0);

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::{
     math::{Bivector, Vector},
     solid::{
-        Constraints, Dim, Elastic, End, HasEngine, RopeSpec, SpringSpec,
+        Constraints, Dim, HasEngine, LineEnd, RopeSpec, SpringParameters, SpringSpec,
         constraint::assembly::tests::{Air, G, bar, body, point},
     },
 };
@@ -15,13 +15,13 @@ where
     Dim<D>: HasEngine<D>,
 {
     let solids = vec![bar("a", 0.2, point(0.0, 0.0), true), bar("b", 0.2, point::<D>(1.0, 0.0), true)];
-    let ends = [(Some(0), 0.1), (Some(1), 0.9)].map(|(solid, x)| End { solid, at: point(x, 0.0) });
+    let ends = [(Some(0), 0.1), (Some(1), 0.9)].map(|(solid, x)| LineEnd { solid, at: point(x, 0.0) });
     let spec = SpringSpec {
         name: "spring".into(),
         ends,
         stiffness: 400.0,
         damping: 0.0,
-        length: Some(0.7),
+        rest_length: Some(0.7),
         tension_only: false,
     };
     let m = body(&solids[0]).mass;
@@ -31,22 +31,22 @@ where
     let omega = (800.0 / m).sqrt();
     let limit = air.rig.step_limit(&*air.engine, &air.now(), air.t);
     assert!((limit * omega - 0.2).abs() < 1e-9, "the bound is exact for a pair: {limit}");
-    let period = air.period(0.5 * limit, 5, |air| air.rig.spring(0).length - 0.7);
+    let period = air.period(0.5 * limit, 5, |air| air.rig.spring_reading(0).length - 0.7);
     // (0.1)²/24 too fast at half of the longest step.
     assert!((period * omega / TAU - 1.0).abs() < 6e-4, "{D}-D: {period}");
     let most = (0..2000).fold(0.0, |most: f64, _| {
         air.step(1e-3);
-        most.max(air.rig.spring(0).tension)
+        most.max(air.rig.spring_reading(0).tension)
     });
     // No energy is lost; where in a step it turned changes the amplitude by (Δt ω)²/8, twice.
     assert!((most / 40.0 - 1.0).abs() < 2.6e-3, "{most}");
 
     // A mooring line lets what comes nearer come nearer, and pulls what goes away.
-    let slack = SpringSpec { tension_only: true, length: None, ..spec };
+    let slack = SpringSpec { tension_only: true, rest_length: None, ..spec };
     let mut air = Air::new(solids, Constraints { springs: vec![slack], ..Constraints::default() }, 0.0);
     air.engine.set_velocity(1, &point(-0.1, 0.0), &Bivector::zero());
     air.run(1e-3, 1.0);
-    assert_eq!((air.now()[1].velocity[0], air.rig.spring(0).tension), (-0.1, 0.0));
+    assert_eq!((air.now()[1].velocity[0], air.rig.spring_reading(0).tension), (-0.1, 0.0));
     air.engine.set_velocity(1, &point(0.5, 0.0), &Bivector::zero());
     air.run(1e-3, 2.0);
     assert!(air.now()[0].velocity[0] > 0.1, "{:?}", air.now());
@@ -63,14 +63,14 @@ fn a_damped_spring_settles_whatever_its_damping() {
     for damping in [200.0, 600.0, 2000.0, 1e7] {
         let solids = vec![bar::<2>("box", 0.2, point(0.0, 0.0), true)];
         let weight = body(&solids[0]).mass * G;
-        let ends = [End { solid: Some(0), at: point(0.0, 0.05) }, End { solid: None, at: point(0.0, 1.0) }];
+        let ends = [LineEnd { solid: Some(0), at: point(0.0, 0.05) }, LineEnd { solid: None, at: point(0.0, 1.0) }];
         let spec =
-            SpringSpec { name: "line".into(), ends, stiffness: 2000.0, damping, length: None, tension_only: true };
+            SpringSpec { name: "line".into(), ends, stiffness: 2000.0, damping, rest_length: None, tension_only: true };
         let mut air = Air::new(solids, Constraints { springs: vec![spec], ..Constraints::default() }, G);
         let limit = air.rig.step_limit(&*air.engine, &air.now(), air.t);
         assert!((limit - 0.2 / 10.0).abs() < 1e-12, "damping does not shorten the step: {limit}");
         air.run(1e-3, 20.0);
-        let reading = air.rig.spring(0);
+        let reading = air.rig.spring_reading(0);
         let sag = (reading.length - 0.95) / (weight / 2000.0);
         if damping == 1e7 {
             // Far too stiff for the step, it creeps down, and never faster than the weight gathers speed in a step.
@@ -87,15 +87,15 @@ where
 {
     // Thrown across, made fast beside its centre: it runs out the slack, is jerked round, and swings on.
     let solids = vec![bar("stone", 0.2, point::<D>(0.2, -0.5), true)];
-    let ends = [End { solid: None, at: Vector::zeros() }, End { solid: Some(0), at: point(0.25, -0.45) }];
-    let rope = RopeSpec { name: "rope".into(), ends, length: Some(0.8) };
+    let ends = [LineEnd { solid: None, at: Vector::zeros() }, LineEnd { solid: Some(0), at: point(0.25, -0.45) }];
+    let rope = RopeSpec { name: "rope".into(), ends, max_length: Some(0.8) };
     let mut air = Air::new(solids, Constraints { ropes: vec![rope], ..Constraints::default() }, G);
     air.engine.set_velocity(0, &point(speed, 0.2), &Bivector::zero());
     let (mut longest, mut taut): (f64, f64) = (0.0, 0.0);
     while air.t < 2.0 {
         air.step(dt);
-        longest = longest.max(air.rig.rope(0).length);
-        taut = taut.max(air.rig.rope(0).tension);
+        longest = longest.max(air.rig.rope_reading(0).length);
+        taut = taut.max(air.rig.rope_reading(0).tension);
     }
     assert!(taut > 0.0 && longest > 0.8 * (1.0 - 1e-3), "it came taut: {longest}");
     assert!(longest < 0.8 * (1.0 + 1e-6), "{D}-D, {speed} m/s, {dt} s: {:e} too long", longest / 0.8 - 1.0);
@@ -113,19 +113,19 @@ fn a_rope_is_never_longer_than_its_length() {
 fn a_rope_at_rest_carries_the_weight() {
     let solids = vec![bar::<2>("stone", 0.2, point(0.0, -0.5), true)];
     let weight = body(&solids[0]).mass * G;
-    let ends = [End { solid: None, at: Vector::zeros() }, End { solid: Some(0), at: point(0.0, -0.45) }];
-    let rope = RopeSpec { name: "rope".into(), ends, length: None };
+    let ends = [LineEnd { solid: None, at: Vector::zeros() }, LineEnd { solid: Some(0), at: point(0.0, -0.45) }];
+    let rope = RopeSpec { name: "rope".into(), ends, max_length: None };
     let mut air = Air::new(solids, Constraints { ropes: vec![rope], ..Constraints::default() }, G);
     air.run(1e-3, 1.0);
-    assert!((air.rig.rope(0).tension / weight - 1.0).abs() < 1e-6, "{:?}", air.rig.rope(0));
+    assert!((air.rig.rope_reading(0).tension / weight - 1.0).abs() < 1e-6, "{:?}", air.rig.rope_reading(0));
 }
 
 #[test]
 fn what_swings_faster_in_water_than_particles_carry_sound_has_a_hundredth_of_the_critical_damping() {
     let (crossing, mass) = (1e-3, 4.0);
     let of = |omega: f64, damping: f64| {
-        let elastic = Elastic { stiffness: omega * omega * mass, damping, length: 1.0 };
-        elastic.in_water(crossing, 1.0 / mass).damping / (2.0 * omega * mass)
+        let elastic = SpringParameters { stiffness: omega * omega * mass, damping, rest_length: 1.0 };
+        elastic.damped_in_water(crossing, 1.0 / mass).damping / (2.0 * omega * mass)
     };
     assert_eq!(of(1999.0, 0.0), 0.0, "a slower one is left as it is");
     assert!((of(2001.0, 0.0) - 0.01).abs() < 1e-12 && (of(1e6, 0.0) - 0.01).abs() < 1e-12);

@@ -10,8 +10,9 @@ use super::{
 /// A paddle in 0.4 m of water that makes nothing and absorbs waves of `period` (s), its gauge 0.04 m before it or more.
 fn taker(paddle: Paddle, period: f64) -> Absorber {
     let maker = maker(0.4, paddle);
-    let tuning = Tuning { period: None, gauge: 0.04, level: 0.4, stroke: None, speed: None };
-    Absorber::new(&maker, &maker.silent(period).unwrap(), &tuning).unwrap()
+    let tuning =
+        AbsorptionSettings { period: None, gauge_distance: 0.04, water_level: 0.4, max_stroke: None, max_speed: None };
+    Absorber::new(&maker, &maker.at_rest(period).unwrap(), &tuning).unwrap()
 }
 
 #[test]
@@ -20,7 +21,7 @@ fn an_absorbing_paddle_sends_nothing_back_of_its_period_and_little_of_those_besi
     for paddle in [Paddle::Piston, flap(0.6), flap(0.4), flap(0.3)] {
         for period in [0.9, 1.2, 2.0, 4.0] {
             let taker = taker(paddle, period);
-            let back = |share: f64| taker.reflection(share * period);
+            let back = |share: f64| taker.reflection_coefficient(share * period);
             assert!(back(1.0) < 1e-9, "{paddle:?} {period}: {}", back(1.0));
             // A fixed wall sends back all; dispersion, the standing waves and the way to the gauge are in what is left.
             assert!(back(1.5) < 0.15 && back(0.67) < 0.35, "{paddle:?} {period}: {} {}", back(1.5), back(0.67));
@@ -36,7 +37,7 @@ fn an_absorbing_paddle_sends_nothing_back_of_its_period_and_little_of_those_besi
 #[test]
 fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
     let (period, amplitude, step) = (1.2, 0.01, 1e-3);
-    let (taker, silent) = (taker(Paddle::Piston, period), maker(0.4, Paddle::Piston).silent(period).unwrap());
+    let (taker, silent) = (taker(Paddle::Piston, period), maker(0.4, Paddle::Piston).at_rest(period).unwrap());
     let run = |amplitude: f64, until: f64| {
         let level = |t: f64| if t < 60.0 { 0.4 + amplitude * (TAU * t / period).sin() } else { 0.4 };
         let (mut now, mut most) = (AbsorptionState::default(), (0.0_f64, 0.0_f64));
@@ -44,10 +45,10 @@ fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
             let t = i as f64 * step;
             now = taker.update(&silent, &now, t, Some(level(t)));
             if t > 50.0 {
-                most = (most.0.max(now.at(t).0.abs()), most.1.max(now.at(t).1.abs()));
+                most = (most.0.max(now.offset_and_rate(t).0.abs()), most.1.max(now.offset_and_rate(t).1.abs()));
             }
         }
-        (most, now.at(until).0)
+        (most, now.offset_and_rate(until).0)
     };
     // T x″ + x′ + x/τ = −F e.
     let omega = TAU / period;
@@ -56,31 +57,38 @@ fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
     assert!((far / size - 1.0).abs() < 0.01, "{far} against {size}: the step is a hundredth of T");
     // Thirty times as much is more than it may: it stays within its stroke and its speed, and e^−4 of that is left at the end.
     let ((far, fast), left) = run(30.0 * amplitude, 60.0 + 4.0 * taker.home);
-    let (stroke, speed) = taker.limits();
+    let (stroke, speed) = taker.motion_limits();
     assert!(far <= 0.5 * stroke * 1.001 && fast <= speed * 1.001, "{far} {fast} of {stroke} {speed}");
     assert!(left.abs() < 0.02 * 0.5 * stroke, "{left}");
     // Nothing to see: no water, no haste.
     let dry = taker.update(&silent, &AbsorptionState::default(), 1.0, None);
-    assert_eq!(dry.at(2.0), (0.0, 0.0));
+    assert_eq!(dry.offset_and_rate(2.0), (0.0, 0.0));
 }
 
 #[test]
 fn a_paddle_alone_with_its_own_wave_does_not_yield() {
     for (name, wave) in all() {
         let maker = maker(0.4, wave.paddle());
-        let tuning = Tuning { period: None, gauge: 0.04, level: 0.4, stroke: None, speed: None };
+        let tuning = AbsorptionSettings {
+            period: None,
+            gauge_distance: 0.04,
+            water_level: 0.4,
+            max_stroke: None,
+            max_speed: None,
+        };
         let own = Absorber::new(&maker, &wave, &tuning).unwrap();
         let mut now = AbsorptionState::default();
         for i in 0..4000 {
             let t = 2e-3 * f64::from(i);
-            let place = wave.displacement(t).0 + now.at(t).0;
-            now = own.update(&wave, &now, t, Some(0.4 + own.wanted(&wave, place + own.gauge, t)));
-            assert!(now.at(t).0.abs() < 1e-12, "{name} at {t}");
+            let place = wave.displacement(t).0 + now.offset_and_rate(t).0;
+            now = own.update(&wave, &now, t, Some(0.4 + own.wanted(&wave, place + own.gauge_distance, t)));
+            assert!(now.offset_and_rate(t).0.abs() < 1e-12, "{name} at {t}");
         }
     }
     // What it expects is the wave itself, away from the standing ones: η of linear theory, at x = 3 d.
     let wave = maker(0.4, Paddle::Piston).regular(0.02, 1.2, 0.4, 1).unwrap();
-    let tuning = Tuning { period: None, gauge: 0.04, level: 0.4, stroke: None, speed: None };
+    let tuning =
+        AbsorptionSettings { period: None, gauge_distance: 0.04, water_level: 0.4, max_stroke: None, max_speed: None };
     let mut own = Absorber::new(&maker(0.4, Paddle::Piston), &wave, &tuning).unwrap();
     own.own[0].staying = 0.0;
     assert!((own.wanted(&wave, 1.2, 7.0) - wave.elevation(1.2, 7.0).unwrap()).abs() < 1e-12);

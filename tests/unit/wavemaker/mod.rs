@@ -11,21 +11,21 @@ pub(super) fn maker(depth: f64, paddle: Paddle) -> Wavemaker {
 }
 
 /// All kinds of waves in 0.4 m of water.
-pub(super) fn all() -> Vec<(&'static str, Wave)> {
+pub(super) fn all() -> Vec<(&'static str, PaddleMotion)> {
     let piston = maker(0.4, Paddle::Piston);
     let flap = maker(0.4, Paddle::Flap { arm: 0.3 });
-    let sea = Spectrum::jonswap(1.4, 3.3);
+    let sea = WaveSpectrum::jonswap(1.4, 3.3);
     let times: Vec<f64> = (0..400).map(|i| 0.05 * i as f64).collect();
     let eta: Vec<f64> = times.iter().map(|t| 0.02 * (TAU * t / 1.3).sin() + 0.01 * (TAU * t / 0.9).cos()).collect();
     vec![
         ("regular", piston.regular(0.08, 1.2, 0.4, 1).unwrap()),
         ("second order", piston.regular(0.08, 1.2, 0.4, 2).unwrap()),
         ("flap", flap.regular(0.08, 1.2, 0.4, 2).unwrap()),
-        ("sea", flap.sea(0.05, &sea, 7, 100).unwrap()),
+        ("sea", flap.irregular(0.05, &sea, 7, 100).unwrap()),
         ("focused", piston.focused(0.05, &sea, 4.0, 10.0, 100).unwrap()),
-        ("recorded", piston.recorded(&Series::new(times, eta).unwrap(), 1.0, 2.0).unwrap()),
-        ("boussinesq", piston.solitary(0.1, Theory::Boussinesq).unwrap()),
-        ("rayleigh", piston.solitary(0.1, Theory::Rayleigh).unwrap()),
+        ("recorded", piston.measured(&TimeSeries::new(times, eta).unwrap(), 1.0, 2.0).unwrap()),
+        ("boussinesq", piston.solitary(0.1, SolitaryTheory::Boussinesq).unwrap()),
+        ("rayleigh", piston.solitary(0.1, SolitaryTheory::Rayleigh).unwrap()),
     ]
 }
 
@@ -33,21 +33,25 @@ pub(super) fn all() -> Vec<(&'static str, Wave)> {
 fn the_dispersion_relation_holds_to_the_last_digits() {
     for depth in [0.05, 0.4, 3.0, 100.0] {
         for period in [0.3, 1.0, 4.0, 30.0, 300.0] {
-            let train = Train::of(TAU / period, depth, G);
+            let train = LinearWave::new(TAU / period, depth, G);
             let omega2 = G * train.k * train.kd().tanh();
             assert!((omega2 / train.omega.powi(2) - 1.0).abs() < 1e-12, "d = {depth}, T = {period}");
         }
     }
     // Long waves go at √(gd) as one, deep ones at g/ω, their energy at half of it.
-    let (long, deep) = (Train::of(1e-3, 1.0, G), Train::of(10.0, 10.0, G));
-    assert!((long.celerity() / G.sqrt() - 1.0).abs() < 1e-6 && (long.group() / long.celerity() - 1.0).abs() < 1e-6);
-    assert!((deep.celerity() / 0.981 - 1.0).abs() < 1e-9 && (deep.group() / deep.celerity() - 0.5).abs() < 1e-9);
-    assert_eq!((long.regime(), deep.regime()), (Regime::Shallow, Regime::Deep));
+    let (long, deep) = (LinearWave::new(1e-3, 1.0, G), LinearWave::new(10.0, 10.0, G));
+    assert!(
+        (long.celerity() / G.sqrt() - 1.0).abs() < 1e-6 && (long.group_velocity() / long.celerity() - 1.0).abs() < 1e-6
+    );
+    assert!(
+        (deep.celerity() / 0.981 - 1.0).abs() < 1e-9 && (deep.group_velocity() / deep.celerity() - 0.5).abs() < 1e-9
+    );
+    assert_eq!((long.depth_regime(), deep.depth_regime()), (DepthRegime::Shallow, DepthRegime::Deep));
 }
 
 #[test]
 fn the_standing_waves_at_the_paddle_are_those_of_its_frequency() {
-    for (j, kappa) in train::evanescent(5.0, 0.4, G, 100).into_iter().enumerate() {
+    for (j, kappa) in train::evanescent_wave_numbers(5.0, 0.4, G, 100).into_iter().enumerate() {
         let kd = 0.4 * kappa;
         assert!((25.0 + G * kappa * kd.tan()).abs() < 1e-9 * G * kappa * (1.0 + kd.tan().powi(2)), "{j}");
         assert!((j as f64 + 0.5) * PI < kd && kd < (j as f64 + 1.0) * PI, "{j}");
@@ -56,25 +60,32 @@ fn the_standing_waves_at_the_paddle_are_those_of_its_frequency() {
 
 #[test]
 fn transfer_functions_have_the_limits_of_the_books() {
-    let train = |kd: f64| Train { depth: 1.0, g: G, omega: (G * kd * kd.tanh()).sqrt(), k: kd };
+    let train = |kd: f64| LinearWave { depth: 1.0, g: G, omega: (G * kd * kd.tanh()).sqrt(), k: kd };
     let (piston, flap) = (Paddle::Piston, Paddle::Flap { arm: 1.0 });
     // H/S = kd and kd/2; the next term is of (kd)², relative.
-    assert!((piston.transfer(&train(0.01)) / 0.01 - 1.0).abs() < 1e-3);
-    assert!((flap.transfer(&train(0.01)) / 0.005 - 1.0).abs() < 1e-3);
+    assert!((piston.transfer_function(&train(0.01)) / 0.01 - 1.0).abs() < 1e-3);
+    assert!((flap.transfer_function(&train(0.01)) / 0.005 - 1.0).abs() < 1e-3);
     // 2 and 2 (1 − 1/kd) in deep water.
-    assert!((piston.transfer(&train(20.0)) - 2.0).abs() < 1e-9 && (flap.transfer(&train(20.0)) - 1.9).abs() < 1e-9);
+    assert!(
+        (piston.transfer_function(&train(20.0)) - 2.0).abs() < 1e-9
+            && (flap.transfer_function(&train(20.0)) - 1.9).abs() < 1e-9
+    );
     for kd in [0.3_f64, 1.0, 3.0] {
         let told = 2.0 * ((2.0 * kd).cosh() - 1.0) / ((2.0 * kd).sinh() + 2.0 * kd);
-        assert!((piston.transfer(&train(kd)) / told - 1.0).abs() < 1e-12);
+        assert!((piston.transfer_function(&train(kd)) / told - 1.0).abs() < 1e-12);
         let told = 4.0 * (kd.sinh() / kd) * (kd * kd.sinh() - kd.cosh() + 1.0) / ((2.0 * kd).sinh() + 2.0 * kd);
-        assert!((flap.transfer(&train(kd)) / told - 1.0).abs() < 1e-12);
+        assert!((flap.transfer_function(&train(kd)) / told - 1.0).abs() < 1e-12);
         // A flap hinged far below is a piston; the higher the hinge, the less it moves.
-        assert!((Paddle::Flap { arm: 1e6 }.transfer(&train(kd)) / piston.transfer(&train(kd)) - 1.0).abs() < 1e-5);
-        let all = [2.0, 1.0, 0.5, 0.2].map(|arm| Paddle::Flap { arm }.transfer(&train(kd)));
+        assert!(
+            (Paddle::Flap { arm: 1e6 }.transfer_function(&train(kd)) / piston.transfer_function(&train(kd)) - 1.0)
+                .abs()
+                < 1e-5
+        );
+        let all = [2.0, 1.0, 0.5, 0.2].map(|arm| Paddle::Flap { arm }.transfer_function(&train(kd)));
         assert!(all.is_sorted_by(|a, b| a > b), "{all:?}");
     }
     // Past the largest numbers nothing breaks off.
-    let edge = [299.0, 301.0].map(|kd| flap.transfer(&train(kd)));
+    let edge = [299.0, 301.0].map(|kd| flap.transfer_function(&train(kd)));
     assert!((edge[0] / edge[1] - 1.0).abs() < 1e-4, "{edge:?}");
 }
 
@@ -83,8 +94,8 @@ fn the_second_order_of_a_piston_is_madsens_in_shallow_water() {
     // Madsen leaves out the standing waves at the paddle, which are of (kd)², relative.
     for (kd, close) in [(0.2, 0.003), (0.3, 0.006), (0.5, 0.05)] {
         let k = kd / 0.4;
-        let train = Train { depth: 0.4, g: G, omega: (G * k * f64::tanh(kd)).sqrt(), k };
-        let (c, a) = (Paddle::Piston.transfer(&train), 0.01);
+        let train = LinearWave { depth: 0.4, g: G, omega: (G * k * f64::tanh(kd)).sqrt(), k };
+        let (c, a) = (Paddle::Piston.transfer_function(&train), 0.01);
         let height = 2.0 * c * a;
         let madsen = height * height / (32.0 * 0.4) * (3.0 * f64::cosh(kd) / f64::sinh(kd).powi(3) - 2.0 / c);
         let ours = second_order::correction(&Paddle::Piston, &train, a);
@@ -101,33 +112,36 @@ fn the_second_order_of_a_piston_is_madsens_in_shallow_water() {
 #[test]
 fn a_paddle_starts_at_rest_at_its_place() {
     for (name, wave) in all() {
-        assert_eq!(wave.at(0.0), (0.0, 0.0), "{name}");
+        assert_eq!(wave.coordinate_and_rate(0.0), (0.0, 0.0), "{name}");
         // The rate comes in with the square of the time at least: in the first hundredth of the ramp a paddle has less
         // than 3e-3 of its speed.
-        let fastest = (0..4000).map(|i| wave.at(0.01 * f64::from(i)).1.abs()).fold(0.0, f64::max);
-        assert!(wave.at(0.01 * wave.ramp_time()).1.abs() < 3e-3 * fastest, "{name}");
+        let fastest = (0..4000).map(|i| wave.coordinate_and_rate(0.01 * f64::from(i)).1.abs()).fold(0.0, f64::max);
+        assert!(wave.coordinate_and_rate(0.01 * wave.ramp_time()).1.abs() < 3e-3 * fastest, "{name}");
     }
 }
 
 #[test]
 fn the_rate_of_a_paddle_is_the_derivative_of_its_place() {
     for (name, wave) in all() {
-        let fastest = (0..4000).map(|i| wave.at(0.01 * f64::from(i)).1.abs()).fold(0.0, f64::max);
+        let fastest = (0..4000).map(|i| wave.coordinate_and_rate(0.01 * f64::from(i)).1.abs()).fold(0.0, f64::max);
         for t in [0.05, 0.3, 0.7, 1.9, 3.3, 9.8, 19.0, 20.7] {
             let step = 1e-5;
-            let difference = (wave.at(t + step).0 - wave.at(t - step).0) / (2.0 * step);
+            let difference =
+                (wave.coordinate_and_rate(t + step).0 - wave.coordinate_and_rate(t - step).0) / (2.0 * step);
             // Truncation step² x‴/6, about 1e-8 of the speed at 60 rad/s; round-off 1e-16/step.
-            assert!((difference - wave.at(t).1).abs() < 1e-7 * fastest + 1e-10, "{name} at {t}");
+            assert!((difference - wave.coordinate_and_rate(t).1).abs() < 1e-7 * fastest + 1e-10, "{name} at {t}");
         }
     }
 }
 
 #[test]
 fn a_sea_has_the_height_and_the_peak_that_were_asked_for() {
-    for spectrum in [Spectrum::jonswap(1.4, 3.3), Spectrum::bretschneider(1.4)] {
-        let wave = maker(5.0, Paddle::Piston).sea(0.1, &spectrum, 3, 1000).unwrap();
+    for spectrum in [WaveSpectrum::jonswap(1.4, 3.3), WaveSpectrum::bretschneider(1.4)] {
+        let wave = maker(5.0, Paddle::Piston).irregular(0.1, &spectrum, 3, 1000).unwrap();
         let Course::Tones(tones) = &wave.course else { panic!("a sea is a sum") };
-        let surface = |tone: &Component| tone.amplitude * Paddle::Piston.transfer(&Train::of(tone.omega, 5.0, G));
+        let surface = |tone: &WaveComponent| {
+            tone.amplitude * Paddle::Piston.transfer_function(&LinearWave::new(tone.omega, 5.0, G))
+        };
         let m0: f64 = tones.iter().map(|tone| 0.5 * surface(tone).powi(2)).sum();
         assert!((4.0 * m0.sqrt() / 0.1 - 1.0).abs() < 1e-12);
         // Components of equal energy stand closest at the peak: by twenties, to the width of twenty of them.
@@ -147,14 +161,17 @@ fn a_sea_has_the_height_and_the_peak_that_were_asked_for() {
         }
     }
     // 0.0081 g²/5ω_p⁴ = (H/4)²: T_p = 5.0 √H.
-    let grown = Spectrum::pierson_moskowitz(4.0, G);
+    let grown = WaveSpectrum::pierson_moskowitz(4.0, G);
     assert!((grown.peak_period - 10.0).abs() < 0.02, "{}", grown.peak_period);
 }
 
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_one_another_sea() {
-    let sea = |seed: u64| maker(0.4, Paddle::Piston).sea(0.05, &Spectrum::jonswap(1.4, 3.3), seed, 100).unwrap();
-    let course = |wave: Wave| (0..100).map(|i| wave.at(0.37 * f64::from(i)).0.to_bits()).collect::<Vec<u64>>();
+    let sea =
+        |seed: u64| maker(0.4, Paddle::Piston).irregular(0.05, &WaveSpectrum::jonswap(1.4, 3.3), seed, 100).unwrap();
+    let course = |wave: PaddleMotion| {
+        (0..100).map(|i| wave.coordinate_and_rate(0.37 * f64::from(i)).0.to_bits()).collect::<Vec<u64>>()
+    };
     assert_eq!(course(sea(5)), course(sea(5)));
     assert_ne!(course(sea(5)), course(sea(6)));
 }
@@ -162,7 +179,7 @@ fn the_same_seed_gives_the_same_bits_and_another_one_another_sea() {
 #[test]
 fn a_focused_group_has_all_crests_at_its_place_and_time() {
     let wave =
-        maker(0.4, Paddle::Flap { arm: 0.5 }).focused(0.05, &Spectrum::jonswap(1.4, 3.3), 4.0, 12.0, 80).unwrap();
+        maker(0.4, Paddle::Flap { arm: 0.5 }).focused(0.05, &WaveSpectrum::jonswap(1.4, 3.3), 4.0, 12.0, 80).unwrap();
     let at = |x: f64, t: f64| wave.elevation(x, t).unwrap();
     assert!((at(4.0, 12.0) - 0.05).abs() < 1e-12);
     // Nowhere and never as high within some lengths and periods.
@@ -174,15 +191,15 @@ fn a_focused_group_has_all_crests_at_its_place_and_time() {
 #[test]
 fn the_piston_of_a_solitary_wave_goes_as_far_as_the_water_beneath_it() {
     let (h, d) = (0.1, 0.4);
-    let wave = maker(d, Paddle::Piston).solitary(h, Theory::Boussinesq).unwrap();
-    let own = wave.facts().solitary.unwrap();
+    let wave = maker(d, Paddle::Piston).solitary(h, SolitaryTheory::Boussinesq).unwrap();
+    let own = wave.properties().solitary.unwrap();
     // S = √(16 H d/3), Goring; the tails left out are e^−10 of it.
     assert!((own.stroke() / (16.0 * h * d / 3.0_f64).sqrt() - 1.0).abs() < 1e-12);
-    assert!((wave.at(30.0).0 / own.stroke() - 1.0).abs() < 1e-4);
+    assert!((wave.coordinate_and_rate(30.0).0 / own.stroke() - 1.0).abs() < 1e-4);
     // The water over the piston's way is that of the wave: ∫η dx = 2H/κ = S d.
     assert!((2.0 * h / own.kappa / d / own.stroke() - 1.0).abs() < 1e-12);
     // At its fastest the face has the speed of the water under the crest, cH/(d + H).
-    let fastest = (0..100_000).map(|i| wave.at(1e-4 * f64::from(i)).1).fold(0.0, f64::max);
+    let fastest = (0..100_000).map(|i| wave.coordinate_and_rate(1e-4 * f64::from(i)).1).fold(0.0, f64::max);
     assert!((fastest / (own.celerity * h / (d + h)) - 1.0).abs() < 1e-6, "{fastest}");
 }
 
@@ -192,38 +209,38 @@ fn a_record_gives_back_what_was_measured() {
     let eta = |t: f64| 0.02 * (TAU * t / 1.25 + 0.3).sin() + 0.01 * (TAU * t / 0.8).cos();
     let times: Vec<f64> = (0..=1000).map(|i| 2.0 + 0.02 * f64::from(i)).collect();
     let values: Vec<f64> = times.iter().map(|t| eta(*t)).collect();
-    let wave = maker.recorded(&Series::new(times, values).unwrap(), 1.5, 3.0).unwrap();
+    let wave = maker.measured(&TimeSeries::new(times, values).unwrap(), 1.5, 3.0).unwrap();
     for t in [4.0, 7.3, 11.1, 19.0] {
         let shown = wave.elevation(1.5, t + 3.0).unwrap();
         // Whole periods of both fit into the record: the rest is round-off and the half per cent at either end.
         assert!((shown - eta(t)).abs() < 1e-4, "{t}: {shown} against {}", eta(t));
     }
-    assert_eq!(wave.at(25.1), (0.0, 0.0), "the record ended at 22 s, 3 s later here");
+    assert_eq!(wave.coordinate_and_rate(25.1), (0.0, 0.0), "the record ended at 22 s, 3 s later here");
 }
 
 #[test]
 fn waves_that_cannot_be_are_refused_with_the_height_that_can() {
     let piston = maker(0.4, Paddle::Piston);
-    let said = |wave: Result<Wave>| wave.unwrap_err().to_string();
+    let said = |wave: Result<PaddleMotion>| wave.unwrap_err().to_string();
     // 0.142 L tanh kd is less than 0.78 d here.
-    let most = Train::of(TAU / 1.2, 0.4, G).highest();
+    let most = LinearWave::new(TAU / 1.2, 0.4, G).breaking_height();
     let told = said(piston.regular(0.4, 1.2, 0.0, 1));
     assert!(told.contains("breaks") && told.contains(&format!("{most:.3} m")), "{told}");
-    assert!(said(piston.solitary(0.35, Theory::Rayleigh)).contains("0.312 m"));
-    assert!(said(maker(0.4, Paddle::Flap { arm: 0.4 }).solitary(0.1, Theory::Rayleigh)).contains("piston"));
+    assert!(said(piston.solitary(0.35, SolitaryTheory::Rayleigh)).contains("0.312 m"));
+    assert!(said(maker(0.4, Paddle::Flap { arm: 0.4 }).solitary(0.1, SolitaryTheory::Rayleigh)).contains("piston"));
     assert!(said(piston.regular(0.05, 1.2, 0.0, 3)).contains("order"));
     assert!(said(piston.regular(0.05, -1.0, 0.0, 1)).contains("period"));
-    assert!(said(piston.sea(0.05, &Spectrum::jonswap(1.4, 3.3), 1, 0)).contains("components"));
+    assert!(said(piston.irregular(0.05, &WaveSpectrum::jonswap(1.4, 3.3), 1, 0)).contains("components"));
 }
 
 #[test]
 fn regions_of_the_chart_follow_height_and_depth() {
-    let region = |d: f64, t: f64, h: f64| Train::of(TAU / t, d, G).region(h);
+    let region = |d: f64, t: f64, h: f64| LinearWave::new(TAU / t, d, G).theory_region(h);
     // Deep: H/gT² = 0.001 parts Airy from Stokes, a quarter of breaking the second order from the higher.
-    assert_eq!(region(10.0, 1.0, 0.009), Region::Airy);
-    assert_eq!(region(10.0, 1.0, 0.02), Region::Stokes2);
-    assert_eq!(region(10.0, 1.0, 0.1), Region::Stokes5);
-    assert_eq!(region(10.0, 1.0, 0.25), Region::Breaking);
-    assert_eq!(region(0.3, 3.0, 0.1), Region::Cnoidal);
-    assert_eq!(region(0.3, 3.0, 0.3), Region::Breaking);
+    assert_eq!(region(10.0, 1.0, 0.009), TheoryRegion::Airy);
+    assert_eq!(region(10.0, 1.0, 0.02), TheoryRegion::Stokes2);
+    assert_eq!(region(10.0, 1.0, 0.1), TheoryRegion::Stokes5);
+    assert_eq!(region(10.0, 1.0, 0.25), TheoryRegion::Breaking);
+    assert_eq!(region(0.3, 3.0, 0.1), TheoryRegion::Cnoidal);
+    assert_eq!(region(0.3, 3.0, 0.3), TheoryRegion::Breaking);
 }

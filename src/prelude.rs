@@ -1,0 +1,13 @@
+//! The names that most programs need: `use pontoon::prelude::*;`.
+
+pub use crate::{
+    error::{Error, Result},
+    geometry::{Shape, WaterRegion, fill},
+    math::{Bivector, Pose, Vector},
+    model::Model,
+    probe::Probe,
+    scene::{BuiltScene, Scene},
+    simulation::{Setup, Simulation},
+    solid::{FreeBody, Kinematics, Load, Role, SolidSpec},
+    system::System,
+};

@@ -1,0 +1,179 @@
+//! The facts of a scene against which its sections are checked and from which they are built; errors with their place;
+//! the record of the defaults.
+
+use std::{collections::BTreeMap, path::Path};
+
+use super::{
+    diagnostics,
+    toml_source::{SceneSource, ValueSource},
+};
+use crate::error::{Error, Result, nearest_name};
+
+/// What a section needs to know of its scene.
+pub(crate) struct Context<'a> {
+    pub(super) origin: &'a SceneSource,
+    /// 2 or 3.
+    pub(crate) dimension: usize,
+    /// Particle spacing, m.
+    pub(crate) dp: f64,
+    /// Smoothing length, m.
+    pub(crate) h: f64,
+    /// Simulated time at the end, s.
+    pub(crate) until: f64,
+    /// Acceleration of gravity, m/s²; `None` if the scene does not give it.
+    pub(crate) gravity: Option<&'a [f64]>,
+    /// Reference density, kg/m³; `None` if the scene does not give it.
+    pub(crate) rho0: Option<f64>,
+}
+
+impl Context<'_> {
+    /// Folder in which the files that the scene names are looked for.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.origin.folder
+    }
+
+    /// Layers of boundary particles: as many as the kernel reaches.
+    pub(crate) fn layers(&self) -> usize {
+        (2.0 * self.h / self.dp - 1e-9).ceil() as usize
+    }
+
+    /// Whether gravity acts.
+    pub(crate) fn has_gravity(&self) -> bool {
+        self.gravity.into_iter().flatten().any(|g| *g != 0.0)
+    }
+
+    /// `|g|`, m/s².
+    pub(crate) fn gravity_norm(&self) -> f64 {
+        self.gravity.into_iter().flatten().map(|g| g * g).sum::<f64>().sqrt()
+    }
+
+    /// `error` with the place of `key` in the scene.
+    pub(crate) fn with_location(&self, error: Error, key: &str) -> Error {
+        self.origin.with_location(error, key)
+    }
+
+    /// The error that `what` is wrong at `key`, with its place and an example.
+    pub(crate) fn error_at(&self, key: &str, what: impl Into<String>) -> Error {
+        let error = Error::scene(what);
+        let error = match diagnostics::example(key) {
+            Some(example) => error.help(example),
+            None => error,
+        };
+        self.with_location(error, key)
+    }
+
+    /// As [`Context::error_at`], with this help in place of the example.
+    pub(crate) fn error_with_help(&self, key: &str, what: impl Into<String>, help: impl Into<String>) -> Error {
+        self.with_location(Error::scene(what).help(help), key)
+    }
+
+    /// Refuses a number that is given and not positive.
+    pub(crate) fn require_positive(&self, key: &str, x: Option<f64>) -> Result<()> {
+        match x {
+            Some(x) if !(x > 0.0 && x.is_finite()) => {
+                Err(self.error_at(key, format!("{} must be a positive number, not {x}", last_part(key))))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a number that is given and not from 0 to `most`.
+    pub(crate) fn require_range(&self, key: &str, x: Option<f64>, most: f64) -> Result<()> {
+        match x.filter(|x| !(0.0..=most).contains(x)) {
+            Some(x) => {
+                let word = last_part(key);
+                let help = format!("{word} is a number from 0 to {most}");
+                Err(self.error_with_help(key, format!("{word} cannot be {x}"), help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a vector that has not as many numbers as the scene has dimensions.
+    pub(crate) fn require_dimension(&self, key: &str, x: &[f64]) -> Result<()> {
+        let (d, n) = (self.dimension, x.len());
+        if n != d {
+            let help = format!("a {d}-D scene has vectors of {d} numbers, as in [{}]", vec!["0.0"; d].join(", "));
+            return Err(self.error_with_help(key, format!("{} has {n} numbers, not {d}", last_part(key)), help));
+        }
+        match x.iter().find(|x| !x.is_finite()) {
+            Some(x) => Err(self.error_at(key, format!("{x} is not a finite number"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a vector without a direction.
+    pub(crate) fn require_direction(&self, key: &str, x: &[f64]) -> Result<()> {
+        self.require_dimension(key, x)?;
+        match x.iter().all(|x| x.abs() < 1e-12) {
+            true => Err(self.error_at(key, format!("{} points nowhere", last_part(key)))),
+            false => Ok(()),
+        }
+    }
+
+    /// Refuses a name that could not be a file's.
+    pub(crate) fn require_file_name(&self, key: &str, name: &str) -> Result<()> {
+        let good = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || name.len() > 64 || !name.chars().all(good) {
+            let help = "a name has letters, digits, _ and -, as in \"box_1\"; files are called after it";
+            return Err(self.error_with_help(key, format!("\"{name}\" cannot be a name"), help));
+        }
+        Ok(())
+    }
+
+    /// Refuses an interval of the run's time that is empty.
+    pub(crate) fn require_interval(&self, key: &str, from: Option<f64>, until: Option<f64>, help: &str) -> Result<()> {
+        match (from, until) {
+            (Some(from), Some(until)) if from >= until => {
+                let what = format!("nothing lies between from = {from} and until = {until}");
+                Err(self.error_with_help(&format!("{key}.until"), what, help))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The defaults that were filled in, with their reasons, by key.
+#[derive(Default)]
+pub(crate) struct Defaults(BTreeMap<String, String>);
+
+impl Defaults {
+    /// Puts the default `value` into an empty `slot` and keeps the `reason`.
+    pub(crate) fn fill<T>(
+        &mut self,
+        key: impl Into<String>,
+        slot: &mut Option<T>,
+        value: T,
+        reason: impl Into<String>,
+    ) {
+        if slot.is_none() {
+            *slot = Some(value);
+            self.0.insert(key.into(), reason.into());
+        }
+    }
+
+    /// The default that stands at `key`.
+    pub(crate) fn source(&self, key: &str) -> Option<ValueSource> {
+        self.0.get(key).map(|reason| ValueSource::Default(reason.clone()))
+    }
+}
+
+/// The names of the keys of `given` that are set.
+pub(crate) fn set_keys<const N: usize>(given: [(&'static str, bool); N]) -> Vec<&'static str> {
+    given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
+}
+
+/// Keys joined for a sentence.
+pub(crate) fn quoted_list(keys: &[&str]) -> String {
+    if keys.is_empty() { "nothing".into() } else { keys.join(" and ") }
+}
+
+/// The nearest of the `known` names, to end a sentence.
+pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
+    nearest_name(name, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
+}
+
+/// The last part of a key.
+pub(crate) fn last_part(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}

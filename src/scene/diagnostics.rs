@@ -1,0 +1,272 @@
+//! Errors of the parser in the words of a user: the fault, the nearest valid name, an example.
+
+use crate::{
+    error::{Error, nearest_name},
+    probe,
+};
+
+/// Examples by key; the entry with the longest match of the end of the key is shown.
+const EXAMPLES: &[(&str, &str)] = &[
+    ("title", "title = \"Box in a wave train\""),
+    ("dimension", "dimension = 2"),
+    ("dp", "dp = 0.01          # particle spacing, m"),
+    ("until", "until = 10.0       # s"),
+    ("gravity", "gravity = [0.0, -9.81]"),
+    ("jitter", "jitter = 1e-7      # of dp"),
+    ("domain", "domain = { min = [0.0, 0.0], max = [2.0, 1.0] }"),
+    ("periodic", "periodic = { x = [0.0, 1.0] }        # m"),
+    ("periodic.x", "periodic = { x = [0.0, 1.0] }        # m"),
+    ("periodic.y", "periodic = { y = [0.0, 1.0] }        # m"),
+    ("periodic.z", "periodic = { z = [0.0, 1.0] }        # m"),
+    ("guard", "[guard]\nescape = \"remove\""),
+    ("guard.speed", "speed = 0.5          # of c0"),
+    ("guard.density", "density = [0.5, 1.5] # of rho0"),
+    ("escape", "escape = \"remove\"    # or \"stop\""),
+    ("water.velocity", "velocity = [\"0.1*sin(2*pi*x)\", 0.0]        # m/s, one entry an axis"),
+    ("water.pressure", "pressure = \"20*cos(2*pi*x)\"        # Pa, beyond that of water at rest"),
+    ("water", "[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
+    ("fill", "fill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
+    ("level", "level = 0.4        # height of the surface, m"),
+    ("damping", "[[damping]]\nfrom = [6.0, 0.0]\nto   = [8.0, 0.0]"),
+    ("damping.from", "from = [6.0, 0.0]        # m, where the zone begins"),
+    ("damping.to", "to = [8.0, 0.0]          # m, where it is full"),
+    ("strength", "strength = 5.0        # 1/s"),
+    ("damping.power", "power = 2.0           # even: 1, gentler at first: more"),
+    ("solid", "[[solid]]\nname  = \"box\"\nshape = { box = { size = [0.1, 0.05] } }\nfree  = { density = 500.0 }"),
+    ("name", "name = \"box\""),
+    ("shape", "shape = { box = { size = [0.1, 0.05] } }"),
+    ("shape.box", "shape = { box = { size = [0.1, 0.05] } }"),
+    ("shape.ball", "shape = { ball = { radius = 0.1 } }"),
+    ("shape.capsule", "shape = { capsule = { length = 0.2, radius = 0.05, axis = \"x\" } }"),
+    ("shape.cylinder", "shape = { cylinder = { length = 0.2, radius = 0.05, axis = \"z\" } }"),
+    ("shape.polygon", "shape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }"),
+    ("shape.polyline", "shape = { polyline = [[0.0, 0.0], [4.0, 0.0], [10.0, 0.6]] }"),
+    ("shape.tank", "shape = { tank = { size = [1.0, 0.5] } }"),
+    ("shape.compound", "shape = { compound = [{ shape = { ball = { radius = 0.1 } }, at = { x = 0.1 } }] }"),
+    ("at", "at = { x = 2.0, draft = \"equilibrium\" }"),
+    ("draft", "at = { x = 2.0, draft = \"equilibrium\" }"),
+    ("fixed", "fixed = true"),
+    ("driven", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
+    (
+        "motions",
+        "motions = [\n  { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } },\n  { hinge = [0.5, 0.0], angle_deg = { formula = \"2*sin(2*pi*t)\" } },\n]",
+    ),
+    ("driven.wave", "wave = { regular = { height = 0.1, period = 1.2 } }"),
+    ("wave.regular", "wave = { regular = { height = 0.1, period = 1.2 } }"),
+    ("wave.jonswap", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("wave.bretschneider", "wave = { bretschneider = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("wave.pierson_moskowitz", "wave = { pierson_moskowitz = { height = 0.1, seed = 1 } }"),
+    ("wave.focused", "wave = { focused = { crest = 0.08, peak_period = 1.4, distance = 4.0, time = 10.0 } }"),
+    ("wave.solitary", "wave = { solitary = { height = 0.1 } }"),
+    ("wave.components", "wave = { components = { file = \"components.csv\" } }"),
+    ("wave.elevation", "wave = { elevation = { file = \"gauge.csv\", column = \"eta_m\", distance = 2.0 } }"),
+    ("jonswap.peak_period", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("bretschneider.peak_period", "wave = { bretschneider = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("wave.absorb", "absorb = true, or  absorb = { period = 1.2, stroke = 0.4, speed = 1.0 }        # s, m, m/s"),
+    ("wave.ramp", "ramp = 2.4        # s"),
+    ("wave.depth", "depth = 0.4       # of the still water at the paddle, m"),
+    ("along", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
+    ("distance", "distance = { formula = \"0.05*sin(2*pi*t)\" }"),
+    ("hinge", "driven = { hinge = [0.0, 0.0], angle = { file = \"flap.csv\", column = \"angle_deg\" } }"),
+    ("angle", "angle = { file = \"flap.csv\", column = \"angle_deg\" }"),
+    ("angle_deg", "angle_deg = { formula = \"5*sin(2*pi*t)\" }"),
+    ("formula", "formula = \"0.05*sin(2*pi*t)\""),
+    ("free", "free = { density = 500.0 }"),
+    ("joint.free", "free = [\"y\", \"turn\"]"),
+    ("density", "free = { density = 500.0 }        # kg/m³"),
+    ("inertia", "free = { density = 500.0, inertia = 0.005 }        # kg m²/m; three numbers in 3-D"),
+    ("release", "free = { density = 500.0, release = 1.0 }        # s"),
+    ("locked", "free = { density = 500.0, locked = [\"x\", \"turn\"] }"),
+    ("contact_skin", "contact_skin = 0.005        # m"),
+    (
+        "joint",
+        "[[joint]]\nname    = \"hinge\"\nkind    = \"hinge\"\nbetween = [\"fore\", \"aft\"]\nat      = [2.0, 0.5]",
+    ),
+    ("kind", "kind = \"hinge\"      # or \"slider\", \"fixed\", \"ball\", \"tow\", \"generic\""),
+    ("between", "between = [\"fore\", \"aft\"]        # two solids; or one, and the world"),
+    ("regular.height", "regular = { height = 0.1, period = 1.2 }        # m, s"),
+    ("regular.period", "regular = { height = 0.1, period = 1.2 }        # m, s"),
+    ("axis", "axis = [0.0, 1.0, 0.0]"),
+    ("joint.along", "along = [0.0, 1.0]"),
+    ("joint.at", "at = [2.0, 0.5]        # m, in the world, at the start"),
+    ("limits", "limits = [-0.1, 0.1]        # m or rad, from the start"),
+    ("limits_deg", "limits_deg = [-30.0, 30.0]"),
+    ("motor", "motor = { damping = 20.0 }        # a power take-off"),
+    ("motor.damping", "motor = { damping = 20.0 }"),
+    ("motor.stiffness", "motor = { position = 0.0, stiffness = 500.0, damping = 20.0 }"),
+    ("motor.velocity", "motor = { velocity = 0.5, damping = 20.0 }"),
+    ("motor.force", "motor = { force = \"5*sin(2*pi*t)\" }"),
+    ("motor.torque", "motor = { torque = \"5*sin(2*pi*t)\" }"),
+    (
+        "spring",
+        "[[spring]]\nname      = \"line\"\nbetween   = [\"buoy\"]\nfrom      = [1.0, 0.4]\nto        = [1.0, 0.0]\n\
+         stiffness = 500.0",
+    ),
+    ("rope", "[[rope]]\nname    = \"rope\"\nbetween = [\"buoy\"]\nfrom    = [1.0, 0.4]\nto      = [1.0, 0.0]"),
+    ("force", "[[force]]\nname  = \"wind\"\non    = \"box\"\nforce = [\"20*sin(t)\", 0.0]"),
+    ("on", "on = \"box\""),
+    ("force.force", "force = [\"20*sin(t)\", 0.0]        # N, one entry an axis"),
+    ("force.torque", "torque = \"2*sin(t)\"        # N m; three of them in 3-D"),
+    ("contact", "[[contact]]\nbetween  = [\"box\", \"tank\"]\nfriction = 0.1"),
+    ("contact.touch", "touch = false"),
+    ("model", "[model]\nviscosity = { artificial = { alpha = 0.02 } }"),
+    ("kernel", "kernel = \"wendland\""),
+    ("viscosity", "viscosity = { artificial = { alpha = 0.02 } }"),
+    ("viscosity.artificial", "viscosity = { artificial = { alpha = 0.02 } }"),
+    ("viscosity.laminar", "viscosity = { laminar = { nu0 = 1e-6 } }"),
+    ("viscosity.sps", "viscosity = { sps = { nu0 = 1e-6 } }"),
+    ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
+    ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
+    ("walls", "walls = \"relaxed_adami\" # or \"dbc\""),
+    ("gradient", "gradient = \"corrected\"    # or \"plain\""),
+    ("slip", "slip = \"none\"         # or \"free\", \"partial\""),
+    ("sweep", "sweep = \"fast\""),
+    ("time", "[time]\nscheme = \"symplectic\""),
+    ("scheme", "scheme = { verlet = { euler_every = 50 } }"),
+    ("probe", "[[probe]]\nmotion = \"box\""),
+    ("motion", "motion = \"box\""),
+    ("elevation", "elevation = { x = 1.16 }, or a row:  elevation = { from = 1.0, to = 3.0, count = 5 }"),
+    ("surface", "surface = \"highest\"      # or \"lowest\", \"all\""),
+    ("count", "count = 5"),
+    ("spacing", "spacing = 0.1        # m"),
+    ("flow", "flow = { from = [1.0, 0.3], to = [1.0, 0.6] }        # positive to the right: along x, if upwards"),
+    ("average", "average = true"),
+    ("velocity", "velocity = [0.75, 0.03]"),
+    ("pressure", "pressure = [0.75, 0.03]"),
+    ("frames", "frames = { every = 0.05, fields = [\"velocity\", \"pressure\"] }"),
+    ("fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
+    ("checkpoint", "checkpoint = { wall = 600.0 }"),
+    ("check", "[[check]]\nseries = \"box.heave_m\"\nreference = \"body.csv\"\ncolumn = \"heave_m\""),
+    ("statistic", "[[statistic]]\nreflection = [\"g1\", \"g2\", \"g3\"]"),
+    ("waves", "waves = \"gauge.eta_m\""),
+    ("reflection", "reflection = [\"g1\", \"g2\", \"g3\"]"),
+    ("rao", "rao = { motion = \"buoy\", wave = \"gauge\" }"),
+    ("period", "period = 1.2       # s"),
+    ("depth", "depth = 0.4        # m"),
+    ("series", "series = \"box.heave_m\""),
+    ("reference", "reference = \"body.csv\""),
+    ("check.column", "column = \"heave_m\""),
+    ("check.formula", "formula = \"0.05*cos(2*pi*t/1.2)\""),
+    ("check.from", "from = 1.0         # s, of the run"),
+    ("check.until", "until = 2.0        # s, of the run"),
+    ("check.zero", "zero = 6.32        # s, of the run"),
+    ("check.mean", "mean = 0.005       # s"),
+    ("align", "align = \"best\", or  align = { crossing = 5.0 }"),
+    ("align.crossing", "align = { crossing = 5.0 }        # in the unit of the series"),
+    ("align.start", "align = { start = 5.0 }        # in the unit of the series"),
+    ("bound", "bound = { N = 0.3, M = 0.2, peak = 0.2, off = 0.01, aligned_N = 0.2, delay = 0.05 }"),
+    ("paper", "paper = { N = 0.355, M = 1.115 }"),
+];
+
+/// An example for `key`, for the user to copy.
+pub(super) fn example(key: &str) -> Option<String> {
+    let parts: Vec<&str> = key.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+    let tail = |from: usize| parts[from..].join(".");
+    let own = parts.len().checked_sub(2).map(tail).into_iter().chain(parts.len().checked_sub(1).map(tail));
+    let of_probe = |tail: &str| tail.strip_prefix("probe.").and_then(probe::example);
+    let listed = |tail: &str| EXAMPLES.iter().find(|(key, _)| *key == tail).map(|(_, example)| *example);
+    own.filter_map(|tail| listed(&tail).or_else(|| of_probe(&tail))).next().map(example_help)
+}
+
+fn example_help(example: &str) -> String {
+    format!("write  {}", example.replace('\n', "\n       "))
+}
+
+/// The names in backticks in the `message` of the parser.
+fn quoted(message: &str) -> Vec<&str> {
+    message.split('`').skip(1).step_by(2).collect()
+}
+
+fn list(words: &[&str]) -> String {
+    words.join(", ")
+}
+
+/// The kind of thing that `key` holds, for a sentence: its last part that is not a number.
+fn key_noun(key: &str) -> &str {
+    key.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(key)
+}
+
+/// The error of the parser's `message` about `key`, and the key that it is about.
+pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
+    let words = quoted(message);
+    let did_you_mean = |word: &str, known: &[&str]| {
+        nearest_name(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
+    };
+    let with = |error: Error, lines: Vec<String>| match lines.is_empty() {
+        true => error,
+        false => error.help(lines.join("\n")),
+    };
+    if let (true, [word, known @ ..]) = (message.starts_with("unknown field"), &words[..]) {
+        // The key is the unknown one or, where its words are told apart by their form, the one above it.
+        let above = if key == *word { Some("") } else { key.strip_suffix(&format!(".{word}")) };
+        let parent = above.unwrap_or(key);
+        let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
+        let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
+        // Of the same parent: a water's velocity is not a probe's.
+        let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
+        let guess = near.or_else(|| example(parent));
+        let known = format!("known here: {}", list(known));
+        return (with(error, [known].into_iter().chain(guess).collect()), shown);
+    }
+    if let (true, [word, known @ ..]) = (message.starts_with("unknown variant"), &words[..]) {
+        let key = key.strip_suffix(&format!(".{word}")).unwrap_or(key);
+        let error = Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), did_you_mean(word, known)));
+        let known = format!("known: {}", list(known));
+        return (with(error, [known].into_iter().chain(example(key)).collect()), key.to_string());
+    }
+    if let (true, [word]) = (message.starts_with("missing field"), &words[..]) {
+        let error = Error::scene(format!("\"{word}\" is missing"));
+        let full = if key.is_empty() { word.to_string() } else { format!("{key}.{word}") };
+        return (with(error, example(&full).or_else(|| example(key)).into_iter().collect()), full);
+    }
+    if let Some((found, wanted)) = message
+        .strip_prefix("invalid type: ")
+        .or_else(|| message.strip_prefix("invalid value: "))
+        .and_then(|rest| rest.split_once(", expected "))
+    {
+        let found = translated_found(found);
+        let error = Error::scene(format!("{} must be {}, not {found}", key_noun(key), translated_type(wanted)));
+        return (with(error, example(key).into_iter().collect()), key.to_string());
+    }
+    if message.contains("exactly 1 element") {
+        let error = Error::scene(format!("{} takes one choice: a word, or a table with one key", key_noun(key)));
+        return (with(error, example(key).into_iter().collect()), key.to_string());
+    }
+    let error = Error::scene(format!("{}: {message}", key_noun(key)).trim_start_matches(": ").to_string());
+    (with(error, example(key).into_iter().collect()), key.to_string())
+}
+
+/// The value that the parser found, in plain words.
+fn translated_found(found: &str) -> String {
+    let (kind, rest) = found.split_once(' ').unwrap_or((found, ""));
+    let rest = rest.trim_start_matches("point ").replace('`', "");
+    match kind {
+        "string" => format!("the text {rest}"),
+        "sequence" => "a list".into(),
+        "map" => "a table".into(),
+        "integer" | "floating" | "boolean" => rest,
+        _ => found.replace('`', ""),
+    }
+}
+
+/// A type that the parser expects, in plain words.
+fn translated_type(wanted: &str) -> &str {
+    match wanted {
+        "f64" => "a number",
+        "usize" | "u32" | "u64" => "a whole number, not negative",
+        "a boolean" => "true or false",
+        "a sequence" => "a list",
+        other if other.starts_with("struct") || other.starts_with("internally") => "a table",
+        other if other.contains("enum") || other.contains("string only") => "a word, or a table with one key",
+        other => other,
+    }
+}
+
+/// Advice on TOML itself.
+pub(super) fn toml_help(message: &str) -> &'static str {
+    if message.contains("duplicate") {
+        "each key once; several solids are several [[solid]] sections, with two brackets"
+    } else {
+        "words need quotes, decimals a digit on both sides of the point: fixed = true, dp = 0.01, name = \"box\""
+    }
+}

@@ -1,0 +1,155 @@
+//! `--set key=value`: puts a value into the TOML of a scene before it is deserialised.
+
+use std::{borrow::Cow, ops::Range};
+
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
+
+use crate::error::{Error, Result, nearest_name};
+
+/// Keys whose value is one choice out of several laws.
+pub(super) const CHOICES: [&str; 9] = [
+    "model.kernel",
+    "model.viscosity",
+    "model.diffusion",
+    "model.shifting",
+    "model.walls",
+    "model.gradient",
+    "model.slip",
+    "model.sweep",
+    "time.scheme",
+];
+
+/// The key `part` inside the key `path`.
+pub(super) fn subkey(path: &str, part: impl std::fmt::Display) -> String {
+    if path.is_empty() { part.to_string() } else { format!("{path}.{part}") }
+}
+
+/// The locations of the keys of `--set`: beyond the text, one for each key.
+pub(super) struct OverrideLocations {
+    /// The first location.
+    first: usize,
+    /// The keys, in the order of their locations.
+    keys: Vec<String>,
+}
+
+impl OverrideLocations {
+    /// None yet, for an override of `text`.
+    pub fn after(text: &str) -> Self {
+        Self { first: text.len() + 1, keys: Vec::new() }
+    }
+
+    /// A new location for `key`.
+    pub fn place(&mut self, key: &str) -> Range<usize> {
+        let place = self.first + self.keys.len();
+        self.keys.push(key.into());
+        place..place
+    }
+
+    /// The key at a location; `None` if that is in the text.
+    pub fn key(&self, place: usize) -> Option<String> {
+        self.keys.get(place.checked_sub(self.first)?).cloned()
+    }
+}
+
+/// Puts the value written as `text` at `key` and locates its parts by `marks`; text that is no TOML value is a string.
+/// Returns the key with numbers in place of names.
+///
+/// # Errors
+/// `Scene` if `key` is no key, or names an entry of a list that is not there.
+pub(super) fn apply_override<'i>(
+    root: &mut DeTable<'i>,
+    key: &'i str,
+    text: &'i str,
+    marks: &mut OverrideLocations,
+) -> Result<String> {
+    let parts: Vec<&str> = key.split('.').collect();
+    if parts.iter().any(|part| part.is_empty()) {
+        return Err(Error::scene(format!("\"{key}\" is not a key")).help("write  --set model.h_over_dp=1.5"));
+    }
+    let value = match DeValue::parse(text) {
+        Ok(value) => value.into_inner(),
+        Err(_) => DeValue::String(Cow::Borrowed(text.trim())),
+    };
+    put_in(root, &parts, "", value, marks)
+}
+
+/// Puts `value` into the table at `path`; `parts` has one part or more.
+fn put_in<'i>(
+    table: &mut DeTable<'i>,
+    parts: &[&'i str],
+    path: &str,
+    value: DeValue<'i>,
+    marks: &mut OverrideLocations,
+) -> Result<String> {
+    let path = subkey(path, parts[0]);
+    let place = marks.place(&path);
+    let nothing = Spanned::new(place.clone(), DeValue::Table(DeTable::new()));
+    let here = table.entry(Spanned::new(place, Cow::Borrowed(parts[0]))).or_insert_with(|| nothing);
+    insert_value(here, &parts[1..], path, value, marks)
+}
+
+fn insert_value<'i>(
+    here: &mut Spanned<DeValue<'i>>,
+    parts: &[&'i str],
+    path: String,
+    value: DeValue<'i>,
+    marks: &mut OverrideLocations,
+) -> Result<String> {
+    let Some(part) = parts.first() else {
+        *here = with_locations(value, &path, marks);
+        return Ok(path);
+    };
+    let choice = CHOICES.contains(&path.as_str());
+    match here.get_mut() {
+        DeValue::Array(items) => {
+            let number = entry_index(&path, items, part)?;
+            insert_value(&mut items.as_mut()[number], &parts[1..], subkey(&path, number), value, marks)
+        }
+        DeValue::Table(inner) if !choice || inner.contains_key(*part) => put_in(inner, parts, &path, value, marks),
+        _ => {
+            let mut inner = DeTable::new();
+            let path = put_in(&mut inner, parts, &path, value, marks)?;
+            *here.get_mut() = DeValue::Table(inner);
+            Ok(path)
+        }
+    }
+}
+
+/// The number of the entry of a list that `word` names, by its `name` or by its number.
+fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usize> {
+    let name = |item: &Spanned<DeValue>| {
+        item.get_ref().as_table().and_then(|t| t.get("name")).and_then(|n| n.get_ref().as_str()).map(String::from)
+    };
+    let names: Vec<String> = items.iter().enumerate().map(|(i, item)| name(item).unwrap_or(i.to_string())).collect();
+    let by_number = || word.parse::<usize>().ok().filter(|i| *i < items.len());
+    names.iter().position(|n| n == word).or_else(by_number).ok_or_else(|| {
+        let guess = nearest_name(word, names.iter().map(String::as_str));
+        let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
+        Error::scene(format!("no {path} is called \"{word}\"{guess}")).help(format!("known: {}", names.join(", ")))
+    })
+}
+
+/// The value of `key` with a location of its own for each of its parts.
+fn with_locations<'i>(value: DeValue<'i>, key: &str, marks: &mut OverrideLocations) -> Spanned<DeValue<'i>> {
+    let place = marks.place(key);
+    let value = match value {
+        DeValue::Array(items) => {
+            let each = items.into_iter().enumerate();
+            DeValue::Array(each.map(|(i, item)| with_locations(item.into_inner(), &subkey(key, i), marks)).collect())
+        }
+        DeValue::Table(table) => {
+            let mut inner = DeTable::new();
+            for (word, value) in table {
+                let key = subkey(key, word.get_ref());
+                let word = Spanned::new(marks.place(&key), word.into_inner());
+                inner.insert(word, with_locations(value.into_inner(), &key, marks));
+            }
+            DeValue::Table(inner)
+        }
+        other => other,
+    };
+    Spanned::new(place, value)
+}

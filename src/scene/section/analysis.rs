@@ -1,0 +1,376 @@
+//! `[[check]]` and `[[statistic]]`: the evaluation of the series of a run.
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::water::StillWaterLevel;
+use crate::{
+    error::{Error, Result},
+    math::expression::Formula,
+    plan::{Align, CheckPlan, Reference, Score, StatisticKind, StatisticPlan},
+    probe::ProbeConfig,
+    scene::{
+        context::{Context, Defaults, quoted_list, set_keys, suggestion},
+        table,
+    },
+};
+
+/// One `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CheckConfig {
+    /// `probe.column`, as in `box.heave_m`.
+    pub series: String,
+    /// The reference table, beside the scene.
+    pub reference: Option<String>,
+    /// Its column of values.
+    pub column: Option<String>,
+    /// Its column of times, s.
+    pub time: Option<String>,
+    /// Time added to the reference's, s.
+    pub delay: Option<f64>,
+    /// The reference as a formula in the run's time t (s), in place of a table.
+    pub formula: Option<String>,
+    /// First time of the run that counts, s.
+    pub from: Option<f64>,
+    /// Last time of the run that counts, s.
+    pub until: Option<f64>,
+    /// Time of the run at which the instrument was set to zero, s.
+    pub zero: Option<f64>,
+    /// Time over which the instrument takes its mean, s.
+    pub mean: Option<f64>,
+    /// How the run is moved in time to lie on its reference.
+    pub align: Option<Align>,
+    /// The scores of the paper.
+    pub paper: Option<Score>,
+    /// The scores that the run must reach.
+    pub bound: Option<Score>,
+}
+
+/// One `[[statistic]]`: exactly one of waves, reflection and rao. A series is `probe.column`; the name of a probe alone
+/// means the elevations of a gauge or of a row of them, the displacements and turns of a motion.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct StatisticConfig {
+    /// Its name.
+    pub name: Option<String>,
+    /// A series: its extremes, mean, deviation, single waves and spectrum.
+    pub waves: Option<String>,
+    /// Reflection: gauges in the order in which incident waves pass them.
+    pub reflection: Option<Vec<String>>,
+    /// Response amplitude operator.
+    pub rao: Option<RaoConfig>,
+    /// Period of regular waves, s; by default all waves about the peak.
+    pub period: Option<f64>,
+    /// Depth at the gauges, m.
+    pub depth: Option<f64>,
+    /// First time of the run that counts, s.
+    pub from: Option<f64>,
+    /// Last time of the run that counts, s.
+    pub until: Option<f64>,
+}
+
+/// A motion and the wave that excites it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RaoConfig {
+    /// A series, or the name of a motion.
+    pub motion: String,
+    /// A series, or the name of a gauge.
+    pub wave: String,
+}
+
+/// The series of a run: its probes with their names.
+pub(crate) struct ProbeSeries<'a> {
+    /// The probes.
+    pub(crate) probes: &'a [ProbeConfig],
+    /// Their names, in the same order.
+    pub(crate) names: &'a [String],
+}
+
+/// A series, and the position of the gauge (m) if it is an elevation.
+type SeriesAtPlace = (String, Option<Vec<f64>>);
+
+impl ProbeSeries<'_> {
+    /// The number of the probe of this name.
+    fn probe(&self, ctx: &Context, key: &str, name: &str) -> Result<usize> {
+        self.names.iter().position(|known| known == name).ok_or_else(|| {
+            let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+            let what = format!("no probe is called \"{name}\"{}", suggestion(name, &names));
+            ctx.error_with_help(key, what, format!("known: {}", names.join(", ")))
+        })
+    }
+
+    /// The series that `word` names.
+    fn find(&self, ctx: &Context, key: &str, word: &str) -> Result<Vec<SeriesAtPlace>> {
+        let (name, column) = word.split_once('.').map_or((word, None), |(name, column)| (name, Some(column)));
+        let i = self.probe(ctx, key, name)?;
+        let Some(plan) = self.probes[i].to_plan(ctx.until) else {
+            return Err(list_has_no_series(ctx, key, name));
+        };
+        let series = plan.kind.series(ctx.dimension).into_iter();
+        let all: Vec<SeriesAtPlace> = series.map(|(column, at)| (format!("{name}.{column}"), at)).collect();
+        match column {
+            Some(_) => Ok(vec![all.into_iter().find(|(series, _)| series == word).unwrap_or((word.into(), None))]),
+            None if all.is_empty() => {
+                let help = "a series is a probe and its column with a point between, as in \"box.heave_m\"";
+                Err(ctx.error_with_help(key, format!("which column of \"{name}\" is meant?"), help))
+            }
+            None => Ok(all),
+        }
+    }
+}
+
+impl CheckConfig {
+    /// Refuses a check of an unknown series, without a reference, or with impossible times or bounds.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, series: &ProbeSeries) -> Result<()> {
+        let Some((name, _)) = self.series.split_once('.') else {
+            let what = "a series is a probe and its column, with a point between";
+            return Err(ctx.error_at(&format!("{key}.series"), what));
+        };
+        let i = series.probe(ctx, &format!("{key}.series"), name)?;
+        if series.probes[i].contacts.is_some() {
+            return Err(list_has_no_series(ctx, &format!("{key}.series"), name));
+        }
+        self.verify_reference(ctx, key)?;
+        self.verify_times(ctx, key)?;
+        self.verify_figures(ctx, key)
+    }
+
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
+        if self.formula.is_none() {
+            defaults.fill(format!("{key}.time"), &mut self.time, "t_s".into(), "the name our own tables have");
+            defaults.fill(format!("{key}.delay"), &mut self.delay, 0.0, "the clocks agree");
+        }
+    }
+
+    /// Refuses a reference that is not either a table or a formula.
+    fn verify_reference(&self, ctx: &Context, key: &str) -> Result<()> {
+        let of_table = [
+            ("reference", self.reference.is_some()),
+            ("column", self.column.is_some()),
+            ("time", self.time.is_some()),
+            ("delay", self.delay.is_some()),
+        ];
+        match &self.formula {
+            Some(text) => {
+                if let Some((word, _)) = of_table.iter().find(|(_, given)| *given) {
+                    let what = format!("a check by a formula has no {word}: that is of a table");
+                    let help = "give either formula, or reference and column";
+                    return Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
+                }
+                let place = |e: Error| ctx.with_location(e, &format!("{key}.formula"));
+                Formula::parse(text).map(|_| ()).map_err(place)
+            }
+            None => match of_table[..2].iter().find(|(_, given)| !given) {
+                Some((word, _)) => {
+                    let what = format!("\"{word}\" is missing: a check needs something to be held against");
+                    Err(ctx.error_at(&format!("{key}.{word}"), what))
+                }
+                None => Ok(()),
+            },
+        }
+    }
+
+    /// Refuses times out of range.
+    fn verify_times(&self, ctx: &Context, key: &str) -> Result<()> {
+        ctx.require_positive(&format!("{key}.mean"), self.mean)?;
+        if let Some(zero) = self.zero.filter(|zero| !(*zero >= 0.0 && zero.is_finite())) {
+            return Err(
+                ctx.error_at(&format!("{key}.zero"), format!("zero is a time of the run, and {zero} s is none"))
+            );
+        }
+        match self.align {
+            Some(Align::Crossing(threshold)) => {
+                ctx.require_positive(&format!("{key}.align.crossing"), Some(threshold))?
+            }
+            Some(Align::Start(threshold)) => ctx.require_positive(&format!("{key}.align.start"), Some(threshold))?,
+            Some(Align::Best) | None => {}
+        }
+        let help = "until is the later time, in the run's own time";
+        ctx.require_interval(key, self.from, self.until, help)
+    }
+
+    /// Refuses bounds on figures that the check does not compute.
+    fn verify_figures(&self, ctx: &Context, key: &str) -> Result<()> {
+        let Some(bound) = self.bound else { return Ok(()) };
+        let figures = [
+            ("N", bound.relative_l2),
+            ("M", bound.amplitude_ratio),
+            ("peak", bound.peak),
+            ("off", bound.off),
+            ("aligned_N", bound.aligned_relative_l2),
+            ("delay", bound.delay),
+        ];
+        if let Some((word, figure)) = figures.iter().find(|(_, figure)| figure.is_some_and(|x| x < 0.0)) {
+            let what = format!("{word} is the largest that passes, and {} is below 0", figure.unwrap_or_default());
+            return Err(ctx.error_at(&format!("{key}.bound.{word}"), what));
+        }
+        if matches!(self.align, None | Some(Align::Start(_)))
+            && let Some((word, _)) = figures[4..].iter().find(|(_, figure)| figure.is_some())
+        {
+            let what = format!("the bound names {word}, but nothing is aligned");
+            return Err(ctx.error_with_help(
+                &format!("{key}.bound.{word}"),
+                what,
+                "write  align = \"best\"  in this check",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The check of the run; opens its table to see that the columns are there.
+    pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
+        let place = |e: Error| ctx.with_location(e, &format!("{key}.reference"));
+        let reference = match &self.formula {
+            Some(text) => Reference::Formula(text.clone()),
+            None => {
+                let file = self.reference.clone().unwrap_or_default();
+                let (time, column) = (self.time.clone().unwrap_or_default(), self.column.clone().unwrap_or_default());
+                let path = table::path_beside(ctx.folder(), &file).map_err(place)?;
+                table::read_series(&path, &time, &column).map_err(place)?;
+                let delay = self.delay.unwrap_or_default();
+                Reference::Table { file: Path::new(&file).to_path_buf(), time, column, delay }
+            }
+        };
+        Ok(CheckPlan {
+            series: self.series.clone(),
+            reference,
+            from: self.from,
+            until: self.until,
+            zero: self.zero,
+            mean: self.mean,
+            align: self.align,
+            paper: self.paper,
+            bound: self.bound,
+        })
+    }
+}
+
+impl StatisticConfig {
+    /// The keys that give its kind.
+    fn named_kinds(&self) -> Vec<&'static str> {
+        set_keys([
+            ("waves", self.waves.is_some()),
+            ("reflection", self.reflection.is_some()),
+            ("rao", self.rao.is_some()),
+        ])
+    }
+
+    /// Refuses a statistic that is not of exactly one kind, of unknown series, or with keys of another kind.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, series: &ProbeSeries) -> Result<()> {
+        if self.named_kinds().len() != 1 {
+            let what = format!("a statistic is of one kind; this one of {}", quoted_list(&self.named_kinds()));
+            let help = "one of waves, reflection, rao; a [[statistic]] section for each";
+            return Err(ctx.error_with_help(key, what, help));
+        }
+        ctx.require_positive(&format!("{key}.period"), self.period)?;
+        ctx.require_positive(&format!("{key}.depth"), self.depth)?;
+        if let Some(name) = &self.name {
+            ctx.require_file_name(&format!("{key}.name"), name)?;
+        }
+        let foreign = set_keys([
+            ("period", self.period.is_some() && self.waves.is_some()),
+            ("depth", self.depth.is_some() && self.reflection.is_none()),
+        ]);
+        if let Some(word) = foreign.first() {
+            let what = format!("{} needs no {word}", self.named_kinds()[0]);
+            return Err(ctx.error_with_help(&format!("{key}.{word}"), what, "remove it"));
+        }
+        ctx.require_interval(key, self.from, self.until, "until is the later time of the run")?;
+        self.kind(ctx, series, key, 1.0, 1.0).map(|_| ())
+    }
+
+    /// The statistic, over water at rest.
+    pub(crate) fn build(
+        &self,
+        ctx: &Context,
+        key: &str,
+        series: &ProbeSeries,
+        still: &StillWaterLevel,
+    ) -> Result<StatisticPlan> {
+        let depth = self.depth.unwrap_or(still.depth);
+        Ok(StatisticPlan {
+            name: self.name.clone().unwrap_or_default(),
+            what: self.kind(ctx, series, key, depth, ctx.gravity_norm())?,
+            from: self.from,
+            until: self.until,
+        })
+    }
+
+    /// The quantity over water of this `depth` (m) under gravity `g` (m/s²).
+    fn kind(&self, ctx: &Context, series: &ProbeSeries, key: &str, depth: f64, g: f64) -> Result<StatisticKind> {
+        let period = self.period;
+        let plain = |found: Vec<SeriesAtPlace>| found.into_iter().map(|(series, _)| series).collect::<Vec<_>>();
+        match self {
+            StatisticConfig { waves: Some(word), .. } => {
+                Ok(StatisticKind::Waves { series: plain(series.find(ctx, &format!("{key}.waves"), word)?) })
+            }
+            StatisticConfig { reflection: Some(config), .. } => {
+                let key = format!("{key}.reflection");
+                let mut gauges = Vec::new();
+                for word in config {
+                    gauges.extend(series.find(ctx, &key, word)?);
+                }
+                Ok(StatisticKind::Reflection { gauges: gauge_positions(ctx, &key, gauges)?, depth, g, period })
+            }
+            StatisticConfig { rao: Some(RaoConfig { motion, wave }), .. } => {
+                let motions = plain(series.find(ctx, &format!("{key}.rao.motion"), motion)?);
+                let key = format!("{key}.rao.wave");
+                match &plain(series.find(ctx, &key, wave)?)[..] {
+                    [wave] => Ok(StatisticKind::Rao { motions, wave: wave.clone(), period }),
+                    _ => Err(ctx.error_with_help(
+                        &key,
+                        format!("\"{wave}\" is more than one series"),
+                        "name one, as in \"gauge.eta_m\"",
+                    )),
+                }
+            }
+            _ => Err(ctx.error_at(key, "what is it of?")),
+        }
+    }
+}
+
+/// Gauges with their distance from the first in the direction of the last, m.
+fn gauge_positions(ctx: &Context, key: &str, gauges: Vec<SeriesAtPlace>) -> Result<Vec<(String, f64)>> {
+    let help = "name three elevation gauges, or a row of them, in the order in which waves pass them";
+    let wrong = |what: String| ctx.error_with_help(key, what, help);
+    let places: Option<Vec<Vec<f64>>> = gauges.iter().map(|(_, at)| at.clone()).collect();
+    let Some(places) = places else {
+        return Err(wrong("what is reflected is told by elevation gauges, and one of these is none".into()));
+    };
+    let (Some(first), Some(last)) = (places.first(), places.last().filter(|_| places.len() > 1)) else {
+        return Err(wrong(format!("{} gauge cannot tell what comes from what goes", places.len())));
+    };
+    let way: Vec<f64> = first.iter().zip(last).map(|(a, b)| b - a).collect();
+    let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length == 0.0 {
+        return Err(wrong("the first gauge stands where the last does".into()));
+    }
+    let far = |at: &Vec<f64>| at.iter().zip(first).zip(&way).map(|((x, o), w)| (x - o) * w).sum::<f64>() / length;
+    Ok(gauges.iter().zip(&places).map(|((series, _), at)| (series.clone(), far(at))).collect())
+}
+
+/// The error that the probe `name` is a list of contacts and has no series.
+fn list_has_no_series(ctx: &Context, key: &str, name: &str) -> Error {
+    let what = format!("\"{name}\" lists all contacts, many at one time, and has no series");
+    let help = "of two solids there is one in a [[probe]] of their own:  contact = [\"crate\", \"raft\"]";
+    ctx.error_with_help(key, what, help)
+}
+
+/// The default name of each statistic: its kind, with a number from the second on.
+pub(crate) fn default_names(statistics: &[StatisticConfig]) -> Vec<String> {
+    let mut kinds: Vec<&str> = Vec::new();
+    let name = |entry: &StatisticConfig| {
+        let kind = entry.named_kinds().first().copied().unwrap_or("statistic");
+        kinds.push(kind);
+        match kinds.iter().filter(|before| **before == kind).count() {
+            1 => kind.to_string(),
+            n => format!("{kind}_{n}"),
+        }
+    };
+    statistics.iter().map(name).collect()
+}

@@ -1,0 +1,215 @@
+//! `[[spring]]`, `[[rope]]` and `[[force]]`: springs, mooring lines, ropes and prescribed forces.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    joint::verify_ends,
+    shape::vector,
+    solid::{SolidConfig, require_solid},
+};
+use crate::{
+    error::Result,
+    scene::{
+        context::{Context, Defaults},
+        untagged::{CoordinateUnit, TimeValueConfig, TimeVectorConfig},
+    },
+    solid::{ForceSpec, LineEnd, RopeSpec, SpringSpec, TimeFunction},
+};
+
+/// One `[[spring]]`: a spring, or a mooring line if it bears tension only.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpringConfig {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// The solids at its two ends; or one, the other end on the ground.
+    pub between: Vec<String>,
+    /// Attachment point on the first solid at the start, m.
+    pub from: Vec<f64>,
+    /// Attachment point on the second solid or the ground at the start, m.
+    pub to: Vec<f64>,
+    /// N/m.
+    pub stiffness: f64,
+    /// N s/m.
+    pub damping: Option<f64>,
+    /// Length without tension, m.
+    pub length: Option<f64>,
+    /// Whether it bears tension only.
+    pub tension_only: Option<bool>,
+}
+
+/// One `[[rope]]`: an inextensible line that bears tension only.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RopeConfig {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// The solids at its two ends; or one, the other end on the ground.
+    pub between: Vec<String>,
+    /// Attachment point on the first solid at the start, m.
+    pub from: Vec<f64>,
+    /// Attachment point on the second solid or the ground at the start, m.
+    pub to: Vec<f64>,
+    /// Its length, m.
+    pub length: Option<f64>,
+}
+
+/// One `[[force]]`: a force and a torque on a free solid, as functions of time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ForceConfig {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// The solid.
+    pub on: String,
+    /// Point of application at the start, m; by default the centre of mass.
+    pub at: Option<Vec<f64>>,
+    /// Its components, N.
+    pub force: Option<TimeVectorConfig>,
+    /// Its components, N m: one in 2-D.
+    pub torque: Option<TimeVectorConfig>,
+    /// Whether the axes turn with the solid.
+    pub frame: Option<ForceFrame>,
+}
+
+/// The axes of a force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ForceFrame {
+    /// Those of the world.
+    World,
+    /// Those of the world at the start, turning with the solid.
+    Body,
+}
+
+impl SpringConfig {
+    /// A mooring line of `stiffness` (N/m) from the point `from` of `solid` to the point `to` of the ground, as long as it starts.
+    pub fn mooring(
+        name: impl Into<String>,
+        solid: impl Into<String>,
+        from: impl Into<Vec<f64>>,
+        to: impl Into<Vec<f64>>,
+        stiffness: f64,
+    ) -> Self {
+        let (from, to) = (from.into(), to.into());
+        let between = vec![solid.into()];
+        let tension_only = Some(true);
+        Self { name: name.into(), between, from, to, stiffness, damping: None, length: None, tension_only }
+    }
+
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
+        defaults.fill(format!("{key}.damping"), &mut self.damping, 0.0, "a spring without loss");
+        let length = distance(&self.from, &self.to);
+        defaults.fill(format!("{key}.length"), &mut self.length, length, "as it starts");
+        defaults.fill(format!("{key}.tension_only"), &mut self.tension_only, false, "it pushes as it pulls");
+    }
+
+    /// Refuses ends that cannot move and numbers out of range.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
+        verify_ends(ctx, key, &self.between, solids)?;
+        ctx.require_dimension(&format!("{key}.from"), &self.from)?;
+        ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        ctx.require_positive(&format!("{key}.stiffness"), Some(self.stiffness))
+    }
+
+    /// The spring between the points of `solids`.
+    pub(crate) fn build<const D: usize>(&self, solids: &[SolidConfig]) -> SpringSpec<D> {
+        SpringSpec {
+            name: self.name.clone(),
+            ends: ends(solids, &self.between, &self.from, &self.to),
+            stiffness: self.stiffness,
+            damping: self.damping.unwrap_or_default(),
+            rest_length: self.length,
+            tension_only: self.tension_only.unwrap_or_default(),
+        }
+    }
+}
+
+impl RopeConfig {
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
+        let length = distance(&self.from, &self.to);
+        defaults.fill(format!("{key}.length"), &mut self.length, length, "as it starts");
+    }
+
+    /// Refuses ends that cannot move and a length that is not positive.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
+        verify_ends(ctx, key, &self.between, solids)?;
+        ctx.require_dimension(&format!("{key}.from"), &self.from)?;
+        ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        ctx.require_positive(&format!("{key}.length"), self.length)
+    }
+
+    /// The rope between the points of `solids`.
+    pub(crate) fn build<const D: usize>(&self, solids: &[SolidConfig]) -> RopeSpec<D> {
+        let ends = ends(solids, &self.between, &self.from, &self.to);
+        RopeSpec { name: self.name.clone(), ends, max_length: self.length }
+    }
+}
+
+impl ForceConfig {
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
+        defaults.fill(format!("{key}.frame"), &mut self.frame, ForceFrame::World, "as wind, not as a thruster");
+        for (word, values) in [("force", &mut self.force), ("torque", &mut self.torque)] {
+            for value in values.iter_mut().flat_map(|values| values.components_mut()) {
+                value.0.fill(defaults, &format!("{key}.{word}"));
+            }
+        }
+    }
+
+    /// Refuses a force on a solid that is not free, and components that do not fit the dimension.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
+        require_solid(ctx, solids, &format!("{key}.on"), &self.on)?;
+        if !solids.iter().any(|solid| solid.name == self.on && solid.free.is_some()) {
+            let what = format!("\"{}\" is not free: a force does not move it", self.on);
+            return Err(ctx.error_with_help(&format!("{key}.on"), what, "a force acts on a free solid"));
+        }
+        if let Some(at) = &self.at {
+            ctx.require_dimension(&format!("{key}.at"), at)?;
+        }
+        if self.force.is_none() && self.torque.is_none() {
+            return Err(ctx.error_at(key, "neither a force nor a torque is given"));
+        }
+        let turns = if ctx.dimension == 3 { 3 } else { 1 };
+        for (word, values, count) in [("force", &self.force, ctx.dimension), ("torque", &self.torque, turns)] {
+            let Some(values) = values else { continue };
+            let key = format!("{key}.{word}");
+            let values = values.components();
+            if values.len() != count {
+                let what = format!("{word} has {} components, and a {}-D scene {count}", values.len(), ctx.dimension);
+                return Err(ctx.error_at(&key, what));
+            }
+            values.iter().try_for_each(|value| value.verify(ctx, &key))?;
+        }
+        Ok(())
+    }
+
+    /// The force on the solid with this number.
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, solid: usize) -> Result<ForceSpec<D>> {
+        let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<TimeFunction>> {
+            values.iter().map(|value| value.0.build(ctx, &format!("{key}.{word}"), CoordinateUnit::Si)).collect()
+        };
+        Ok(ForceSpec {
+            name: self.name.clone(),
+            solid,
+            at: self.at.as_ref().map(|at| vector(at)),
+            force: laws("force", self.force.as_ref().map_or(&[], |values| values.components()))?,
+            torque: laws("torque", self.torque.as_ref().map_or(&[], |values| values.components()))?,
+            rotates_with_solid: self.frame == Some(ForceFrame::Body),
+        })
+    }
+}
+
+/// The distance of two points, m.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The two ends of a line; one without a solid is fixed in the world.
+fn ends<const D: usize>(solids: &[SolidConfig], between: &[String], from: &[f64], to: &[f64]) -> [LineEnd<D>; 2] {
+    let number = |name: &String| solids.iter().position(|solid| solid.name == *name);
+    [(0, from), (1, to)].map(|(k, at)| LineEnd { solid: between.get(k).and_then(number), at: vector(at) })
+}

@@ -1,0 +1,471 @@
+//! Shapes of solids and of bodies of water, and their places.
+
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    error::Result,
+    geometry::{ContactGeometry, Shape},
+    math::{Bounds, Pose, Vector},
+    scene::{
+        context::{Context, Defaults, last_part, quoted_list, set_keys},
+        mesh, svg, table,
+        untagged::{DraftChoice, LengthUnit, PolylineConfig},
+    },
+};
+
+/// Largest distance of the straight segments from the curves of a drawing, dp.
+const CURVE_TOLERANCE: f64 = 0.01;
+
+/// A shape in its own frame; lengths in m.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum ShapeConfig {
+    /// A box around its centre.
+    Box {
+        /// Edge lengths.
+        size: Vec<f64>,
+    },
+    /// A ball (disc in 2-D) around its centre.
+    Ball {
+        /// Radius.
+        radius: f64,
+    },
+    /// A rod with round ends, around its centre.
+    Capsule {
+        /// Length of the straight part.
+        length: f64,
+        /// Radius.
+        radius: f64,
+        /// Direction of the straight part; by default upright.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        axis: Option<AxisName>,
+    },
+    /// A circular cylinder around its centre; 3-D only.
+    Cylinder {
+        /// Length.
+        length: f64,
+        /// Radius.
+        radius: f64,
+        /// Direction of its axis; by default upright.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        axis: Option<AxisName>,
+    },
+    /// A polygon, counter-clockwise; 2-D only.
+    Polygon(PolylineConfig),
+    /// A wall along an open line, the water on its left; 2-D only.
+    Polyline(PolylineConfig),
+    /// An open-topped tank: bottom and walls around the inner box that begins at the frame's origin.
+    Tank {
+        /// Inner edge lengths.
+        size: Vec<f64>,
+        /// Thickness of bottom and walls; by default as many dp as the kernel reaches.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        thickness: Option<f64>,
+    },
+    /// A solid by its surface, from a file; 3-D only.
+    Mesh(MeshConfig),
+    /// Several shapes as one solid.
+    Compound(Vec<CompoundPartConfig>),
+}
+
+/// A closed surface in a file beside the scene: STL or OBJ.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshConfig {
+    /// Name of the file.
+    pub file: String,
+    /// Factor on its lengths, –; by default 1.
+    pub scale: Option<f64>,
+    /// Unit of its lengths; by default m.
+    pub unit: Option<LengthUnit>,
+    /// `true`: reverses the facets, for a surface that is inside out.
+    pub flip: Option<bool>,
+    /// The geometry that other bodies touch; by default the fitting one.
+    pub contact: Option<ContactGeometry>,
+}
+
+/// A coordinate direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AxisName {
+    /// First.
+    X,
+    /// Second: up in 2-D.
+    Y,
+    /// Third: up in 3-D.
+    Z,
+}
+
+/// A part of a compound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CompoundPartConfig {
+    /// Its shape.
+    pub shape: ShapeConfig,
+    /// Its place in the compound's frame.
+    pub at: Option<PlacementConfig>,
+}
+
+/// A position and a rotation. The lowest point or the draft may give the height instead.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct PlacementConfig {
+    /// m.
+    pub x: Option<f64>,
+    /// m; the height in 2-D.
+    pub y: Option<f64>,
+    /// m; the height in 3-D.
+    pub z: Option<f64>,
+    /// Height of the shape's lowest point, m.
+    pub bottom: Option<f64>,
+    /// Depth of the shape's lowest point below the highest still level.
+    pub draft: Option<DraftChoice>,
+    /// Counter-clockwise turn, degrees; 2-D.
+    pub angle_deg: Option<f64>,
+    /// Turn about the axis along this vector by its length in degrees; 3-D.
+    pub turn_deg: Option<Vec<f64>>,
+}
+
+impl ShapeConfig {
+    /// A box of edge lengths `size` (m).
+    pub fn cuboid(size: impl Into<Vec<f64>>) -> Self {
+        Self::Box { size: size.into() }
+    }
+
+    /// A ball of `radius` (m).
+    pub fn ball(radius: f64) -> Self {
+        Self::Ball { radius }
+    }
+
+    /// A tank of inner edge lengths `size` (m).
+    pub fn tank(size: impl Into<Vec<f64>>) -> Self {
+        Self::Tank { size: size.into(), thickness: None }
+    }
+
+    /// The solid in the mesh `file` (STL or OBJ, in m), beside the scene.
+    pub fn mesh(file: impl Into<String>) -> Self {
+        Self::Mesh(MeshConfig { file: file.into(), ..MeshConfig::default() })
+    }
+
+    /// A polygon through `points` (m), counter-clockwise.
+    pub fn polygon<const N: usize>(points: [[f64; 2]; N]) -> Self {
+        Self::Polygon(PolylineConfig::through(points))
+    }
+
+    /// Refuses a shape that has no meaning in the scene's dimension, or whose lengths are not lengths.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        let sizes = |key: &str, size: &[f64]| {
+            ctx.require_dimension(&format!("{key}.size"), size)?;
+            size.iter().try_for_each(|x| ctx.require_positive(&format!("{key}.size"), Some(*x)))
+        };
+        let only = |dimension: usize, word: &str, instead: &str| match ctx.dimension == dimension {
+            true => Ok(()),
+            false => {
+                let what = format!("a {word} needs a {dimension}-D scene, and this one is {}-D", ctx.dimension);
+                Err(ctx.error_with_help(key, what, instead))
+            }
+        };
+        let axis = |key: &str, axis: Option<AxisName>| match axis {
+            Some(AxisName::Z) if ctx.dimension == 2 => {
+                Err(ctx.error_with_help(&format!("{key}.axis"), "a 2-D scene has no z axis", "write  axis = \"x\""))
+            }
+            _ => Ok(()),
+        };
+        match self {
+            ShapeConfig::Box { size } => sizes(&format!("{key}.box"), size),
+            ShapeConfig::Ball { radius } => ctx.require_positive(&format!("{key}.ball.radius"), Some(*radius)),
+            ShapeConfig::Capsule { length, radius, axis: a } => {
+                let key = format!("{key}.capsule");
+                ctx.require_positive(&format!("{key}.length"), Some(*length))?;
+                ctx.require_positive(&format!("{key}.radius"), Some(*radius))?;
+                axis(&key, *a)
+            }
+            ShapeConfig::Cylinder { length, radius, .. } => {
+                only(3, "cylinder", "in 2-D a ball is a disc:  shape = { ball = { radius = 0.1 } }")?;
+                ctx.require_positive(&format!("{key}.cylinder.length"), Some(*length))?;
+                ctx.require_positive(&format!("{key}.cylinder.radius"), Some(*radius))
+            }
+            ShapeConfig::Polygon(config) => {
+                only(2, "polygon", "in 3-D, boxes, balls, cylinders and capsules can be put together as a compound")?;
+                verify_line(ctx, &format!("{key}.polygon"), config)?;
+                verify_drawing(ctx, &format!("{key}.polygon"), config)?;
+                match config.thickness {
+                    Some(_) => Err(ctx.error_at(&format!("{key}.polygon"), "a polygon is solid: it has no thickness")),
+                    None => Ok(()),
+                }
+            }
+            ShapeConfig::Polyline(config) => {
+                only(2, "polyline", "in 3-D, walls are boxes or a tank")?;
+                verify_line(ctx, &format!("{key}.polyline"), config)?;
+                match config.is_drawing() {
+                    true => {
+                        Err(ctx.error_at(&format!("{key}.polyline.file"), "a drawing is a closed outline: a polygon"))
+                    }
+                    false => verify_drawing(ctx, &format!("{key}.polyline"), config),
+                }
+            }
+            ShapeConfig::Tank { size, thickness } => {
+                ctx.require_positive(&format!("{key}.tank.thickness"), *thickness)?;
+                sizes(&format!("{key}.tank"), size)
+            }
+            ShapeConfig::Mesh(config) => {
+                only(3, "mesh", "in 2-D an outline is a polygon:  shape = { polygon = { file = \"hull.svg\" } }")?;
+                ctx.require_positive(&format!("{key}.mesh.scale"), config.scale)
+            }
+            ShapeConfig::Compound(parts) => {
+                let key = format!("{key}.compound");
+                if parts.is_empty() {
+                    return Err(ctx.error_at(&key, "a compound has one part or more"));
+                }
+                parts.iter().enumerate().try_for_each(|(i, part)| {
+                    part.shape.verify(ctx, &format!("{key}.{i}.shape"))?;
+                    part.at.as_ref().map_or(Ok(()), |at| at.verify(ctx, &format!("{key}.{i}.at"), false))
+                })
+            }
+        }
+    }
+
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, key: &str) {
+        let thick = "as many dp as the kernel reaches";
+        let upright = [AxisName::Y, AxisName::Z][ctx.dimension - 2];
+        match self {
+            ShapeConfig::Capsule { axis, .. } => {
+                defaults.fill(format!("{key}.capsule.axis"), axis, upright, "upright");
+            }
+            ShapeConfig::Cylinder { axis, .. } => {
+                defaults.fill(format!("{key}.cylinder.axis"), axis, upright, "upright");
+            }
+            ShapeConfig::Polyline(PolylineConfig { thickness, .. }) => {
+                defaults.fill(format!("{key}.polyline.thickness"), thickness, ctx.layers() as f64 * ctx.dp, thick);
+            }
+            ShapeConfig::Tank { thickness, .. } => {
+                defaults.fill(format!("{key}.tank.thickness"), thickness, ctx.layers() as f64 * ctx.dp, thick);
+            }
+            ShapeConfig::Mesh(config) => {
+                let key = format!("{key}.mesh");
+                defaults.fill(format!("{key}.scale"), &mut config.scale, 1.0, "the file's own size");
+                defaults.fill(
+                    format!("{key}.unit"),
+                    &mut config.unit,
+                    LengthUnit::M,
+                    "neither STL nor OBJ tells its unit",
+                );
+                let why = "the surface if fixed, else the hull if that is nearly all solid, else convex parts";
+                defaults.fill(format!("{key}.contact"), &mut config.contact, ContactGeometry::Fitting, why);
+            }
+            ShapeConfig::Polygon(config) if config.is_drawing() => {
+                let key = format!("{key}.polygon");
+                defaults.fill(format!("{key}.scale"), &mut config.scale, 1.0, "the drawing's own size");
+                defaults.fill(
+                    format!("{key}.unit"),
+                    &mut config.unit,
+                    LengthUnit::M,
+                    "a unit of the drawing is a metre",
+                );
+            }
+            ShapeConfig::Compound(parts) => {
+                for (i, part) in parts.iter_mut().enumerate() {
+                    part.shape.fill(ctx, defaults, &format!("{key}.compound.{i}.shape"));
+                }
+            }
+            ShapeConfig::Box { .. } | ShapeConfig::Ball { .. } | ShapeConfig::Polygon(_) => {}
+        }
+    }
+
+    /// The shape; opens the files that it names.
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context) -> Result<Shape<D>> {
+        let thickness = |given: Option<f64>| given.unwrap_or(ctx.layers() as f64 * ctx.dp);
+        let number = |axis: Option<AxisName>| axis.map_or(D - 1, |axis| axis as usize);
+        let shape = match self {
+            ShapeConfig::Box { size } => Shape::Box { size: vector(size) },
+            ShapeConfig::Ball { radius } => Shape::Ball { radius: *radius },
+            ShapeConfig::Capsule { length, radius, axis } => {
+                Shape::Capsule { length: *length, radius: *radius, axis: number(*axis) }
+            }
+            ShapeConfig::Cylinder { length, radius, axis } => {
+                Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
+            }
+            ShapeConfig::Polygon(config) => Shape::Polygon { points: points(ctx, config)? },
+            ShapeConfig::Polyline(config) => {
+                Shape::Polyline { points: points(ctx, config)?, thickness: thickness(config.thickness) }
+            }
+            ShapeConfig::Tank { size, thickness: given } => {
+                Shape::Tank { size: vector(size), thickness: thickness(*given) }
+            }
+            ShapeConfig::Mesh(config) => mesh_shape(ctx, config)?,
+            ShapeConfig::Compound(parts) => {
+                let part = |part: &CompoundPartConfig| {
+                    let inner = part.shape.build(ctx)?;
+                    let pose = part.at.as_ref().map_or_else(Pose::identity, |at| at.build(&inner, 0.0));
+                    Ok((pose, inner))
+                };
+                Shape::Compound(parts.iter().map(part).collect::<Result<_>>()?)
+            }
+        };
+        shape.check()?;
+        Ok(shape)
+    }
+}
+
+fn verify_line(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
+    ctx.require_positive(&format!("{key}.thickness"), config.thickness)?;
+    match (&config.points, &config.file) {
+        (Some(points), None) => points.iter().try_for_each(|p| ctx.require_dimension(key, p)),
+        (None, Some(_)) => Ok(()),
+        _ => Err(ctx.error_at(key, format!("a {} has either points or a file of points", last_part(key)))),
+    }
+}
+
+/// Refuses keys of a drawing where there is none.
+fn verify_drawing(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
+    ctx.require_positive(&format!("{key}.scale"), config.scale)?;
+    let words_of_one =
+        [("id", config.id.is_some()), ("scale", config.scale.is_some()), ("unit", config.unit.is_some())];
+    match words_of_one.iter().find(|(_, given)| *given && !config.is_drawing()) {
+        Some((word, _)) => Err(ctx.error_at(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"))),
+        None => Ok(()),
+    }
+}
+
+fn mesh_shape<const D: usize>(ctx: &Context, config: &MeshConfig) -> Result<Shape<D>> {
+    let path = table::path_beside(ctx.folder(), &config.file)?;
+    let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
+    let mesh = mesh::read(&path, unit, config.flip.unwrap_or(false))?;
+    Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: config.contact.unwrap_or_default() })
+}
+
+fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
+    if let Some(points) = &config.points {
+        return Ok(points.iter().map(|p| vector(p)).collect());
+    }
+    let path = table::path_beside(ctx.folder(), config.file.as_deref().unwrap_or(""))?;
+    if config.is_drawing() {
+        let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
+        let points = svg::outline(&path, config.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
+        return Ok(points.iter().map(|p| vector(p)).collect());
+    }
+    let columns = table::read_columns(&path, &["x_m", "y_m"])?;
+    Ok(columns[0].iter().zip(&columns[1]).map(|(&x, &y)| vector(&[x, y])).collect())
+}
+
+impl PlacementConfig {
+    /// The place with these coordinates (m), as many as the scene has dimensions.
+    pub fn point(x: &[f64]) -> Self {
+        Self { x: x.first().copied(), y: x.get(1).copied(), z: x.get(2).copied(), ..Self::default() }
+    }
+
+    /// Afloat at rest at the horizontal coordinates `x` (m).
+    pub fn afloat(x: &[f64]) -> Self {
+        Self { draft: Some(DraftChoice::Equilibrium), ..Self::point(x) }
+    }
+
+    /// Refuses a place that has no meaning in the scene's dimension, or gives the height twice.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, may_float: bool) -> Result<()> {
+        let three = ctx.dimension == 3;
+        let refuse =
+            |word: &str, what: &str, help: &str| Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
+        if self.z.is_some() && !three {
+            return refuse("z", "a 2-D scene has no z", "in 2-D x is horizontal and y is up");
+        }
+        if self.angle_deg.is_some() && three {
+            return refuse("angle_deg", "a turn in 3-D has an axis", "write  turn_deg = [0.0, 30.0, 0.0]");
+        }
+        match &self.turn_deg {
+            Some(_) if !three => return refuse("turn_deg", "a turn in 2-D is one angle", "write  angle_deg = 30.0"),
+            Some(turn) => ctx.require_dimension(&format!("{key}.turn_deg"), turn)?,
+            None => {}
+        }
+        let up = if three { ("z", self.z.is_some()) } else { ("y", self.y.is_some()) };
+        let heights = [up, ("bottom", self.bottom.is_some()), ("draft", self.draft.is_some())];
+        let heights = set_keys(heights);
+        if heights.len() > 1 {
+            let help = "give one: the height of the frame, of the lowest point, or the draft";
+            return refuse(heights[1], &format!("{} say the height twice", quoted_list(&heights)), help);
+        }
+        if !may_float && self.draft.is_some() {
+            return refuse("draft", "only a solid has a draft", "give the height");
+        }
+        Ok(())
+    }
+
+    /// The pose of `shape` in this place. A draft in metres is measured below `level`; one of equilibrium starts at zero.
+    pub(crate) fn build<const D: usize>(&self, shape: &Shape<D>, level: f64) -> Pose<D> {
+        let position = vector(&[self.x.unwrap_or(0.0), self.y.unwrap_or(0.0), self.z.unwrap_or(0.0)]);
+        let turn: Vec<f64> = match (&self.angle_deg, &self.turn_deg) {
+            (Some(angle), _) => vec![angle.to_radians()],
+            (None, Some(turn)) => turn.iter().map(|x| x.to_radians()).collect(),
+            (None, None) => vec![0.0; 3],
+        };
+        let mut pose = Pose::rotated(position, &turn);
+        let bottom = match self.draft {
+            Some(DraftChoice::Metres(draft)) => Some(level - draft),
+            Some(DraftChoice::Equilibrium) => Some(level),
+            None => self.bottom,
+        };
+        if let Some(bottom) = bottom {
+            pose.position[D - 1] = 0.0;
+            pose.position[D - 1] = bottom - world_bounds(shape, &pose).min[D - 1];
+        }
+        pose
+    }
+}
+
+/// The vector of the numbers `x`; missing ones are 0.
+pub(crate) fn vector<const D: usize>(x: &[f64]) -> Vector<D> {
+    Vector::from_fn(|i, _| x.get(i).copied().unwrap_or(0.0))
+}
+
+/// The smallest box around the posed shape, m.
+pub(crate) fn world_bounds<const D: usize>(shape: &Shape<D>, pose: &Pose<D>) -> Bounds<D> {
+    let extent = |i: usize, sign: f64| {
+        let mut direction = Vector::<D>::zeros();
+        direction[i] = sign;
+        sign * pose.position[i] + support(shape, &(pose.rotation.transpose() * direction))
+    };
+    Bounds { min: Vector::from_fn(|i, _| -extent(i, -1.0)), max: Vector::from_fn(|i, _| extent(i, 1.0)) }
+}
+
+/// The support function: how far the shape reaches in the direction `n`, a unit vector of its own frame, m.
+fn support<const D: usize>(shape: &Shape<D>, n: &Vector<D>) -> f64 {
+    match shape {
+        Shape::Box { size } => 0.5 * n.abs().dot(size),
+        Shape::Ball { radius } => *radius,
+        Shape::Capsule { length, radius, axis } => 0.5 * n[*axis].abs() * length + radius,
+        Shape::Cylinder { length, radius, axis } => {
+            0.5 * n[*axis].abs() * length + radius * (1.0 - n[*axis] * n[*axis]).max(0.0).sqrt()
+        }
+        Shape::Polygon { points } => points.iter().map(|p| p.dot(n)).fold(f64::NEG_INFINITY, f64::max),
+        Shape::Mesh { mesh, .. } => {
+            let along = |p: &Vector<3>| (0..D).map(|i| p[i] * n[i]).sum();
+            mesh.points().iter().map(along).fold(f64::NEG_INFINITY, f64::max)
+        }
+        Shape::Compound(parts) => parts
+            .iter()
+            .map(|(pose, part)| pose.position.dot(n) + support(part, &(pose.rotation.transpose() * n)))
+            .fold(f64::NEG_INFINITY, f64::max),
+        Shape::Polyline { .. } | Shape::Tank { .. } => {
+            let bounds = shape.bounds();
+            (0..D).map(|i| (n[i] * bounds.min[i]).max(n[i] * bounds.max[i])).sum()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_box_reaches_as_far_as_its_corner() {
+        let shape = Shape::<2>::Box { size: vector(&[0.2, 0.2]) };
+        let at = PlacementConfig { bottom: Some(0.5), angle_deg: Some(45.0), ..PlacementConfig::default() };
+        let bounds = world_bounds(&shape, &at.build(&shape, 0.0));
+        let half_diagonal = 0.1 * 2f64.sqrt();
+        // round-off of a sine and a product: a few 1e-16
+        assert!((bounds.min[1] - 0.5).abs() < 1e-15);
+        assert!((bounds.max[1] - 0.5 - 2.0 * half_diagonal).abs() < 1e-15);
+    }
+}

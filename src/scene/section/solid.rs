@@ -1,0 +1,460 @@
+//! `[[solid]]`: fixed, driven and free solids.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    motion::DrivenConfig,
+    shape::{PlacementConfig, ShapeConfig, vector},
+    water::StillWater,
+    wavemaker,
+};
+use crate::{
+    error::{Error, Result},
+    geometry::Shape,
+    math::{Bivector, Matrix, NumberOrArray, Pose, Vector},
+    scene::{
+        context::{Context, Defaults, quoted_list, set_keys, suggestion},
+        untagged::DraftChoice,
+    },
+    solid::{FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
+};
+
+/// Largest extent, dp, of bodies that must weigh half a water particle.
+const SMALL: f64 = 7.9;
+
+/// Thickness, dp, below which one row of boundary particles stands for both faces of a body.
+const THIN: f64 = 1.5;
+
+/// Least density over the water's of so thin a body, –.
+const THIN_DENSITY: f64 = 0.2;
+
+/// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidConfig {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// Its group, a name for `[[contact]]`.
+    pub group: Option<String>,
+    /// Geometry in the solid's own frame.
+    pub shape: ShapeConfig,
+    /// Pose of that frame at the start; by default at the origin.
+    pub at: Option<PlacementConfig>,
+    /// `true`: it does not move.
+    #[schemars(extend("const" = true))]
+    pub fixed: Option<bool>,
+    /// Its prescribed motion.
+    pub driven: Option<DrivenConfig>,
+    /// Its mass, if water, weight and contacts move it.
+    pub free: Option<FreeBodyConfig>,
+    /// Coulomb friction coefficient, –.
+    pub friction: Option<f64>,
+    /// Restitution coefficient, –.
+    pub restitution: Option<f64>,
+    /// Distance from its faces at which contact begins, m.
+    pub contact_skin: Option<f64>,
+}
+
+/// A body that water, weight and contacts move.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FreeBodyConfig {
+    /// Density, kg/m³.
+    pub density: Option<f64>,
+    /// Mass, kg (kg per metre of width in 2-D), in place of a density.
+    pub mass: Option<f64>,
+    /// Inertia about the centre of mass, kg m² (kg m²/m in 2-D): a number in 2-D; in 3-D the three
+    /// about the solid's own axes, or the 3×3 tensor.
+    pub inertia: Option<NumberOrArray>,
+    /// Vector from the centroid to the centre of mass, in the solid's frame, m.
+    pub centre_offset: Option<Vec<f64>>,
+    /// Velocity of the centre of mass at the start, m/s.
+    pub velocity: Option<Vec<f64>>,
+    /// Spin at the start, rad/s: a number in 2-D, a vector in 3-D.
+    pub spin: Option<NumberOrArray>,
+    /// Time of its release, s; until then it is held at rest.
+    pub release: Option<f64>,
+    /// Locked modes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub locked: Vec<MotionMode>,
+}
+
+/// A mode of motion, which can be locked or left free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionMode {
+    /// Translation along x.
+    X,
+    /// Translation along y.
+    Y,
+    /// Translation along z; 3-D.
+    Z,
+    /// Turning; 2-D.
+    Turn,
+    /// Turning about x; 3-D.
+    TurnX,
+    /// Turning about y; 3-D.
+    TurnY,
+    /// Turning about z; 3-D.
+    TurnZ,
+}
+
+impl MotionMode {
+    /// Its number among the modes of this dimension, translations first; `None` if there is no such mode.
+    pub(crate) fn index(self, dimension: usize) -> Option<usize> {
+        match (self, dimension == 3) {
+            (Self::X, _) => Some(0),
+            (Self::Y, _) => Some(1),
+            (Self::Z, true) | (Self::Turn, false) => Some(2),
+            (Self::TurnX, true) => Some(3),
+            (Self::TurnY, true) => Some(4),
+            (Self::TurnZ, true) => Some(5),
+            _ => None,
+        }
+    }
+}
+
+impl SolidConfig {
+    fn new(name: impl Into<String>, shape: ShapeConfig) -> Self {
+        Self {
+            name: name.into(),
+            group: None,
+            shape,
+            at: None,
+            fixed: None,
+            driven: None,
+            free: None,
+            friction: None,
+            restitution: None,
+            contact_skin: None,
+        }
+    }
+
+    /// A solid that nothing moves.
+    pub fn fixed(name: impl Into<String>, shape: ShapeConfig) -> Self {
+        Self { fixed: Some(true), ..Self::new(name, shape) }
+    }
+
+    /// A homogeneous free body of `density` (kg/m³).
+    pub fn free(name: impl Into<String>, shape: ShapeConfig, density: f64) -> Self {
+        let free = FreeBodyConfig { density: Some(density), ..FreeBodyConfig::default() };
+        Self { free: Some(free), ..Self::new(name, shape) }
+    }
+
+    /// A solid with a prescribed motion.
+    pub fn driven(name: impl Into<String>, shape: ShapeConfig, motion: DrivenConfig) -> Self {
+        Self { driven: Some(motion), ..Self::new(name, shape) }
+    }
+
+    /// The same solid at a place.
+    pub fn at(mut self, at: PlacementConfig) -> Self {
+        self.at = Some(at);
+        self
+    }
+
+    /// Refuses a solid that is not complete; `others` are the solids before it and `all` those of the scene.
+    fn verify(&self, ctx: &Context, key: &str, others: &[SolidConfig], all: &[SolidConfig]) -> Result<()> {
+        ctx.require_file_name(&format!("{key}.name"), &self.name)?;
+        if others.iter().any(|other| other.name == self.name) {
+            let what = format!("two solids are called \"{}\"", self.name);
+            return Err(ctx.error_with_help(&format!("{key}.name"), what, "give each its own name"));
+        }
+        if let Some(group) = &self.group {
+            verify_group(ctx, all, &format!("{key}.group"), group)?;
+        }
+        self.shape.verify(ctx, &format!("{key}.shape"))?;
+        if let Some(at) = &self.at {
+            at.verify(ctx, &format!("{key}.at"), true)?;
+        }
+        self.verify_role(ctx, key)?;
+        ctx.require_range(&format!("{key}.friction"), self.friction, 10.0)?;
+        ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
+    }
+
+    /// Fills in its defaults.
+    pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, key: &str) {
+        self.shape.fill(ctx, defaults, &format!("{key}.shape"));
+        defaults.fill(
+            format!("{key}.at"),
+            &mut self.at,
+            PlacementConfig::default(),
+            "the shape's frame is the world's",
+        );
+        defaults.fill(format!("{key}.friction"), &mut self.friction, 0.3, "wet wood or plastic");
+        let why = "lubrication by water dissipates the rebound";
+        defaults.fill(format!("{key}.restitution"), &mut self.restitution, 0.0, why);
+        if let Some(driven) = &mut self.driven {
+            driven.fill(defaults, &format!("{key}.driven"));
+        }
+    }
+
+    /// Refuses a solid that is not exactly one of fixed, driven and free.
+    fn verify_role(&self, ctx: &Context, key: &str) -> Result<()> {
+        let roles = [("fixed", self.fixed.is_some()), ("driven", self.driven.is_some()), ("free", self.free.is_some())];
+        let roles = set_keys(roles);
+        if roles.len() != 1 {
+            let what = match roles.len() {
+                0 => format!("nothing says what moves solid \"{}\"", self.name),
+                _ => format!("solid \"{}\" is {}; it can be one of them", self.name, quoted_list(&roles)),
+            };
+            let help = "write one of\n  fixed  = true\n  driven = { along = [1.0, 0.0], distance = { formula = \
+                        \"0.05*sin(2*pi*t)\" } }\n  free   = { density = 500.0 }";
+            let place = roles.last().map_or(key.to_string(), |role| format!("{key}.{role}"));
+            return Err(ctx.error_with_help(&place, what, help));
+        }
+        if self.fixed == Some(false) {
+            let help = "a solid that is not fixed is driven = { ... } or free = { ... }";
+            return Err(ctx.error_with_help(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
+        }
+        if let Some(config) = &self.driven {
+            config.verify(ctx, &format!("{key}.driven"))?;
+        }
+        if let Some(config) = &self.free {
+            config.verify(ctx, &format!("{key}.free"))?;
+        }
+        Ok(())
+    }
+
+    /// The solid in the water `pool`, from whose level drafts are measured.
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, pool: &StillWater<D>) -> Result<SolidSpec<D>> {
+        let level = pool.still.level;
+        let place = |part: &str| {
+            let key = format!("{key}.{part}");
+            move |e: Error| ctx.with_location(e, &key)
+        };
+        let shape: Shape<D> = self.shape.build(ctx).map_err(place("shape"))?;
+        let (name, at) = (&self.name, self.at.clone().unwrap_or_default());
+        let mut pose = at.build(&shape, level);
+        let role = match (&self.driven, &self.free) {
+            (Some(config), _) => {
+                let key = format!("{key}.driven");
+                Role::Driven(match &config.wave {
+                    Some(wave) => wavemaker::build(ctx, &key, config, wave, (&shape, &pose), pool)?,
+                    None => config.build(ctx, &key)?,
+                })
+            }
+            (None, Some(config)) => {
+                let body = config.build(&shape);
+                let part = if config.inertia.is_some() { "free.inertia" } else { "free" };
+                body.check()
+                    .map_err(|e| Error { message: format!("solid \"{}\": {}", name, e.message), ..e })
+                    .map_err(place(part))?;
+                Role::Free(body)
+            }
+            (None, None) => Role::Fixed,
+        };
+        if at.draft == Some(DraftChoice::Equilibrium) {
+            let Role::Free(body) = &role else {
+                let key = format!("{key}.at.draft");
+                return Err(ctx.error_with_help(
+                    &key,
+                    "only a free body finds its own draft",
+                    "give the height or a draft in metres",
+                ));
+            };
+            let rho0 = ctx.rho0.unwrap_or_default();
+            let rise = equilibrium_height(&shape, &pose, body.mass, rho0, level).map_err(place("at.draft"))?;
+            pose.position[D - 1] += rise;
+        }
+        let spec = SolidSpec {
+            name: self.name.clone(),
+            shape,
+            pose,
+            role,
+            friction: self.friction.unwrap_or_default(),
+            restitution: self.restitution.unwrap_or_default(),
+            contact_skin: self.contact_skin.unwrap_or_default(),
+        };
+        let blamed = if spec.has_valid_contact_skin() { key.to_string() } else { format!("{key}.contact_skin") };
+        spec.check().map_err(|e| ctx.with_location(e, &blamed))?;
+        verify_weight(ctx, key, &spec)?;
+        verify_thickness(ctx, key, &spec)?;
+        Ok(spec)
+    }
+}
+
+impl FreeBodyConfig {
+    /// Refuses a body without a mass, and vectors that do not fit the dimension.
+    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        ctx.require_positive(&format!("{key}.density"), self.density)?;
+        let mass = ctx.require_positive(&format!("{key}.mass"), self.mass);
+        mass.map_err(|e| e.help("write  free = { mass = 10.0 }        # kg; in 2-D kg/m"))?;
+        if self.density.is_some() == self.mass.is_some() {
+            return Err(ctx.error_with_help(
+                key,
+                "a free body has either a density or a mass",
+                "write  free = { density = 500.0 }        # kg/m³",
+            ));
+        }
+        for (word, vector) in [("centre_offset", &self.centre_offset), ("velocity", &self.velocity)] {
+            if let Some(vector) = vector {
+                ctx.require_dimension(&format!("{key}.{word}"), vector)?;
+            }
+        }
+        ctx.require_positive(&format!("{key}.release"), self.release)?;
+        if self.release.is_some() && (self.velocity.is_some() || self.spin.is_some()) {
+            let what = "what is held at first starts at rest, with neither velocity nor spin";
+            return Err(ctx.error_at(&format!("{key}.release"), what));
+        }
+        let three = ctx.dimension == 3;
+        let spin_fits = match &self.spin {
+            None => true,
+            Some(NumberOrArray::One(_)) => !three,
+            Some(NumberOrArray::List(list)) => three && list.len() == 3,
+            Some(NumberOrArray::Rows(_)) => false,
+        };
+        if !spin_fits {
+            return Err(ctx.error_with_help(
+                &format!("{key}.spin"),
+                "spin does not fit the dimension",
+                "in 2-D a number, spin = 0.5; in 3-D a vector, spin = [0.0, 0.0, 0.5]        # rad/s",
+            ));
+        }
+        self.verify_inertia(ctx, &format!("{key}.inertia"))?;
+        verify_modes(ctx, &format!("{key}.locked"), &self.locked)
+    }
+
+    /// Refuses an inertia that does not fit the dimension or is not symmetric and positive.
+    fn verify_inertia(&self, ctx: &Context, key: &str) -> Result<()> {
+        let good = match (&self.inertia, ctx.dimension) {
+            (None, _) => true,
+            (Some(NumberOrArray::One(x)), 2) => *x > 0.0,
+            (Some(NumberOrArray::List(list)), 3) => list.len() == 3 && list.iter().all(|x| *x > 0.0),
+            (Some(NumberOrArray::Rows(rows)), 3) => {
+                rows.len() == 3
+                    && rows.iter().all(|row| row.len() == 3)
+                    && (0..3).all(|i| rows[i][i] > 0.0 && (0..i).all(|j| rows[i][j] == rows[j][i]))
+            }
+            _ => false,
+        };
+        if good {
+            return Ok(());
+        }
+        let help = "in 2-D a positive number, kg m²/m; in 3-D three positive numbers or a symmetric 3×3 tensor, kg m²";
+        Err(ctx.error_with_help(key, "this cannot be an inertia", help))
+    }
+
+    /// The body of this `shape`.
+    fn build<const D: usize>(&self, shape: &Shape<D>) -> FreeBody<D> {
+        let mut body = match (self.density, self.mass) {
+            (Some(density), _) => FreeBody::from_density(shape, density),
+            (None, mass) => FreeBody::from_mass(shape, mass.unwrap_or_default()),
+        };
+        match &self.inertia {
+            Some(NumberOrArray::One(x)) => {
+                body.inertia = Matrix::zeros();
+                body.inertia[(0, 0)] = *x;
+            }
+            Some(NumberOrArray::List(list)) => body.inertia = Matrix::from_diagonal(&vector(list)),
+            Some(NumberOrArray::Rows(rows)) => body.inertia = Matrix::from_fn(|i, j| rows[i][j]),
+            None => {}
+        }
+        let given = |x: &Option<Vec<f64>>| x.as_ref().map_or_else(Vector::zeros, |x| vector(x));
+        body.centre += given(&self.centre_offset);
+        body.velocity = given(&self.velocity);
+        body.spin = match &self.spin {
+            Some(NumberOrArray::One(x)) => Bivector::from_axial(&[*x]),
+            Some(NumberOrArray::List(list)) => Bivector::from_axial(list),
+            _ => Bivector::zero(),
+        };
+        for mode in self.locked.iter().filter_map(|axis| axis.index(D)) {
+            match mode.checked_sub(D) {
+                None => body.locked_translations[mode] = true,
+                Some(axis) => body.locked_rotations[axis] = true,
+            }
+        }
+        body
+    }
+}
+
+/// Refuses solids that are not complete or share a name.
+pub(crate) fn verify(ctx: &Context, solids: &[SolidConfig]) -> Result<()> {
+    let verify = |(i, solid): (usize, &SolidConfig)| solid.verify(ctx, &format!("solid.{i}"), &solids[..i], solids);
+    solids.iter().enumerate().try_for_each(verify)
+}
+
+/// Refuses a group name that is not a name, or is the name of a solid.
+fn verify_group(ctx: &Context, solids: &[SolidConfig], key: &str, group: &str) -> Result<()> {
+    let help = "a group is one word of letters, digits, _ and -, as in  group = \"floats\"";
+    ctx.require_file_name(key, group).map_err(|e| e.help(help))?;
+    match solids.iter().any(|solid| solid.name == group) {
+        true => {
+            let help = "give the group a name of its own: in  between  it stands beside those of solids";
+            Err(ctx.error_with_help(key, format!("a solid is called \"{group}\", too"), help))
+        }
+        false => Ok(()),
+    }
+}
+
+/// Refuses motions that there are not in the scene's dimension.
+pub(crate) fn verify_modes(ctx: &Context, key: &str, axes: &[MotionMode]) -> Result<()> {
+    match axes.iter().find(|axis| axis.index(ctx.dimension).is_none()) {
+        Some(_) => Err(ctx.error_with_help(
+            key,
+            format!("there is no such motion in {}-D", ctx.dimension),
+            "in 2-D: x, y, turn; in 3-D: x, y, z, turn_x, turn_y, turn_z",
+        )),
+        None => Ok(()),
+    }
+}
+
+pub(crate) fn require_solid(ctx: &Context, solids: &[SolidConfig], key: &str, name: &str) -> Result<()> {
+    if solids.iter().any(|solid| solid.name == name) {
+        return Ok(());
+    }
+    let members = solids.iter().filter(|solid| solid.group.as_deref() == Some(name));
+    let members: Vec<&str> = members.map(|solid| solid.name.as_str()).collect();
+    if !members.is_empty() {
+        let what = format!("\"{name}\" is a group, and here a single solid is meant");
+        let help =
+            "ties, forces and probes are of single solids, and only  [[contact]] between  takes groups; of this one";
+        return Err(ctx.error_with_help(key, what, format!("{help}: {}", members.join(", "))));
+    }
+    let names: Vec<&str> = solids.iter().map(|solid| solid.name.as_str()).collect();
+    let known =
+        if names.is_empty() { "the scene has no solids".into() } else { format!("known: {}", names.join(", ")) };
+    Err(ctx.error_with_help(key, format!("no solid is called \"{name}\"{}", suggestion(name, &names)), known))
+}
+
+/// Refuses a free body under gravity that is small and weighs less than half a water particle: it would ride on single ones.
+fn verify_weight<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) -> Result<()> {
+    let (rho0, heavy) = (ctx.rho0.unwrap_or_default(), ctx.has_gravity());
+    let Role::Free(body) = &spec.role else { return Ok(()) };
+    let least = 0.5 * rho0 * ctx.dp.powi(D as i32);
+    let small = spec.shape.bounds_at(&Pose::identity()).size().max() < SMALL * ctx.dp;
+    if !heavy || !small || body.mass >= least {
+        return Ok(());
+    }
+    let part = 0.5 * body.mass / least;
+    let what =
+        format!("\"{}\" is small and weighs {part:.2} of a water particle: no draft could come of that", spec.name);
+    let dp = 0.99 * ctx.dp * (body.mass / least).powf(1.0 / D as f64);
+    Err(ctx.error_with_help(
+        &format!("{key}.free"),
+        what,
+        format!("half of one is the least: write  dp = {dp:.2e}  or less"),
+    ))
+}
+
+/// Refuses a light free plate of a single row of boundary particles, which cannot press on both sides as they should.
+fn verify_thickness<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) -> Result<()> {
+    let (rho0, heavy) = (ctx.rho0.unwrap_or_default(), ctx.has_gravity());
+    let Role::Free(body) = &spec.role else { return Ok(()) };
+    let thickness = spec.shape.bounds_at(&Pose::identity()).size().min();
+    let density = body.mass / (rho0 * spec.shape.volume_properties().volume);
+    if !heavy || thickness >= THIN * ctx.dp || density >= THIN_DENSITY {
+        return Ok(());
+    }
+    let what = format!(
+        "\"{}\" is {:.2} dp thick and has {density:.2} of the water's density: one row of boundary particles stands for \
+         both its faces",
+        spec.name,
+        thickness / ctx.dp
+    );
+    let help = format!(
+        "two rows bear it: write  dp = {:.2e}  or less, or make it as heavy as {THIN_DENSITY}",
+        0.5 * thickness
+    );
+    Err(ctx.error_with_help(&format!("{key}.free"), what, help))
+}

@@ -1,0 +1,207 @@
+//! `[[water]]`: bodies of water, their still level and their motion at the start.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::shape::{PlacementConfig, ShapeConfig, vector, world_bounds};
+use crate::{
+    error::{Error, Result},
+    geometry::{Shape, WaterRegion},
+    math::{Bounds, BoxConfig, Pose, Vector, expression::ScalarField},
+    scene::{context::Context, untagged::FieldFormulaConfig},
+};
+
+/// Largest distance of water from the origin, in supports of the kernel: beyond, differences of coordinates are not exact.
+const FARTHEST: f64 = 1e8;
+
+/// A body of water.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WaterConfig {
+    /// Its region, minus the solids.
+    pub fill: FillConfig,
+    /// Height of its surface, m, if that lies below the top of `fill`.
+    pub level: Option<f64>,
+    /// Velocity at the start, m/s: for each axis a formula in the position or a number.
+    pub velocity: Option<Vec<FieldFormulaConfig>>,
+    /// Pressure at the start beyond the hydrostatic one, Pa: a formula in the position or a number.
+    pub pressure: Option<FieldFormulaConfig>,
+}
+
+/// The region of a body of water: a box by its corners, or a shape at a place.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FillConfig {
+    /// A box by its corners.
+    #[serde(rename = "box")]
+    pub corners: Option<BoxConfig>,
+    /// Any shape.
+    pub shape: Option<ShapeConfig>,
+    /// Place of that shape.
+    pub at: Option<PlacementConfig>,
+}
+
+impl FillConfig {
+    /// Refuses a region that is neither a box nor a shape.
+    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        match (&self.corners, &self.shape) {
+            (Some(corners), None) if self.at.is_none() => corners.verify(ctx, &format!("{key}.box")),
+            (Some(_), None) => Err(ctx.error_at(&format!("{key}.at"), "a box by its corners needs no place")),
+            (None, Some(shape)) => {
+                shape.verify(ctx, &format!("{key}.shape"))?;
+                self.at.as_ref().map_or(Ok(()), |at| at.verify(ctx, &format!("{key}.at"), false))
+            }
+            _ => Err(ctx.error_at(key, "fill takes either a box or a shape")),
+        }
+    }
+}
+
+impl WaterConfig {
+    /// Refuses a body of water without a region or with an initial motion that cannot be read.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        match ctx.dimension {
+            2 => self.flow::<2>(ctx, key).map(|_| ())?,
+            _ => self.flow::<3>(ctx, key).map(|_| ())?,
+        }
+        self.fill.verify(ctx, &format!("{key}.fill"))
+    }
+
+    /// Its region, its level and its initial motion.
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<WaterBody<D>> {
+        let place = |e: Error| ctx.with_location(e, &format!("{key}.fill"));
+        let (shape, pose) = match &self.fill {
+            FillConfig { corners: Some(corners), .. } => {
+                let (min, mut max): (Vector<D>, Vector<D>) = (vector(&corners.min), vector(&corners.max));
+                max[D - 1] = self.level.unwrap_or(f64::INFINITY).min(max[D - 1]).max(min[D - 1]);
+                (Shape::Box { size: max - min }, Pose::at(0.5 * (min + max)))
+            }
+            FillConfig { shape, at, .. } => {
+                let Some(shape) = shape else { return Err(ctx.error_at(key, "what does the water fill?")) };
+                let shape = shape.build(ctx).map_err(place)?;
+                let pose = at.as_ref().map_or_else(Pose::identity, |at| at.build(&shape, 0.0));
+                (shape, pose)
+            }
+        };
+        let bounds = world_bounds(&shape, &pose);
+        let (bottom, top) = (bounds.min[D - 1], bounds.max[D - 1]);
+        let level = self.level.unwrap_or(f64::INFINITY).min(top);
+        if level <= bottom {
+            let what = format!("the level is not above {bottom} m, the bottom of this water");
+            return Err(ctx.error_at(&format!("{key}.level"), what));
+        }
+        Ok(WaterBody { region: WaterRegion { shape, pose }, bottom, level, flow: self.flow(ctx, key)? })
+    }
+
+    /// Its motion at the start.
+    fn flow<const D: usize>(&self, ctx: &Context, key: &str) -> Result<InitialFlow<D>> {
+        let field =
+            |key: &str, field: &FieldFormulaConfig| ScalarField::parse(&field.0).map_err(|e| ctx.with_location(e, key));
+        let velocity = match &self.velocity {
+            Some(components) => {
+                let key = format!("{key}.velocity");
+                if components.len() != D {
+                    return Err(ctx.error_at(&key, format!("velocity has {} entries, not {D}", components.len())));
+                }
+                Some(components.iter().map(|component| field(&key, component)).collect::<Result<_>>()?)
+            }
+            None => None,
+        };
+        let pressure = self.pressure.as_ref().map(|config| field(&format!("{key}.pressure"), config)).transpose()?;
+        Ok(InitialFlow { velocity, pressure })
+    }
+}
+
+/// The motion of a body of water at the start.
+pub(crate) struct InitialFlow<const D: usize> {
+    velocity: Option<Vec<ScalarField<D>>>,
+    pressure: Option<ScalarField<D>>,
+}
+
+impl<const D: usize> InitialFlow<D> {
+    /// Velocity (m/s) and pressure beyond the hydrostatic one (Pa) at `r` (m).
+    pub(crate) fn at(&self, r: &Vector<D>) -> (Vector<D>, f64) {
+        let velocity = self.velocity.as_ref();
+        let velocity = velocity.map_or_else(Vector::zeros, |v| Vector::from_fn(|i, _| v[i].value_at(r)));
+        (velocity, self.pressure.as_ref().map_or(0.0, |field| field.value_at(r)))
+    }
+}
+
+/// A body of water.
+pub(crate) struct WaterBody<const D: usize> {
+    pub(crate) region: WaterRegion<D>,
+    pub(crate) bottom: f64,
+    /// Height of the still surface, m.
+    pub(crate) level: f64,
+    pub(crate) flow: InitialFlow<D>,
+}
+
+impl<const D: usize> WaterBody<D> {
+    /// Signed distance (m) of the point `x` (m) from this water, negative inside.
+    pub(crate) fn distance(&self, x: &Vector<D>) -> f64 {
+        self.region.shape.signed_distance(&self.region.pose.local(x))
+    }
+
+    /// Whether `x` (m) lies in this water, up to round-off.
+    pub(crate) fn contains(&self, x: &Vector<D>) -> bool {
+        self.distance(x) < 1e-9
+    }
+
+    /// The smallest box around it, m.
+    pub(crate) fn bounds(&self) -> Bounds<D> {
+        world_bounds(&self.region.shape, &self.region.pose)
+    }
+}
+
+/// The water at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StillWaterLevel {
+    /// The highest level, from which drafts are measured, m.
+    pub level: f64,
+    /// From the lowest point of the water to there, m.
+    pub depth: f64,
+}
+
+impl StillWaterLevel {
+    /// Of all bodies of water.
+    pub(crate) fn of<const D: usize>(water: &[WaterBody<D>]) -> Self {
+        let level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
+        Self { level, depth: level - bottom }
+    }
+}
+
+/// The water at rest and the box around it.
+pub(crate) struct StillWater<const D: usize> {
+    pub(crate) still: StillWaterLevel,
+    pub(crate) bounds: Bounds<D>,
+}
+
+impl<const D: usize> StillWater<D> {
+    /// Of all bodies of water; there is one at least.
+    pub(crate) fn of(water: &[WaterBody<D>]) -> Self {
+        let mut bounds: Bounds<D> =
+            Bounds { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) };
+        for body in water {
+            let own = body.bounds();
+            bounds = Bounds { min: bounds.min.inf(&own.min), max: bounds.max.sup(&own.max) };
+        }
+        Self { still: StillWaterLevel::of(water), bounds }
+    }
+}
+
+/// Refuses water so far from the origin that its coordinates are not exact enough.
+pub(crate) fn require_near_origin<const D: usize>(ctx: &Context, water: &[WaterBody<D>]) -> Result<()> {
+    let most = FARTHEST * 2.0 * ctx.h;
+    let far = |body: &WaterBody<D>| {
+        let bounds = body.bounds();
+        bounds.min.iter().chain(bounds.max.iter()).map(|x| x.abs()).fold(0.0, f64::max)
+    };
+    match water.iter().map(far).enumerate().find(|(_, far)| *far > most) {
+        Some((i, far)) => {
+            let what = format!("this water is {far:.1e} m from the origin; places are exact up to {most:.1e} m");
+            let help = "move the scene to the origin, or make dp larger";
+            Err(ctx.error_with_help(&format!("water.{i}.fill"), what, help))
+        }
+        None => Ok(()),
+    }
+}

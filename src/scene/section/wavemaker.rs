@@ -1,0 +1,272 @@
+//! The paddle of a `wave`: its motion, and its absorption of waves that come back.
+
+use std::f64::consts::TAU;
+
+use super::{
+    motion::DrivenConfig,
+    shape::{vector, world_bounds},
+    water::StillWater,
+    wave::{
+        AbsorbChoice, AbsorptionConfig, IrregularWaveConfig, MeasuredElevationConfig, WaveComponentsConfig, WaveConfig,
+    },
+};
+use crate::{
+    error::{Error, Result},
+    geometry::Shape,
+    math::{Bivector, Bounds, Pose, Vector, time_series::TimeSeries},
+    scene::{context::Context, table},
+    solid::{PrescribedMotion, TimeFunction},
+    wavemaker::{Absorber, AbsorptionSettings, Paddle, PaddleMotion, WaveComponent, WaveSpectrum, Wavemaker},
+};
+
+/// Distance of the absorption gauge from the face of the paddle, in smoothing lengths: the radius of the kernel.
+const GAUGE_DISTANCE: f64 = 2.0;
+
+/// Where a paddle is that absorbs, and the direction of its waves.
+struct AbsorberSite<const D: usize> {
+    /// A point (m) of its face at rest, in the middle of its width.
+    face: Vector<D>,
+    /// Where its waves go; a unit vector.
+    way: Vector<D>,
+    /// Height of the still water, m.
+    level: f64,
+}
+
+impl<const D: usize> AbsorberSite<D> {
+    /// Of a paddle in the box `own`, whose waves go along `way`.
+    fn of(own: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
+        let middle = 0.5 * (own.min + own.max);
+        Self { face: middle + way * (support(own, &way) - middle.dot(&way)), way, level }
+    }
+}
+
+/// The largest x·`way` in a box.
+fn support<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f64 {
+    (0..D).map(|i| (way[i] * bounds.min[i]).max(way[i] * bounds.max[i])).sum()
+}
+
+/// The motion of the paddle of this shape and pose that makes `wave`.
+pub(super) fn build<const D: usize>(
+    ctx: &Context,
+    key: &str,
+    config: &DrivenConfig,
+    wave: &WaveConfig,
+    (shape, pose): (&Shape<D>, &Pose<D>),
+    pool: &StillWater<D>,
+) -> Result<PrescribedMotion<D>> {
+    let own = world_bounds(shape, pose);
+    let depth = wave.depth.unwrap_or(pool.still.depth);
+    let g = ctx.gravity.and_then(|g| g.last()).map_or(0.0, |g| -g);
+    let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
+    match &config.along {
+        Some(along) => piston_motion(ctx, key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
+        None => flap_motion(ctx, key, config, wave, &maker, (&own, pool)),
+    }
+}
+
+/// The motion of a piston in the direction `along`; `own` is the box around it.
+fn piston_motion<const D: usize>(
+    ctx: &Context,
+    key: &str,
+    wave: &WaveConfig,
+    along: Vector<D>,
+    maker: &Wavemaker,
+    (own, pool): (&Bounds<D>, &StillWater<D>),
+) -> Result<PrescribedMotion<D>> {
+    let refuse = |what: &str, help: &str| Err(ctx.error_with_help(&format!("{key}.along"), what, help));
+    if along[D - 1].abs() > 1e-6 {
+        return refuse("a piston that makes waves slides level", "write  along = [1.0, 0.0]");
+    }
+    let ahead = support(&pool.bounds, &along) - support(own, &along);
+    if ahead <= ctx.dp {
+        let help = "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
+        return refuse("there is no water before the paddle in this direction", help);
+    }
+    let key = format!("{key}.wave");
+    let law = wave_from_config(ctx, &key, wave, maker)?;
+    if law.stroke() > 0.5 * ahead {
+        let what = format!("the piston would go {:.3} m to and fro, and the water is {ahead:.3} m long", law.stroke());
+        let help = "waves so long need a longer tank: take a shorter period or a lower height";
+        return Err(ctx.error_with_help(&key, what, help));
+    }
+    let site = AbsorberSite::of(own, along, pool.still.level);
+    with_absorption(ctx, &key, wave, maker, &site, PrescribedMotion::slide(along, TimeFunction::Wave(Box::new(law))))
+}
+
+/// The motion of a flap; `own` is the box around it.
+fn flap_motion<const D: usize>(
+    ctx: &Context,
+    key: &str,
+    config: &DrivenConfig,
+    wave: &WaveConfig,
+    maker: &Wavemaker,
+    (own, pool): (&Bounds<D>, &StillWater<D>),
+) -> Result<PrescribedMotion<D>> {
+    let hinge: Vector<D> = vector(config.hinge.as_deref().unwrap_or(&[]));
+    let arm = pool.still.level - hinge[D - 1];
+    if arm <= 0.0 {
+        let what = format!("the hinge is {:.3} m above the still level: such a flap makes no wave by theory", -arm);
+        let help = format!("a flap is hinged below {:.3} m: at the bed, above or under it", pool.still.level);
+        return Err(ctx.error_with_help(&format!("{key}.hinge"), what, help));
+    }
+    let unit = |x: &Vec<f64>| vector::<D>(x).normalize().iter().copied().collect();
+    let axis: Vec<f64> = config.axis.as_ref().map_or_else(|| vec![1.0], unit);
+    if axis.get(2).is_some_and(|x| x.abs() > 1e-6) {
+        let help = "write  axis = [0.0, 1.0, 0.0]";
+        return Err(ctx.error_with_help(&format!("{key}.axis"), "the axis of a flap that makes waves is level", help));
+    }
+    let mut up = Vector::zeros();
+    up[D - 1] = 1.0;
+    let way = Bivector::<D>::from_axial(&axis).velocity_at(&up);
+    let middle = 0.5 * (pool.bounds.min + pool.bounds.max) - 0.5 * (own.min + own.max);
+    let sense = if way.dot(&middle) < 0.0 { -1.0 } else { 1.0 };
+    let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
+    let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
+    let law = wave_from_config(ctx, &key, wave, &maker)?;
+    let site = AbsorberSite::of(own, way.normalize() * sense, pool.still.level);
+    with_absorption(
+        ctx,
+        &key,
+        wave,
+        &maker,
+        &site,
+        PrescribedMotion::hinge(hinge, &axis, TimeFunction::Wave(Box::new(law))),
+    )
+}
+
+/// The `motion` of a paddle, with its absorption if it has one.
+fn with_absorption<const D: usize>(
+    ctx: &Context,
+    key: &str,
+    config: &WaveConfig,
+    maker: &Wavemaker,
+    site: &AbsorberSite<D>,
+    motion: PrescribedMotion<D>,
+) -> Result<PrescribedMotion<D>> {
+    match config.absorb.and_then(AbsorbChoice::settings) {
+        Some(config) => absorbing(ctx, &format!("{key}.absorb"), &config, maker, site, motion),
+        None => Ok(motion),
+    }
+}
+
+/// The `motion` of the paddle of `maker` at this `site`, with absorption.
+fn absorbing<const D: usize>(
+    ctx: &Context,
+    key: &str,
+    config: &AbsorptionConfig,
+    maker: &Wavemaker,
+    site: &AbsorberSite<D>,
+    motion: PrescribedMotion<D>,
+) -> Result<PrescribedMotion<D>> {
+    let Some(wave) = motion.wave() else { return Ok(motion) };
+    let AbsorptionConfig { period, stroke, speed } = *config;
+    let tuning = AbsorptionSettings {
+        period,
+        gauge_distance: GAUGE_DISTANCE * ctx.h,
+        water_level: site.level,
+        max_stroke: stroke,
+        max_speed: speed,
+    };
+    let absorber = Absorber::new(maker, wave, &tuning).map_err(|e| ctx.with_location(e, key))?;
+    let gauge: Vector<D> = site.face + site.way * absorber.gauge_distance();
+    Ok(motion.with_absorber(absorber, gauge, site.way))
+}
+
+/// The still paddle's own wave: none, before those that it absorbs.
+fn zero_wave(ctx: &Context, key: &str, config: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<PaddleMotion> {
+    match config.and_then(|config| config.period) {
+        Some(period) => maker.at_rest(period).map_err(|e| ctx.with_location(e, key)),
+        None => Err(ctx.error_at(key, "which wave?")),
+    }
+}
+
+/// The wave that a paddle is to make.
+fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavemaker) -> Result<PaddleMotion> {
+    let place = |word: &str| {
+        let key = format!("{key}.{word}");
+        move |e: Error| ctx.with_location(e, &key)
+    };
+    let gamma = |gamma: Option<f64>| gamma.unwrap_or(3.3);
+    let wave = match config {
+        WaveConfig { regular: Some(config), .. } => {
+            let (order, phase) = (config.order.unwrap_or(2), config.phase_deg.unwrap_or(0.0).to_radians());
+            maker.regular(config.height, config.period, phase, order).map_err(place("regular.height"))?
+        }
+        WaveConfig { jonswap: Some(config), .. } => {
+            let spectrum = WaveSpectrum::jonswap(config.peak_period.unwrap_or_default(), gamma(config.gamma));
+            irregular_wave(config, &spectrum, maker).map_err(place("jonswap.height"))?
+        }
+        WaveConfig { bretschneider: Some(config), .. } => {
+            let spectrum = WaveSpectrum::bretschneider(config.peak_period.unwrap_or_default());
+            irregular_wave(config, &spectrum, maker).map_err(place("bretschneider.height"))?
+        }
+        WaveConfig { pierson_moskowitz: Some(config), .. } => {
+            let spectrum = WaveSpectrum::pierson_moskowitz(config.height, maker.g);
+            irregular_wave(config, &spectrum, maker).map_err(place("pierson_moskowitz.height"))?
+        }
+        WaveConfig { focused: Some(config), .. } => {
+            let spectrum = WaveSpectrum::jonswap(config.peak_period, gamma(config.gamma));
+            let count = config.components.unwrap_or_default();
+            let made = maker.focused(config.crest, &spectrum, config.distance, config.time, count);
+            made.map_err(place("focused.crest"))?
+        }
+        WaveConfig { solitary: Some(config), .. } => {
+            let made = maker.solitary(config.height, config.theory.unwrap_or_default());
+            made.map_err(place("solitary.height"))?
+        }
+        WaveConfig { components: Some(config), .. } => {
+            let components = read_components(ctx, config).map_err(place("components.file"))?;
+            maker.components(&components).map_err(place("components"))?
+        }
+        WaveConfig { elevation: Some(config), .. } => {
+            let series = read_elevation(ctx, config).map_err(place("elevation.column"))?;
+            let (distance, delay) = (config.distance.unwrap_or_default(), config.delay.unwrap_or_default());
+            maker.measured(&series, distance, delay).map_err(place("elevation"))?
+        }
+        _ => zero_wave(ctx, key, config.absorb.and_then(AbsorbChoice::settings), maker)?,
+    };
+    Ok(match config.ramp {
+        Some(ramp) => wave.with_ramp(ramp),
+        None => wave,
+    })
+}
+
+/// The components of a table.
+fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
+    let path = table::path_beside(ctx.folder(), &config.file)?;
+    let names = table::read_header(&path)?;
+    let either = |one: &'static str, other: &'static str| {
+        let given = [(one, true), (other, false)].into_iter().find(|(column, _)| names.iter().any(|n| n == column));
+        given.ok_or_else(|| {
+            let what = format!("{} has neither a column \"{one}\" nor \"{other}\"", path.display());
+            Error::scene(what).help(format!("components need one of the two; its columns: {}", names.join(", ")))
+        })
+    };
+    let (time, is_period) = either("period_s", "frequency_hz")?;
+    let (phase, in_degrees) = either("phase_deg", "phase_rad")?;
+    let columns = table::read_columns(&path, &["amplitude_m", time, phase])?;
+    let component = |i: usize| {
+        let (x, phase) = (columns[1][i], columns[2][i]);
+        if x <= 0.0 {
+            let what = format!("{}: component {} has {time} = {x}", path.display(), i + 1);
+            return Err(Error::scene(what).help("periods and frequencies are positive"));
+        }
+        let omega = if is_period { TAU / x } else { TAU * x };
+        let phase = if in_degrees { phase.to_radians() } else { phase };
+        Ok(WaveComponent { amplitude: columns[0][i], omega, phase })
+    };
+    (0..columns[0].len()).map(component).collect()
+}
+
+/// The elevation of a table.
+fn read_elevation(ctx: &Context, config: &MeasuredElevationConfig) -> Result<TimeSeries> {
+    let path = table::path_beside(ctx.folder(), &config.file)?;
+    let series = table::read_series(&path, config.time.as_deref().unwrap_or("t_s"), &config.column)?;
+    let scale = config.scale.unwrap_or(1.0);
+    TimeSeries::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
+}
+
+/// An irregular sea of this spectrum.
+fn irregular_wave(config: &IrregularWaveConfig, spectrum: &WaveSpectrum, maker: &Wavemaker) -> Result<PaddleMotion> {
+    maker.irregular(config.height, spectrum, config.seed.unwrap_or_default(), config.components.unwrap_or_default())
+}

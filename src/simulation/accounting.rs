@@ -1,0 +1,58 @@
+//! The load breakdown and the energy budget of a running simulation. Disabled by default; no cost when disabled.
+
+use super::Simulation;
+use crate::{
+    coupling::{Accounting, EnergyBudget, LoadBreakdown},
+    model::{Dimension, Viscosity},
+    solid::Dim,
+    sph::boundary::Slip,
+};
+
+/// Steps from one power breakdown to the next, where only the energy budget is kept: one force pass in sixteen more.
+const INTERVAL: u32 = 8;
+
+impl<const D: usize> Simulation<D> {
+    /// Enables the load breakdown of free bodies: [`Simulation::load_breakdown`]. Where the viscosity acts between water and
+    /// solids, every step takes another force pass for the viscous load; otherwise the breakdown costs nothing.
+    pub fn enable_load_breakdown(&mut self)
+    where
+        Dim<D>: Dimension<D>,
+    {
+        let model = self.system.model();
+        let drags = model.viscosity != Viscosity::None && model.slip != Slip::Free;
+        let (energy, interval) = self.accounted();
+        self.account(energy, if drags { Some(1) } else { interval });
+    }
+
+    /// Enables the energy budget: [`Simulation::energy_budget`]. Every eighth step takes another force pass.
+    pub fn enable_energy_budget(&mut self)
+    where
+        Dim<D>: Dimension<D>,
+    {
+        let (_, interval) = self.accounted();
+        self.account(true, Some(interval.unwrap_or(INTERVAL)));
+    }
+
+    /// Whether the energy budget is kept already, and the interval of power breakdowns.
+    fn accounted(&self) -> (bool, Option<u32>) {
+        let accounting = self.bodies.accounting.as_ref();
+        accounting.map_or((false, None), |accounting| (accounting.has_energy_budget(), accounting.power_interval()))
+    }
+
+    fn account(&mut self, energy: bool, interval: Option<u32>)
+    where
+        Dim<D>: Dimension<D>,
+    {
+        self.bodies.accounting = Some(Accounting::new(&self.system, energy, interval));
+    }
+
+    /// The loads on free solid number `solid` in the last step by their origin, if they are kept.
+    pub fn load_breakdown(&self, solid: usize) -> Option<&LoadBreakdown<D>> {
+        self.bodies.accounting.as_ref().map(|accounting| accounting.breakdown(solid))
+    }
+
+    /// The energy budget since it was enabled, if it is kept.
+    pub fn energy_budget(&self) -> Option<&EnergyBudget> {
+        self.bodies.accounting.as_ref().and_then(Accounting::budget)
+    }
+}

@@ -1,0 +1,188 @@
+//! Adding and removing solids during a simulation.
+
+use super::Simulation;
+use crate::{
+    coupling::AcousticAddedMass,
+    error::{Error, ErrorKind, Result},
+    model::Dimension,
+    solid::{Constraints, Dim, HasEngine as _, Kinematics, Role, Solid, SolidSpec, containment::depth_inside_mesh},
+    system::Reordering,
+};
+
+/// Largest overlap of a solid that is added, dp.
+const OVERLAP_MAX: f64 = 0.05;
+
+/// The result of adding a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AddedSolid {
+    /// Its number.
+    pub solid: usize,
+    /// Number of water particles that it displaced.
+    pub displaced: usize,
+}
+
+impl<const D: usize> Simulation<D>
+where
+    Dim<D>: Dimension<D>,
+{
+    /// Adds a solid between two steps. A driven solid starts at the present value of its law.
+    ///
+    /// Water particles inside it are removed, with their mass and momentum; their number is returned. A run with such
+    /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with_added_solids`].
+    ///
+    /// # Errors
+    /// `Scene` if the solid cannot be meant, has a name that another has or had, or lies deeper than 0.05 dp inside another:
+    /// says which and how deep. Nothing has changed then.
+    pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<AddedSolid> {
+        spec.check()?;
+        if self.system.find_solid(&spec.name).is_some() {
+            return Err(Error::scene(format!("a solid is or was called {:?} already", spec.name))
+                .help("give each its own name, also after one was removed"));
+        }
+        if let Some(axis) = self.system.periodic().iter().position(Option::is_some) {
+            let name = ["x", "y", "z"][axis];
+            return Err(Error::scene(format!("solids cannot come into a simulation that is periodic along {name}"))
+                .help("put them in at set-up, where it is seen whether they end at a periodic side"));
+        }
+        let start = match &spec.role {
+            Role::Driven(motion) => motion.kinematics(&spec.pose, self.clock.time),
+            Role::Fixed | Role::Free(_) => spec.initial_kinematics(),
+        };
+        self.refuse_overlap(&spec, &start)?;
+        self.insert_solid(spec, start)?;
+        let (reordering, displaced, energy) = self.system.displace();
+        let solid = self.system.solids().len() - 1;
+        if let Some(accounting) = &mut self.bodies.accounting {
+            accounting.add_displaced(energy);
+            accounting.add_solid_energy(self.system.solids()[solid].energy(&self.system.gravity()));
+        }
+        self.finish_change(reordering);
+        Ok(AddedSolid { solid, displaced })
+    }
+
+    /// Takes solid number `solid` out between two steps; the water closes over its place. It keeps its number and its name, stands
+    /// where it was, and has neither skin nor load any more. What the water had yet to give to it stays in the water.
+    ///
+    /// # Errors
+    /// `Usage` if there is no such solid, or something is tied to it: says what.
+    pub fn remove_solid(&mut self, solid: usize) -> Result<()> {
+        let Some(there) = self.system.solids().get(solid) else {
+            let last = self.system.solids().len();
+            return Err(Error::new(ErrorKind::Usage, format!("there is no solid number {solid}")).help(format!(
+                "they are numbered from 0, and there are {last}; find_solid tells the number of a name"
+            )));
+        };
+        if let Some(tie) = self.system.constraints().constraint_on(solid) {
+            return Err(Error::new(ErrorKind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
+                .help("only what nothing is tied to can be removed"));
+        }
+        if there.boundary.is_empty() {
+            return Ok(());
+        }
+        let pending = self.bodies.pending_impulse(solid);
+        let energy = self.system.return_impulse(solid, &pending).map_or(0.0, |transfer| transfer.energy);
+        if let Some(accounting) = &mut self.bodies.accounting {
+            accounting.add_returned(energy);
+            accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.gravity()));
+        }
+        self.delete_solid(solid);
+        let reordering = self.system.rebuild_neighbours();
+        self.finish_change(reordering);
+        Ok(())
+    }
+
+    /// As [`Simulation::restore`], in a simulation made from the same setup, of a state to whose simulation the solids `added` had
+    /// been added, in this order.
+    ///
+    /// # Errors
+    /// `Restart` if the bytes are damaged or belong to another setup, or other solids had been added.
+    pub fn restore_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
+        for spec in added {
+            let start = spec.initial_kinematics();
+            self.insert_solid(spec, start)?;
+        }
+        for solid in Self::read(bytes)?.removed_solids {
+            if solid as usize >= self.system.solids().len() {
+                return Err(Error::new(
+                    ErrorKind::Restart,
+                    format!("the state says that solid number {solid} was removed"),
+                )
+                .help("give all solids that had been added, in their order"));
+            }
+            self.delete_solid(solid as usize);
+        }
+        self.restore(bytes)
+    }
+
+    /// Refuses a solid deeper inside another than is let pass.
+    fn refuse_overlap(&self, spec: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+        let Some(engine) = self.bodies.engine() else { return Ok(()) };
+        let allowed = OVERLAP_MAX * self.system.model().dp;
+        let touched = engine.deepest_overlap(spec, start)?.into_iter();
+        match touched.chain(self.overlap_inside_mesh(spec, start, allowed)).max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((other, depth)) if depth > allowed => {
+                let other = &self.system.solids()[other].spec;
+                let what = format!("\"{}\" would come {depth:.5} m inside \"{}\"", spec.name, other.name);
+                let padded = if spec.contact_skin + other.contact_skin > 0.0 { ", contact skins counted" } else { "" };
+                Err(Error::scene(what + padded)
+                    .help(format!("move it by that much or more; {allowed:.5} m (0.05 dp) is let pass")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// With which solid, and how deep (m), one that comes would overlap most where it touches nothing: inside a mesh.
+    fn overlap_inside_mesh(&self, spec: &SolidSpec<D>, start: &Kinematics<D>, allowed: f64) -> Option<(usize, f64)> {
+        let free = |role: &Role<D>| matches!(role, Role::Free(_));
+        let depth = |(i, other): (usize, &Solid<D>)| {
+            let meets = !other.boundary.is_empty() && (free(&spec.role) || free(&other.spec.role));
+            let (new, old) = ((spec, &start.pose), (&other.spec, &other.kinematics.pose));
+            let within = [(new, old), (old, new)].into_iter().filter(|_| meets);
+            Some((i, within.filter_map(|(inner, outer)| depth_inside_mesh(inner, outer, allowed)).reduce(f64::max)?))
+        };
+        let depths = self.system.solids().iter().enumerate().filter_map(depth);
+        depths.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Lets a solid come into water and world, unchecked and without making room for it.
+    fn insert_solid(&mut self, spec: SolidSpec<D>, start: Kinematics<D>) -> Result<()> {
+        let free = matches!(spec.role, Role::Free(_));
+        let founding = free && !self.bodies.has_external_bodies();
+        match self.bodies.engine_mut() {
+            Some(engine) => engine.add_body(&spec, &start)?,
+            None if founding => {
+                let solids: Vec<_> =
+                    self.system.solids().iter().map(|s| s.spec.clone()).chain([spec.clone()]).collect();
+                let starts: Vec<_> = self.system.solids().iter().map(|s| s.kinematics).chain([start]).collect();
+                let (gravity, dp) = (self.system.gravity(), self.system.model().dp);
+                self.bodies.set_engine(Dim::<D>::engine(&solids, &starts, &Constraints::default(), &gravity, dp)?);
+            }
+            None => {}
+        }
+        self.system.add_body(spec, start)?;
+        let last = self.system.solids().len() - 1;
+        self.bodies.add_body(AcousticAddedMass::for_solid(&mut self.system, last), start);
+        Ok(())
+    }
+
+    /// Takes a solid out of water and world.
+    fn delete_solid(&mut self, solid: usize) {
+        let skin = self.system.solids()[solid].boundary.clone();
+        self.bodies.remove_body(solid, skin.len() as u32);
+        self.system.remove_body(solid);
+    }
+
+    /// Completes a change of the solids: the stepper starts anew, removed particles are listed, and the rates computed.
+    fn finish_change(&mut self, reordering: Option<Reordering<D>>) {
+        self.stepper.reset();
+        if let (Some(accounting), Some(reordering)) = (&mut self.bodies.accounting, &reordering) {
+            accounting.add_removed(&self.system, &reordering.removed);
+        }
+        self.removed.extend(
+            reordering.into_iter().flat_map(|reordering| reordering.removed).map(|lost| (self.clock.time, lost)),
+        );
+        let log = std::mem::take(&mut self.rollback.log);
+        self.rollback.restart(log);
+        self.system.update_rates();
+    }
+}

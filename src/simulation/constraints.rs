@@ -1,0 +1,90 @@
+//! Joints, springs and ropes of a running simulation: to be found by name, read, and driven by a program.
+
+use super::Simulation;
+use crate::{
+    error::{Error, Result, nearest_name},
+    solid::{JointReading, JointSpec, LineReading, MotorCommand, SpringParameters},
+};
+
+impl<const D: usize> Simulation<D> {
+    /// Number of the joint called `name`.
+    ///
+    /// # Errors
+    /// `Scene` if there is none: says the nearest name, or all of them.
+    pub fn find_joint(&self, name: &str) -> Result<usize> {
+        find_by_name("joint", name, self.system.constraints().joints.iter().map(|joint| joint.name.as_str()))
+    }
+
+    /// Number of the spring called `name`.
+    ///
+    /// # Errors
+    /// As [`Simulation::find_joint`].
+    pub fn find_spring(&self, name: &str) -> Result<usize> {
+        find_by_name("spring", name, self.system.constraints().springs.iter().map(|spring| spring.name.as_str()))
+    }
+
+    /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
+    pub fn spring_step_limit(&self) -> f64 {
+        self.bodies.step_limit(&self.system, self.clock.time)
+    }
+
+    /// What joint number `joint` felt in the last step.
+    pub fn joint_reading(&self, joint: usize) -> JointReading<D> {
+        self.bodies.constraints().joint_reading(joint)
+    }
+
+    /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
+    pub fn violated_joints(&self) -> Vec<String> {
+        let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
+        let said = |(i, joint): (usize, &JointSpec<D>)| {
+            let [apart, turned] = self.bodies.constraints().joint_gap(i, &solids);
+            (apart > 0.1 * self.system.model().dp || turned.to_degrees() > 1.0).then(|| {
+                format!(
+                    "joint \"{}\" is torn by {apart:.4} m and {:.2} degrees: what else holds its solids (another joint, \
+                     `locked`, a wall) contradicts it, so that what it carries says nothing",
+                    joint.name,
+                    turned.to_degrees()
+                )
+            })
+        };
+        self.system.constraints().joints.iter().enumerate().filter_map(said).collect()
+    }
+
+    /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.
+    pub fn joint_coordinates(&self, joint: usize) -> Vec<f64> {
+        let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
+        self.bodies.constraints().joint_coordinates(joint, &solids)
+    }
+
+    /// What spring number `spring` felt in the last step.
+    pub fn spring_reading(&self, spring: usize) -> LineReading {
+        self.bodies.constraints().spring_reading(spring)
+    }
+
+    /// What rope number `rope` felt in the last step.
+    pub fn rope_reading(&self, rope: usize) -> LineReading {
+        self.bodies.constraints().rope_reading(rope)
+    }
+
+    /// Drives joint number `joint`, a hinge or a slider, from now on, in place of the motor that it was made with; `None` gives
+    /// it back to that. A checkpoint keeps it.
+    pub fn set_motor(&mut self, joint: usize, drive: Option<MotorCommand>) {
+        self.bodies.constraints_mut().set_motor(joint, drive);
+    }
+
+    /// Stiffness, damping and rest length of spring number `spring`, to be read or changed from now on. A checkpoint keeps them.
+    pub fn spring_parameters(&mut self, spring: usize) -> &mut SpringParameters {
+        self.bodies.constraints_mut().spring_parameters(spring)
+    }
+}
+
+/// The number of `name` among `names` of a `kind` of things.
+pub(crate) fn find_by_name<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Result<usize> {
+    names.clone().position(|known| known == name).ok_or_else(|| {
+        let help = match nearest_name(name, names.clone()) {
+            Some(near) => format!("did you mean {near:?}?"),
+            None => format!("the {kind}s are: {}", names.collect::<Vec<_>>().join(", ")),
+        };
+        Error::scene(format!("there is no {kind} called {name:?}")).help(help)
+    })
+}

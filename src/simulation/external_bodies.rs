@@ -1,0 +1,71 @@
+//! Co-simulation: a hook in each step before the bodies move, and bodies that an external program moves.
+
+use super::{BodyStep, Setup, Simulation};
+use crate::{
+    error::{Error, Result},
+    model::Dimension,
+    solid::Dim,
+};
+
+impl<const D: usize> Simulation<D> {
+    /// Sets up a simulation whose free solids an external program moves, such as a rapier world of your own: see
+    /// [`Simulation::step_with`], and `examples/own_world.rs`.
+    ///
+    /// The setup says of each of them its shape and mass, as of any free solid; [`solid::rapier2d`](crate::solid::rapier2d) and
+    /// [`solid::rapier3d`](crate::solid::rapier3d) take both from a body of rapier's. Contacts and constraints are those
+    /// of your world. Such a simulation does not roll back, because your world cannot.
+    ///
+    /// # Errors
+    /// `Scene` if a constant has no valid value, a solid cannot be made, or solids are tied: says which.
+    pub fn with_external_bodies(setup: Setup<D>) -> Result<Self>
+    where
+        Dim<D>: Dimension<D>,
+    {
+        if !setup.constraints.is_empty() {
+            return Err(Error::scene(
+                "joints, springs, ropes, forces and contacts of a simulation with external bodies",
+            )
+            .help("put them into the world that moves the bodies, and leave setup.links as Links::default()"));
+        }
+        let pair_loop = Dim::<D>::pair_loop(&setup.model);
+        Ok(Self::with_bodies(setup, pair_loop, true)?.without_rollback())
+    }
+
+    /// Goes one step on, and not past time `end` (s), and calls `hook` once, when the water has moved and the bodies have
+    /// not.
+    ///
+    /// There you can read the loads of the water, push bodies, advance them ([`BodyStep::advance_bodies`]; done afterwards if you
+    /// do not) and read their motion. With external bodies you step your own world instead: it takes loads and returns poses.
+    ///
+    /// ```
+    /// # fn main() -> pontoon::Result<()> {
+    /// # let scene = "dimension = 2\ndp = 0.05\nuntil = 1.0\nwater = [{ fill = { box = { min = [0, 0], max = [1, 0.5] } } }]\n\
+    /// # [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [1.0, 1.0] } }\n\
+    /// # [[solid]]\nname = \"crate\"\nfree = { density = 500 }\nshape = { box = { size = [0.2, 0.2] } }\n\
+    /// # at = { x = 0.5, draft = \"equilibrium\" }";
+    /// # let scene = pontoon::scene::Scene::parse(scene, std::path::Path::new(""), &[])?;
+    /// # let mut simulation = pontoon::simulation::Simulation::new(scene.build::<2>()?.setup)?;
+    /// simulation.step_with(1.0, |step| {
+    ///     let lift = step.loads()[1].force[1]; // before the bodies' step
+    ///     step.advance_bodies()?;
+    ///     let speed = step.solids[1].velocity[1]; // after it
+    ///     assert!(lift > 0.0 && speed.abs() < 0.1);
+    ///     Ok(())
+    /// })
+    /// # }
+    /// ```
+    ///
+    /// After an alarm the simulation may roll back to a good state, and what `hook` keeps does not: count in simulated time, or
+    /// switch the rollback off with [`without_rollback`](Simulation::without_rollback).
+    ///
+    /// # Errors
+    /// As [`Simulation::step`], the error that `hook` returns, and `Usage` if an external body was left without kinematics.
+    pub fn step_with(&mut self, end: f64, mut hook: impl FnMut(&mut BodyStep<D>) -> Result<()>) -> Result<()> {
+        self.step_with_hook(end, &mut hook)
+    }
+
+    /// Whether an external program moves the free solids.
+    pub fn has_external_bodies(&self) -> bool {
+        self.bodies.has_external_bodies()
+    }
+}

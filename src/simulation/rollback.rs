@@ -1,0 +1,106 @@
+//! What a simulation does when a guard sounds its first alarm: it goes back to a good state that it has in memory and takes
+//! half the step for a while. If the alarm returns meanwhile, the run stops with the report of that.
+//!
+//! A run without an alarm is not changed by a bit: the states are only kept.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// Steps from one kept state to the next: a state costs about a step's time to keep, so this costs less than 1 %.
+const EVERY: u64 = 500;
+
+/// Steps that a state must be older than the alarm; a younger one may be ill already.
+const AGE: u64 = 100;
+
+/// Times that a run is rescued; a run that needs more is not computed but nursed.
+const MOST: usize = 3;
+
+/// One time that a run was rescued.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rollback {
+    /// What the guard said.
+    pub alarm: String,
+    /// When it said so, s.
+    pub at: f64,
+    /// To when the run went back, s.
+    pub back_to: f64,
+    /// Until when the step is halved, s.
+    pub halved_until: f64,
+}
+
+impl fmt::Display for Rollback {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { alarm, back_to, halved_until, .. } = self;
+        write!(f, "{alarm}: went back to {back_to:.6} s, and takes half the step until {halved_until:.6} s")
+    }
+}
+
+/// The states kept, and what came of them.
+#[derive(Default)]
+pub(super) struct RollbackControl {
+    off: bool,
+    /// The last two states, the older first: step, time, bytes.
+    states: Vec<(u64, f64, Vec<u8>)>,
+    /// What happened so far.
+    pub(super) log: Vec<Rollback>,
+}
+
+impl RollbackControl {
+    /// None, ever.
+    pub(super) fn disabled() -> Self {
+        Self { off: true, ..Self::default() }
+    }
+
+    /// Whether a state is to be kept after `steps` steps.
+    pub(super) fn needs_state(&self, steps: u64) -> bool {
+        !self.off && (self.states.is_empty() || steps.is_multiple_of(EVERY))
+    }
+
+    /// Whether a state of `time` (s) is stored.
+    pub(super) fn has_state_at(&self, time: f64) -> bool {
+        self.states.iter().any(|(_, at, _)| *at == time)
+    }
+
+    /// Forgets the states kept, of another course of the run; `log` is what happened before.
+    pub(super) fn restart(&mut self, log: Vec<Rollback>) {
+        (self.states, self.log) = (Vec::new(), log);
+    }
+
+    /// Makes room for another state: at most two are in memory at a time.
+    pub(super) fn drop_oldest_state(&mut self) {
+        if self.states.len() == 2 {
+            self.states.remove(0);
+        }
+    }
+
+    /// Keeps the state `bytes` of `steps` steps and `time` (s).
+    pub(super) fn store(&mut self, steps: u64, time: f64, mut bytes: Vec<u8>) {
+        bytes.shrink_to_fit();
+        self.states.push((steps, time, bytes));
+    }
+
+    /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run; none if that is no use.
+    pub(super) fn state_before(&mut self, alarm: &str, steps: u64, time: f64) -> Option<Vec<u8>> {
+        let again = self.log.last().is_some_and(|last| time <= last.halved_until);
+        if again || self.log.len() >= MOST {
+            return None;
+        }
+        let old = self.states.iter().rposition(|(at, ..)| at + AGE <= steps).unwrap_or(0);
+        self.states.truncate(old + 1);
+        let (_, back_to, bytes) = self.states.pop()?;
+        // As long again beyond the alarm as the way back.
+        let halved_until = time + (time - back_to);
+        self.log.push(Rollback { alarm: alarm.into(), at: time, back_to, halved_until });
+        Some(bytes)
+    }
+
+    /// What part of the step is taken at `time` (s), –.
+    pub(super) fn step_factor(&self, time: f64) -> f64 {
+        if self.log.last().is_some_and(|last| time < last.halved_until) { 0.5 } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/simulation/rollback.rs"]
+mod tests;

@@ -1,0 +1,34 @@
+//! Unit tests of `src/geometry/packing.rs`.
+
+use super::*;
+
+#[test]
+fn a_disturbed_lattice_becomes_even_again() {
+    let mut points: Vec<Vector<2>> = Vec::new();
+    let cell = |i: i32, j: i32| Vector::from([i as f64, j as f64]);
+    for (i, j) in (0..49).map(|k| (k % 7 - 3, k / 7 - 3)) {
+        points.push(cell(i, j) + Vector::from([(3.0 * i as f64).sin(), (5.0 * j as f64).cos()]) * 0.2);
+    }
+    let movable = points.len();
+    let outer = (0..225_i32).map(|k| (k % 15 - 7, k / 15 - 7)).filter(|(i, j)| i.abs() > 3 || j.abs() > 3);
+    points.extend(outer.map(|(i, j)| cell(i, j)));
+    spread_points(&mut points, movable, 1.0, |_, _, _| f64::INFINITY);
+    for (k, x) in points.iter().enumerate() {
+        let nearest = points.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, y)| (x - y).norm());
+        let gap = nearest.fold(f64::INFINITY, f64::min);
+        assert!((0.85..=1.01).contains(&gap), "{k}: {gap}");
+    }
+}
+
+#[test]
+fn rows_of_a_cubic_lattice_do_not_swing() {
+    let place = |k: i32| Vector::from([(k % 15) as f64, (k / 15 % 15) as f64, (k / 225) as f64]);
+    let is_inner = |x: &Vector<3>| x.iter().all(|c| (3.0..12.0).contains(c));
+    let (inner, outer): (Vec<_>, Vec<_>) = (0..3375).map(place).partition(is_inner);
+    // Every other row is a little to the left, the rest to the right: the wave that swings first.
+    let shifted = inner.iter().map(|x| x + Vector::from([0.03 * (x[0] * std::f64::consts::PI).cos(), 0.0, 0.0]));
+    let mut points: Vec<_> = shifted.chain(outer).collect();
+    spread_points(&mut points, inner.len(), 1.0, |_, _, _| f64::INFINITY);
+    let off = points.iter().zip(&inner).map(|(x, at)| (x - at).norm()).fold(0.0, f64::max);
+    assert!(off < 0.01, "{off} dp off the lattice");
+}

@@ -1,0 +1,93 @@
+//! Unit tests of `src/output/checkpoint.rs`.
+
+use super::*;
+
+fn example() -> Checkpoint {
+    Checkpoint {
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene_hash: fnv1a(b"scene"),
+        overrides: vec![("dp".into(), "0.02".into())],
+        time: 0.25,
+        outputs: OutputPositions {
+            table_bytes: vec![12, 40],
+            means: vec![None, Some(IntervalMean::default())],
+            frame_times: vec![0.0, 0.1],
+            next_due: vec![3, 1],
+        },
+        wall_seconds: 1.5,
+        cpu_seconds: 2.5,
+        particle_steps: 1200,
+        stepping_seconds: 1.25,
+        state: vec![1, 2, 3, 250],
+    }
+}
+
+fn refusal(bytes: &[u8]) -> Option<ErrorKind> {
+    Checkpoint::from_bytes(bytes).err().map(|e| e.kind)
+}
+
+#[test]
+fn the_hash_is_fnv_1a() {
+    assert_eq!(fnv1a(b""), 0xcbf2_9ce4_8422_2325);
+    assert_eq!(fnv1a(b"foobar"), 0x8594_4171_f739_67e8, "the published test vector");
+}
+
+#[test]
+fn a_checkpoint_reads_back_and_every_damage_is_seen() -> Result<()> {
+    let good = example().to_bytes()?;
+    assert_eq!(Checkpoint::from_bytes(&good)?, example());
+    for cut in 0..good.len() {
+        let what = Checkpoint::from_bytes(&good[..cut]).err().map(|e| e.message).unwrap_or_default();
+        assert!(what.contains("cut short"), "cut at {cut}: {what}");
+    }
+    for place in 0..good.len() {
+        for bit in 0..8 {
+            let mut bad = good.clone();
+            bad[place] ^= 1 << bit;
+            assert_eq!(refusal(&bad), Some(ErrorKind::Restart), "bit {bit} of byte {place} changed");
+        }
+    }
+    assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(ErrorKind::Restart), "a byte too many");
+    let other = Checkpoint { version: "0.0.0".into(), ..example() }.to_bytes()?;
+    assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.message.contains("written by pontoon 0.0.0")));
+    Ok(())
+}
+
+/// A file with a true hash over whatever lengths and payload.
+fn forged(unfolded: u64, packed: &[u8]) -> Vec<u8> {
+    let lengths = [unfolded, packed.len() as u64].map(u64::to_le_bytes).concat();
+    let sum = fnv1a_continue(fnv1a(&lengths), packed).to_le_bytes();
+    [MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum, packed].concat()
+}
+
+#[test]
+fn a_forged_length_is_refused_before_memory_is_taken() -> io::Result<()> {
+    // 64 MB of nothing in some kB: refused for its ratio, and for a length that is not its own.
+    let bomb = zstd::encode_all(io::repeat(0).take(1 << 26), 1)?;
+    for unfolded in [u64::MAX, 1 << 26, 1 << 40, 1000, 0] {
+        assert_eq!(refusal(&forged(unfolded, &bomb)), Some(ErrorKind::Restart), "{unfolded} bytes promised");
+    }
+    assert_eq!(refusal(&forged(100, b"no zstd at all")), Some(ErrorKind::Restart));
+    // Lists that promise 2⁶⁰ entries.
+    let lists = [&[1, b'x', 7, 0][..], &[0xff; 9], &[1]].concat();
+    assert_eq!(refusal(&forged(lists.len() as u64, &zstd::encode_all(&lists[..], 1)?)), Some(ErrorKind::Restart));
+    Ok(())
+}
+
+#[test]
+fn the_last_two_are_kept_and_a_damaged_one_never_takes_the_place_of_a_good_one() -> Result<()> {
+    let folder = std::env::temp_dir().join(format!("pontoon-checkpoint-{}", std::process::id()));
+    fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
+    let at = |time| Checkpoint { time, ..example() };
+    let time = |name: &str| Checkpoint::read(&folder.join(name)).map(|c| c.time).ok();
+    at(1.0).write(&folder, true)?;
+    assert_eq!([time(LAST), time(PREVIOUS)], [Some(1.0), None]);
+    at(2.0).write(&folder, true)?;
+    assert_eq!([time(LAST), time(PREVIOUS)], [Some(2.0), Some(1.0)]);
+    fs::write(folder.join(LAST), "damaged").map_err(|e| Error::file(&folder, e))?;
+    at(3.0).write(&folder, false)?;
+    assert_eq!([time(LAST), time(PREVIOUS)], [Some(3.0), Some(1.0)]);
+    let none = Checkpoint::read(&folder.join("none")).err().map(|e| e.message).unwrap_or_default();
+    assert!(none.ends_with("there is no checkpoint"), "{none}");
+    fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
+}
