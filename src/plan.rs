@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::probe::{ContactListPlan, ProbePlan};
+
 /// What a run does besides stepping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
@@ -28,126 +30,6 @@ pub struct Plan {
     pub statistics: Vec<StatisticPlan>,
     /// Folder of the scene file: where the tables it names lie.
     pub folder: PathBuf,
-}
-
-/// One probe.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ProbePlan {
-    /// Stem of the file it writes; unique within a scene.
-    pub name: String,
-    /// What it looks at.
-    pub what: ProbeKind,
-    /// Simulated time from one reading to the next, s.
-    pub every: f64,
-    /// Whether a reading is the mean since the one before.
-    pub average: bool,
-}
-
-/// A list of all contacts: at each reading a row for each pair that touches.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ContactListPlan {
-    /// Stem of the file; no probe of the scene has the same.
-    pub name: String,
-    /// Simulated time from one reading to the next, s.
-    pub every: f64,
-}
-
-/// Which surface of the water an elevation gauge tells, where there are several above one another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GaugeSurface {
-    /// The highest: a breaker's jet, water on a deck.
-    #[default]
-    Highest,
-    /// The lowest: the water under the jet.
-    Lowest,
-    /// The highest, and those below it.
-    All,
-}
-
-/// What a probe looks at.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ProbeKind {
-    /// Pose and velocity of a solid.
-    Motion {
-        /// The solid's name.
-        solid: String,
-    },
-    /// Force and torque of the water on a solid.
-    Force {
-        /// The solid's name.
-        solid: String,
-    },
-    /// What a joint carries, and how it moves.
-    Joint {
-        /// The joint's name.
-        joint: String,
-    },
-    /// Length and tension of a spring.
-    Spring {
-        /// The spring's name.
-        spring: String,
-    },
-    /// Length and tension of a rope.
-    Rope {
-        /// The rope's name.
-        rope: String,
-    },
-    /// Height of the free surface above places.
-    Elevation {
-        /// Horizontal coordinates, m: D − 1 of each.
-        places: Vec<Vec<f64>>,
-        /// Which surface.
-        surface: GaugeSurface,
-    },
-    /// Velocity of the water at points.
-    Velocity {
-        /// The points, m.
-        places: Vec<Vec<f64>>,
-    },
-    /// Pressure at points.
-    Pressure {
-        /// The points, m.
-        places: Vec<Vec<f64>>,
-    },
-    /// Flow through a section.
-    Flow {
-        /// One end or corner, m.
-        from: Vec<f64>,
-        /// The other, m.
-        to: Vec<f64>,
-    },
-    /// The highest waterline on a solid.
-    Runup {
-        /// The solid's name.
-        solid: String,
-    },
-    /// Force and pressure on a part of a solid's face.
-    Patch {
-        /// The solid's name.
-        solid: String,
-        /// Lowest corner of the box in which that part is at the start, m.
-        min: Vec<f64>,
-        /// Highest corner, m.
-        max: Vec<f64>,
-    },
-    /// The leading edge of the water along x.
-    Front,
-    /// Energies of water and bodies.
-    Energy,
-    /// All loads on a free body, by kind.
-    Balance {
-        /// The body's name.
-        solid: String,
-    },
-    /// How two solids press on each other.
-    Contact {
-        /// Their names.
-        between: [String; 2],
-    },
-    /// Where energy came from and went.
-    Budget,
 }
 
 /// When frames are written, and with which fields.

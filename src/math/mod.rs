@@ -1,9 +1,11 @@
 //! Mathematics without physics: vectors and rotations, time series, formulas, SIMD numbers, number formats.
 
+mod config;
 pub mod expression;
 pub mod format;
 pub mod simd;
 pub mod time_series;
 mod vector;
 
+pub use config::{BoxConfig, NumberOrArray};
 pub use vector::{Bivector, Bounds, Matrix, Pose, Vector};

@@ -1,4 +1,4 @@
-//! Whether probes stand where there is, or may come, water.
+//! Checks that water can reach the place of each probe.
 
 use super::{
     Finding, PreflightContext, SoundSpeed,
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     math::{Bounds, Vector},
-    plan::ProbeKind,
+    probe::ProbeLocation,
     scene::world_bounds,
     solid::Solid,
 };
@@ -20,18 +20,18 @@ impl<const D: usize> PreflightContext<'_, D> {
         let solids = self.solids().iter().map(|s| world_bounds(&s.spec.shape, &s.kinematics.pose));
         let all = solids.fold(Bounds::around(self.system.fluid().r), |a, b| a.union(&b));
         for probe in &self.plan.probes {
-            match &probe.what {
-                ProbeKind::Velocity { places } | ProbeKind::Pressure { places } => {
+            match probe.kind.location() {
+                Some(ProbeLocation::Points(places)) => {
                     let points = places.iter().filter(|at| at.len() == D);
                     findings.extend(
                         points.filter_map(|at| self.point(&probe.name, Vector::from_fn(|i, _| at[i]), &all, sound)),
                     );
                 }
-                ProbeKind::Elevation { places, .. } => {
+                Some(ProbeLocation::Columns(places)) => {
                     let places = places.iter().filter(|at| at.len() == D - 1);
                     findings.extend(places.filter_map(|at| self.gauge(&probe.name, at, &all, sound)));
                 }
-                ProbeKind::Flow { from, to } if from.len() == D && to.len() == D => {
+                Some(ProbeLocation::Section([from, to])) if from.len() == D && to.len() == D => {
                     let ends = [from, to].map(|at| Vector::from_fn(|i, _| at[i]));
                     findings.extend(self.section(&probe.name, ends, &all));
                 }

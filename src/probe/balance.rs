@@ -1,17 +1,62 @@
-//! All loads on a free body in the last step, by what they come from, and how well they add up to what it did.
+//! Loads on a free body in the last step, by kind, against the change of its momentum.
 
-use super::{Probe, axes, find_solid};
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
 use crate::{
     coupling::LoadBreakdown,
     error::{Error, Result},
+    model::Dimension,
     simulation::Simulation,
-    solid::{Load, Role},
+    solid::{Dim, Load, Role},
     system::System,
 };
 
-/// Watches the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity, weight, contacts
-/// and ties, each kind that the scene has; their sum; the change of its momentum and angular momentum; and what is between
-/// the two. Nothing but NaN unless loads are kept ([`Simulation::enable_load_breakdown`]).
+/// Loads on a free body, by kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadBalancePlan {
+    /// The body's name.
+    pub solid: String,
+}
+
+impl ProbeDefinition for LoadBalancePlan {
+    type Config = String;
+    const LABEL: &'static str = "loads by kind";
+    const EXAMPLE: &'static str = "balance = \"box\"";
+
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_solid(key, config)?;
+        if scene.is_free(config) {
+            return Ok(());
+        }
+        let what = format!("\"{config}\" is not free: what it weighs and carries is not known");
+        let help = format!("the water's load on any solid is  force = \"{config}\"");
+        Err(scene.error_with_help(key, &what, &help))
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { solid: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(format!("{config}_balance"))
+    }
+
+    fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
+    where
+        Dim<D>: Dimension<D>,
+    {
+        sim.enable_load_breakdown();
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(LoadBalanceProbe::new(system, &self.solid)?))
+    }
+}
+
+/// Measures the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity, weight, contacts
+/// and constraints, as far as the scene has them. Then follow their sum, the change of momentum and angular momentum, and the residual
+/// of the two. All are NaN unless loads are recorded ([`Simulation::enable_load_breakdown`]).
 pub struct LoadBalanceProbe {
     solid: usize,
     kinds: Vec<&'static str>,

@@ -1,25 +1,62 @@
-//! Where energy came from and went since the start, and what of it is not accounted for.
+//! Energy budget since the start: sources, sinks and the residual.
 
-use super::{EnergyProbe, Probe};
-use crate::{coupling::EnergyBudget, simulation::Simulation, system::System};
+use serde::{Deserialize, Serialize};
 
-/// Watches what water and bodies have stored since the start (J; J/m in 2-D): energy of motion, height and compression; every entry
-/// of the [`EnergyBudget`]; and what is stored beyond their sum. Nothing but NaN unless energy is booked
-/// ([`Simulation::enable_energy_budget`]).
+use super::{EnergyProbe, EnergyReading, Probe, ProbeDefinition, ProbeScope, require_true};
+use crate::{
+    coupling::EnergyBudget, error::Result, model::Dimension, simulation::Simulation, solid::Dim, system::System,
+};
+
+/// The energy budget of water and bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EnergyBudgetPlan;
+
+impl ProbeDefinition for EnergyBudgetPlan {
+    type Config = bool;
+    const LABEL: &'static str = "energy budget";
+    const EXAMPLE: &'static str = "budget = true";
+
+    fn verify(config: &bool, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        require_true(*config, key, scene)
+    }
+
+    fn from_config(_: &bool) -> Self {
+        Self
+    }
+
+    fn energy_reading(&self) -> Option<EnergyReading> {
+        Some(EnergyReading::Budget)
+    }
+
+    fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
+    where
+        Dim<D>: Dimension<D>,
+    {
+        sim.enable_energy_budget();
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(EnergyBudgetProbe::new(system)))
+    }
+}
+
+/// Measures the energy (J; J/m in 2-D) that water and bodies have stored since the start: kinetic, potential and compression energy.
+/// Then follow each entry of the [`EnergyBudget`], and the stored energy less their sum. All are NaN unless the budget is
+/// recorded ([`Simulation::enable_energy_budget`]).
 pub struct EnergyBudgetProbe {
     energy: EnergyProbe,
     start: f64,
 }
 
-/// What the residual of a row of a [`EnergyBudgetProbe`] is over all that was turned over, –; none before anything was.
+/// The residual of a row of an [`EnergyBudgetProbe`] over the sum of |entries|, –; `None` while that sum is 0.
 pub fn relative_residual(row: &[f64]) -> Option<f64> {
     let (residual, rest) = row.split_last()?;
-    let turned: f64 = rest.get(1..)?.iter().map(|energy| energy.abs()).sum();
-    (turned > 0.0).then(|| residual.abs() / turned)
+    let turnover: f64 = rest.get(1..)?.iter().map(|energy| energy.abs()).sum();
+    (turnover > 0.0).then(|| residual.abs() / turnover)
 }
 
 impl EnergyBudgetProbe {
-    /// The probe; the store counts from now.
+    /// The probe; stored energy counts from now.
     pub fn new<const D: usize>(system: &System<D>) -> Self {
         let energy = EnergyProbe::new(system);
         let start = energy.total(system);
@@ -39,9 +76,9 @@ impl<const D: usize> Probe<D> for EnergyBudgetProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let Some(ledger) = sim.energy_budget() else { return vec![f64::NAN; Probe::<D>::columns(self).len()] };
+        let Some(budget) = sim.energy_budget() else { return vec![f64::NAN; Probe::<D>::columns(self).len()] };
         let stored = self.energy.total(sim.system()) - self.start;
-        let entries = ledger.entries().map(|(_, energy)| energy);
+        let entries = budget.entries().map(|(_, energy)| energy);
         let residual = stored - entries.iter().sum::<f64>();
         [stored].into_iter().chain(entries).chain([residual]).collect()
     }

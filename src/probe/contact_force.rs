@@ -1,10 +1,66 @@
-//! How solids press on each other: two of them, or all that touch.
+//! Contact forces: of two solids, or of all pairs that touch.
 
-use super::{Probe, axes, find_solid};
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeConfig, ProbeDefinition, ProbeScope, axes, find_solid, require_true};
 use crate::{error::Result, math::Vector, simulation::Simulation, solid::ContactForce, system::System};
 
-/// Watches the contact of two solids in the last step: the sum of the normal forces (N), the force on the second, friction
-/// included (N), and where it acts (m); NaN there while they do not touch.
+/// Example of a list of contacts.
+pub(super) const LIST_EXAMPLE: &str = "contacts = true";
+
+/// Contact of two solids.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactForcePlan {
+    /// Their names.
+    pub between: [String; 2],
+}
+
+impl ProbeDefinition for ContactForcePlan {
+    type Config = [String; 2];
+    const LABEL: &'static str = "contact";
+    const EXAMPLE: &'static str = "contact = [\"crate\", \"raft\"]";
+
+    fn verify(config: &[String; 2], key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        config.iter().try_for_each(|name| scene.require_solid(key, name))?;
+        scene.require_contact(key, config)
+    }
+
+    fn from_config(config: &[String; 2]) -> Self {
+        Self { between: config.clone() }
+    }
+
+    fn default_name([first, second]: &[String; 2]) -> Option<String> {
+        Some(format!("{first}_{second}_contact"))
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        let [first, second] = &self.between;
+        Ok(Box::new(ContactForceProbe::new(system, [first, second])?))
+    }
+}
+
+/// A list of all contacts: at each reading a row for each pair that touches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactListPlan {
+    /// Stem of the file; no probe of the scene has the same.
+    pub name: String,
+    /// Simulated time from one reading to the next, s.
+    pub every: f64,
+}
+
+/// Checks the section of a list of contacts.
+pub(super) fn verify_list(config: &ProbeConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+    let Some(given) = config.contacts else { return Ok(()) };
+    require_true(given, &format!("{key}.contacts"), scene)?;
+    if config.average.is_none() {
+        return Ok(());
+    }
+    let help = "remove it; the mean of one pair is that of  contact = [\"crate\", \"raft\"]";
+    Err(scene.error_with_help(&format!("{key}.average"), "a list of contacts takes no means", help))
+}
+
+/// Measures the contact of two solids in the last step: the sum of the normal forces (N), the force on the second with friction (N),
+/// and its point of action (m). The point is NaN while they do not touch.
 pub struct ContactForceProbe {
     solids: [usize; 2],
 }
@@ -34,8 +90,8 @@ impl<const D: usize> Probe<D> for ContactForceProbe {
     }
 }
 
-/// Lists all contacts in the last step: a row for each pair that presses on each other, with the columns of [`ContactForceProbe`] behind
-/// the names of the two. The force is that on the second.
+/// Lists all contacts in the last step: a row for each pair that touches, with the two names and then the columns of
+/// [`ContactForceProbe`]. The force is that on the second.
 pub struct ContactList;
 
 impl ContactList {
@@ -55,7 +111,7 @@ impl ContactList {
     }
 }
 
-/// Names of what is told of a contact, units included.
+/// Columns of a contact.
 fn columns<const D: usize>() -> impl Iterator<Item = String> {
     let wide = if D == 2 { "_per_m" } else { "" };
     let forces = axes::<D>().iter().map(move |a| format!("f{a}_N{wide}"));
@@ -63,7 +119,7 @@ fn columns<const D: usize>() -> impl Iterator<Item = String> {
     [format!("pressing_N{wide}")].into_iter().chain(forces).chain(places)
 }
 
-/// What is told of a contact with such a `force` (N) on one of the two.
+/// Values of a contact with `force` (N) on one of the two.
 fn contact_values<const D: usize>(contact: &ContactForce<D>, force: &Vector<D>) -> Vec<f64> {
     [contact.normal_force].into_iter().chain(force.iter().copied()).chain(contact.at.iter().copied()).collect()
 }

@@ -1,13 +1,135 @@
-//! The level of the water above a place.
+//! Height of the free surface at a horizontal place.
 
-use super::{Probe, point};
-use crate::{error::Result, math::Vector, plan::GaugeSurface, simulation::Simulation, system::System};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// How many surfaces below the highest are told.
+use super::{PointRowConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, column_at_place, point};
+use crate::{
+    error::Result,
+    math::{NumberOrArray, Vector},
+    simulation::Simulation,
+    system::System,
+};
+
+/// The surface that an elevation gauge measures, where several lie above one another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GaugeSurface {
+    /// The highest: a breaker's jet, water on a deck.
+    #[default]
+    Highest,
+    /// The lowest: the water under the jet.
+    Lowest,
+    /// The highest, and those below it.
+    All,
+}
+
+/// Where elevation gauges stand: x in 2-D, x and y in 3-D, or a row of them; and which surface they measure.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GaugeConfig {
+    /// m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// m; 3-D only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Where a row begins, m: a number in 2-D, two in 3-D.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<NumberOrArray>,
+    /// Where it ends, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to: Option<NumberOrArray>,
+    /// How many gauges it has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// How far apart they are, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+    /// Which surface, where there are several above one another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<GaugeSurface>,
+}
+
+impl GaugeConfig {
+    /// The row of gauges; `None` for a single place.
+    fn row(&self) -> Option<PointRowConfig> {
+        let list = |numbers: &Option<NumberOrArray>| match numbers {
+            Some(NumberOrArray::One(x)) => vec![*x],
+            Some(NumberOrArray::List(list)) => list.clone(),
+            _ => Vec::new(),
+        };
+        let given = self.from.is_some() || self.to.is_some() || self.count.is_some() || self.spacing.is_some();
+        given.then(|| PointRowConfig {
+            from: list(&self.from),
+            to: list(&self.to),
+            count: self.count,
+            spacing: self.spacing,
+        })
+    }
+}
+
+/// Height of the free surface at horizontal places.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ElevationPlan {
+    /// Horizontal coordinates, m: D − 1 of each.
+    pub places: Vec<Vec<f64>>,
+    /// The surface that it measures.
+    pub surface: GaugeSurface,
+}
+
+impl ProbeDefinition for ElevationPlan {
+    type Config = GaugeConfig;
+    const LABEL: &'static str = "level of the water";
+    const EXAMPLE: &'static str =
+        "elevation = { x = 1.16 }, or a row:  elevation = { from = 1.0, to = 3.0, count = 5 }";
+
+    fn verify(config: &GaugeConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        let single = config.x.is_some() || config.y.is_some();
+        match config.row() {
+            Some(_) if single => {
+                let help = "write  elevation = { x = 1.16 }  or  elevation = { from = 1.0, to = 3.0, count = 5 }";
+                Err(scene.error_with_help(key, "a gauge stands at one place or is a row of them, not both", help))
+            }
+            Some(row) => row.verify(key, scene, scene.dimension() - 1),
+            None if config.x.is_none() || config.y.is_some() != (scene.dimension() == 3) => {
+                let help = "write  elevation = { x = 1.16 } in 2-D, elevation = { x = 1.16, y = 0.3 } in 3-D";
+                Err(scene.error_with_help(key, "a gauge stands at x in 2-D, at x and y in 3-D", help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn from_config(config: &GaugeConfig) -> Self {
+        let places = match config.row() {
+            Some(row) => row.places(),
+            None => vec![[config.x, config.y].into_iter().flatten().collect()],
+        };
+        Self { places, surface: config.surface.unwrap_or_default() }
+    }
+
+    fn location(&self) -> Option<ProbeLocation<'_>> {
+        Some(ProbeLocation::Columns(&self.places))
+    }
+
+    fn series(&self, _: usize) -> Vec<(String, Option<Vec<f64>>)> {
+        match &self.places[..] {
+            [at] => vec![("eta_m".into(), Some(at.clone()))],
+            places => places.iter().map(|at| (column_at_place("eta_m", at), Some(at.clone()))).collect(),
+        }
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        let gauge = |at: &[f64]| ElevationProbe::with_surface(system, at, self.surface);
+        ProbeRow::at_places(&self.places, |at| Ok(Box::new(gauge(at)?)))
+    }
+}
+
+/// Number of surfaces below the highest that [`GaugeSurface::All`] measures.
 const LOWER_SURFACES: usize = 3;
 
-/// Watches the water's level (m) at a horizontal place, and its change η (m) since the probe was made;
-/// NaN where there is no water. Spray lighter than half a kernel does not count.
+/// Measures the level of the water (m) at a horizontal place, and its change η (m) since the probe was made. NaN where there is
+/// no water. Spray lighter than half a kernel does not count.
 pub struct ElevationProbe<const D: usize> {
     at: Vector<D>,
     surface: GaugeSurface,
@@ -15,8 +137,8 @@ pub struct ElevationProbe<const D: usize> {
 }
 
 impl<const D: usize> ElevationProbe<D> {
-    /// The gauge above `at` (m; D − 1 horizontal coordinates) that tells the highest surface; the level now counts
-    /// as η = 0, and so does a dry place's NaN: η then stays empty.
+    /// The gauge of the highest surface at `at` (m; D − 1 horizontal coordinates). Its present level counts as η = 0. At a dry place
+    /// that level is NaN, and η stays NaN.
     ///
     /// # Errors
     /// `Usage` if the count of coordinates is another or one is not finite.
@@ -24,8 +146,7 @@ impl<const D: usize> ElevationProbe<D> {
         Self::with_surface(system, at, GaugeSurface::Highest)
     }
 
-    /// As [`ElevationProbe::new`], of another surface: the lowest, as under a breaker's jet, or of all the highest and three
-    /// below it.
+    /// As [`ElevationProbe::new`], for the given surface.
     ///
     /// # Errors
     /// As [`ElevationProbe::new`].
@@ -35,7 +156,7 @@ impl<const D: usize> ElevationProbe<D> {
         Ok(gauge)
     }
 
-    /// Heights (m) of the surfaces that are told, the one that counts as the level first.
+    /// Heights (m) of the measured surfaces, the level first.
     fn surface_heights(&self, system: &System<D>) -> Vec<f64> {
         let mut found = system.surface_heights(&self.at);
         let all: Vec<f64> = match self.surface {

@@ -4,13 +4,41 @@
 //! e = ∫ P/ρ² dρ from ρ₀ to ρ.
 //! Bodies: ½ M V² + ½ Ω·I Ω; −M g·R₀ since the start.
 
-use super::Probe;
-use crate::{simulation::Simulation, solid::Solid, system::System};
+use serde::{Deserialize, Serialize};
 
-/// Watches the energies (J; J/m in 2-D) of water and free bodies and their sum.
+use super::{EnergyReading, Probe, ProbeDefinition, ProbeScope, require_true};
+use crate::{error::Result, simulation::Simulation, solid::Solid, system::System};
+
+/// Energies of water and bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EnergyPlan;
+
+impl ProbeDefinition for EnergyPlan {
+    type Config = bool;
+    const LABEL: &'static str = "energy";
+    const EXAMPLE: &'static str = "energy = true";
+
+    fn verify(config: &bool, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        require_true(*config, key, scene)
+    }
+
+    fn from_config(_: &bool) -> Self {
+        Self
+    }
+
+    fn energy_reading(&self) -> Option<EnergyReading> {
+        Some(EnergyReading::Total)
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(EnergyProbe::new(system)))
+    }
+}
+
+/// Measures the energies (J; J/m in 2-D) of water and free bodies and their sum.
 ///
-/// The sum changes by what fixed and driven solids do to the water and by what viscosity, diffusion,
-/// friction and impacts dissipate.
+/// The sum changes by the work of fixed and driven solids on the water, and by the dissipation of viscosity, diffusion, friction
+/// and impacts.
 pub struct EnergyProbe {
     initial_water_potential: f64,
     initial_bodies_potential: f64,
@@ -22,7 +50,7 @@ impl EnergyProbe {
         Self { initial_water_potential: water_potential(system), initial_bodies_potential: bodies_potential(system) }
     }
 
-    /// Motion, height and compression of the water, motion and height of the bodies.
+    /// Kinetic, potential and compression energy of the water, kinetic and potential energy of the bodies.
     fn parts<const D: usize>(&self, system: &System<D>) -> [f64; 5] {
         let (mass, fluid) = (system.particle_mass(), system.fluid());
         let compressed = mass * fluid.rho.iter().map(|&rho| system.compression_energy(rho)).sum::<f64>();

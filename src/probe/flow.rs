@@ -1,11 +1,14 @@
-//! What flows through a section, and how much has: as wave overtopping over a crest.
+//! Flow and volume through a section, as in wave overtopping.
 //!
 //!   q = Σ V_b v_b·n w(s_b),   w(s) = (1 − |s|/a)/a  for |s| < a = 2 dp
 //!
-//! over the water whose foot lies on the section, s its distance from it. Water in rows dp apart is weighed with 1 in
-//! all, wherever the section lies between them.
+//! over the water whose foot lies on the section, s its distance from it. The weights of rows dp apart sum to 1 wherever the section
+//! lies between them.
 
-use super::Probe;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeLocation, ProbeScope};
 use crate::{
     error::{Error, ErrorKind, Result},
     math::Vector,
@@ -13,11 +16,64 @@ use crate::{
     system::System,
 };
 
-/// Half the thickness over which the flow is taken, over dp.
-const HALF: f64 = 2.0;
+/// A section that water flows through: a segment in 2-D, a rectangle upright to an axis in 3-D.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SectionConfig {
+    /// One end or corner, m.
+    pub from: Vec<f64>,
+    /// The opposite one, m.
+    pub to: Vec<f64>,
+}
 
-/// Watches the flow through a section (m³/s; m²/s in 2-D) and the volume (m³; m²) that has gone through since the start,
-/// less what has come back.
+/// Flow through a section.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FlowPlan {
+    /// One end or corner, m.
+    pub from: Vec<f64>,
+    /// The opposite one, m.
+    pub to: Vec<f64>,
+}
+
+impl ProbeDefinition for FlowPlan {
+    type Config = SectionConfig;
+    const LABEL: &'static str = "flow through a section";
+    const EXAMPLE: &'static str =
+        "flow = { from = [1.0, 0.3], to = [1.0, 0.6] }        # positive to the right: along x, if upwards";
+
+    fn verify(SectionConfig { from, to }: &SectionConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_vector(&format!("{key}.from"), from)?;
+        scene.require_vector(&format!("{key}.to"), to)?;
+        let flat = from.iter().zip(to).filter(|(a, b)| a == b).count();
+        match scene.dimension() {
+            2 if flat == 2 => Err(scene.error_at(key, "a section from a point to itself has no length")),
+            3 if flat != 1 => {
+                let help = "write  flow = { from = [1.0, 0.0, 0.3], to = [1.0, 0.5, 0.6] }";
+                Err(scene.error_with_help(key, NO_RECTANGLE, help))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn from_config(SectionConfig { from, to }: &SectionConfig) -> Self {
+        Self { from: from.clone(), to: to.clone() }
+    }
+
+    fn location(&self) -> Option<ProbeLocation<'_>> {
+        Some(ProbeLocation::Section([&self.from, &self.to]))
+    }
+
+    fn build<const D: usize>(&self, _: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(FlowProbe::new(&self.from, &self.to)?))
+    }
+}
+
+/// Half the thickness a over which the flow is averaged, over dp.
+const HALF_THICKNESS: f64 = 2.0;
+
+const NO_RECTANGLE: &str = "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one";
+
+/// Measures the flow through a section (m³/s; m²/s in 2-D) and the net volume (m³; m²) since the start.
 pub struct FlowProbe<const D: usize> {
     middle: Vector<D>,
     normal: Vector<D>,
@@ -26,9 +82,8 @@ pub struct FlowProbe<const D: usize> {
 }
 
 impl<const D: usize> FlowProbe<D> {
-    /// The flow through the segment between two points (m) in 2-D, positive to the right of who walks from `from` to `to`:
-    /// along x if upwards. In 3-D through the rectangle of which they are opposite corners, positive along the axis to
-    /// which it is upright.
+    /// The flow through the segment between two points (m) in 2-D. It is positive to the right of the direction from `from` to `to`:
+    /// along x if that points up. In 3-D the points are opposite corners of a rectangle, and flow along its normal axis is positive.
     ///
     /// # Errors
     /// `Usage` if there is no such section.
@@ -46,17 +101,12 @@ impl<const D: usize> FlowProbe<D> {
             let sides = (0..D).filter(|i| *i != flat[0]).map(|i| (axis(i), 0.5 * across[i].abs()));
             return Ok(Self { middle, normal: axis(flat[0]), sides: sides.collect() });
         }
-        let what = if D == 2 {
-            "a section of no length"
-        } else {
-            "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one"
-        };
-        Err(Error::new(ErrorKind::Usage, what))
+        Err(Error::new(ErrorKind::Usage, if D == 2 { "a section of no length" } else { NO_RECTANGLE }))
     }
 
     /// The flow now.
     fn flow(&self, system: &System<D>) -> f64 {
-        let (fluid, half) = (system.fluid(), HALF * system.model().dp);
+        let (fluid, half) = (system.fluid(), HALF_THICKNESS * system.model().dp);
         let mut sum = 0.0;
         for ((r, v), rho) in fluid.r.iter().zip(fluid.v).zip(fluid.rho) {
             let off = minimum_image(r - self.middle, system);
@@ -69,7 +119,7 @@ impl<const D: usize> FlowProbe<D> {
     }
 }
 
-/// The way `off` (m), the shortest there is across periodic sides.
+/// The shortest vector equivalent to `off` (m) across periodic sides.
 fn minimum_image<const D: usize>(mut off: Vector<D>, system: &System<D>) -> Vector<D> {
     for (x, side) in off.iter_mut().zip(system.periodic()) {
         if let Some([from, to]) = side {

@@ -1,10 +1,41 @@
 //! The water's force and torque on a solid, F = Σ m_k f_k and T = Σ (r_k − R₀) × m_k f_k.
 
-use super::{Probe, axes, find_solid};
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
 use crate::{error::Result, simulation::Simulation, system::System};
 
-/// Watches the force (N) and the torque about the solid's centre (N m) that the water exerts: pressure and
-/// viscosity, no weight, no contacts. In 2-D both are per metre of width, and the columns say so.
+/// Force and torque of the water on a solid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ForcePlan {
+    /// The solid's name.
+    pub solid: String,
+}
+
+impl ProbeDefinition for ForcePlan {
+    type Config = String;
+    const LABEL: &'static str = "force of the water";
+    const EXAMPLE: &'static str = "force = \"box\"";
+
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_solid(key, config)
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { solid: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(format!("{config}_force"))
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(ForceProbe::new(system, &self.solid)?))
+    }
+}
+
+/// Measures the force (N) of the water on a solid and the torque (N m) about its centre: pressure and viscosity, without weight and
+/// contacts. In 2-D both are per metre of width, as the columns state.
 pub struct ForceProbe {
     solid: usize,
 }

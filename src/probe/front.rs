@@ -1,10 +1,34 @@
-//! How far the water has come: max x_a + dp/2 over the water.
+//! Leading edge of the water: max x_a + dp/2 over the water.
 
-use super::Probe;
-use crate::simulation::Simulation;
+use serde::{Deserialize, Serialize};
 
-/// Watches the leading edge of the water (m) along x: the end of the particle that has come farthest, spray
-/// too, so that it means something only until the water meets a wall.
+use super::{Probe, ProbeDefinition, ProbeScope, require_true};
+use crate::{error::Result, simulation::Simulation, system::System};
+
+/// The leading edge of the water along x.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrontPlan;
+
+impl ProbeDefinition for FrontPlan {
+    type Config = bool;
+    const LABEL: &'static str = "leading edge of the water";
+    const EXAMPLE: &'static str = "front = true";
+
+    fn verify(config: &bool, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        require_true(*config, key, scene)
+    }
+
+    fn from_config(_: &bool) -> Self {
+        Self
+    }
+
+    fn build<const D: usize>(&self, _: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(FrontProbe))
+    }
+}
+
+/// Measures the leading edge of the water (m) along x: the far side of the foremost particle. Spray counts, so the column is
+/// meaningful only until the water meets a wall.
 pub struct FrontProbe;
 
 impl<const D: usize> Probe<D> for FrontProbe {

@@ -1,7 +1,9 @@
-//! What a joint carries and how it moves, and what its motor takes: a power take-off's power is the mean of `power`, or the rise of
-//! `absorbed`.
+//! Reaction and motion of a joint, and the power of its motor. The power of a power take-off is the mean of `power`, or the rise of
+//! `absorbed` over time.
 
-use super::{Probe, axes};
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope, axes};
 use crate::{
     error::Result,
     simulation::{Simulation, find_by_name},
@@ -9,13 +11,42 @@ use crate::{
     system::System,
 };
 
-/// Watches a joint: force (N) and torque (N m) of its locks and end stops on its second solid; of a hinge or a slider its angle
+/// Reaction and motion of a joint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JointPlan {
+    /// The joint's name.
+    pub joint: String,
+}
+
+impl ProbeDefinition for JointPlan {
+    type Config = String;
+    const LABEL: &'static str = "joint";
+    const EXAMPLE: &'static str = "joint = \"hinge\"";
+
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_constraint(key, "joint", config)
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { joint: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(config.clone())
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(JointProbe::new(system, &self.joint)?))
+    }
+}
+
+/// Measures a joint: force (N) and torque (N m) of its locks and end stops on its second solid; of a hinge or a slider its angle
 /// (deg) or position (m), the rate, the motor's force, power absorbed (W), energy absorbed (J); of a generic joint the positions
-/// (m) and turns (deg) that it leaves free.
+/// (m) and turns (deg) in its free modes.
 pub struct JointProbe {
     joint: usize,
     kind: JointKind,
-    /// The modes that a generic joint leaves free.
+    /// Free modes of a generic joint.
     free: Vec<usize>,
 }
 

@@ -1,13 +1,73 @@
 //! Length and tension of a spring or a rope.
 
-use super::Probe;
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope};
 use crate::{
     error::Result,
     simulation::{Simulation, find_by_name},
     system::System,
 };
 
-/// Watches a spring, mooring line or rope: its length (m) and its tension (N; N/m in 2-D), negative where a spring pushes.
+/// Length and tension of a spring.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpringPlan {
+    /// The spring's name.
+    pub spring: String,
+}
+
+impl ProbeDefinition for SpringPlan {
+    type Config = String;
+    const LABEL: &'static str = "spring";
+    const EXAMPLE: &'static str = "spring = \"line\"";
+
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_constraint(key, "spring", config)
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { spring: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(config.clone())
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(LineProbe::spring(system, &self.spring)?))
+    }
+}
+
+/// Length and tension of a rope.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RopePlan {
+    /// The rope's name.
+    pub rope: String,
+}
+
+impl ProbeDefinition for RopePlan {
+    type Config = String;
+    const LABEL: &'static str = "rope";
+    const EXAMPLE: &'static str = "rope = \"rope\"";
+
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_constraint(key, "rope", config)
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { rope: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(config.clone())
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(LineProbe::rope(system, &self.rope)?))
+    }
+}
+
+/// Measures the length (m) of a spring, mooring line or rope and its tension (N; N/m in 2-D), negative where a spring pushes.
 pub struct LineProbe {
     line: usize,
     rope: bool,

@@ -1,10 +1,12 @@
-//! Where a solid is, how it is turned, and how fast it moves.
+//! Position, angles and velocity of a solid.
 //!
 //! Surge, sway and heave are the displacements of its centre from the start along x, y (3-D) and up. In 2-D
 //! pitch is the angle of the solid's frame, counter-clockwise; in 3-D the frame is turned by roll about x,
 //! then pitch about y, then yaw about z (right-handed, world axes): R = R_z R_y R_x.
 
-use super::{Probe, axes, find_solid};
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
 use crate::{
     error::Result,
     math::{Matrix, Vector},
@@ -12,21 +14,62 @@ use crate::{
     system::System,
 };
 
-/// Watches the motion of a solid: position, displacement (m), angles (deg, never jumping by a turn),
-/// velocity (m/s) of its centre, spin (rad/s).
+/// Motion of a solid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MotionPlan {
+    /// The solid's name.
+    pub solid: String,
+}
+
+impl ProbeDefinition for MotionPlan {
+    type Config = String;
+    const LABEL: &'static str = "motion";
+    const EXAMPLE: &'static str = "motion = \"box\"";
+
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_solid(key, config)
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { solid: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(config.clone())
+    }
+
+    fn series(&self, dimension: usize) -> Vec<(String, Option<Vec<f64>>)> {
+        displacements(dimension).iter().map(|column| (column.to_string(), None)).collect()
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(MotionProbe::new(system, &self.solid)?))
+    }
+}
+
+/// Measures position and displacement (m), angles (deg, continuous past a turn), velocity (m/s) of the centre and spin (rad/s)
+/// of a solid.
 pub struct MotionProbe<const D: usize> {
     solid: usize,
     start: Vector<D>,
 }
 
 impl<const D: usize> MotionProbe<D> {
-    /// The probe of the solid called `solid`; where it is now counts as its start.
+    /// The probe of the solid called `solid`; displacements count from its present position.
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
     pub fn new(system: &System<D>, solid: &str) -> Result<Self> {
         let solid = find_solid(system, solid)?;
         Ok(Self { solid, start: system.solids()[solid].kinematics.centre })
+    }
+}
+
+/// Columns of the displacements and angles.
+const fn displacements(dimension: usize) -> &'static [&'static str] {
+    match dimension {
+        2 => &["surge_m", "heave_m", "pitch_deg"],
+        _ => &["surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg"],
     }
 }
 
@@ -42,16 +85,11 @@ const fn angles<const D: usize>() -> usize {
 
 impl<const D: usize> Probe<D> for MotionProbe<D> {
     fn columns(&self) -> Vec<String> {
-        let words: &[&str] = if D == 2 {
-            &["surge_m", "heave_m", "pitch_deg"]
-        } else {
-            &["surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg"]
-        };
         let spins: &[&str] = if D == 2 { &["spin_radps"] } else { &["spin_x_radps", "spin_y_radps", "spin_z_radps"] };
         let positions = axes::<D>().iter().map(|a| format!("{a}_m"));
         let velocities = axes::<D>().iter().map(|a| format!("v{a}_mps"));
         let named = |names: &'static [&'static str]| names.iter().map(|n| n.to_string());
-        positions.chain(named(words)).chain(velocities).chain(named(spins)).collect()
+        positions.chain(named(displacements(D))).chain(velocities).chain(named(spins)).collect()
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {

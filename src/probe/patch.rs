@@ -1,23 +1,71 @@
 //! Force and pressure on a part of a solid's face: a panel of a wall, a pressure plate.
 //!
-//! The part is that of the face which lies in a box at the start, and goes with the solid from then on. The force is that on
-//! the boundary particles behind it, Σ m_k f_k; pressures are those of a pressure gauge at places on it, dp apart.
+//! A box selects the part at the start. From then on the part moves with the solid. The force is Σ m_k f_k over the boundary particles
+//! behind the part. Pressures are those of pressure probes on it, about dp apart.
 
-use super::{Probe, axes, find_solid, pressure::pressure};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid, pressure::pressure};
 use crate::{
     error::{Error, Result},
-    math::{Bounds, Vector},
+    math::{Bounds, BoxConfig, Vector},
     simulation::Simulation,
     system::System,
 };
 
-/// Watches the force (N; N/m in 2-D) of the water on a part of a solid's face, and the mean and the largest pressure
-/// there (Pa, above the air's).
+/// A part of a solid's face.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PatchConfig {
+    /// The solid.
+    pub solid: String,
+    /// The box in which that part lies at the start.
+    #[serde(rename = "box")]
+    pub corners: BoxConfig,
+}
+
+/// Force and pressure on a part of a solid's face.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PatchPlan {
+    /// The solid's name.
+    pub solid: String,
+    /// Lowest corner of the box in which that part is at the start, m.
+    pub min: Vec<f64>,
+    /// Highest corner, m.
+    pub max: Vec<f64>,
+}
+
+impl ProbeDefinition for PatchPlan {
+    type Config = PatchConfig;
+    const LABEL: &'static str = "force and pressure on a part of a face";
+    const EXAMPLE: &'static str = "patch = { solid = \"wall\", box = { min = [0.9, 0.1], max = [1.1, 0.2] } }";
+
+    fn verify(config: &PatchConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_solid(&format!("{key}.solid"), &config.solid)?;
+        scene.require_box(&format!("{key}.box"), &config.corners)
+    }
+
+    fn from_config(PatchConfig { solid, corners }: &PatchConfig) -> Self {
+        Self { solid: solid.clone(), min: corners.min.clone(), max: corners.max.clone() }
+    }
+
+    fn default_name(config: &PatchConfig) -> Option<String> {
+        Some(format!("{}_patch", config.solid))
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(PatchProbe::new(system, &self.solid, &self.min, &self.max)?))
+    }
+}
+
+/// Measures the force (N; N/m in 2-D) of the water on a part of a solid's face, and the mean and the largest pressure there
+/// (Pa, above that of the air).
 pub struct PatchProbe<const D: usize> {
     solid: usize,
-    /// Which of the solid's boundary particles lie behind it.
+    /// For each boundary particle of the solid, whether it lies behind the part.
     behind: Vec<bool>,
-    /// Places on it, in the solid's frame, m.
+    /// Places on the part, in the solid's frame, m.
     places: Vec<Vector<D>>,
 }
 

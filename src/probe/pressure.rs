@@ -1,11 +1,41 @@
-//! The water's pressure at a point: P(x) = Σ V_b [P_b (ρ₀/ρ_b)² + ρ₀ g·(x − r_b)] W / Σ V_b W: what acts
-//! (see [`State::lattice_pressure`](crate::sph::equation_of_state::State::acting)). What stands between the point and
-//! the water that it sees is added as still water's weight, so that the point may lie on a wall.
+//! Pressure of the water at a point: P(x) = Σ V_b [P_b (ρ₀/ρ_b)² + ρ₀ g·(x − r_b)] W / Σ V_b W, with the pressure that acts in the
+//! pair force ([`System::lattice_pressure`]). The term ρ₀ g·(x − r_b) is hydrostatic, so the point may lie on a wall.
 
-use super::{Probe, interpolate, point};
+use serde::{Deserialize, Serialize};
+
+use super::{PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, interpolate, point};
 use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
-/// Watches the pressure (Pa, above the air's) at a fixed point; 0 while the point is dry.
+/// Pressure at points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PressurePlan {
+    /// The points, m.
+    pub places: Vec<Vec<f64>>,
+}
+
+impl ProbeDefinition for PressurePlan {
+    type Config = PointsConfig;
+    const LABEL: &'static str = "pressure";
+    const EXAMPLE: &'static str = "pressure = [0.75, 0.03]";
+
+    fn verify(config: &PointsConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        config.verify(key, scene)
+    }
+
+    fn from_config(config: &PointsConfig) -> Self {
+        Self { places: config.places() }
+    }
+
+    fn location(&self) -> Option<ProbeLocation<'_>> {
+        Some(ProbeLocation::Points(&self.places))
+    }
+
+    fn build<const D: usize>(&self, _: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        ProbeRow::at_places(&self.places, |at| Ok(Box::new(PressureProbe::new(at)?)))
+    }
+}
+
+/// Measures the pressure (Pa, above that of the air) at a fixed point; 0 while the point is dry.
 pub struct PressureProbe<const D: usize> {
     at: Vector<D>,
 }

@@ -1,14 +1,31 @@
-//! Several gauges of one kind as one probe: the places stand in the names of the columns.
+//! Several probes of one kind as one probe. The names of its columns contain the places.
 
 use super::Probe;
-use crate::simulation::Simulation;
+use crate::{error::Result, simulation::Simulation};
 
-/// Watches with several probes; a column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
+/// A row of probes. A column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
 pub struct ProbeRow<const D: usize> {
     members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>,
 }
 
 impl<const D: usize> ProbeRow<D> {
+    /// A probe at each of `places` (m); of a single place the probe itself.
+    ///
+    /// # Errors
+    /// As `make`.
+    pub fn at_places(
+        places: &[Vec<f64>],
+        make: impl Fn(&[f64]) -> Result<Box<dyn Probe<D>>>,
+    ) -> Result<Box<dyn Probe<D>>> {
+        match places {
+            [at] => make(at),
+            _ => {
+                let members: Result<Vec<_>> = places.iter().map(|at| Ok((at.clone(), make(at)?))).collect();
+                Ok(Box::new(Self::new(members?)))
+            }
+        }
+    }
+
     /// The probes of `members`, each with its place (m).
     pub fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self {
         Self { members }

@@ -1,15 +1,46 @@
-//! How far water has run up a solid: the highest water that lies on its face.
+//! Run-up on a solid: the highest water that lies on its face.
 
-use super::{Probe, find_solid};
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope, find_solid};
 use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
-/// How near to the face water lies on it, over dp: rows of particles are half a dp from a face, and one and a half.
-const ON: f64 = 1.0;
+/// The highest waterline on a solid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunupPlan {
+    /// The solid's name.
+    pub solid: String,
+}
 
-/// The least share of the kernel's weight that must be full of water for it to be more than a drop.
-const MORE_THAN_A_DROP: f64 = 0.25;
+impl ProbeDefinition for RunupPlan {
+    type Config = String;
+    const LABEL: &'static str = "run-up";
+    const EXAMPLE: &'static str = "runup = \"slope\"";
 
-/// Watches where the waterline on a solid is highest (m), and its height above that at the start; NaN while it is dry.
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_solid(key, config)
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { solid: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(format!("{config}_runup"))
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(RunupProbe::new(system, &self.solid)?))
+    }
+}
+
+/// Largest distance of water on a face, over dp. Rows of particles are 0.5 dp and 1.5 dp from a face.
+const ON_FACE: f64 = 1.0;
+
+/// Least share (–) of the kernel's weight that water fills, for it to be more than a drop.
+const MIN_FILLED: f64 = 0.25;
+
+/// Measures the highest place (m) of the waterline on a solid, and its height above the start. NaN while the solid is dry.
 pub struct RunupProbe<const D: usize> {
     solid: usize,
     start: f64,
@@ -49,7 +80,7 @@ fn highest_waterline<const D: usize>(system: &System<D>, solid: usize) -> Vector
         }
         let local = pose.local(r);
         let distance = shape.signed_distance(&local);
-        if distance < ON * dp && !is_isolated_drop(system, r) {
+        if distance < ON_FACE * dp && !is_isolated_drop(system, r) {
             highest = *r;
         }
     }
@@ -65,5 +96,5 @@ fn is_isolated_drop<const D: usize>(system: &System<D>, x: &Vector<D>) -> bool {
     let (mass, rho) = (system.particle_mass(), system.fluid().rho);
     let mut filled = 0.0;
     system.visit_fluid_near(x, &mut |b, _, w| filled += mass / rho[b] * w);
-    filled < MORE_THAN_A_DROP
+    filled < MIN_FILLED
 }

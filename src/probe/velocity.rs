@@ -1,9 +1,40 @@
 //! The water's velocity at a point: v(x) = Σ V_b v_b W / Σ V_b W.
 
-use super::{Probe, axes, interpolate, point};
-use crate::{error::Result, math::Vector, simulation::Simulation};
+use serde::{Deserialize, Serialize};
 
-/// Watches the water's velocity (m/s) at a fixed point; NaN while the point is dry.
+use super::{PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, axes, interpolate, point};
+use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
+
+/// Velocity of the water at points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VelocityPlan {
+    /// The points, m.
+    pub places: Vec<Vec<f64>>,
+}
+
+impl ProbeDefinition for VelocityPlan {
+    type Config = PointsConfig;
+    const LABEL: &'static str = "velocity of the water";
+    const EXAMPLE: &'static str = "velocity = [0.75, 0.03]";
+
+    fn verify(config: &PointsConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        config.verify(key, scene)
+    }
+
+    fn from_config(config: &PointsConfig) -> Self {
+        Self { places: config.places() }
+    }
+
+    fn location(&self) -> Option<ProbeLocation<'_>> {
+        Some(ProbeLocation::Points(&self.places))
+    }
+
+    fn build<const D: usize>(&self, _: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        ProbeRow::at_places(&self.places, |at| Ok(Box::new(VelocityProbe::new(at)?)))
+    }
+}
+
+/// Measures the water's velocity (m/s) at a fixed point; NaN while the point is dry.
 pub struct VelocityProbe<const D: usize> {
     at: Vector<D>,
 }

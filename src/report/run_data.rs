@@ -15,7 +15,8 @@ use crate::{
     analysis::{CheckCurves, ReferenceCheck},
     error::{Error, Result},
     output::{FrameSequence, Manifest, SeriesTable},
-    plan::{Plan, ProbeKind},
+    plan::Plan,
+    probe::ProbeLocation,
     run::{self, RunStatistics, StatisticsFilter},
     scene::{Scene, SceneLayout},
     solid::Role,
@@ -210,10 +211,8 @@ impl SceneGeometry {
     /// Where gauges stand: the name of each, what it measures, and its place (m) with as many coordinates as it has.
     pub fn gauges(&self) -> impl Iterator<Item = (&str, &'static str, &[f64])> {
         self.plan.probes.iter().flat_map(|probe| {
-            let (what, places) = match &probe.what {
-                ProbeKind::Elevation { places, .. } => ("elevation", &places[..]),
-                ProbeKind::Velocity { places } => ("velocity", &places[..]),
-                ProbeKind::Pressure { places } => ("pressure", &places[..]),
+            let (what, places) = match probe.kind.location() {
+                Some(ProbeLocation::Points(places) | ProbeLocation::Columns(places)) => (probe.kind.key(), places),
                 _ => ("", &[][..]),
             };
             // A row bears its name once.
@@ -238,24 +237,7 @@ impl ProbeTable {
     fn read(series: &Path, name: &str, plan: Option<&Plan>) -> Result<Self> {
         let SeriesTable { columns, times, values } = SeriesTable::read(&series.join(format!("{name}.csv")))?;
         let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));
-        let what = probe.map_or("table", |probe| match &probe.what {
-            ProbeKind::Motion { .. } => "motion",
-            ProbeKind::Force { .. } => "force of the water",
-            ProbeKind::Joint { .. } => "joint",
-            ProbeKind::Spring { .. } => "spring",
-            ProbeKind::Rope { .. } => "rope",
-            ProbeKind::Elevation { .. } => "level of the water",
-            ProbeKind::Velocity { .. } => "velocity of the water",
-            ProbeKind::Pressure { .. } => "pressure",
-            ProbeKind::Flow { .. } => "flow through a section",
-            ProbeKind::Runup { .. } => "run-up",
-            ProbeKind::Patch { .. } => "force and pressure on a part of a face",
-            ProbeKind::Front => "leading edge of the water",
-            ProbeKind::Energy => "energy",
-            ProbeKind::Balance { .. } => "loads by kind",
-            ProbeKind::Contact { .. } => "contact",
-            ProbeKind::Budget => "energy budget",
-        });
+        let what = probe.map_or("table", |probe| probe.kind.label());
         Ok(Self { name: name.into(), what, columns, times, values })
     }
 }

@@ -1,25 +1,25 @@
-//! What became of the energy so far: told while a run goes on, if a probe watches it.
+//! Energy drift of a run, shown while it goes on if a probe measures the energy.
 
 use std::fmt;
 
 use crate::{
     output::CsvTable,
-    plan::{Plan, ProbeKind},
+    plan::Plan,
     preflight::three_digits,
-    probe::relative_residual,
+    probe::{EnergyReading, relative_residual},
 };
 
-/// What became of the energy since the start, by the latest reading of a probe.
+/// Energy drift since the start, by the latest reading of a probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EnergyDrift {
-    /// By a `budget`: what its entries do not account for, over all that was turned over, –.
+    /// By a `budget`: its residual over the sum of its entries' magnitudes, –.
     Unaccounted(f64),
-    /// By an `energy`: how much more there is of it than at the start, and the unit, J or J/m.
+    /// By an `energy`: the change of the total since the start, and its unit, J or J/m.
     Changed(f64, &'static str),
 }
 
 impl EnergyDrift {
-    /// By the last row of a `budget`; none before anything was turned over.
+    /// By the last row of a `budget`; `None` while its entries are 0.
     pub fn from_budget(last: &[f64]) -> Option<Self> {
         relative_residual(last).map(Self::Unaccounted)
     }
@@ -41,7 +41,7 @@ impl fmt::Display for EnergyDrift {
     }
 }
 
-/// Which probe of a run tells it.
+/// The probe that measures the energy drift of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DriftMonitor {
     /// Its number in the plan.
@@ -53,14 +53,14 @@ pub(super) struct DriftMonitor {
 impl DriftMonitor {
     /// The first budget of `plan`, else the first probe of the energy, of a run in so many dimensions.
     pub fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> {
-        let find = |what| plan.probes.iter().position(|words| words.what == what);
+        let find = |reading| plan.probes.iter().position(|probe| probe.kind.energy_reading() == Some(reading));
         let unit = if dimension == 2 { "J/m" } else { "J" };
         let of = |probe, budget| Self { probe, budget, unit };
-        let budget = find(ProbeKind::Budget).map(|probe| of(probe, true));
-        budget.or_else(|| find(ProbeKind::Energy).map(|probe| of(probe, false)))
+        let budget = find(EnergyReading::Budget).map(|probe| of(probe, true));
+        budget.or_else(|| find(EnergyReading::Total).map(|probe| of(probe, false)))
     }
 
-    /// What the probe's `table` tells so far.
+    /// The drift by the rows of the probe's `table` so far.
     pub fn drift(self, table: &CsvTable) -> Option<EnergyDrift> {
         let (first, (_, last)) = (table.first_row()?, table.last_row()?);
         if self.budget { EnergyDrift::from_budget(last) } else { EnergyDrift::from_energy(first, last, self.unit) }

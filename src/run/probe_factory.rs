@@ -1,17 +1,17 @@
-//! What a run reads and judges: the probes and checks that its plan asks for.
+//! Builds the probes and checks of a plan.
 
 use crate::{
     analysis::ReferenceCheck,
     error::{Error, Result, nearest_name},
     model::Dimension,
-    probe::{self, Probe},
-    scene::{CheckPlan, Plan, ProbeKind, ProbePlan},
+    plan::{CheckPlan, Plan},
+    probe::{Probe, ProbePlan},
     simulation::Simulation,
     solid::Dim,
     system::System,
 };
 
-/// The probes that `plan` asks for, made from the simulation at its start, which keeps the books that they read.
+/// Builds the probes of `plan` at the start of the simulation and enables the records that they read.
 ///
 /// # Errors
 /// `Scene` or `Usage` if one names no solid or a place with the wrong number of coordinates.
@@ -19,57 +19,19 @@ pub fn probes_from_plan<const D: usize>(plan: &Plan, sim: &mut Simulation<D>) ->
 where
     Dim<D>: Dimension<D>,
 {
-    if plan.probes.iter().any(|words| words.what == ProbeKind::Budget) {
-        sim.enable_energy_budget();
-    }
-    if plan.probes.iter().any(|words| matches!(words.what, ProbeKind::Balance { .. })) {
-        sim.enable_load_breakdown();
-    }
+    plan.probes.iter().for_each(|probe| probe.kind.enable_records(sim));
     let system = sim.system();
-    plan.probes.iter().map(|words| build_probe(words, system)).collect()
+    plan.probes.iter().map(|probe| build_probe(probe, system)).collect()
 }
 
-fn build_probe<const D: usize>(words: &ProbePlan, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
-    if words.name.is_empty() || words.name.starts_with('.') || words.name.contains(['/', '\\', ':', '\0']) {
-        return Err(Error::scene(format!("{:?} cannot name a file, so no probe either", words.name)));
+fn build_probe<const D: usize>(plan: &ProbePlan, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+    if plan.name.is_empty() || plan.name.starts_with('.') || plan.name.contains(['/', '\\', ':', '\0']) {
+        return Err(Error::scene(format!("{:?} cannot name a file, so no probe either", plan.name)));
     }
-    Ok(match &words.what {
-        ProbeKind::Motion { solid } => Box::new(probe::MotionProbe::new(system, solid)?),
-        ProbeKind::Force { solid } => Box::new(probe::ForceProbe::new(system, solid)?),
-        ProbeKind::Joint { joint } => Box::new(probe::JointProbe::new(system, joint)?),
-        ProbeKind::Spring { spring } => Box::new(probe::LineProbe::spring(system, spring)?),
-        ProbeKind::Rope { rope } => Box::new(probe::LineProbe::rope(system, rope)?),
-        ProbeKind::Elevation { places, surface } => {
-            probe_at_places(places, |at| Ok(Box::new(probe::ElevationProbe::with_surface(system, at, *surface)?)))?
-        }
-        ProbeKind::Velocity { places } => probe_at_places(places, |at| Ok(Box::new(probe::VelocityProbe::new(at)?)))?,
-        ProbeKind::Pressure { places } => probe_at_places(places, |at| Ok(Box::new(probe::PressureProbe::new(at)?)))?,
-        ProbeKind::Flow { from, to } => Box::new(probe::FlowProbe::new(from, to)?),
-        ProbeKind::Runup { solid } => Box::new(probe::RunupProbe::new(system, solid)?),
-        ProbeKind::Patch { solid, min, max } => Box::new(probe::PatchProbe::new(system, solid, min, max)?),
-        ProbeKind::Front => Box::new(probe::FrontProbe),
-        ProbeKind::Energy => Box::new(probe::EnergyProbe::new(system)),
-        ProbeKind::Balance { solid } => Box::new(probe::LoadBalanceProbe::new(system, solid)?),
-        ProbeKind::Contact { between: [a, b] } => Box::new(probe::ContactForceProbe::new(system, [a, b])?),
-        ProbeKind::Budget => Box::new(probe::EnergyBudgetProbe::new(system)),
-    })
+    plan.kind.build(system)
 }
 
-/// A probe at each of `places`; of a single place the probe itself.
-fn probe_at_places<const D: usize>(
-    places: &[Vec<f64>],
-    make: impl Fn(&[f64]) -> Result<Box<dyn Probe<D>>>,
-) -> Result<Box<dyn Probe<D>>> {
-    match places {
-        [at] => make(at),
-        _ => {
-            let members: Result<Vec<_>> = places.iter().map(|at| Ok((at.clone(), make(at)?))).collect();
-            Ok(Box::new(probe::ProbeRow::new(members?)))
-        }
-    }
-}
-
-/// That `series`, which a check or a statistic names, is none of `known`.
+/// The error for a `series` of a check or a statistic that is none of `known`.
 fn unknown_series(series: &str, known: &[String]) -> Error {
     let help = match nearest_name(series, known.iter().map(String::as_str)) {
         Some(near) => format!("did you mean {near:?}?"),
@@ -78,7 +40,7 @@ fn unknown_series(series: &str, known: &[String]) -> Error {
     Error::scene(format!("no probe writes the series {series:?}")).help(help)
 }
 
-/// The checks that `plan` asks for, their references read.
+/// Builds the checks of `plan` and reads their references.
 ///
 /// # Errors
 /// `Scene` if one, or a statistic, names no series of `probes`; else as [`ReferenceCheck::new`].

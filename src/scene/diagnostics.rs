@@ -1,6 +1,9 @@
 //! Errors of the parser in the words of a user: the fault, the nearest valid name, an example.
 
-use crate::error::{Error, nearest_name};
+use crate::{
+    error::{Error, nearest_name},
+    probe,
+};
 
 /// Examples by key; the entry with the longest match of the end of the key is shown.
 const EXAMPLES: &[(&str, &str)] = &[
@@ -122,21 +125,13 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("scheme", "scheme = { verlet = { euler_every = 50 } }"),
     ("probe", "[[probe]]\nmotion = \"box\""),
     ("motion", "motion = \"box\""),
-    ("probe.force", "force = \"box\""),
-    ("probe.joint", "joint = \"hinge\""),
-    ("probe.spring", "spring = \"line\""),
-    ("probe.rope", "rope = \"rope\""),
     ("elevation", "elevation = { x = 1.16 }, or a row:  elevation = { from = 1.0, to = 3.0, count = 5 }"),
     ("surface", "surface = \"highest\"      # or \"lowest\", \"all\""),
     ("count", "count = 5"),
     ("spacing", "spacing = 0.1        # m"),
     ("flow", "flow = { from = [1.0, 0.3], to = [1.0, 0.6] }        # positive to the right: along x, if upwards"),
-    ("probe.contacts", "contacts = true"),
-    ("runup", "runup = \"slope\""),
-    ("patch", "patch = { solid = \"wall\", box = { min = [0.9, 0.1], max = [1.1, 0.2] } }"),
     ("average", "average = true"),
     ("velocity", "velocity = [0.75, 0.03]"),
-    ("front", "front = true"),
     ("pressure", "pressure = [0.75, 0.03]"),
     ("frames", "frames = { every = 0.05, fields = [\"velocity\", \"pressure\"] }"),
     ("fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
@@ -168,8 +163,9 @@ pub(super) fn example(key: &str) -> Option<String> {
     let parts: Vec<&str> = key.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
     let tail = |from: usize| parts[from..].join(".");
     let own = parts.len().checked_sub(2).map(tail).into_iter().chain(parts.len().checked_sub(1).map(tail));
-    let mut found = own.filter_map(|tail| EXAMPLES.iter().find(|(key, _)| *key == tail));
-    found.next().map(|(_, example)| example_help(example))
+    let of_probe = |tail: &str| tail.strip_prefix("probe.").and_then(probe::example);
+    let listed = |tail: &str| EXAMPLES.iter().find(|(key, _)| *key == tail).map(|(_, example)| *example);
+    own.filter_map(|tail| listed(&tail).or_else(|| of_probe(&tail))).next().map(example_help)
 }
 
 fn example_help(example: &str) -> String {

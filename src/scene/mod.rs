@@ -13,7 +13,6 @@ mod context;
 mod diagnostics;
 mod mesh;
 mod overrides;
-pub mod probes;
 mod resolve;
 mod schema;
 mod svg;
@@ -51,21 +50,24 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
-pub use crate::plan::{
-    Align, CheckPlan, FramesPlan, GaugeSurface, Plan, ProbeKind, ProbePlan, Reference, Score, StatisticKind,
-    StatisticPlan,
+pub use crate::plan::{Align, CheckPlan, FramesPlan, Plan, Reference, Score, StatisticKind, StatisticPlan};
+pub use crate::{
+    math::{BoxConfig, NumberOrArray},
+    probe::{
+        GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, ProbeKind, ProbePlan,
+        SectionConfig,
+    },
 };
 pub(crate) use build::SceneLayout;
 pub use build::{BuiltScene, SizeEstimate};
 pub use bundled::{BundledScene, bundled_scenes};
-pub use probes::{GaugeConfig, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, SectionConfig};
 pub use resolve::ResolvedValue;
 pub use schema::schema;
 pub(crate) use section::shape::world_bounds;
 pub use section::{
     analysis::{CheckConfig, RaoConfig, StatisticConfig},
     contact::ContactConfig,
-    domain::{BoxConfig, GuardConfig, PeriodicConfig},
+    domain::{GuardConfig, PeriodicConfig},
     force_element::{ForceConfig, ForceFrame, RopeConfig, SpringConfig},
     joint::{JointConfig, JointKindConfig, LimitsConfig, MotorConfig},
     model::{ModelConfig, TimeSteppingConfig},
@@ -82,8 +84,7 @@ pub use section::{
 };
 pub use toml_source::{RenamedName, ValueSource, current_key};
 pub use untagged::{
-    DraftChoice, FieldFormulaConfig, LengthUnit, NumberOrArray, PolylineConfig, TimeFunctionConfig, TimeValueConfig,
-    TimeVectorConfig,
+    DraftChoice, FieldFormulaConfig, LengthUnit, PolylineConfig, TimeFunctionConfig, TimeValueConfig, TimeVectorConfig,
 };
 
 /// Most bytes of a scene's text; the longest bundled one has 3,000.

@@ -13,7 +13,7 @@ use super::{
     },
     toml_source::ValueSource,
 };
-use crate::{error::Result, model::Model, plan::GaugeSurface};
+use crate::{error::Result, model::Model, probe::GaugeSurface};
 
 /// A value in force and its source.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,52 +18,6 @@ use crate::{
     solid::TimeFunction,
 };
 
-/// A number, a list of numbers, or a list of rows.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum NumberOrArray {
-    /// One.
-    One(f64),
-    /// A list.
-    List(Vec<f64>),
-    /// Rows of a matrix.
-    Rows(Vec<Vec<f64>>),
-}
-
-impl<'de> Deserialize<'de> for NumberOrArray {
-    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
-        struct Form;
-        impl<'de> Visitor<'de> for Form {
-            type Value = NumberOrArray;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                write!(f, "a number, a list of numbers, or a list of rows")
-            }
-            fn visit_f64<E: de::Error>(self, x: f64) -> Result<NumberOrArray, E> {
-                Ok(NumberOrArray::One(x))
-            }
-            fn visit_i64<E: de::Error>(self, x: i64) -> Result<NumberOrArray, E> {
-                Ok(NumberOrArray::One(x as f64))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<NumberOrArray, A::Error> {
-                let (mut list, mut rows) = (Vec::new(), Vec::new());
-                while let Some(entry) = seq.next_element::<NumberOrArray>()? {
-                    match entry {
-                        NumberOrArray::One(x) => list.push(x),
-                        NumberOrArray::List(row) => rows.push(row),
-                        NumberOrArray::Rows(_) => return Err(de::Error::custom("a list nested too deep")),
-                    }
-                }
-                match (list.is_empty(), rows.is_empty()) {
-                    (_, true) => Ok(NumberOrArray::List(list)),
-                    (true, false) => Ok(NumberOrArray::Rows(rows)),
-                    (false, false) => Err(de::Error::custom("a list that mixes numbers and lists")),
-                }
-            }
-        }
-        deserializer.deserialize_any(Form)
-    }
-}
-
 /// A formula in the place, or a number.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FieldFormulaConfig(#[schemars(with = "NumberOrFormula")] pub String);

@@ -9,11 +9,10 @@ use super::water::StillWaterLevel;
 use crate::{
     error::{Error, Result},
     math::expression::Formula,
-    plan::{Align, CheckPlan, ProbeKind, ProbePlan, Reference, Score, StatisticKind, StatisticPlan},
-    probe,
+    plan::{Align, CheckPlan, Reference, Score, StatisticKind, StatisticPlan},
+    probe::ProbeConfig,
     scene::{
         context::{Context, Defaults, quoted_list, set_keys, suggestion},
-        probes::ProbeConfig,
         table,
     },
 };
@@ -108,26 +107,11 @@ impl ProbeSeries<'_> {
     fn find(&self, ctx: &Context, key: &str, word: &str) -> Result<Vec<SeriesAtPlace>> {
         let (name, column) = word.split_once('.').map_or((word, None), |(name, column)| (name, Some(column)));
         let i = self.probe(ctx, key, name)?;
-        let Some(ProbePlan { what: kind, .. }) = self.probes[i].to_plan(ctx.until) else {
+        let Some(plan) = self.probes[i].to_plan(ctx.until) else {
             return Err(list_has_no_series(ctx, key, name));
         };
-        let all: Vec<SeriesAtPlace> = match &kind {
-            ProbeKind::Elevation { places, .. } if places.len() == 1 => {
-                vec![(format!("{name}.eta_m"), Some(places[0].clone()))]
-            }
-            ProbeKind::Elevation { places, .. } => places
-                .iter()
-                .map(|at| (format!("{name}.{}", probe::column_at_place("eta_m", at)), Some(at.clone())))
-                .collect(),
-            ProbeKind::Motion { .. } => {
-                let columns: &[&str] = match ctx.dimension {
-                    2 => &["surge_m", "heave_m", "pitch_deg"],
-                    _ => &["surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg"],
-                };
-                columns.iter().map(|column| (format!("{name}.{column}"), None)).collect()
-            }
-            _ => Vec::new(),
-        };
+        let series = plan.kind.series(ctx.dimension).into_iter();
+        let all: Vec<SeriesAtPlace> = series.map(|(column, at)| (format!("{name}.{column}"), at)).collect();
         match column {
             Some(_) => Ok(vec![all.into_iter().find(|(series, _)| series == word).unwrap_or((word.into(), None))]),
             None if all.is_empty() => {

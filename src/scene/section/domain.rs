@@ -5,20 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::Result,
+    math::BoxConfig,
     scene::context::{Context, Defaults},
     simulation::{Escape, ParticleLimits},
     system::Periodic,
 };
-
-/// A box given by two corners.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BoxConfig {
-    /// Lowest corner, m.
-    pub min: Vec<f64>,
-    /// Highest corner, m.
-    pub max: Vec<f64>,
-}
 
 impl BoxConfig {
     /// Refuses corners that do not enclose a box.

@@ -8,9 +8,8 @@ use serde::{
     de::{self, MapAccess, Visitor, value::MapAccessDeserializer},
 };
 
-use super::domain::BoxConfig;
 use crate::{
-    math::format::bytes,
+    math::{BoxConfig, format::bytes},
     output::frame::particle_bytes,
     plan::FramesPlan,
     scene::context::{Context, Defaults, suggestion},

@@ -12,10 +12,10 @@ use super::{
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Bivector, Matrix, Pose, Vector},
+    math::{Bivector, Matrix, NumberOrArray, Pose, Vector},
     scene::{
         context::{Context, Defaults, quoted_list, set_keys, suggestion},
-        untagged::{DraftChoice, NumberOrArray},
+        untagged::DraftChoice,
     },
     solid::{FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
 };

@@ -3,14 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    domain::BoxConfig,
-    shape::{PlacementConfig, ShapeConfig, vector, world_bounds},
-};
+use super::shape::{PlacementConfig, ShapeConfig, vector, world_bounds};
 use crate::{
     error::{Error, Result},
     geometry::{Shape, WaterRegion},
-    math::{Bounds, Pose, Vector, expression::ScalarField},
+    math::{Bounds, BoxConfig, Pose, Vector, expression::ScalarField},
     scene::{context::Context, untagged::FieldFormulaConfig},
 };
 
