@@ -12,7 +12,7 @@
 
 use std::{error::Error, fs, path::Path};
 
-use pontoon::study::{LineStyle, PlotLine, line_plot, log_log_plot};
+use pontoon::report::{LineStyle, PlotLine, line_plot, log_log_plot};
 use serde::Deserialize;
 
 /// Folder of the figures and of the plots.
@@ -69,10 +69,10 @@ impl Sheet {
 
 impl Plot {
     /// The plot as SVG.
-    pub fn svg(&self) -> pontoon::Result<String> {
+    pub fn svg(&self) -> String {
         let line = |(colour, of): (usize, &Curve)| PlotLine {
             labels: of.labels.clone(),
-            ..PlotLine::new(colour, LineStyle::Dotted, of.points.clone())
+            ..PlotLine::new(of.name.as_str(), colour, LineStyle::Dotted, of.points.clone())
         };
         let lines: Vec<PlotLine> = self.lines.iter().enumerate().map(line).collect();
         let draw = if self.log { log_log_plot } else { line_plot };
@@ -82,7 +82,7 @@ impl Plot {
 
 fn main() -> Result<(), Box<dyn Error>> {
     for plot in Sheet::read()?.plot {
-        fs::write(Path::new(FOLDER).join(&plot.file), plot.svg()?)?;
+        fs::write(Path::new(FOLDER).join(&plot.file), plot.svg())?;
         println!("docs/plots/{}", plot.file);
     }
     Ok(())

@@ -52,7 +52,16 @@
 //! | [`simulation`] | steps, rollback, adding and removing solids, external bodies |
 //! | [`plan`], [`probe`], [`analysis`], [`output`] | what a run samples, judges and writes |
 //! | [`scene`] | the TOML scene |
-//! | [`preflight`], [`run`], [`report`], [`study`], [`bench`] | what the program does with scenes |
+//! | [`preflight`] | findings about a scene before it runs |
+//! | `run`, `report`, `study`, `bench` | what the program does with scenes (feature `cli`) |
+//!
+//! # Cargo features
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `dim2`, `dim3` (default) | the engine for bodies in 2-D, in 3-D; one of them at least |
+//! | `cli` (default) | the program `pontoon` and the modules behind it |
+//! | `surface` | meshes of the free surface from 3-D frames |
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, reason = "tests may"))]
 
@@ -77,11 +86,15 @@ pub mod output;
 pub mod scene;
 #[doc(hidden)]
 pub mod preflight;
+#[cfg(feature = "cli")]
 pub mod run;
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod report;
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod study;
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod bench;
 pub mod prelude;

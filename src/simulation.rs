@@ -192,7 +192,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Whether a state of `time` (s) is stored.
-    pub(crate) fn has_rollback_state(&self, time: f64) -> bool {
+    pub fn has_rollback_state(&self, time: f64) -> bool {
         self.rollback.has_state_at(time)
     }
 

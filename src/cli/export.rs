@@ -24,7 +24,6 @@ pub struct ExportArgs {
     #[arg(long, value_name = "FILE", num_args = 0..=1, group = "what")]
     npz: Option<Option<PathBuf>>,
     /// The free surface in each frame of a 3-D run as a mesh for ParaView: DIR/surface.pvd
-    #[cfg(feature = "surface")]
     #[arg(long, group = "what")]
     surface: bool,
 }
@@ -35,7 +34,6 @@ pub fn export(args: &ExportArgs) -> Result<String> {
     if let Some(out) = &args.npz {
         said += &series(&args.folder, out.clone().unwrap_or_else(|| args.folder.join("series.npz")))?;
     }
-    #[cfg(feature = "surface")]
     if args.surface {
         said += &surface(&args.folder)?;
     }
@@ -122,6 +120,12 @@ fn rao_arrays(folder: &Path) -> Result<Vec<(String, Vec<f64>)>> {
         arrays.extend(COLUMNS.iter().map(array));
     }
     Ok(arrays)
+}
+
+#[cfg(not(feature = "surface"))]
+fn surface(_: &Path) -> Result<String> {
+    let what = "this program was built without meshes of the free surface";
+    Err(Error::new(ErrorKind::Usage, what).help("install it with them: cargo install --path . --features surface"))
 }
 
 #[cfg(feature = "surface")]

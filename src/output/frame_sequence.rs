@@ -1,19 +1,18 @@
-//! Frames read back, as [`Frames`](super::FrameWriter) wrote them.
+//! Frames read back, as [`FrameWriter`](super::FrameWriter) wrote them.
 
 use std::path::{Path, PathBuf};
 
-use vtkio::model::{Attribute, DataSet, IOBuffer, Piece, Vtk};
-
+use super::vtu::{self, Values};
 use crate::error::{Error, Result};
 
-/// The film of a run.
+/// The frames of a run.
 #[derive(Clone, Debug)]
 pub struct FrameSequence {
     folder: PathBuf,
     times: Vec<f64>,
 }
 
-/// The points of a picture. A field that was not kept is empty.
+/// The points of one part of a frame. A field that was not written is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramePoints {
     /// Positions, m; in 2-D the third coordinate is zero.
@@ -31,7 +30,7 @@ pub struct FramePoints {
 }
 
 impl FrameSequence {
-    /// The film of the run in `folder`; none if it has no frames.
+    /// The frames of the run in `folder`; `None` if it has none.
     ///
     /// # Errors
     /// `File` if `frames.pvd` cannot be read.
@@ -43,11 +42,11 @@ impl FrameSequence {
             Err(why) => return Err(Error::file(&path, why)),
         };
         let after = |text: &str, word: &str| Some(text.split_once(word)?.1.split('"').next()?.to_string());
-        let pictures = text.split("<DataSet ").skip(1).filter(|p| p.contains("name=\"water\""));
-        let times: Option<Vec<f64>> = pictures.map(|p| after(p, "timestep=\"")?.parse().ok()).collect();
+        let entries = text.split("<DataSet ").skip(1).filter(|p| p.contains("name=\"water\""));
+        let times: Option<Vec<f64>> = entries.map(|p| after(p, "timestep=\"")?.parse().ok()).collect();
         match times {
             Some(times) => Ok((!times.is_empty()).then(|| Self { folder: folder.join("frames"), times })),
-            None => Err(Error::file(&path, "is not a film of this program")),
+            None => Err(Error::file(&path, "is not a list of frames of this program")),
         }
     }
 
@@ -62,7 +61,7 @@ impl FrameSequence {
         (0..self.times.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
     }
 
-    /// Bytes that the pictures of frame `number` have on the disk.
+    /// Bytes of frame `number` on the disk.
     pub fn bytes(&self, number: usize) -> u64 {
         let size = |part: &str| std::fs::metadata(self.path(part, number)).map_or(0, |file| file.len());
         size("water") + size("solids")
@@ -90,37 +89,35 @@ impl FrameSequence {
 }
 
 fn read_points(path: &Path) -> Result<FramePoints> {
-    let text = std::fs::read(path).map_err(|why| Error::file(path, why))?;
-    parse_points(&text).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
+    let file = std::fs::read(path).map_err(|why| Error::file(path, why))?;
+    parse_points(&file).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
 }
 
-/// The points in the text of a .vtu file.
-fn parse_points(text: &[u8]) -> std::result::Result<FramePoints, vtkio::Error> {
-    let lacking = || vtkio::Error::UnknownFileExtension(None);
-    let DataSet::UnstructuredGrid { pieces, .. } = Vtk::parse_xml(text)?.data else { return Err(lacking()) };
-    let Some(Piece::Inline(piece)) = pieces.into_iter().next() else { return Err(lacking()) };
-    let mut cloud = FramePoints { position: triples(piece.points), ..FramePoints::default() };
-    for attribute in piece.data.point {
-        let Attribute::DataArray(array) = attribute else { continue };
-        match array.name.as_str() {
-            "velocity" => cloud.velocity = triples(array.data),
-            "density" => cloud.density = numbers(array.data),
-            "pressure" => cloud.pressure = numbers(array.data),
-            "solid" => cloud.solid_index = numbers(array.data),
-            "id" => cloud.id = array.data.into_vec().unwrap_or_default(),
+/// The points in a .vtu `file`.
+fn parse_points(file: &[u8]) -> std::result::Result<FramePoints, String> {
+    let (points, fields) = vtu::read_points(file)?;
+    let mut all = FramePoints { position: triples(&points), ..FramePoints::default() };
+    for field in fields {
+        match (field.name.as_str(), field.components, field.values) {
+            ("velocity", 3, Values::F32(x)) => all.velocity = triples(&x),
+            ("density", 1, Values::F32(x)) => all.density = x,
+            ("pressure", 1, Values::F32(x)) => all.pressure = x,
+            ("solid", 1, Values::F32(x)) => all.solid_index = x,
+            ("id", 1, Values::U32(x)) => all.id = x,
+            (name @ ("velocity" | "density" | "pressure" | "solid" | "id"), ..) => {
+                return Err(format!("the field \"{name}\" has another type"));
+            }
             _ => {}
         }
     }
-    let whole = |count: usize| count == 0 || count == cloud.position.len();
-    let fields =
-        [cloud.density.len(), cloud.pressure.len(), cloud.solid_index.len(), cloud.id.len(), cloud.velocity.len()];
-    if fields.into_iter().all(whole) { Ok(cloud) } else { Err(lacking()) }
+    Ok(all)
 }
 
-fn numbers(buffer: IOBuffer) -> Vec<f32> {
-    buffer.cast_into().unwrap_or_default()
+/// Numbers three by three.
+fn triples(numbers: &[f32]) -> Vec<[f32; 3]> {
+    numbers.as_chunks().0.to_vec()
 }
 
-fn triples(buffer: IOBuffer) -> Vec<[f32; 3]> {
-    numbers(buffer).chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect()
-}
+#[cfg(test)]
+#[path = "../../tests/unit/output/frame_sequence.rs"]
+mod tests;

@@ -1,26 +1,28 @@
-//! The free surface of water in space as a mesh, made from frames by the crate splashsurf: `surface.pvd` is the film,
-//! `surface/surface_00000.vtu` are its pictures, triangles that look outwards with the water's velocity at their corners.
+//! The free surface of 3-D water as a mesh, made from frames by the crate splashsurf: `surface.pvd` lists the files
+//! `surface/surface_00000.vtu`. Normals of the triangles point outwards; the corners have the velocity of the water.
 
-use std::path::Path;
+use std::{io, path::Path};
 
 use splashsurf_lib::{Parameters, nalgebra::Vector3, reconstruct_surface, sph_interpolation::SphInterpolator};
-use vtkio::model::{CellType, Cells, ElementType, VertexNumbers};
 
 use super::{
     cannot_write,
-    frame::{data_array, mesh_vtu, pvd_index},
+    frame::pvd_index,
     frame_sequence::{FramePoints, FrameSequence},
+    vtu::{self, Cells, DataArray},
     write_atomically,
 };
 use crate::error::{Error, ErrorKind, Result};
 
-/// How far a particle is seen, dp.
+/// Radius of the support of a particle, dp.
 const REACH: f64 = 3.0;
-/// Edge of the cubes that are marched through, dp.
+/// Edge of the cubes of the marching-cubes algorithm, dp.
 const CUBE: f64 = 0.75;
-/// Share of the water at which its surface lies: with this the still surface is 0.005 dp above the true one, half a dp above the
-/// uppermost particles.
+/// Density of the surface relative to that of water: with this the still surface is 0.005 dp above the true one, half a dp
+/// above the uppermost particles.
 const ISO_LEVEL: f32 = 0.64;
+/// VTK's number of a cell that is a triangle.
+const TRIANGLE: u8 = 5;
 
 /// A closed surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,36 +66,32 @@ impl FreeSurfaceMesh {
         })
     }
 
-    /// The text of a .vtu file.
-    fn to_vtu(&self) -> std::result::Result<Vec<u8>, vtkio::Error> {
-        let cells = Cells {
-            cell_verts: VertexNumbers::XML {
-                connectivity: self.triangles.iter().flatten().map(|i| *i as u64).collect(),
-                offsets: (1..=self.triangles.len() as u64).map(|i| 3 * i).collect(),
-            },
-            types: vec![CellType::Triangle; self.triangles.len()],
-        };
+    /// The surface as a .vtu file.
+    fn to_vtu(&self) -> io::Result<Vec<u8>> {
+        let connectivity = self.triangles.iter().flatten().map(|i| *i as i64).collect();
+        let cells = Cells { connectivity, points_per_cell: 3, cell_type: TRIANGLE };
         let velocity = (!self.velocity.is_empty())
-            .then(|| data_array("velocity", ElementType::Vectors, self.velocity.iter().flatten().copied().collect()));
-        mesh_vtu(self.corners.iter().flatten().copied().collect(), cells, velocity.into_iter().collect())
+            .then(|| DataArray::new("velocity", 3, self.velocity.iter().flatten().copied().collect()));
+        vtu::write(self.corners.iter().flatten().copied().collect(), cells, velocity.into_iter().collect())
     }
 }
 
-/// Writes the surface of each picture of the `shown` film, of particles `dp` (m) apart, into the run's `folder`; how many.
+/// Writes the surface of the water in each of the `frames`, of particles `dp` (m) apart, into the run's `folder`; returns the
+/// number of files.
 ///
 /// # Errors
-/// `File` if a frame cannot be read or a picture written; `Usage` if a surface cannot be made.
-pub fn write(folder: &Path, shown: &FrameSequence, dp: f64) -> Result<usize> {
-    let pictures = folder.join("surface");
-    std::fs::create_dir_all(&pictures).map_err(|why| cannot_write(&pictures, &why))?;
-    for number in 0..shown.times().len() {
-        let path = pictures.join(format!("surface_{number:05}.vtu"));
-        let surface = FreeSurfaceMesh::reconstruct(&shown.water(number)?, dp)?;
-        let text = surface.to_vtu().map_err(|why| Error::new(ErrorKind::File, format!("{}: {why}", path.display())))?;
-        write_atomically(&path, &text)?;
+/// `File` if a frame cannot be read or a file written; `Usage` if a surface cannot be made.
+pub fn write(folder: &Path, frames: &FrameSequence, dp: f64) -> Result<usize> {
+    let files = folder.join("surface");
+    std::fs::create_dir_all(&files).map_err(|why| cannot_write(&files, &why))?;
+    for number in 0..frames.times().len() {
+        let path = files.join(format!("surface_{number:05}.vtu"));
+        let surface = FreeSurfaceMesh::reconstruct(&frames.water(number)?, dp)?;
+        let file = surface.to_vtu().map_err(|why| cannot_write(&path, &why))?;
+        write_atomically(&path, &file)?;
     }
-    write_atomically(&folder.join("surface.pvd"), pvd_index(shown.times(), "surface", &["surface"]).as_bytes())?;
-    Ok(shown.times().len())
+    write_atomically(&folder.join("surface.pvd"), pvd_index(frames.times(), "surface", &["surface"]).as_bytes())?;
+    Ok(frames.times().len())
 }
 
 #[cfg(test)]

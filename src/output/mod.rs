@@ -1,4 +1,4 @@
-//! What is kept of a run: tables (CSV), frames (VTK), checkpoints, the manifest. No opinion on any of it.
+//! The files of a run: tables (CSV), frames (VTK), checkpoints, the manifest.
 
 pub mod checkpoint;
 pub mod csv;
@@ -6,8 +6,11 @@ pub mod frame;
 pub mod frame_sequence;
 pub mod manifest;
 pub mod interval_mean;
+#[cfg(feature = "cli")]
 pub mod npz;
 pub mod removed_particles;
+mod base64;
+mod vtu;
 #[cfg(feature = "surface")]
 pub mod free_surface_mesh;
 

@@ -1,9 +1,11 @@
-//! What a page carries besides words: numbers as bytes, deflated and written in the 64 signs of a text.
+//! Numbers in a page: bytes, deflated, in base 64.
 
 use std::io::Write;
 
-use base64::{Engine as _, prelude::BASE64_STANDARD};
 use flate2::{Compression, write::DeflateEncoder};
+
+/// Digits of base 64 (RFC 4648).
+const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// Numbers as bytes, little-endian.
 #[derive(Clone, Debug, Default)]
@@ -35,8 +37,20 @@ impl BinaryData {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());
         // Memory takes every byte.
         let packed = encoder.write_all(&self.0).and_then(|()| encoder.finish()).unwrap_or_default();
-        BASE64_STANDARD.encode(packed)
+        base64(&packed)
     }
+}
+
+/// `bytes` in base 64, padded.
+fn base64(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let bits = (0..3).fold(0, |bits, i| bits << 8 | usize::from(group.get(i).copied().unwrap_or(0)));
+        for i in 0..4 {
+            text.push(if i <= group.len() { char::from(DIGITS[bits >> (18 - 6 * i) & 63]) } else { '=' });
+        }
+    }
+    text
 }
 
 /// Differences as whole numbers that are small where the differences are: 0, −1, 1, −2, 2 … become 0, 1, 2, 3, 4 ….
@@ -48,6 +62,16 @@ pub fn zigzag(now: u16, before: u16) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn base_64_is_that_of_the_standard() {
+        for (bytes, text) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE=")]
+        {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+        assert_eq!(base64(&[0, 0x80, 0xff, 0xfb, 0x3f]), "AID/+z8=");
+    }
 
     #[test]
     fn small_differences_are_small_numbers_and_come_back() {

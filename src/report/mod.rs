@@ -19,12 +19,14 @@ mod outline;
 mod page;
 mod picture;
 mod placement;
+pub(crate) mod plot;
 mod contact_skin;
 mod sections;
 mod mesh_edges;
 pub(crate) mod html;
 
 pub use picture::{ColourField, PictureOptions, write_picture};
+pub use plot::{LineStyle, PlotLine, line_plot, log_log_plot};
 
 use std::{
     path::{Path, PathBuf},

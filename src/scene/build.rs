@@ -46,13 +46,13 @@ pub struct BuiltScene<const D: usize> {
 }
 
 /// The solids around the water: enough to draw a scene.
-pub(crate) struct SceneLayout<const D: usize> {
+pub struct SceneLayout<const D: usize> {
     /// The solids, where they start.
-    pub(crate) solids: Vec<SolidSpec<D>>,
+    pub solids: Vec<SolidSpec<D>>,
     /// The laws and constants.
-    pub(crate) model: Model,
+    pub model: Model,
     /// The water at rest.
-    pub(crate) still_water: StillWaterLevel,
+    pub still_water: StillWaterLevel,
 }
 
 /// Estimated size of a run.
@@ -158,7 +158,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::build`].
-    pub(crate) fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
+    pub fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
         let (scene, _) = self.with_defaults()?;
         let water = scene.water_bodies::<D>()?;
         let still = StillWaterLevel::of(&water);

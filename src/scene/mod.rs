@@ -58,8 +58,7 @@ pub use crate::{
         SectionConfig,
     },
 };
-pub(crate) use build::SceneLayout;
-pub use build::{BuiltScene, SizeEstimate};
+pub use build::{BuiltScene, SceneLayout, SizeEstimate};
 pub use bundled::{BundledScene, bundled_scenes};
 pub use resolve::ResolvedValue;
 pub use schema::schema;

@@ -1,23 +1,19 @@
 //! What the cases of one scene cost, beside what they are worth: error over processor time.
 
 use super::{
-    Job, LineStyle, PlotLine, ResultRow,
+    Job, ResultRow,
     html_page::{self, escape},
-    log_log_plot,
     repeat_spread::{self, CostPoint, group_repeats},
     result_rows::RELATIVE_METRICS,
 };
-use crate::error::Result;
+use crate::report::{LineStyle, PlotLine, log_log_plot};
 
 /// The law that tells the colours apart.
 const LAW: &str = "model.viscosity";
 
 /// For every scene of which two or more of `jobs` have finished, and every check with N: N, and N with the
 /// delay taken out, over processor time.
-///
-/// # Errors
-/// `File` if a drawing fails.
-pub fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> Result<String> {
+pub fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> String {
     let mut text = String::new();
     for scene in unique(jobs.iter().map(|job| job.group.as_str())) {
         let own: Vec<&Job> = jobs.iter().filter(|job| job.group == scene).collect();
@@ -35,37 +31,33 @@ pub fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> Result<String> {
                     .collect();
                 // Two checks of one series differ in their means alone.
                 if points.len() > 1 && !drawn.contains(&points) {
-                    text += &plot(scene, check, error, &points, repeat_spread::error_bar_note(rows))?;
+                    text += &plot(scene, check, error, &points, repeat_spread::error_bar_note(rows));
                     drawn.push(points);
                 }
             }
         }
     }
-    Ok(match text.is_empty() {
+    match text.is_empty() {
         true => text,
         false => format!("<h2>Error against run time</h2>\n{text}"),
-    })
+    }
 }
 
 /// One point for each case, in the colour of its viscosity; `bars` says what its bar is.
-fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bars: &str) -> Result<String> {
+fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bars: &str) -> String {
     let laws = unique(points.iter().map(|(job, _)| viscosity(job)));
     let line = |(i, law_of_line): (usize, &&str)| {
         let own: Vec<_> = points.iter().filter(|(job, _)| viscosity(job) == *law_of_line).collect();
         let labels = own.iter().map(|(job, _)| short_name(&job.name, scene).to_string()).collect();
         let spans = own.iter().map(|(_, point)| point.span).collect();
-        PlotLine {
-            labels,
-            spans,
-            ..PlotLine::new(i, LineStyle::Dots, own.iter().map(|(_, point)| point.place).collect())
-        }
+        let points = own.iter().map(|(_, point)| point.place).collect();
+        PlotLine { labels, spans, ..PlotLine::new(format!("{LAW} = {law_of_line}"), i, LineStyle::Dots, points) }
     };
     let lines: Vec<PlotLine> = laws.iter().enumerate().map(line).collect();
-    let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, –")], &lines)?;
-    let keys: Vec<(usize, String)> = laws.iter().enumerate().map(|(i, law)| (i, format!("{LAW} = {law}"))).collect();
+    let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, –")], &lines);
     let title = format!("<h3>{}: {error} of {}</h3>\n", escape(scene), escape(check));
     let caption = format!("A point for each case, with its name. Left and low is good.{bars}");
-    Ok(title + &html_page::plot_figure(&svg, &keys, &caption))
+    title + &html_page::plot_figure(&svg, &caption)
 }
 
 /// The viscosity of a case.

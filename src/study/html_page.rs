@@ -2,7 +2,7 @@
 
 use std::time::SystemTime;
 
-use super::{REPEATS_NOTE, ResultRow, spread_table, svg_plot};
+use super::{REPEATS_NOTE, ResultRow, spread_table};
 use crate::output::manifest::Machine;
 pub use crate::report::html::{escape, table, unit};
 
@@ -11,7 +11,7 @@ h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:1
 table{border-collapse:collapse;margin:.6em 0;font-size:.87em}td,th{padding:.2em .7em;text-align:left;\
 border-bottom:1px solid #ddd;font-variant-numeric:tabular-nums}th{border-bottom:2px solid #888}\
 td:first-child{white-space:nowrap}\
-code{font-size:.92em}.key{display:inline-block;width:1.6em;height:.5em;margin-right:.5em;vertical-align:middle}\
+code{font-size:.92em}\
 .missed{color:#b00020;font-weight:bold}figure{margin:.5em 0}figcaption{font-size:.9em;color:#444}";
 
 /// The page called `title` with what `body` says.
@@ -24,13 +24,9 @@ pub fn html_page(title: &str, body: &str) -> Vec<u8> {
     .into_bytes()
 }
 
-/// A plot with its caption; `keys` name its colours.
-pub fn plot_figure(svg: &str, keys: &[(usize, String)], caption: &str) -> String {
-    let key = |(i, text): &(usize, String)| {
-        format!("<span class=\"key\" style=\"background:{}\"></span>{}<br>\n", svg_plot::colour(*i), escape(text))
-    };
-    let keys: String = keys.iter().map(key).collect();
-    format!("<figure>{svg}\n<figcaption>{keys}{}</figcaption></figure>\n", escape(caption))
+/// A plot with its caption.
+pub fn plot_figure(svg: &str, caption: &str) -> String {
+    format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escape(caption))
 }
 
 /// How far repeats lie apart, as a part of a page; nothing if no run is repeated.

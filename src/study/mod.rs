@@ -11,7 +11,6 @@ mod parameter_grid;
 mod job;
 mod convergence;
 mod html_page;
-mod svg_plot;
 mod result_rows;
 mod results;
 mod repeat_spread;
@@ -24,7 +23,6 @@ pub use parameter_grid::{ParameterGrid, VariedKey, distinguishing_labels, frame_
 pub use repeat_spread::{REPEATS_NOTE, Spread, spread_table};
 pub use result_rows::{ResultRow, result_rows, rows_to_csv};
 pub use results::StudyResults;
-pub use svg_plot::{LineStyle, PlotLine, line_plot, log_log_plot};
 pub use time_estimate::{DEFAULT_SPEED, TimeEstimate, estimate_times};
 pub use validation::Validation;
 pub use validation_cases::{CaseResolution, ValidationCase, select_cases, validation_cases};

@@ -5,9 +5,9 @@ use std::{fs, path::PathBuf};
 use serde::Serialize;
 
 use super::{
-    Job, JobResult, LineStyle, ParameterGrid, PlotLine, ResultRow, convergence,
+    Job, JobResult, ParameterGrid, ResultRow, convergence,
     html_page::{self, unit},
-    least_squares, log_log_plot,
+    least_squares,
     repeat_spread::{self, CostPoint, RepeatSpread, group_repeats, spread_of},
     result_rows::{MAX_ABS_METRIC, Metric, RELATIVE_METRICS, check_labels, result_rows},
     rows_to_csv,
@@ -16,6 +16,7 @@ use crate::{
     analysis::format_verdicts,
     error::{Error, Result},
     output::{manifest::Machine, write_atomically},
+    report::{LineStyle, PlotLine, log_log_plot},
 };
 
 /// The table and the page of a study.
@@ -109,7 +110,7 @@ impl StudyResults {
         write_atomically(&table, &rows_to_csv(&rows, &self.keys)?)?;
         let text = serde_json::to_string_pretty(&whole).map_err(|e| Error::file(&json, e))?;
         write_atomically(&json, (text + "\n").as_bytes())?;
-        write_atomically(&html, &html_page::html_page(&self.title, &self.body(&rows, &orders, &machine, threads)?))
+        write_atomically(&html, &html_page::html_page(&self.title, &self.body(&rows, &orders, &machine, threads)))
     }
 
     /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
@@ -163,18 +164,12 @@ impl StudyResults {
         orders
     }
 
-    fn body(
-        &self,
-        rows: &[ResultRow],
-        orders: &[OrderRow],
-        machine: &Machine,
-        threads: Option<usize>,
-    ) -> Result<String> {
+    fn body(&self, rows: &[ResultRow], orders: &[OrderRow], machine: &Machine, threads: Option<usize>) -> String {
         let mut body = html_page::provenance_table(&self.command, machine, threads);
         for check in &self.checks {
             body += &format!("<h2>{}</h2>\n", html_page::escape(check));
             for (error, figure) in Self::metrics(rows, check) {
-                body += &self.plot(rows, check, error, figure)?;
+                body += &self.plot(rows, check, error, figure);
             }
             let own: Vec<&OrderRow> = orders.iter().filter(|o| o.check == *check).collect();
             body += &html_page::table(&self.order_rows(&own));
@@ -186,17 +181,11 @@ impl StudyResults {
         body += &html_page::repeats_section(rows);
         body += "<h2>Runs</h2>\n";
         body += &html_page::table(&self.run_rows(rows));
-        Ok(body)
+        body
     }
 
     /// Error over processor time.
-    fn plot(
-        &self,
-        rows: &[ResultRow],
-        check: &str,
-        error: &str,
-        figure: fn(&ResultRow) -> Option<f64>,
-    ) -> Result<String> {
+    fn plot(&self, rows: &[ResultRow], check: &str, error: &str, figure: fn(&ResultRow) -> Option<f64>) -> String {
         let groups = self.groups();
         let line = |(i, group): (usize, &String)| {
             let mut points: Vec<CostPoint> =
@@ -204,21 +193,15 @@ impl StudyResults {
             points.retain(|p| p.place.0 > 0.0 && p.place.1 > 0.0);
             let labels = points.iter().map(|p| format!("{} mm", millimetres(p.dp))).collect();
             let spans = points.iter().map(|p| p.span).collect();
-            PlotLine { labels, spans, ..PlotLine::new(i, LineStyle::Dotted, points.iter().map(|p| p.place).collect()) }
+            let points = points.iter().map(|p| p.place).collect();
+            PlotLine { labels, spans, ..PlotLine::new(group, i, LineStyle::Dotted, points) }
         };
         let lines: Vec<PlotLine> = groups.iter().enumerate().map(line).collect();
         let unit = if error == MAX_ABS_METRIC.0 { unit(check) } else { "–" };
-        let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, {unit}")], &lines)?;
-        let keys: Vec<(usize, String)> =
-            groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()).collect();
-        Ok(html_page::plot_figure(
-            &svg,
-            &keys,
-            &format!(
-                "{error} over processor time; at each point its dp. Left and low is good.{}",
-                repeat_spread::error_bar_note(rows)
-            ),
-        ))
+        let svg = log_log_plot(["processor time, s", &format!("{error} of {check}, {unit}")], &lines);
+        let bars = repeat_spread::error_bar_note(rows);
+        let caption = format!("{error} over processor time; at each point its dp. Left and low is good.{bars}");
+        html_page::plot_figure(&svg, &caption)
     }
 
     fn order_rows(&self, orders: &[&OrderRow]) -> Vec<Vec<String>> {

@@ -6,9 +6,8 @@ use std::{
 };
 
 use super::{
-    Job, JobResult, JobState, LineStyle, PlotLine, ResultRow, ValidationCase, cost_plot,
+    Job, JobResult, JobState, ResultRow, ValidationCase, cost_plot,
     html_page::{self, unit},
-    line_plot,
     result_rows::{check_labels, result_rows},
     rows_to_csv,
 };
@@ -17,6 +16,7 @@ use crate::{
     error::{Error, Result},
     math::time_series::TimeSeries,
     output::{manifest::Machine, write_atomically},
+    report::{LineStyle, PlotLine, line_plot},
 };
 
 /// Cases that are run, quick or full.
@@ -86,7 +86,7 @@ impl Validation {
         body += &html_page::table(&self.table(ran));
         let rows = self.rows(ran);
         body += &html_page::repeats_section(&rows);
-        body += &cost_plot::cost_figures(&self.jobs, &rows)?;
+        body += &cost_plot::cost_figures(&self.jobs, &rows);
         for ((case, jobs), ran) in self.cases.iter().zip(self.jobs.chunks(self.repeat)).zip(ran.chunks(self.repeat)) {
             body += &section(case, jobs, ran)?;
         }
@@ -125,7 +125,7 @@ fn section(case: &ValidationCase, jobs: &[Job], ran: &[JobResult]) -> Result<Str
         let known: Vec<&CheckCurves> = curves.iter().filter_map(|all| all.get(check)?.as_ref()).collect();
         let verdicts: Vec<&Verdict> = verdicts.iter().filter_map(|all| all.get(check)).collect();
         text += &match known.is_empty() {
-            false => plot(&known, &verdicts)?,
+            false => plot(&known, &verdicts),
             true => {
                 format!(
                     "<p>{}: {}</p>\n",
@@ -139,7 +139,7 @@ fn section(case: &ValidationCase, jobs: &[Job], ran: &[JobResult]) -> Result<Str
 }
 
 /// The runs `known`, the repeats of one case, over their reference; the figures below are of `verdicts`.
-fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> Result<String> {
+fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> String {
     let (reference, verdict) = (&known[0].reference, verdicts[0]);
     let (first, last) = reference.span();
     let room = 0.1 * (last - first);
@@ -149,18 +149,18 @@ fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> Result<String> {
     };
     // A formula is a line, a measurement its samples.
     let style = if known[0].exact { LineStyle::Plain } else { LineStyle::Dots };
-    let mut lines: Vec<PlotLine> = known.iter().map(|of| PlotLine::new(0, LineStyle::Plain, points(&of.sim))).collect();
-    let mut keys = vec![(0, if known.len() > 1 { format!("{} runs", known.len()) } else { "run".into() })];
+    let runs = if known.len() > 1 { format!("{} runs", known.len()) } else { "run".into() };
+    let run = |of: &&CheckCurves| PlotLine::new(runs.as_str(), 0, LineStyle::Plain, points(&of.sim));
+    let mut lines: Vec<PlotLine> = known.iter().map(run).collect();
     if let Some(meaned) = verdict.meaned {
         let means = known.iter().filter_map(|of| of.running_mean.as_ref());
-        lines.extend(means.map(|series| PlotLine::new(2, LineStyle::Plain, points(series))));
-        keys.push((2, format!("the same, mean over {} ms", 1e3 * meaned.seconds)));
+        let name = format!("the same, mean over {} ms", 1e3 * meaned.seconds);
+        lines.extend(means.map(|series| PlotLine::new(name.as_str(), 2, LineStyle::Plain, points(series))));
     }
-    lines.push(PlotLine::new(1, style, points(reference)));
-    keys.push((1, "reference".to_string()));
-    let svg = line_plot(["time, s", &format!("{}, {}", verdict.series, unit(&verdict.series))], &lines)?;
+    lines.push(PlotLine::new("reference", 1, style, points(reference)));
+    let svg = line_plot(["time, s", &format!("{}, {}", verdict.series, unit(&verdict.series))], &lines);
     let figures: Vec<String> = verdicts.iter().map(|verdict| metrics_line(verdict)).collect();
-    Ok(html_page::plot_figure(&svg, &keys, &figures.join(". ")))
+    html_page::plot_figure(&svg, &figures.join(". "))
 }
 
 /// The figures of a check in a line.

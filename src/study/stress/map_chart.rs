@@ -1,12 +1,19 @@
-//! A map as a picture: a cell for each case, its sign and colour by how it came out.
+//! A stress map as SVG: a cell for each case, with the sign and colour of its outcome.
 
 use super::{CaseResult, StressMap, criteria::CaseOutcome};
-use crate::study::html_page::escape;
+use crate::report::{
+    html::escape,
+    plot::{svg_document, svg_text},
+};
 
-/// Size of a cell and of the margins around all, pixels.
-const CELL: [usize; 2] = [74, 34];
-const LEFT: usize = 190;
-const TOP: usize = 64;
+/// Width and height of a cell, pixels.
+const CELL: [f64; 2] = [74.0, 34.0];
+
+/// Left edge of the first cell.
+const LEFT: f64 = 190.0;
+
+/// Upper edge of the first cell.
+const TOP: f64 = 64.0;
 
 /// Sign and colour (Okabe & Ito: told apart by everyone) of an outcome, or of no run.
 fn cell_style(outcome: Option<CaseOutcome>) -> (&'static str, &'static str) {
@@ -29,69 +36,55 @@ pub(super) fn outcome_name(outcome: CaseOutcome) -> &'static str {
     }
 }
 
-/// The picture of `map` with its cases.
+/// The chart of `map` with its cases.
 pub(super) fn map_svg(map: &StressMap, entries: &[&CaseResult]) -> String {
     let (columns, rows) = (map.x.value_labels(), map.y.as_ref().map_or(vec![String::new()], |y| y.value_labels()));
-    let (width, height) = ((LEFT + CELL[0] * columns.len() + 20).max(640), TOP + CELL[1] * rows.len() + 92);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
-         font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-    );
-    svg += &svg_text(16, 24, "start", 15, &map.name);
-    svg += &svg_text(16, 44, "start", 12, &map.about);
-    for entry in entries {
-        svg += &cell(entry);
-    }
-    let bottom = TOP + CELL[1] * rows.len();
+    let bottom = TOP + CELL[1] * rows.len() as f64;
+    let (width, height) = ((LEFT + CELL[0] * columns.len() as f64 + 20.0).max(640.0), bottom + 92.0);
+    let write = |x, y, anchor, size, words: &str| svg_text([x, y], anchor, size, "black", words);
+    let mut svg = write(16.0, 24.0, "start", 15.0, &map.name) + &write(16.0, 44.0, "start", 12.0, &map.about);
+    svg.extend(entries.iter().map(|entry| cell(entry)));
     for (i, word) in columns.iter().enumerate() {
-        svg += &svg_text(LEFT + CELL[0] * i + CELL[0] / 2, bottom + 18, "middle", 12, &clipped(word, 11));
+        svg += &write(LEFT + CELL[0] * (i as f64 + 0.5), bottom + 18.0, "middle", 12.0, &clipped(word, 11));
     }
     for (j, word) in rows.iter().enumerate() {
-        svg += &svg_text(LEFT - 8, TOP + CELL[1] * j + CELL[1] / 2 + 5, "end", 12, &clipped(word, 14));
+        svg += &write(LEFT - 8.0, TOP + CELL[1] * (j as f64 + 0.5) + 5.0, "end", 12.0, &clipped(word, 14));
     }
-    svg += &svg_text(LEFT, bottom + 40, "start", 13, &format!("→ {}", label(&map.x.label, &map.x.unit)));
+    svg += &write(LEFT, bottom + 40.0, "start", 13.0, &format!("→ {}", label(&map.x.label, &map.x.unit)));
     if let Some(y) = &map.y {
-        svg += &svg_text(LEFT, bottom + 58, "start", 13, &format!("↓ {}", label(&y.label, &y.unit)));
+        svg += &write(LEFT, bottom + 58.0, "start", 13.0, &format!("↓ {}", label(&y.label, &y.unit)));
     }
-    for (k, outcome) in
-        [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished].into_iter().enumerate()
-    {
+    let outcomes = [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished];
+    svg += "<g font-weight=\"bold\">\n";
+    for (k, outcome) in outcomes.into_iter().enumerate() {
         let (sign, colour) = cell_style(Some(outcome));
         let of = |entry: &&&CaseResult| entry.verdict().is_some_and(|(found, _)| found == outcome);
-        let said = format!("{sign} {} {}", entries.iter().filter(of).count(), outcome_name(outcome));
-        let line = svg_text(16 + 130 * k, bottom + 80, "start", 13, &said);
-        svg += &line.replacen("<text ", &format!("<text fill=\"{colour}\" font-weight=\"bold\" "), 1);
+        let count = format!("{sign} {} {}", entries.iter().filter(of).count(), outcome_name(outcome));
+        svg += &svg_text([16.0 + 130.0 * k as f64, bottom + 80.0], "start", 13.0, colour, &count);
     }
-    svg + "</svg>\n"
+    svg_document([width, height], &(svg + "</g>\n"))
 }
 
 fn label(what: &str, unit: &str) -> String {
     if unit.is_empty() { what.into() } else { format!("{what}, {unit}") }
 }
 
-/// A cell; what it says in full is shown where the pointer rests.
+/// A cell; a browser shows its full outcome under the pointer.
 fn cell(entry: &CaseResult) -> String {
     let verdict = entry.verdict();
     let (sign, colour) = cell_style(verdict.as_ref().map(|(outcome, _)| *outcome));
     let [i, j] = entry.case.cell;
-    let (x, y) = (LEFT + CELL[0] * i, TOP + CELL[1] * j);
-    let said = super::summary_line(entry);
+    let (x, y) = (LEFT + CELL[0] * i as f64, TOP + CELL[1] * j as f64);
     format!(
         "<g><title>{}</title><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{colour}\" fill-opacity=\"0.18\" \
-         stroke=\"{colour}\"/>\n<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"17\" fill=\"{colour}\">{sign}</text></g>\n",
-        escape(&said),
-        x + 1,
-        y + 1,
-        CELL[0] - 2,
-        CELL[1] - 2,
-        x + CELL[0] / 2,
-        y + CELL[1] / 2 + 6,
+         stroke=\"{colour}\"/>\n{}</g>\n",
+        escape(&super::summary_line(entry)),
+        x + 1.0,
+        y + 1.0,
+        CELL[0] - 2.0,
+        CELL[1] - 2.0,
+        svg_text([x + 0.5 * CELL[0], y + 0.5 * CELL[1] + 6.0], "middle", 17.0, colour, sign)
     )
-}
-
-fn svg_text(x: usize, y: usize, anchor: &str, size: usize, words: &str) -> String {
-    let words = escape(words);
-    format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" font-size=\"{size}\">{words}</text>\n")
 }
 
 /// `word`, cut to `most` characters.

@@ -1,0 +1,295 @@
+//! VTK's XML files of unstructured grids (.vtu): points with their fields, and cells.
+//!
+//! The writer appends all arrays as raw bytes, compressed by zlib. The reader takes such files, and those of earlier versions
+//! of the program, in which each element holds its compressed array in base 64.
+
+use std::io::{self, Read, Write};
+
+use flate2::{Compression, read::ZlibDecoder, write::ZlibEncoder};
+use roxmltree::{Document, Node};
+
+use super::base64;
+
+/// Uncompressed bytes of a block; every block is compressed by itself.
+const BLOCK: usize = 1 << 16;
+
+/// First bytes of the element after which the arrays begin.
+const APPENDED: &[u8] = b"<AppendedData";
+
+/// The numbers of an array.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Single precision.
+    F32(Vec<f32>),
+    /// Whole numbers from 0.
+    U32(Vec<u32>),
+    /// Whole numbers.
+    I64(Vec<i64>),
+    /// Bytes.
+    U8(Vec<u8>),
+}
+
+/// An array with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DataArray {
+    /// Its name, without characters that XML reserves.
+    pub name: String,
+    /// Numbers per point or cell.
+    pub components: usize,
+    /// All numbers, point by point.
+    pub values: Values,
+}
+
+/// Cells of one type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cells {
+    /// Numbers of the points of each cell, cell by cell.
+    pub connectivity: Vec<i64>,
+    /// Points per cell.
+    pub points_per_cell: usize,
+    /// VTK's number of the cell type: 1 is a vertex, 5 a triangle.
+    pub cell_type: u8,
+}
+
+impl DataArray {
+    /// An array of single precision.
+    pub fn new(name: &str, components: usize, values: Vec<f32>) -> Self {
+        Self { name: name.into(), components, values: Values::F32(values) }
+    }
+}
+
+impl Values {
+    fn len(&self) -> usize {
+        match self {
+            Self::F32(x) => x.len(),
+            Self::U32(x) => x.len(),
+            Self::I64(x) => x.len(),
+            Self::U8(x) => x.len(),
+        }
+    }
+
+    fn type_name(&self) -> &'static str {
+        match self {
+            Self::F32(_) => "Float32",
+            Self::U32(_) => "UInt32",
+            Self::I64(_) => "Int64",
+            Self::U8(_) => "UInt8",
+        }
+    }
+
+    /// Appends the numbers to `data`, compressed.
+    fn append(&self, data: &mut Vec<u8>) -> io::Result<()> {
+        match self {
+            Self::F32(x) => append_blocks(x, f32::to_le_bytes, data),
+            Self::U32(x) => append_blocks(x, u32::to_le_bytes, data),
+            Self::I64(x) => append_blocks(x, i64::to_le_bytes, data),
+            Self::U8(x) => append_blocks(x, u8::to_le_bytes, data),
+        }
+    }
+
+    /// The numbers in little-endian `bytes` of the type that VTK calls `type_name`.
+    fn from_bytes(type_name: &str, bytes: &[u8]) -> Result<Self, String> {
+        match type_name {
+            "Float32" => numbers(bytes, f32::from_le_bytes).map(Self::F32),
+            "UInt32" => numbers(bytes, u32::from_le_bytes).map(Self::U32),
+            "Int64" | "UInt64" => numbers(bytes, i64::from_le_bytes).map(Self::I64),
+            "UInt8" => Some(Self::U8(bytes.to_vec())),
+            other => return Err(format!("it has an array of {other}")),
+        }
+        .ok_or_else(|| "an array ends within a number".into())
+    }
+}
+
+/// The numbers in `bytes`; `None` if the last one is cut.
+fn numbers<T, const N: usize>(bytes: &[u8], of: fn([u8; N]) -> T) -> Option<Vec<T>> {
+    let (whole, rest) = bytes.as_chunks::<N>();
+    rest.is_empty().then(|| whole.iter().map(|bytes| of(*bytes)).collect())
+}
+
+/// Appends `values` to `data`: number of blocks, bytes of a block, bytes of an incomplete last block or 0, compressed bytes of
+/// each block (all of 64 bits), then the blocks.
+fn append_blocks<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N], data: &mut Vec<u8>) -> io::Result<()> {
+    let blocks = values.chunks(BLOCK / N);
+    let mut header = vec![blocks.len(), BLOCK, values.len() * N % BLOCK];
+    let start = data.len();
+    data.resize(start + (header.len() + blocks.len()) * 8, 0);
+    for block in blocks {
+        let before = data.len();
+        let raw: Vec<u8> = block.iter().flat_map(|x| bytes(*x)).collect();
+        let mut encoder = ZlibEncoder::new(&mut *data, Compression::fast());
+        encoder.write_all(&raw)?;
+        encoder.finish()?;
+        header.push(data.len() - before);
+    }
+    for (word, place) in header.iter().zip(data[start..].chunks_exact_mut(8)) {
+        place.copy_from_slice(&(*word as u64).to_le_bytes());
+    }
+    Ok(())
+}
+
+/// The file of a grid: `points` with three coordinates each (m), `cells`, and fields of the points.
+///
+/// # Errors
+/// None but those of the compression, which writes to memory.
+pub fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> io::Result<Vec<u8>> {
+    let (point_count, cell_count) = (points.len() / 3, cells.connectivity.len() / cells.points_per_cell);
+    let name_of =
+        |components: usize| fields.iter().find(|field| field.components == components).map(|field| &field.name);
+    // The fields that a reader shows first.
+    let shown = [("Scalars", name_of(1)), ("Vectors", name_of(3))];
+    let shown = shown.into_iter().filter_map(|(kind, name)| Some(format!(" {kind}=\"{}\"", name?)));
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n\
+         <Piece NumberOfPoints=\"{point_count}\" NumberOfCells=\"{cell_count}\">\n<PointData{}>\n",
+        shown.collect::<String>()
+    );
+    let mut data = Vec::new();
+    let mut append = |text: &mut String, array: DataArray| {
+        let (kind, offset, components) = (array.values.type_name(), data.len(), array.components);
+        *text += &format!(
+            "<DataArray type=\"{kind}\" Name=\"{}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>\n",
+            array.name
+        );
+        array.values.append(&mut data)
+    };
+    for field in fields {
+        append(&mut text, field)?;
+    }
+    text += "</PointData>\n<Points>\n";
+    append(&mut text, DataArray::new("Points", 3, points))?;
+    text += "</Points>\n<Cells>\n";
+    let offsets = (1..=cell_count).map(|i| (i * cells.points_per_cell) as i64).collect();
+    let types = vec![cells.cell_type; cell_count];
+    for (name, values) in [
+        ("connectivity", Values::I64(cells.connectivity)),
+        ("offsets", Values::I64(offsets)),
+        ("types", Values::U8(types)),
+    ] {
+        append(&mut text, DataArray { name: name.into(), components: 1, values })?;
+    }
+    text += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+    let mut file = text.into_bytes();
+    file.append(&mut data);
+    file.extend(b"\n</AppendedData>\n</VTKFile>\n");
+    Ok(file)
+}
+
+/// The coordinates of the points in a `file`, three each, and the fields of the points. Cells are not read.
+///
+/// # Errors
+/// The reason, if this is not a whole file of this program.
+pub fn read_points(file: &[u8]) -> Result<(Vec<f32>, Vec<DataArray>), String> {
+    let (mut points, mut fields) = (None, Vec::new());
+    for (parent, array) in read_arrays(file, &["Points", "PointData"])? {
+        match (parent.as_str(), array) {
+            ("Points", DataArray { components: 3, values: Values::F32(x), .. }) => points = Some(x),
+            ("Points", _) => return Err("its points have not three coordinates in single precision".into()),
+            (_, field) => fields.push(field),
+        }
+    }
+    Ok((points.ok_or("it has no points")?, fields))
+}
+
+/// The arrays in the elements of a `file` that are called as in `parents`, each with the name of its element.
+fn read_arrays(file: &[u8], parents: &[&str]) -> Result<Vec<(String, DataArray)>, String> {
+    let (text, appended) = split(file)?;
+    let document = Document::parse(&text).map_err(|why| why.to_string())?;
+    let root = document.root_element();
+    let says = |name: &str, value: &str| root.attribute(name) == Some(value);
+    if !root.has_tag_name("VTKFile") || !says("type", "UnstructuredGrid") {
+        return Err("it is no unstructured grid of VTK".into());
+    }
+    if !says("byte_order", "LittleEndian") || !says("compressor", "vtkZLibDataCompressor") {
+        return Err("its arrays are not little-endian and compressed by zlib".into());
+    }
+    let word = if says("header_type", "UInt64") { 8 } else { 4 };
+    let piece = root.descendants().find(|node| node.has_tag_name("Piece")).ok_or("it has no piece")?;
+    let points: usize = attribute(piece, "NumberOfPoints")?;
+    let mut arrays = Vec::new();
+    for parent in piece.children().filter(|node| parents.contains(&node.tag_name().name())) {
+        for node in parent.children().filter(|node| node.has_tag_name("DataArray")) {
+            let name = node.attribute("Name").unwrap_or_default().to_string();
+            let components =
+                node.attribute("NumberOfComponents").map_or(Ok(1), |_| attribute(node, "NumberOfComponents"))?;
+            let bytes = match node.attribute("format") {
+                Some("appended") => {
+                    let from = attribute::<usize>(node, "offset")?;
+                    decompress(appended.get(from..).unwrap_or_default(), word)
+                }
+                Some("binary") => from_text(node.text().unwrap_or_default(), word)
+                    .and_then(|(header, blocks)| decompress(&[header, blocks].concat(), word)),
+                _ => None,
+            };
+            let bytes = bytes.ok_or_else(|| format!("the array \"{name}\" is damaged"))?;
+            let values = Values::from_bytes(node.attribute("type").unwrap_or_default(), &bytes)?;
+            if parent.tag_name().name() != "Cells" && Some(values.len()) != points.checked_mul(components) {
+                return Err(format!("the array \"{name}\" has not {components} numbers for each of {points} points"));
+            }
+            arrays.push((parent.tag_name().name().to_string(), DataArray { name, components, values }));
+        }
+    }
+    Ok(arrays)
+}
+
+/// The XML of a `file` without its appended arrays, and these.
+fn split(file: &[u8]) -> Result<(String, &[u8]), String> {
+    let cut = || "it is cut short".to_string();
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).map_err(|_| "it is no text".to_string());
+    let body = file.trim_ascii_end().strip_suffix(b"</VTKFile>").ok_or_else(cut)?;
+    let Some(from) = body.windows(APPENDED.len()).position(|bytes| bytes == APPENDED) else {
+        return Ok((text(file)?, &[]));
+    };
+    let tag = body[from..].iter().position(|byte| *byte == b'>').map_or(body.len(), |end| from + end + 1);
+    if !body[from..tag].ends_with(b"encoding=\"raw\">") {
+        return Err("its appended arrays are not raw bytes".into());
+    }
+    let data = body[tag..].trim_ascii_start().strip_prefix(b"_").ok_or_else(cut)?;
+    let data = data.trim_ascii_end().strip_suffix(b"</AppendedData>").ok_or_else(cut)?;
+    Ok((text(&body[..from])? + "</VTKFile>", data))
+}
+
+/// An attribute that is a number.
+fn attribute<T: std::str::FromStr>(node: Node<'_, '_>, name: &str) -> Result<T, String> {
+    let number = node.attribute(name).and_then(|text| text.parse().ok());
+    number.ok_or_else(|| format!("{name} of {} is no number", node.tag_name().name()))
+}
+
+/// The header and the blocks of an array in base 64, which are encoded one after the other; words of the header have `word`
+/// bytes.
+fn from_text(text: &str, word: usize) -> Option<(Vec<u8>, Vec<u8>)> {
+    let text = text.trim().as_bytes();
+    // Eight bytes take twelve digits.
+    let blocks = header_words(&base64::decode(text.get(..12)?)?, word).next()?;
+    let digits = blocks.checked_add(3)?.checked_mul(word)?.div_ceil(3).checked_mul(4)?;
+    Some((base64::decode(text.get(..digits)?)?, base64::decode(&text[digits..])?))
+}
+
+/// The words of a header, of `word` bytes each.
+fn header_words(bytes: &[u8], word: usize) -> impl Iterator<Item = usize> {
+    bytes.chunks_exact(word).map(|bytes| bytes.iter().rev().fold(0, |number, byte| number << 8 | usize::from(*byte)))
+}
+
+/// The bytes of an array that begins where `data` begins: see [`append_blocks`].
+fn decompress(data: &[u8], word: usize) -> Option<Vec<u8>> {
+    let mut fixed = header_words(data, word);
+    let (blocks, block, partial) = (fixed.next()?, fixed.next()?, fixed.next()?);
+    let mut rest = data.get(blocks.checked_add(3)?.checked_mul(word)?..)?;
+    let mut bytes = Vec::new();
+    for (number, size) in header_words(data, word).skip(3).take(blocks).enumerate() {
+        let expected = if number + 1 == blocks && partial > 0 { partial } else { block };
+        let (own, after) = rest.split_at_checked(size)?;
+        let before = bytes.len();
+        // One byte more would show that the block is longer than its header says.
+        ZlibDecoder::new(own).take((expected as u64).saturating_add(1)).read_to_end(&mut bytes).ok()?;
+        if bytes.len() - before != expected {
+            return None;
+        }
+        rest = after;
+    }
+    Some(bytes)
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/output/vtu.rs"]
+mod tests;
