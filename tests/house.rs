@@ -228,6 +228,18 @@ fn engines_threads_and_printing_stay_in_their_modules() {
 }
 
 #[test]
+fn the_library_has_at_most_20_direct_dependencies_and_the_program_34() {
+    let manifest: String = fs::read_to_string(home().join("Cargo.toml")).unwrap();
+    let dependencies = manifest.split("[dependencies]\n").nth(1).and_then(|rest| rest.split("\n[").next()).unwrap();
+    let all: Vec<&str> = dependencies.lines().filter(|line| line.contains(" = ")).collect();
+    // Of an engine there are two crates a dimension; all other optional crates belong to `cli` or `surface`.
+    let required = all.iter().filter(|line| !line.contains("optional = true")).count();
+    assert!(required + 2 <= 20, "{required} and two of an engine");
+    let surface = all.iter().filter(|line| line.starts_with("splashsurf_lib")).count();
+    assert!(all.len() - surface <= 34, "{} and {surface} of the feature surface", all.len());
+}
+
+#[test]
 fn no_struct_of_the_physics_has_more_than_15_fields() {
     let physics = MODULES.iter().position(|name| *name == "plan");
     findings(|path, text| {

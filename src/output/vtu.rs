@@ -144,35 +144,43 @@ pub fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> io::Resu
          <Piece NumberOfPoints=\"{point_count}\" NumberOfCells=\"{cell_count}\">\n<PointData{}>\n",
         shown.collect::<String>()
     );
-    let mut data = Vec::new();
-    let mut append = |text: &mut String, array: DataArray| {
-        let (kind, offset, components) = (array.values.type_name(), data.len(), array.components);
-        *text += &format!(
-            "<DataArray type=\"{kind}\" Name=\"{}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>\n",
-            array.name
-        );
-        array.values.append(&mut data)
-    };
-    for field in fields {
-        append(&mut text, field)?;
-    }
-    text += "</PointData>\n<Points>\n";
-    append(&mut text, DataArray::new("Points", 3, points))?;
-    text += "</Points>\n<Cells>\n";
     let offsets = (1..=cell_count).map(|i| (i * cells.points_per_cell) as i64).collect();
-    let types = vec![cells.cell_type; cell_count];
-    for (name, values) in [
-        ("connectivity", Values::I64(cells.connectivity)),
-        ("offsets", Values::I64(offsets)),
-        ("types", Values::U8(types)),
-    ] {
-        append(&mut text, DataArray { name: name.into(), components: 1, values })?;
-    }
-    text += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-    let mut file = text.into_bytes();
+    let of_cells = |name: &str, values| DataArray { name: name.into(), components: 1, values };
+    let cells = vec![
+        of_cells("connectivity", Values::I64(cells.connectivity)),
+        of_cells("offsets", Values::I64(offsets)),
+        of_cells("types", Values::U8(vec![cells.cell_type; cell_count])),
+    ];
+    // The last element has the first data: meshio 5.3 mistakes the offsets of arrays in the order of their elements.
+    let mut data = Vec::new();
+    let cells = append_arrays(cells, &mut data)?;
+    let points = append_arrays(vec![DataArray::new("Points", 3, points)], &mut data)?;
+    text += &append_arrays(fields, &mut data)?;
+    text += &format!(
+        "</PointData>\n<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n"
+    );
+    let mut file = (text + "<AppendedData encoding=\"raw\">\n_").into_bytes();
     file.append(&mut data);
     file.extend(b"\n</AppendedData>\n</VTKFile>\n");
     Ok(file)
+}
+
+/// Appends `arrays` to `data`, the last one first; returns their elements.
+fn append_arrays(arrays: Vec<DataArray>, data: &mut Vec<u8>) -> io::Result<String> {
+    let mut text = String::new();
+    for DataArray { name, components, values } in arrays.into_iter().rev() {
+        // One component is the default of the format; meshio makes columns of arrays that state it.
+        let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+        let (kind, offset) = (values.type_name(), data.len());
+        text.insert_str(
+            0,
+            &format!(
+                "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>\n"
+            ),
+        );
+        values.append(data)?;
+    }
+    Ok(text)
 }
 
 /// The coordinates of the points in a `file`, three each, and the fields of the points. Cells are not read.

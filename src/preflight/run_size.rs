@@ -111,11 +111,11 @@ impl<const D: usize> PreflightContext<'_, D> {
         // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
         let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + forms + extra;
         let skin = particle + (2.0 * d + 2.0) * number;
-        // A frame is put together as numbers, packed, as text and as the file's text.
-        let picture = self.plan.frames.as_ref().map_or(0.0, |frames| 4.0 * particle_bytes(&frames.fields).1);
+        // The compressed arrays of a frame, the file that they are copied to, and some arrays before compression.
+        let frame = self.plan.frames.as_ref().map_or(0.0, |frames| 2.5 * particle_bytes(&frames.fields).1);
         // States to go back to: two, and what it takes to make one.
         let states = 3.0 * (fluid * (particle + d * number) + boundary * particle);
-        fluid * water + boundary * skin + states + system.neighbour_list_bytes() as f64 + fluid.max(boundary) * picture
+        fluid * water + boundary * skin + states + system.neighbour_list_bytes() as f64 + fluid.max(boundary) * frame
     }
 
     fn disk(&self, step: &StepSizeLimits, columns: &[usize]) -> DiskUse {

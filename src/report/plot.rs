@@ -81,7 +81,7 @@ pub fn line_plot(titles: [&str; 2], lines: &[PlotLine]) -> String {
 pub fn log_log_plot(titles: [&str; 2], lines: &[PlotLine]) -> String {
     let lines: Vec<PlotLine> = lines.iter().map(positive).collect();
     let (x, y) = (x_range(&lines).unwrap_or(0.1..1.0), y_range(&lines).unwrap_or(0.1..1.0));
-    draw(titles, &lines, &[PlotAxis::Log(x.start / 1.5..x.end * 2.0), PlotAxis::Log(y.start / 1.3..y.end * 1.3)])
+    draw(titles, &lines, &[PlotAxis::Log(x.start / 1.5..x.end * 1.5), PlotAxis::Log(y.start / 1.3..y.end * 1.3)])
 }
 
 /// `line` without points that are not above 0; an error bar that reaches 0 ends at its point.
@@ -261,12 +261,13 @@ fn line_svg(line: &PlotLine, axes: &[PlotAxis; 2], area: &Area) -> String {
     svg
 }
 
-/// The legend and its height: an entry for each name, row by row.
+/// The legend and its height: an entry for each name and colour, row by row.
 fn legend(lines: &[PlotLine]) -> (String, f64) {
     let (mut svg, mut x, mut row) = (String::new(), MARGINS[0], 0.0);
     let mut named: Vec<&PlotLine> = Vec::new();
     for line in lines {
-        if !line.name.is_empty() && !named.iter().any(|other| other.name == line.name) {
+        if !line.name.is_empty() && !named.iter().any(|other| (&other.name, other.colour) == (&line.name, line.colour))
+        {
             named.push(line);
         }
     }
