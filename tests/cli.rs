@@ -754,6 +754,15 @@ fn an_error_in_a_built_in_scene_names_the_scene() {
 }
 
 #[test]
+#[cfg(not(feature = "surface"))]
+fn an_export_of_surfaces_by_a_program_without_them_names_the_remedy() {
+    let desk = Desk::new("no-surface");
+    desk.pontoon(&["export", ".", "--surface"])
+        .refused(2, &["built without meshes of the free surface", "cargo install --path . --features surface"]);
+}
+
+#[test]
+#[cfg(feature = "surface")]
 fn the_surface_of_a_run_in_space_is_exported_as_meshes_and_that_of_a_section_is_refused() {
     let desk = Desk::new("surface");
     for (scene, folder) in [("still-tank", "flat"), ("still-tank-3d", "deep")] {
