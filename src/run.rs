@@ -2,10 +2,10 @@
 //! step, record, check.
 //!
 //! ```no_run
-//! use pontoon::run::{Options, Progress, run};
+//! use pontoon::run::{RunOptions, Progress, run};
 //!
 //! let mut watch = |now: &Progress| now.wall < 3600.0;   // false asks the run to stop
-//! let outcome = run("scenes/raft".as_ref(), &Options::default(), &mut watch)?;
+//! let outcome = run("scenes/raft".as_ref(), &RunOptions::default(), &mut watch)?;
 //! assert!(outcome.folder.join("manifest.json").exists());
 //! # Ok::<(), pontoon::Error>(())
 //! ```
