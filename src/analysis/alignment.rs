@@ -74,7 +74,7 @@ pub fn align(
 /// let t: Vec<f64> = (0..400).map(|i| 0.01 * i as f64).collect();
 /// let wave = |late: f64| t.iter().map(|t| (3.0 * (t - late)).sin()).collect::<Vec<_>>();
 /// let (sim, reference) = (TimeSeries::new(t.clone(), wave(0.05))?, TimeSeries::new(t.clone(), wave(0.0))?);
-/// let delay = best_delay(&sim, &reference.within(0.5, 3.5)?).unwrap();
+/// let delay = best_delay(&sim, &reference.window(0.5, 3.5)?).unwrap();
 /// assert!((delay - 0.05).abs() < 1e-4);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
