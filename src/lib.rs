@@ -52,8 +52,10 @@
 //! | [`simulation`] | steps, rollback, adding and removing solids, external bodies |
 //! | [`plan`], [`probe`], [`analysis`], [`output`] | what a run samples, judges and writes |
 //! | [`scene`] | the TOML scene |
-//! | [`preflight`], [`run`], [`report`], [`study`], [`bench`] | what the program does with scenes |
+//! | [`preflight`], [`run`] | checks before a run, and a run with its files |
+//! | `report`, `study`, `bench` | pages, studies and timings of the program (feature `cli`) |
 
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports, reason = "the program uses them"))]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, reason = "tests may"))]
 
 pub mod error;
@@ -78,10 +80,13 @@ pub mod scene;
 #[doc(hidden)]
 pub mod preflight;
 pub mod run;
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod report;
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod study;
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod bench;
 pub mod prelude;

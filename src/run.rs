@@ -16,6 +16,7 @@ mod run_folder;
 mod inspect;
 mod resume_point;
 mod lock;
+mod processor_time;
 pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;

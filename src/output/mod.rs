@@ -6,6 +6,7 @@ pub mod frame;
 pub mod frame_sequence;
 pub mod manifest;
 pub mod interval_mean;
+#[cfg(feature = "cli")]
 pub mod npz;
 pub mod removed_particles;
 #[cfg(feature = "surface")]
