@@ -52,8 +52,8 @@
 //! | [`simulation`] | steps, rollback, adding and removing solids, external bodies |
 //! | [`plan`], [`probe`], [`analysis`], [`output`] | what a run samples, judges and writes |
 //! | [`scene`] | the TOML scene |
-//! | [`preflight`] | findings about a scene before it runs |
-//! | `run`, `report`, `study`, `bench` | what the program does with scenes (feature `cli`) |
+//! | [`preflight`], [`run`] | checks before a run, and a run with its files |
+//! | `report`, `study`, `bench` | pages, studies and timings of the program (feature `cli`) |
 //!
 //! # Cargo features
 //!
@@ -86,7 +86,6 @@ pub mod output;
 pub mod scene;
 #[doc(hidden)]
 pub mod preflight;
-#[cfg(feature = "cli")]
 pub mod run;
 #[cfg(feature = "cli")]
 #[doc(hidden)]

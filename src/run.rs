@@ -2,20 +2,21 @@
 //! step, record, check.
 //!
 //! ```no_run
-//! use pontoon::run::{Options, Progress, run};
+//! use pontoon::run::{RunOptions, Progress, run};
 //!
 //! let mut watch = |now: &Progress| now.wall < 3600.0;   // false asks the run to stop
-//! let outcome = run("scenes/raft".as_ref(), &Options::default(), &mut watch)?;
+//! let outcome = run("scenes/raft".as_ref(), &RunOptions::default(), &mut watch)?;
 //! assert!(outcome.folder.join("manifest.json").exists());
 //! # Ok::<(), pontoon::Error>(())
 //! ```
 
 mod runner;
 mod energy_drift;
-mod run_folder;
+pub(crate) mod run_folder;
 mod inspect;
-mod resume_point;
+pub(crate) mod resume_point;
 mod lock;
+mod processor_time;
 pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
@@ -24,10 +25,6 @@ pub use energy_drift::EnergyDrift;
 pub use inspect::{InspectOptions, InspectReport, MeshSummary, SeriesColumns, SolidSummary, StepTiming, inspect};
 pub(crate) use lock::Lock;
 pub use lock::lock_owner;
-pub(crate) use outputs::series_folder;
-pub(crate) use resume_point::has_checkpoint;
-pub(crate) use run_folder::{scene_file, tables_unchanged};
-pub(crate) use statistics::run_statistics;
 pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
 use std::path::{Path, PathBuf};

@@ -334,7 +334,7 @@ fn the_documented_tree_is_the_real_one() {
         .collect();
     // A folder of submodules beside its file is one module.
     let files: Vec<String> = real.iter().filter(|name| name.ends_with(".rs")).cloned().collect();
-    real.retain(|name| !files.contains(&name.replace('/', ".rs")));
+    real.retain(|name| !name.ends_with('/') || !files.contains(&name.replace('/', ".rs")));
     real.sort();
     assert_eq!(documented, real, "the tree in docs/explanation/architecture.md");
 }

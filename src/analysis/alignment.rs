@@ -70,11 +70,11 @@ pub fn align(
 ///
 /// Every 2 ms is tried, the smallest first, and the best is refined by golden sections to a microsecond.
 /// ```
-/// # use pontoon::{analysis::best_delay, math::time_series::Series};
+/// # use pontoon::{analysis::best_delay, math::time_series::TimeSeries};
 /// let t: Vec<f64> = (0..400).map(|i| 0.01 * i as f64).collect();
 /// let wave = |late: f64| t.iter().map(|t| (3.0 * (t - late)).sin()).collect::<Vec<_>>();
-/// let (sim, reference) = (Series::new(t.clone(), wave(0.05))?, Series::new(t.clone(), wave(0.0))?);
-/// let delay = best_delay(&sim, &reference.within(0.5, 3.5)?).unwrap();
+/// let (sim, reference) = (TimeSeries::new(t.clone(), wave(0.05))?, TimeSeries::new(t.clone(), wave(0.0))?);
+/// let delay = best_delay(&sim, &reference.window(0.5, 3.5)?).unwrap();
 /// assert!((delay - 0.05).abs() < 1e-4);
 /// # Ok::<(), pontoon::Error>(())
 /// ```

@@ -18,10 +18,10 @@ use crate::{
 ///
 /// Source: @pirkhalili2023, eq. (26).
 /// ```
-/// # use pontoon::{analysis::deviation, math::time_series::Series};
-/// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
-/// let sim = Series::new([0.0, 2.0], [3.0, 3.0])?;   // off by 0, −1, 3
-/// assert_eq!(deviation(&sim, &reference)?, (10.0_f64 / 25.0).sqrt());
+/// # use pontoon::{analysis::relative_l2, math::time_series::TimeSeries};
+/// let reference = TimeSeries::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
+/// let sim = TimeSeries::new([0.0, 2.0], [3.0, 3.0])?;   // off by 0, −1, 3
+/// assert_eq!(relative_l2(&sim, &reference)?, (10.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
@@ -36,10 +36,10 @@ pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
 ///
 /// Source: @pirkhalili2023, eq. (27).
 /// ```
-/// # use pontoon::{analysis::amplitude, math::time_series::Series};
-/// let reference = Series::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
-/// let sim = Series::new([0.0, 2.0], [6.0, 6.0])?;
-/// assert_eq!(amplitude(&sim, &reference)?, (108.0_f64 / 25.0).sqrt());
+/// # use pontoon::{analysis::amplitude_ratio, math::time_series::TimeSeries};
+/// let reference = TimeSeries::new([0.0, 1.0, 2.0], [3.0, 4.0, 0.0])?;
+/// let sim = TimeSeries::new([0.0, 2.0], [6.0, 6.0])?;
+/// assert_eq!(amplitude_ratio(&sim, &reference)?, (108.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
@@ -57,11 +57,11 @@ pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> 
 /// # Errors
 /// `Scene` if the reference is zero throughout.
 /// ```
-/// # use pontoon::{analysis::peak, math::time_series::Series};
+/// # use pontoon::{analysis::first_peak_error, math::time_series::TimeSeries};
 /// let t = [0.0, 1.0, 2.0, 3.0, 4.0];
-/// let reference = Series::new(t, [0.0, 1.0, 8.0, 2.0, 10.0])?;   // first peak 8
-/// let sim = Series::new(t, [0.0, 0.0, 1.0, 6.0, 2.0])?;          // 6
-/// assert_eq!(peak(&sim, &reference)?, 0.25);
+/// let reference = TimeSeries::new(t, [0.0, 1.0, 8.0, 2.0, 10.0])?;   // first peak 8
+/// let sim = TimeSeries::new(t, [0.0, 0.0, 1.0, 6.0, 2.0])?;          // 6
+/// assert_eq!(first_peak_error(&sim, &reference)?, 0.25);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
@@ -82,10 +82,10 @@ pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64>
 /// # Errors
 /// `Scene` if the reference leaves the simulated span.
 /// ```
-/// # use pontoon::{analysis::off, math::time_series::Series};
-/// let still = Series::new([0.0, 1.0, 2.0], [0.0, 0.0, 0.0])?;
-/// let sim = Series::new([0.0, 2.0], [0.0, -0.5])?;
-/// assert_eq!(off(&sim, &still)?, 0.5);
+/// # use pontoon::{analysis::max_abs, math::time_series::TimeSeries};
+/// let still = TimeSeries::new([0.0, 1.0, 2.0], [0.0, 0.0, 0.0])?;
+/// let sim = TimeSeries::new([0.0, 2.0], [0.0, -0.5])?;
+/// assert_eq!(max_abs(&sim, &still)?, 0.5);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 pub fn max_abs(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {

@@ -14,7 +14,7 @@ use parser::read;
 /// ```
 /// # use pontoon::math::expression::Formula;
 /// let heave = Formula::parse("0.05*sin(2*pi*t/1.2)")?;
-/// let (value, rate) = heave.at(0.0);
+/// let (value, rate) = heave.value_and_rate(0.0);
 /// assert_eq!(value, 0.0);
 /// assert!((rate - 0.05 * std::f64::consts::TAU / 1.2).abs() < 1e-15);
 /// # Ok::<(), pontoon::Error>(())
@@ -91,9 +91,9 @@ impl Formula {
 /// A formula in the place: x and y (m), in 3-D also z.
 ///
 /// ```
-/// # use pontoon::math::expression::Field;
-/// let swirl = Field::<2>::parse("-sin(pi*x)*cos(pi*y)")?;
-/// assert_eq!(swirl.at(&[0.5, 0.0].into()), -1.0);
+/// # use pontoon::math::expression::ScalarField;
+/// let swirl = ScalarField::<2>::parse("-sin(pi*x)*cos(pi*y)")?;
+/// assert_eq!(swirl.value_at(&[0.5, 0.0].into()), -1.0);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 #[derive(Clone, Debug)]

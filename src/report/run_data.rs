@@ -17,7 +17,7 @@ use crate::{
     output::{FrameSequence, Manifest, SeriesTable},
     plan::Plan,
     probe::ProbeLocation,
-    run::{self, RunStatistics, StatisticsFilter},
+    run::{self, RunStatistics, StatisticsFilter, outputs, run_folder},
     scene::{Scene, SceneLayout},
     solid::Role,
 };
@@ -101,7 +101,7 @@ impl RunData {
     /// `Restart` if it holds no run. All else that cannot be read is left out with a remark.
     pub fn read(folder: &Path) -> Result<Self> {
         let manifest = Manifest::read(folder)?;
-        let file = run::scene_file(&folder.join("scene"));
+        let file = run_folder::scene_file(&folder.join("scene"));
         let mut remarks = Vec::new();
         let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.message));
         let sets: Vec<(String, String)> = manifest.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
@@ -112,7 +112,7 @@ impl RunData {
             None
         });
         let plan = set.as_ref().map(|set| &set.plan);
-        let series = run::series_folder(folder);
+        let series = outputs::series_folder(folder);
         let mut tables = Vec::new();
         for name in names(&series, plan) {
             match ProbeTable::read(&series, &name, plan) {
@@ -129,7 +129,7 @@ impl RunData {
         }
         let checks = checks.into_iter().map(|(curves, check)| (check, curves)).collect();
         let told = plan.map_or_else(RunStatistics::default, |plan| {
-            run::run_statistics(folder, plan, &StatisticsFilter::default())
+            run::statistics::run_statistics(folder, plan, &StatisticsFilter::default())
         });
         Ok(Self {
             name: folder

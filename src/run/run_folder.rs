@@ -96,16 +96,8 @@ pub fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
         .try_for_each(|name| copy(&from.join(name), &to.join(name)))
 }
 
-/// Whether the tables that `words` names, but for those of `apart`, are in the run's `folder` as they are beside
-/// the scene in `file`.
-pub fn tables_unchanged(file: &Path, words: &str, folder: &Path, apart: &[&str]) -> bool {
-    let (beside, kept) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
-    let same = |name: &String| fs::read(beside.join(name)).ok() == fs::read(kept.join(name)).ok();
-    referenced_files(words).iter().filter(|name| !apart.contains(&name.as_str())).all(same)
-}
-
-/// All words in the TOML `words` that could name a file beside it.
-fn referenced_files(words: &str) -> Vec<String> {
+/// All strings in the TOML `words` that could name a file beside it.
+pub fn referenced_files(words: &str) -> Vec<String> {
     let mut names = Vec::new();
     if let Ok(table) = words.parse::<toml::Table>() {
         table.values().for_each(|value| collect_strings(value, &mut names));

@@ -2,14 +2,14 @@
 
 use std::{path::PathBuf, time::Instant};
 
-use cpu_time::ProcessTime;
-
 use super::{
     FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart,
     energy_drift::DriftMonitor,
     lock::Lock,
     outputs::{Outputs, series_folder},
-    probe_factory, resume_point, run_folder, statistics,
+    probe_factory,
+    processor_time::ProcessorTime,
+    resume_point, run_folder, statistics,
 };
 use crate::{
     analysis::{ReferenceCheck, Verdict},
@@ -48,7 +48,7 @@ pub struct Runner<const D: usize> {
     last_checkpoint: (Instant, f64),
     started_at: Instant,
     /// Processor time of the program when the run began, where the system tells.
-    cpu_at_start: Option<ProcessTime>,
+    cpu_at_start: ProcessorTime,
     _lock: Lock,
 }
 
@@ -58,7 +58,7 @@ where
 {
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> {
-        let (begun, begun_cpu) = (Instant::now(), ProcessTime::try_now().ok());
+        let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
         let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
@@ -308,12 +308,11 @@ impl<const D: usize> Runner<D> {
         self.checkpoint.wall_seconds + self.started_at.elapsed().as_secs_f64()
     }
 
-    /// Processor time so far, s; where the system does not tell, what all threads together could have used.
+    /// Processor time so far, s; where it cannot be read, the time available to all threads.
     fn cpu_seconds(&self) -> f64 {
-        let spent = self.cpu_at_start.and_then(|begun| begun.try_elapsed().ok());
         let threads = rayon::current_num_threads() as f64;
-        self.checkpoint.cpu_seconds
-            + spent.map_or_else(|| threads * self.started_at.elapsed().as_secs_f64(), |spent| spent.as_secs_f64())
+        let available = || threads * self.started_at.elapsed().as_secs_f64();
+        self.checkpoint.cpu_seconds + self.cpu_at_start.elapsed().unwrap_or_else(available)
     }
 
     fn progress(&self) -> Progress {

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, f64::consts::PI, path::Path};
 
 use serde::Serialize;
 
-use super::{outputs::series_folder, scene_file};
+use super::{outputs::series_folder, run_folder::scene_file};
 use crate::{
     analysis::{self, RaoPoint, moments, rao, rao_over_frequency, reflection, spectrum},
     error::{Error, ErrorKind, Result},

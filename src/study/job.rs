@@ -9,7 +9,7 @@ use crate::{
     analysis::{CheckCurves, ReferenceCheck, Verdict},
     error::{Error, ErrorKind, Result},
     output::{Manifest, manifest::RunStatus},
-    run::{self, RunObserver, RunOptions},
+    run::{self, RunObserver, RunOptions, outputs, resume_point, run_folder},
     scene::{FramesChoice, FramesConfig, Scene, SizeEstimate, current_key},
 };
 
@@ -139,7 +139,7 @@ impl Job {
     /// # Errors
     /// As [`Job::checks`].
     pub fn curves(&self) -> Result<Vec<Option<CheckCurves>>> {
-        let series = run::series_folder(&self.folder);
+        let series = outputs::series_folder(&self.folder);
         Ok(self.checks()?.iter().map(|check| check.curves(&series).ok()).collect())
     }
 
@@ -199,17 +199,17 @@ impl Job {
             && has_frames(&scene, manifest)
             && own.is_some()
             && own == computed_keys(&manifest.scene)
-            && run::tables_unchanged(&run::scene_file(&self.scene), &words, &self.folder, &references))
+            && files_unchanged(&run_folder::scene_file(&self.scene), &words, &self.folder, &references))
     }
 
     fn with_verdicts(&self, manifest: Manifest) -> Result<JobResult> {
         let state = match manifest.status {
             RunStatus::Finished => JobState::Finished,
             RunStatus::Failed => JobState::Failed(manifest.error.clone().unwrap_or_default()),
-            _ if run::has_checkpoint(&self.folder) => JobState::Interrupted,
+            _ if resume_point::has_checkpoint(&self.folder) => JobState::Interrupted,
             _ => JobState::Planned,
         };
-        let series = run::series_folder(&self.folder);
+        let series = outputs::series_folder(&self.folder);
         let judge = |check: ReferenceCheck| check.verdict(&series);
         let verdicts =
             if state == JobState::Finished { self.checks()?.into_iter().map(judge).collect() } else { vec![] };
@@ -232,6 +232,14 @@ fn computed_keys(scene: &str) -> Option<toml::Table> {
         words.remove(*key);
     });
     Some(words)
+}
+
+/// Whether the files that the text of a `scene` names, except `ignored` ones, are the same beside its `file` and in the run's
+/// `folder`.
+fn files_unchanged(file: &Path, scene: &str, folder: &Path, ignored: &[&str]) -> bool {
+    let (beside, kept) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
+    let same = |name: &String| fs::read(beside.join(name)).ok() == fs::read(kept.join(name)).ok();
+    run_folder::referenced_files(scene).iter().filter(|name| !ignored.contains(&name.as_str())).all(same)
 }
 
 /// Renames `folder` to the first free of `<folder>.old`, `<folder>.old-2`, …

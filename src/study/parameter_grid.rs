@@ -96,9 +96,9 @@ impl ParameterGrid {
 /// frames in a run of `until` (s); `until` if there is no time but the start.
 ///
 /// ```
-/// # use pontoon::study::interval;
-/// assert_eq!(interval(&[0.3, 0.5], 1.5), 0.1);
-/// assert_eq!(interval(&[], 1.5), 1.5);
+/// # use pontoon::study::frame_interval;
+/// assert_eq!(frame_interval(&[0.3, 0.5], 1.5), 0.1);
+/// assert_eq!(frame_interval(&[], 1.5), 1.5);
 /// ```
 pub fn frame_interval(times: &[f64], until: f64) -> f64 {
     let common = |mut a: u64, mut b: u64| {
@@ -134,8 +134,8 @@ pub fn combination_label(varied: &[(String, String)]) -> String {
 /// `text` at its commas, but for those within brackets, braces and quotes.
 ///
 /// ```
-/// # use pontoon::study::split;
-/// assert_eq!(split("none,{ artificial = { alpha = 0.02, x = [1,2] } }, \"a,b\""),
+/// # use pontoon::study::split_values;
+/// assert_eq!(split_values("none,{ artificial = { alpha = 0.02, x = [1,2] } }, \"a,b\""),
 ///     ["none", "{ artificial = { alpha = 0.02, x = [1,2] } }", "\"a,b\""]);
 /// ```
 pub fn split_values(text: &str) -> Vec<String> {

@@ -1,10 +1,10 @@
-//! The engine in two dimensions, rapier2d; what of it is yours: bodies of a world of your own, in a hosted simulation.
+//! The engine in two dimensions, rapier2d; and the conversion of bodies of your own world for co-simulation.
 //!
 //! ```no_run
 //! # use pontoon::{solid::rapier2d::{self, rapier::prelude::*}, simulation::Simulation};
 //! # fn afloat(mut world: PhysicsWorld, hull: RigidBodyHandle, mut water: Simulation<2>) -> pontoon::Result<()> {
 //! water.step_with(1.0, |step| {
-//!     rapier2d::give(&mut world.bodies[hull], &step.loads()[1]);
+//!     rapier2d::apply_load(&mut world.bodies[hull], &step.loads()[1]);
 //!     world.integration_parameters.dt = step.dt();
 //!     world.step();
 //!     step.solids[1] = rapier2d::kinematics(&world.bodies[hull]);

@@ -1,6 +1,6 @@
 //! `pontoon stress`: many short runs over maps of hard cases, each judged by physics.
 //!
-//! [`maps`] are scenes with holes that axes fill; [`CaseRun`] runs a case in memory and measures it; [`Criteria`] holds the
+//! `maps` are scenes with holes that axes fill; [`CaseRun`] runs a case in memory and measures it; [`Criteria`] holds the
 //! figures against bounds; [`StressResults`] works the list off and keeps what came out. A case is right, stopped with a
 //! reason, wrong, or cut by its budget: unfinished.
 
