@@ -1,6 +1,8 @@
 //! The chosen laws as data; the one place where a name becomes a type.
 
-pub use crate::sph::{boundary::Slip, density_diffusion::Diffusion, viscosity::Viscosity};
+pub(crate) use crate::sph::boundary::Slip; //NARROW
+pub(crate) use crate::sph::density_diffusion::Diffusion; //NARROW
+pub use crate::sph::viscosity::Viscosity;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,7 +71,7 @@ pub enum Shifting {
 
 impl Shifting {
     /// Whether water is not shifted beside a solid, which is `fixed` or not.
-    pub fn suppressed_beside(self, fixed: bool) -> bool {
+    pub(crate) fn suppressed_beside(self, fixed: bool) -> bool { //NARROW
         match self {
             Self::AwayFromSolids(_) => true,
             Self::AwayFromFixed(_) => fixed,
@@ -91,7 +93,7 @@ pub enum PairLoopKind {
 
 impl PairLoopKind {
     /// The SIMD instructions that it uses, if any.
-    pub fn instruction_set(self) -> Option<Level> {
+    pub(crate) fn instruction_set(self) -> Option<Level> { //NARROW
         match self {
             Self::Fast => simd::best_instruction_set(),
             Self::Reference => None,
@@ -171,7 +173,7 @@ pub struct Model {
 }
 
 /// Default of c₀ over √(g·depth), –.
-pub const C0_FACTOR: f64 = 10.0;
+pub(crate) const C0_FACTOR: f64 = 10.0; //NARROW
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
@@ -205,18 +207,18 @@ impl Model {
     }
 
     /// The kernel's support radius 2h, m.
-    pub fn support_radius(&self) -> f64 {
+    pub(crate) fn support_radius(&self) -> f64 { //NARROW
         SUPPORT_RATIO * self.h
     }
 
     /// Layers of boundary particles, dp apart, that fill the kernel's support.
-    pub fn boundary_layers(&self) -> usize {
+    pub(crate) fn boundary_layers(&self) -> usize { //NARROW
         // A support of 3.0 dp needs three layers, also where rounding makes it 3 + 1e-16.
         (self.support_radius() / self.dp - 1e-9).ceil().max(1.0) as usize
     }
 
     /// The constants that the laws share.
-    pub fn fluid_properties<const D: usize>(&self) -> FluidProperties<D> {
+    pub(crate) fn fluid_properties<const D: usize>(&self) -> FluidProperties<D> { //NARROW
         FluidProperties {
             h: self.h,
             dp: self.dp,
@@ -228,7 +230,7 @@ impl Model {
     }
 
     /// Kernel value W (1/mᴰ) at squared distance `r2` (m²) in `dimension` 2 or 3.
-    pub fn kernel_value(&self, r2: f64, dimension: usize) -> f64 {
+    pub(crate) fn kernel_value(&self, r2: f64, dimension: usize) -> f64 { //NARROW
         match self.kernel {
             KernelKind::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
             KernelKind::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
@@ -236,7 +238,7 @@ impl Model {
     }
 
     /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::lattice_stiffness`].
-    pub fn lattice_stiffness<const D: usize>(&self) -> f64 {
+    pub(crate) fn lattice_stiffness<const D: usize>(&self) -> f64 { //NARROW
         match self.kernel {
             KernelKind::Cubic { .. } => {
                 kernel::lattice::lattice_stiffness(kernel::Cubic::new(self.h, D), &self.fluid_properties::<D>())
@@ -248,14 +250,14 @@ impl Model {
     }
 
     /// The choices that cannot be combined, if any.
-    pub fn conflict(&self) -> Option<&'static str> {
+    pub(crate) fn conflict(&self) -> Option<&'static str> { //NARROW
         let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
         (self.gradient == PressureGradient::Corrected && !alone).then_some(clash)
     }
 
     /// The shifting parameters, if any.
-    pub fn shift(&self) -> Option<Shift> {
+    pub(crate) fn shift(&self) -> Option<Shift> { //NARROW
         match self.shifting {
             Shifting::None => None,
             Shifting::AwayFromSolids(s) | Shifting::AwayFromFixed(s) | Shifting::Everywhere(s) => Some(s),

@@ -22,22 +22,22 @@ pub struct Particles<const D: usize> {
 
 impl<const D: usize> Particles<D> {
     /// Number of particles.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize { //NARROW
         self.r.len()
     }
 
     /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool { //NARROW
         self.r.is_empty()
     }
 
     /// The first `n` of them.
-    pub fn first_n(&self, n: usize) -> ParticlesView<'_, D> {
+    pub(crate) fn first_n(&self, n: usize) -> ParticlesView<'_, D> { //NARROW
         ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
     }
 
     /// Adds a particle at rest at `r` (m) of density `rho` (kg/m³); its id is its number.
-    pub fn push(&mut self, r: Vector<D>, rho: f64) {
+    pub(crate) fn push(&mut self, r: Vector<D>, rho: f64) { //NARROW
         self.id.push(self.r.len() as u32);
         self.r.push(r);
         self.v.push(Vector::zeros());
@@ -65,12 +65,12 @@ impl<const D: usize> ParticlesView<'_, D> {
     }
 
     /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool { //NARROW
         self.r.is_empty()
     }
 
     /// Those of these numbers, in this order.
-    pub fn select(&self, numbers: impl IntoIterator<Item = usize>) -> Particles<D> {
+    pub(crate) fn select(&self, numbers: impl IntoIterator<Item = usize>) -> Particles<D> { //NARROW
         let mut chosen = Particles::default();
         for i in numbers {
             chosen.r.push(self.r[i]);

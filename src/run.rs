@@ -21,11 +21,23 @@ pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 
-pub use energy_drift::EnergyDrift;
-pub use inspect::{InspectOptions, InspectReport, MeshSummary, SeriesColumns, SolidSummary, StepTiming, inspect};
+pub(crate) use energy_drift::EnergyDrift; //NARROW
+pub(crate) use inspect::InspectOptions; //NARROW
+pub(crate) use inspect::InspectReport; //NARROW
+pub(crate) use inspect::MeshSummary; //NARROW
+pub(crate) use inspect::SeriesColumns; //NARROW
+pub(crate) use inspect::SolidSummary; //NARROW
+pub(crate) use inspect::StepTiming; //NARROW
+pub(crate) use inspect::inspect; //NARROW
 pub(crate) use lock::Lock;
-pub use lock::lock_owner;
-pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
+pub(crate) use lock::lock_owner; //NARROW
+pub(crate) use statistics::RAO_FILE; //NARROW
+pub(crate) use statistics::RaoResult; //NARROW
+pub(crate) use statistics::RunStatistics; //NARROW
+pub(crate) use statistics::SPECTRA_FILE; //NARROW
+pub(crate) use statistics::Statistic; //NARROW
+pub(crate) use statistics::StatisticsFilter; //NARROW
+pub(crate) use statistics::statistics; //NARROW
 
 use std::path::{Path, PathBuf};
 
@@ -42,7 +54,7 @@ use crate::{
 
 /// What a run is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct RunOptions {
+pub(crate) struct RunOptions { //NARROW
     /// Folder for the results, new or empty. By default `runs/<scene>`, with a number if that is taken.
     pub out: Option<PathBuf>,
     /// Keys of the scene and the values that replace the scene's own, as in `("dp", "0.02")`.
@@ -53,7 +65,7 @@ pub struct RunOptions {
 
 /// What is known when a run begins.
 #[derive(Clone, Copy, Debug)]
-pub struct RunStart<'a> {
+pub(crate) struct RunStart<'a> { //NARROW
     /// The run's folder.
     pub folder: &'a Path,
     /// What the manifest says at the start: caption, particles, threads, warnings.
@@ -64,7 +76,7 @@ pub struct RunStart<'a> {
 
 /// How far a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
+pub(crate) struct Progress { //NARROW
     /// Simulated time, s.
     pub time: f64,
     /// Simulated time at the end, s.
@@ -82,7 +94,7 @@ pub struct Progress {
 }
 
 /// Someone who follows a run. Any `FnMut(&Progress) -> bool` does.
-pub trait RunObserver: Send {
+pub(crate) trait RunObserver: Send { //NARROW
     /// Told once, before the first step.
     fn start(&mut self, start: &RunStart) {
         let _ = start;
@@ -105,7 +117,7 @@ impl<F: FnMut(&Progress) -> bool + Send> RunObserver for F {
 
 /// Where a free body is at the end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FinalBodyState {
+pub(crate) struct FinalBodyState { //NARROW
     /// Its name.
     pub name: String,
     /// Position of its centre of mass, m.
@@ -118,7 +130,7 @@ pub struct FinalBodyState {
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RunOutcome {
+pub(crate) struct RunOutcome { //NARROW
     /// The run's folder.
     pub folder: PathBuf,
     /// The manifest as written there.
@@ -131,7 +143,7 @@ pub struct RunOutcome {
 
 impl RunOutcome {
     /// Whether a check misses its bound.
-    pub fn has_failed_checks(&self) -> bool {
+    pub(crate) fn has_failed_checks(&self) -> bool { //NARROW
         self.manifest.checks.iter().any(|verdict| verdict.passed == Some(false))
     }
 }
@@ -141,7 +153,7 @@ impl RunOutcome {
 /// # Errors
 /// `Scene`, `Usage`, `File` before anything is written or when a file cannot be written; `Fault` when the
 /// computation cannot go on: then the run's folder holds everything up to then and `failure.json`.
-pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+pub(crate) fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> { //NARROW
     let file = run_folder::scene_file(path);
     let scene = Scene::read(&file, &options.overrides)?;
     let origin = RunOrigin::Fresh { file: &file, out: options.out.as_deref(), overrides: &options.overrides };
@@ -155,7 +167,7 @@ pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Re
 /// # Errors
 /// `Restart` if it has finished or still goes on, holds no whole checkpoint, or its scene has changed since;
 /// `Usage` if `guards` names any other key; else as [`run`].
-pub fn resume(
+pub(crate) fn resume( //NARROW
     folder: &Path,
     guards: &[(String, String)],
     threads: Option<usize>,

@@ -8,13 +8,14 @@ mod constraints;
 
 use std::time::{Duration, Instant};
 
-pub use crate::{
-    coupling::BodyStep,
-    system::{Escape, ParticleLimits, RemovedParticle, Setup},
-};
-pub use add_remove::AddedSolid;
+pub(crate) use crate::coupling::BodyStep; //NARROW
+pub(crate) use crate::system::Escape; //NARROW
+pub(crate) use crate::system::ParticleLimits; //NARROW
+pub(crate) use crate::system::RemovedParticle; //NARROW
+pub use crate::system::Setup;
+pub(crate) use add_remove::AddedSolid; //NARROW
 pub(crate) use constraints::find_by_name;
-pub use rollback::Rollback;
+pub(crate) use rollback::Rollback; //NARROW
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -181,7 +182,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Disables the rollback: the first alarm ends the run.
-    pub fn without_rollback(mut self) -> Self {
+    pub(crate) fn without_rollback(mut self) -> Self { //NARROW
         self.rollback = RollbackControl::disabled();
         self
     }
@@ -192,17 +193,17 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Whether a state of `time` (s) is stored.
-    pub fn has_rollback_state(&self, time: f64) -> bool {
+    pub(crate) fn has_rollback_state(&self, time: f64) -> bool { //NARROW
         self.rollback.has_state_at(time)
     }
 
     /// The rollbacks so far, with their causes and times.
-    pub fn rollbacks(&self) -> &[Rollback] {
+    pub(crate) fn rollbacks(&self) -> &[Rollback] { //NARROW
         &self.rollback.log
     }
 
     /// The particles that left the domain and were removed ([`Escape::Remove`]), and the times of removal (s).
-    pub fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] {
+    pub(crate) fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] { //NARROW
         &self.removed
     }
 
@@ -234,7 +235,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The longest step (s) that the present rates, the springs and the model allow.
-    pub fn step_limit(&self) -> f64 {
+    pub(crate) fn step_limit(&self) -> f64 { //NARROW
         let model = self.system.model();
         let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
         let ties = self.spring_step_limit().min(self.bodies.constraints().next_release(self.clock.time));
@@ -292,12 +293,12 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Steps so far.
-    pub fn steps(&self) -> u64 {
+    pub(crate) fn steps(&self) -> u64 { //NARROW
         self.clock.steps
     }
 
     /// Force passes so far.
-    pub fn force_passes(&self) -> u64 {
+    pub(crate) fn force_passes(&self) -> u64 { //NARROW
         self.system.force_passes()
     }
 
@@ -311,12 +312,12 @@ impl<const D: usize> Simulation<D> {
 
     /// Impulse (N s; N s/m in 2-D) of the water not yet applied to free solid number `solid`. Non-zero only for bodies with
     /// acoustic added mass.
-    pub fn pending_impulse(&self, solid: usize) -> Vector<D> {
+    pub(crate) fn pending_impulse(&self, solid: usize) -> Vector<D> { //NARROW
         self.bodies.pending_impulse(solid)
     }
 
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
-    pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
+    pub(crate) fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) { //NARROW
         if let Some(engine) = self.bodies.engine_mut() {
             engine.set_velocity(solid, velocity, spin);
             let kinematics = &mut self.system.solids[solid].kinematics;
@@ -332,7 +333,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
-    pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) {
+    pub(crate) fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) { //NARROW
         let fluid = &mut self.system.fluid.particles;
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
     }
@@ -346,7 +347,7 @@ impl<const D: usize> Simulation<D> {
     ///
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
-    pub fn save(&self) -> Result<Vec<u8>> {
+    pub(crate) fn save(&self) -> Result<Vec<u8>> { //NARROW
         self.save_with_rollbacks(self.rollback.log.len())
     }
 
@@ -388,7 +389,7 @@ impl<const D: usize> Simulation<D> {
     ///
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+    pub(crate) fn restore(&mut self, bytes: &[u8]) -> Result<()> { //NARROW
         let kept = Self::read(bytes)?;
         if kept.removed_solids != self.removed_solids() {
             return Err(Error::new(

@@ -17,7 +17,7 @@ const MIN_OVERLAP: f64 = 0.9;
 
 /// A run against its reference once one constant delay is taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AlignedMetrics {
+pub(crate) struct AlignedMetrics { //NARROW
     /// By how much the run is late, s; negative where it leads.
     pub delay: f64,
     /// Relative deviation then, –.
@@ -30,7 +30,7 @@ pub struct AlignedMetrics {
 
 /// When both series first pass a threshold, s; none if they never do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ArrivalTimes {
+pub(crate) struct ArrivalTimes { //NARROW
     /// The run.
     pub run: Option<f64>,
     /// Its reference; 0 where its clock starts then.
@@ -39,7 +39,7 @@ pub struct ArrivalTimes {
 
 /// The two once the delay is taken out that `align` means, and when they arrive if it says so; `sim` may
 /// reach further than `window`, in which arrivals count.
-pub fn align(
+pub(crate) fn align( //NARROW
     sim: &TimeSeries,
     reference: &TimeSeries,
     align: Align,
@@ -78,7 +78,7 @@ pub fn align(
 /// assert!((delay - 0.05).abs() < 1e-4);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
+pub(crate) fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> { //NARROW
     let n = |delay: f64| shifted_reference(sim, reference, delay).and_then(|moved| relative_l2(sim, &moved).ok());
     let count = (MAX_DELAY / STEP).round() as i32;
     let mut best: Option<(f64, f64)> = None;

@@ -4,12 +4,12 @@ use super::Verdict;
 use crate::{math::format, plan::Score};
 
 /// A figure with three decimals, or a dash.
-pub fn format_metric(x: Option<f64>) -> String {
+pub(crate) fn format_metric(x: Option<f64>) -> String { //NARROW
     x.map_or("–".into(), |x| format!("{x:.3}"))
 }
 
 /// A figure in the unit of its series: three digits that count.
-pub fn format_value(x: Option<f64>) -> String {
+pub(crate) fn format_value(x: Option<f64>) -> String { //NARROW
     match x {
         None => "–".into(),
         Some(0.0) => "0".into(),
@@ -21,12 +21,12 @@ pub fn format_value(x: Option<f64>) -> String {
 }
 
 /// A delay in ms, with its sign.
-pub fn format_delay(seconds: f64) -> String {
+pub(crate) fn format_delay(seconds: f64) -> String { //NARROW
     format!("{:+.0} ms", seconds * 1e3)
 }
 
 /// The bound in words.
-pub fn format_bound(bound: Option<Score>) -> String {
+pub(crate) fn format_bound(bound: Option<Score>) -> String { //NARROW
     let Some(b) = bound else { return String::new() };
     let said = [
         ("N", b.relative_l2),
@@ -41,7 +41,7 @@ pub fn format_bound(bound: Option<Score>) -> String {
 }
 
 /// Whether the bound is kept, or why nobody knows.
-pub fn format_outcome(verdict: &Verdict) -> String {
+pub(crate) fn format_outcome(verdict: &Verdict) -> String { //NARROW
     match (verdict.passed, &verdict.note) {
         (Some(true), _) => "kept".into(),
         (Some(false), _) => "MISSED".into(),
@@ -91,7 +91,7 @@ fn has_limit(verdict: &Verdict, which: fn(&Score) -> Option<f64>) -> bool {
 
 /// The table of `verdicts`, the first row its head; before each stand the cells that it comes with, under
 /// `heads`.
-pub fn verdict_rows(verdicts: &[(&[String], &Verdict)], heads: &[&str]) -> Vec<Vec<String>> {
+pub(crate) fn verdict_rows(verdicts: &[(&[String], &Verdict)], heads: &[&str]) -> Vec<Vec<String>> { //NARROW
     let used = |(i, (_, text)): &(usize, &VerdictColumn)| *i < 3 || verdicts.iter().any(|(_, v)| !text(v).is_empty());
     let columns: Vec<&VerdictColumn> = COLUMNS.iter().enumerate().filter(used).map(|(_, column)| column).collect();
     let mut head: Vec<String> = heads.iter().map(|h| h.to_string()).collect();

@@ -3,7 +3,7 @@
 
 mod alignment;
 mod error_metrics;
-pub mod format_verdicts;
+pub(crate) mod format_verdicts; //NARROW
 mod harmonic;
 mod moments;
 mod rao;
@@ -13,13 +13,36 @@ mod spectrum;
 mod verdict;
 mod zero_crossings;
 
-pub use crate::plan::{Align, CheckPlan, Reference, Score};
-pub use alignment::{AlignedMetrics, ArrivalTimes, best_delay};
-pub use error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2};
-pub use harmonic::{Harmonic, harmonic};
-pub use moments::{Moments, moments};
-pub use rao::{MIN_WAVES_FOR_RAO, Rao, RaoPoint, rao, rao_over_frequency};
-pub use reflection::{Reflection, reflection};
-pub use spectrum::{WelchSpectrum, complex_amplitudes, displayed_spectrum, spectrum};
-pub use verdict::{CheckCurves, ErrorMetrics, ReferenceCheck, RunningMeanMetrics, Verdict};
-pub use zero_crossings::{ZeroCrossingWaves, zero_crossing_waves};
+pub(crate) use crate::plan::Align; //NARROW
+pub(crate) use crate::plan::CheckPlan; //NARROW
+pub(crate) use crate::plan::Reference; //NARROW
+pub(crate) use crate::plan::Score; //NARROW
+pub(crate) use alignment::AlignedMetrics; //NARROW
+pub(crate) use alignment::ArrivalTimes; //NARROW
+pub(crate) use alignment::best_delay; //NARROW
+pub(crate) use error_metrics::amplitude_ratio; //NARROW
+pub(crate) use error_metrics::first_peak_error; //NARROW
+pub(crate) use error_metrics::max_abs; //NARROW
+pub(crate) use error_metrics::relative_l2; //NARROW
+pub(crate) use harmonic::Harmonic; //NARROW
+pub(crate) use harmonic::harmonic; //NARROW
+pub(crate) use moments::Moments; //NARROW
+pub(crate) use moments::moments; //NARROW
+pub(crate) use rao::MIN_WAVES_FOR_RAO; //NARROW
+pub(crate) use rao::Rao; //NARROW
+pub(crate) use rao::RaoPoint; //NARROW
+pub(crate) use rao::rao; //NARROW
+pub(crate) use rao::rao_over_frequency; //NARROW
+pub(crate) use reflection::Reflection; //NARROW
+pub(crate) use reflection::reflection; //NARROW
+pub(crate) use spectrum::WelchSpectrum; //NARROW
+pub(crate) use spectrum::complex_amplitudes; //NARROW
+pub(crate) use spectrum::displayed_spectrum; //NARROW
+pub(crate) use spectrum::spectrum; //NARROW
+pub(crate) use verdict::CheckCurves; //NARROW
+pub(crate) use verdict::ErrorMetrics; //NARROW
+pub(crate) use verdict::ReferenceCheck; //NARROW
+pub(crate) use verdict::RunningMeanMetrics; //NARROW
+pub(crate) use verdict::Verdict; //NARROW
+pub(crate) use zero_crossings::ZeroCrossingWaves; //NARROW
+pub(crate) use zero_crossings::zero_crossing_waves; //NARROW

@@ -18,7 +18,7 @@ use crate::{
 
 /// A reference that a run is to be held against.
 #[derive(Clone, Debug)]
-pub struct ReferenceCheck {
+pub(crate) struct ReferenceCheck { //NARROW
     plan: CheckPlan,
     reference: KnownReference,
 }
@@ -34,7 +34,7 @@ enum KnownReference {
 
 /// A run and what it is held against, as lines.
 #[derive(Clone, Debug)]
-pub struct CheckCurves {
+pub(crate) struct CheckCurves { //NARROW
     /// The run, from its start to its end.
     pub sim: TimeSeries,
     /// The same as the check's instrument shows it, if it has one.
@@ -49,7 +49,7 @@ pub struct CheckCurves {
 
 /// Figures of a comparison; one is none where it cannot be formed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ErrorMetrics {
+pub(crate) struct ErrorMetrics { //NARROW
     /// Relative deviation, –.
     #[serde(rename = "N")]
     pub relative_l2: Option<f64>,
@@ -64,7 +64,7 @@ pub struct ErrorMetrics {
 
 /// The figures of the run as an instrument shows it that takes a running mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RunningMeanMetrics {
+pub(crate) struct RunningMeanMetrics { //NARROW
     /// Over how long, s.
     pub seconds: f64,
     /// The figures.
@@ -74,7 +74,7 @@ pub struct RunningMeanMetrics {
 
 /// How a run did against a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
+pub(crate) struct Verdict { //NARROW
     /// Which series, as `probe.column`.
     pub series: String,
     /// The figures of the run as it is.
@@ -104,7 +104,7 @@ impl ReferenceCheck {
     /// # Errors
     /// `File` if the table cannot be read; `Scene` if it lacks a column, has fewer than two samples in the
     /// window, or the formula is none.
-    pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> {
+    pub(crate) fn new(words: &CheckPlan, folder: &Path) -> Result<Self> { //NARROW
         let reference = match &words.reference {
             Reference::Formula(text) => KnownReference::Formula(Formula::parse(text)?),
             Reference::Table { file, time, column, delay } => {
@@ -120,7 +120,7 @@ impl ReferenceCheck {
     }
 
     /// What it looks at and what for.
-    pub fn plan(&self) -> &CheckPlan {
+    pub(crate) fn plan(&self) -> &CheckPlan { //NARROW
         &self.plan
     }
 
@@ -129,7 +129,7 @@ impl ReferenceCheck {
     /// # Errors
     /// `File` if the run's table cannot be read; `Scene` if it has no such column, or the run and the
     /// reference have no time in common.
-    pub fn curves(&self, folder: &Path) -> Result<CheckCurves> {
+    pub(crate) fn curves(&self, folder: &Path) -> Result<CheckCurves> { //NARROW
         let (sim, meaned) = self.run_series(folder)?;
         let (reference, covered, _) = self.overlap(&sim)?;
         let exact = matches!(self.reference, KnownReference::Formula(_));
@@ -138,7 +138,7 @@ impl ReferenceCheck {
 
     /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
     /// comparison that cannot be made says so in its note, and misses its bound unless the run is too short.
-    pub fn verdict(&self, folder: &Path) -> Verdict {
+    pub(crate) fn verdict(&self, folder: &Path) -> Verdict { //NARROW
         let mut verdict = self.empty_verdict();
         let (sim, meaned) = match self.run_series(folder) {
             Ok(run) => run,
@@ -268,7 +268,7 @@ impl ReferenceCheck {
 
 impl Verdict {
     /// Whether every figure that `bound` names is there and within it.
-    pub fn meets(&self, bound: &Score) -> bool {
+    pub(crate) fn meets(&self, bound: &Score) -> bool { //NARROW
         let within =
             |limit: Option<f64>, figure: Option<f64>| limit.is_none_or(|most| figure.is_some_and(|x| x <= most));
         within(bound.relative_l2, self.metrics.relative_l2)

@@ -43,7 +43,7 @@ type Six = SVector<f64, 6>;
 type Square = SMatrix<f64, 6, 6>;
 
 /// The acoustic added mass of a free body.
-pub struct AcousticAddedMass<const D: usize> {
+pub(crate) struct AcousticAddedMass<const D: usize> { //NARROW
     /// Its number among the solids.
     pub(super) solid: usize,
     /// Its outer boundary particles, in order, and their normals in its frame.
@@ -55,7 +55,7 @@ pub struct AcousticAddedMass<const D: usize> {
 
 /// Its state in a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AddedMassState {
+pub(crate) struct AddedMassState { //NARROW
     /// Pending impulse, S (N s, N m s).
     pending: Six,
     /// Load of contacts and joints, C (N, N m).
@@ -286,7 +286,7 @@ fn angular<const D: usize>(six: &Six) -> Bivector<D> {
 /// ω_b (1/s), the highest frequency of a body on the compressibility of water all around: the larger of the largest
 /// translational and the largest rotational one. Every boundary particle of the outer layer is a spring of stiffness
 /// ρ₀ c₀² dpᴰ⁻² (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
-pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 {
+pub(crate) fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 { //NARROW
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
     for point in shape.boundary_points(medium.dp, 1) {

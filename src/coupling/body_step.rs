@@ -194,7 +194,7 @@ pub struct BodyStep<'a, const D: usize> {
 
 impl<const D: usize> BodyStep<'_, D> {
     /// Time at the start of the step, s.
-    pub fn time(&self) -> f64 {
+    pub(crate) fn time(&self) -> f64 { //NARROW
         self.over.t
     }
 
@@ -211,14 +211,14 @@ impl<const D: usize> BodyStep<'_, D> {
 
     /// Adds `load` (N, N m) about the centre of free solid number `solid` in this step, before [`BodyStep::advance_bodies`].
     /// Without effect where the bodies are external: there your program applies forces.
-    pub fn push(&mut self, solid: usize, load: &Load<D>) {
+    pub(crate) fn push(&mut self, solid: usize, load: &Load<D>) { //NARROW
         if let Some(engine) = &mut self.bodies.engine {
             engine.add_load(solid, load);
         }
     }
 
     /// Contact forces, pair by pair: of this step after [`BodyStep::advance_bodies`], of the last step before it.
-    pub fn contacts(&self) -> Vec<ContactForce<D>> {
+    pub(crate) fn contacts(&self) -> Vec<ContactForce<D>> { //NARROW
         self.bodies.engine().map(|engine| engine.contacts()).unwrap_or_default()
     }
 
@@ -226,7 +226,7 @@ impl<const D: usize> BodyStep<'_, D> {
     ///
     /// # Errors
     /// `Usage` where the bodies are external; `Fault` if a body leaves the valid range.
-    pub fn advance_bodies(&mut self) -> Result<()> {
+    pub(crate) fn advance_bodies(&mut self) -> Result<()> { //NARROW
         if self.bodies.external {
             return Err(Error::new(
                 ErrorKind::Usage,

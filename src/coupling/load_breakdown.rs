@@ -10,7 +10,7 @@ use crate::{
 
 /// The loads on a free body in the last step, about its centre of mass, by their origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LoadBreakdown<const D: usize> {
+pub(crate) struct LoadBreakdown<const D: usize> { //NARROW
     /// Pressure of the water.
     pub pressure: Load<D>,
     /// Viscosity of the water.
@@ -42,7 +42,7 @@ pub struct LoadBreakdown<const D: usize> {
 
 impl<const D: usize> LoadBreakdown<D> {
     /// No load.
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self { //NARROW
         let none = Load::zero();
         Self {
             pressure: none,
@@ -62,7 +62,7 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// All loads with their names, without the change of momentum.
-    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] {
+    pub(crate) fn kinds(&self) -> [(&'static str, Load<D>); 12] { //NARROW
         [
             ("pressure", self.pressure),
             ("viscous", self.viscous),
@@ -80,12 +80,12 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// The sum of all loads.
-    pub fn sum(&self) -> Load<D> {
+    pub(crate) fn sum(&self) -> Load<D> { //NARROW
         self.kinds().into_iter().map(|(_, load)| load).sum()
     }
 
     /// The change of momentum less the sum.
-    pub fn residual(&self) -> Load<D> {
+    pub(crate) fn residual(&self) -> Load<D> { //NARROW
         self.change - self.sum()
     }
 

@@ -6,13 +6,13 @@ mod energy_budget;
 mod load_breakdown;
 mod power_breakdown;
 
-pub use acoustic_added_mass::stiffest_frequency;
+pub(crate) use acoustic_added_mass::stiffest_frequency; //NARROW
 pub(crate) use acoustic_added_mass::{AcousticAddedMass, AddedMassState};
-pub use body_step::BodyStep;
+pub(crate) use body_step::BodyStep; //NARROW
 pub(crate) use body_step::{Bodies, Hook};
 pub(crate) use energy_budget::Accounting;
-pub use energy_budget::EnergyBudget;
-pub use load_breakdown::LoadBreakdown;
+pub(crate) use energy_budget::EnergyBudget; //NARROW
+pub(crate) use load_breakdown::LoadBreakdown; //NARROW
 
 use crate::{
     math::{Pose, Vector},
@@ -22,7 +22,7 @@ use crate::{
 
 /// A time interval, s.
 #[derive(Clone, Copy, Debug)]
-pub struct Interval {
+pub(crate) struct Interval { //NARROW
     /// Time at its start, s.
     pub t: f64,
     /// Its length, s.

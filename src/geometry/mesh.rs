@@ -19,7 +19,7 @@ use crate::{
 use tree::FacetTree;
 
 /// Most facets of a mesh: far more than particles can feel.
-pub const MAX_FACETS: usize = 500_000;
+pub(crate) const MAX_FACETS: usize = 500_000; //NARROW
 
 /// The longest mesh, m: what is longer is in another unit.
 const LARGEST: f64 = 1e6;
@@ -59,7 +59,7 @@ impl Mesh {
     /// `Scene` if a corner is not finite or not there, there are too many facets, the surface is open, turned inside
     /// out or partly turned over, passes through itself, or has a shell within a shell that faces the same way: says where (m), how
     /// often, and what to do.
-    pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
+    pub(crate) fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> { //NARROW
         if facets.len() > MAX_FACETS {
             return Err(Error::scene(format!("a mesh of {} facets; the most is {MAX_FACETS}", facets.len()))
                 .help("thin it out (\"decimate\"): what is finer than dp cannot be seen"));
@@ -100,7 +100,7 @@ impl Mesh {
     }
 
     /// The corners, m.
-    pub fn points(&self) -> &[Vector<3>] {
+    pub(crate) fn points(&self) -> &[Vector<3>] { //NARROW
         &self.points
     }
 
@@ -110,7 +110,7 @@ impl Mesh {
     }
 
     /// The smallest axis-aligned box around it, m.
-    pub fn bounds(&self) -> Bounds<3> {
+    pub(crate) fn bounds(&self) -> Bounds<3> { //NARROW
         self.bounds
     }
 
@@ -120,7 +120,7 @@ impl Mesh {
     }
 
     /// Area of the surface, m².
-    pub fn surface_area(&self) -> f64 {
+    pub(crate) fn surface_area(&self) -> f64 { //NARROW
         (0..self.facets.len())
             .map(|i| self.facet_corners(i))
             .map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm())
@@ -131,7 +131,7 @@ impl Mesh {
     /// length.
     ///
     /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. @baerentzen2005
-    pub fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
+    pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) { //NARROW
         self.tree.distance_and_normal(x)
     }
 

@@ -9,7 +9,7 @@ mod check;
 mod distance;
 pub mod fill;
 mod fit;
-pub mod mesh;
+pub(crate) mod mesh; //NARROW
 mod moments;
 mod offset;
 pub(crate) mod overlap;
@@ -21,8 +21,11 @@ use std::sync::Arc;
 
 use crate::math::{Matrix, Pose, Vector};
 
-pub use fill::{FilledWater, WaterRegion, fill};
-pub use mesh::{ContactGeometry, Mesh};
+pub(crate) use fill::FilledWater; //NARROW
+pub use fill::WaterRegion;
+pub use fill::fill;
+pub(crate) use mesh::ContactGeometry; //NARROW
+pub(crate) use mesh::Mesh; //NARROW
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +68,7 @@ pub struct VolumeProperties<const D: usize> {
 
 /// A boundary particle, in the shape's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoundaryPoint<const D: usize> {
+pub(crate) struct BoundaryPoint<const D: usize> { //NARROW
     /// Position, m.
     pub r: Vector<D>,
     /// Layer, 0 the one nearest the water, half a dp inside the true face.

@@ -7,7 +7,7 @@ use crate::math::{Bounds, Matrix, Pose, Vector};
 
 impl<const D: usize> Shape<D> {
     /// The smallest axis-aligned box around the shape in its own frame, m.
-    pub fn bounds(&self) -> Bounds<D> {
+    pub(crate) fn bounds(&self) -> Bounds<D> { //NARROW
         let around = |half: Vector<D>| Bounds { min: -half, max: half };
         match self {
             Shape::Box { size } => around(size * 0.5),
@@ -44,7 +44,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// Exact volume, centroid and second moment.
-    pub fn volume_properties(&self) -> VolumeProperties<D> {
+    pub(crate) fn volume_properties(&self) -> VolumeProperties<D> { //NARROW
         match self {
             Shape::Box { size } => {
                 let volume = size.product();
@@ -81,7 +81,7 @@ impl<const D: usize> Shape<D> {
 
     /// Area of the whole surface, m² (length of the outline, m, in 2-D). Of a compound the sum of its
     /// parts', so that faces in touch count.
-    pub fn surface_area(&self) -> f64 {
+    pub(crate) fn surface_area(&self) -> f64 { //NARROW
         match self {
             Shape::Box { size } => (0..D).map(|i| 2.0 * size.product() / size[i]).sum(),
             Shape::Ball { radius } => ball_surface(D, *radius),

@@ -4,7 +4,7 @@ use crate::sph::{AuxiliarySums, Num, Term};
 
 /// Inputs and sums that a set of terms needs beside acceleration and density rate.
 #[derive(Clone, Copy, Debug)]
-pub struct RequiredSums {
+pub(crate) struct RequiredSums { //NARROW
     /// The sums of shifting.
     pub shift: bool,
     /// Tensile repulsions.
@@ -26,7 +26,7 @@ const fn entries(dimension: usize) -> usize {
 
 impl RequiredSums {
     /// The needs of the terms `Y`.
-    pub const fn of_terms<Y: Term<D>, const D: usize>() -> Self {
+    pub(crate) const fn of_terms<Y: Term<D>, const D: usize>() -> Self { //NARROW
         Self {
             shift: Y::SHIFT,
             repulsion: Y::REPULSION,
@@ -38,7 +38,7 @@ impl RequiredSums {
     }
 
     /// Whether there are sums.
-    pub const fn any_auxiliary(self) -> bool {
+    pub(crate) const fn any_auxiliary(self) -> bool { //NARROW
         self.shift || self.suppression || self.stress || self.renormalization
     }
 

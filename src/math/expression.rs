@@ -73,17 +73,17 @@ impl Formula {
     ///
     /// # Errors
     /// `Scene` if it cannot be read: says what is wrong, at which character, and which words are known.
-    pub fn parse(text: &str) -> Result<Self> {
+    pub(crate) fn parse(text: &str) -> Result<Self> { //NARROW
         read(text, &["t"]).map(|root| Self { root })
     }
 
     /// The formula that is `x` at all times.
-    pub fn constant(x: f64) -> Self {
+    pub(crate) fn constant(x: f64) -> Self { //NARROW
         Self { root: Node::Number(x) }
     }
 
     /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
-    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
+    pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) { //NARROW
         self.root.evaluate(&[t])
     }
 }
@@ -97,7 +97,7 @@ impl Formula {
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct ScalarField<const D: usize> {
+pub(crate) struct ScalarField<const D: usize> { //NARROW
     root: Node,
 }
 
@@ -106,12 +106,12 @@ impl<const D: usize> ScalarField<D> {
     ///
     /// # Errors
     /// As [`Formula::parse`].
-    pub fn parse(text: &str) -> Result<Self> {
+    pub(crate) fn parse(text: &str) -> Result<Self> { //NARROW
         read(text, &["x", "y", "z"][..D]).map(|root| Self { root })
     }
 
     /// Value at the place `r` (m).
-    pub fn value_at(&self, r: &Vector<D>) -> f64 {
+    pub(crate) fn value_at(&self, r: &Vector<D>) -> f64 { //NARROW
         self.root.evaluate(r.as_slice()).0
     }
 }

@@ -25,14 +25,14 @@ const UNITS: [(&str, &str); 20] = [
 ];
 
 /// The unit of a column by the end of its name, as in `fx_N_per_m`; what follows a comma or a space is no part of it.
-pub fn unit(column: &str) -> &'static str {
+pub(crate) fn unit(column: &str) -> &'static str { //NARROW
     let column = column.split([',', ' ']).next().unwrap_or(column);
     UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("–", |(_, unit)| unit)
 }
 
 /// The name of a column without its unit, in words: `water_kinetic_J` is "water kinetic", `vx_at_1_0.2_mps` of a row of
 /// gauges "vx at 1, 0.2 m".
-pub fn column_label(column: &str) -> String {
+pub(crate) fn column_label(column: &str) -> String { //NARROW
     let end = UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("", |(end, _)| end);
     let name = &column[..column.len() - end.len()];
     match name.split_once("_at_") {
@@ -42,7 +42,7 @@ pub fn column_label(column: &str) -> String {
 }
 
 /// A number of bytes as a user says it.
-pub fn bytes(count: f64) -> String {
+pub(crate) fn bytes(count: f64) -> String { //NARROW
     match count {
         n if n >= 1e9 => format!("{:.1} GB", n / 1e9),
         n if n >= 1e6 => format!("{:.1} MB", n / 1e6),
@@ -52,7 +52,7 @@ pub fn bytes(count: f64) -> String {
 }
 
 /// A wall time (s) as a user says it.
-pub fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String { //NARROW
     let whole = seconds.round() as u64;
     match whole {
         0..=59 => format!("{seconds:.1} s"),

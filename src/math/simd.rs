@@ -3,21 +3,24 @@
 //! The width is eight on every processor, and AVX-512, AVX2 and NEON all have fused multiply-add, so that no sum
 //! depends on the instruction set.
 
-pub use fearless_simd::{Level, Simd, f32x8, i32x8};
+pub(crate) use fearless_simd::Level; //NARROW
+pub(crate) use fearless_simd::Simd; //NARROW
+pub(crate) use fearless_simd::f32x8; //NARROW
+pub(crate) use fearless_simd::i32x8; //NARROW
 
 use fearless_simd::{SimdBase, SimdFrom};
 
 /// Lanes in a number.
-pub const LANES: usize = 8;
+pub(crate) const LANES: usize = 8; //NARROW
 
 /// Eight numbers in a row, aligned so that none is split between cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
-pub struct LaneRow(pub [f32; LANES]);
+pub(crate) struct LaneRow(pub [f32; LANES]); //NARROW
 
 /// The instructions for lanes that this processor has, the fastest first: AVX-512 and AVX2 on x86-64, whatever there
 /// is elsewhere. A processor of 2012 has none.
-pub fn instruction_sets() -> Vec<Level> {
+pub(crate) fn instruction_sets() -> Vec<Level> { //NARROW
     #[cfg(target_arch = "x86_64")]
     {
         let all = Level::new();
@@ -30,17 +33,17 @@ pub fn instruction_sets() -> Vec<Level> {
 }
 
 /// The first of [`instruction_sets`].
-pub fn best_instruction_set() -> Option<Level> {
+pub(crate) fn best_instruction_set() -> Option<Level> { //NARROW
     instruction_sets().first().copied()
 }
 
 /// The name of an instruction set.
-pub fn instruction_set_name(level: Level) -> String {
+pub(crate) fn instruction_set_name(level: Level) -> String { //NARROW
     format!("{level:?}").split('(').next().unwrap_or_default().to_lowercase()
 }
 
 /// A task that runs with a given instruction set; everything that `run` calls must be `#[inline(always)]`.
-pub trait SimdTask {
+pub(crate) trait SimdTask { //NARROW
     /// Its result.
     type Output;
     /// Runs it.
@@ -48,7 +51,7 @@ pub trait SimdTask {
 }
 
 /// Does `work` with the instructions of `level`, one that [`instruction_sets`] gave.
-pub fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output {
+pub(crate) fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output { //NARROW
     #[cfg(target_arch = "x86_64")]
     {
         // Two instruction sets are compiled and not four: the sweeps are most of the program's compile time.
@@ -72,25 +75,25 @@ pub fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output {
 
 /// The numbers of a row.
 #[inline(always)]
-pub fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> {
+pub(crate) fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> { //NARROW
     f32x8::simd_from(simd, *from)
 }
 
 /// The whole numbers of a row.
 #[inline(always)]
-pub fn load_integers<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> {
+pub(crate) fn load_integers<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> { //NARROW
     i32x8::simd_from(simd, *from)
 }
 
 /// The sum of all lanes, always in the same order.
 #[inline(always)]
-pub fn sum_lanes<S: Simd>(x: f32x8<S>) -> f32 {
+pub(crate) fn sum_lanes<S: Simd>(x: f32x8<S>) -> f32 { //NARROW
     let x = x.as_slice();
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }
 
 /// The largest of all lanes.
 #[inline(always)]
-pub fn max_lane<S: Simd>(x: f32x8<S>) -> f32 {
+pub(crate) fn max_lane<S: Simd>(x: f32x8<S>) -> f32 { //NARROW
     x.as_slice().iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
 }

@@ -15,7 +15,7 @@ impl TimeSeries {
     /// # Errors
     /// `Scene` if the lengths differ, fewer than two samples are given, a number is not finite, or the
     /// times do not increase: says which sample.
-    pub fn new(t: impl Into<Vec<f64>>, x: impl Into<Vec<f64>>) -> Result<Self> {
+    pub(crate) fn new(t: impl Into<Vec<f64>>, x: impl Into<Vec<f64>>) -> Result<Self> { //NARROW
         let (t, x) = (t.into(), x.into());
         if t.len() != x.len() || t.len() < 2 {
             return Err(Error::scene(format!(
@@ -39,22 +39,22 @@ impl TimeSeries {
     }
 
     /// Sample times, s.
-    pub fn times(&self) -> &[f64] {
+    pub(crate) fn times(&self) -> &[f64] { //NARROW
         &self.t
     }
 
     /// Sample values.
-    pub fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] { //NARROW
         &self.x
     }
 
     /// First and last time, s.
-    pub fn span(&self) -> (f64, f64) {
+    pub(crate) fn span(&self) -> (f64, f64) { //NARROW
         (self.t[0], self.t[self.t.len() - 1])
     }
 
     /// Value at time `t` (s), linear between samples; the end values outside the span.
-    pub fn value_at(&self, t: f64) -> f64 {
+    pub(crate) fn value_at(&self, t: f64) -> f64 { //NARROW
         let (i, s) = self.locate(t);
         self.x[i] + s * (self.x[i + 1] - self.x[i])
     }
@@ -62,7 +62,7 @@ impl TimeSeries {
     /// Value and rate at time `t` (s) of the smooth curve through the samples: a cubic Hermite spline
     /// with the slopes of the parabola through each sample and its neighbours, so both are continuous.
     /// Outside the span the end value, at rest.
-    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
+    pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) { //NARROW
         let (first, last) = self.span();
         if t <= first || t >= last {
             return (self.value_at(t), 0.0);
@@ -81,7 +81,7 @@ impl TimeSeries {
     ///
     /// # Errors
     /// `Scene` if fewer than two samples lie there.
-    pub fn window(&self, from: f64, until: f64) -> Result<Self> {
+    pub(crate) fn window(&self, from: f64, until: f64) -> Result<Self> { //NARROW
         let range = self.t.partition_point(|&t| t < from)..self.t.partition_point(|&t| t <= until);
         if range.len() < 2 {
             let (first, last) = self.span();
@@ -93,12 +93,12 @@ impl TimeSeries {
     }
 
     /// The same `by` seconds later.
-    pub fn shifted(&self, by: f64) -> Self {
+    pub(crate) fn shifted(&self, by: f64) -> Self { //NARROW
         Self { t: self.t.iter().map(|t| t + by).collect(), x: self.x.clone() }
     }
 
     /// The same with `offset` taken off every value.
-    pub fn minus(&self, offset: f64) -> Self {
+    pub(crate) fn minus(&self, offset: f64) -> Self { //NARROW
         Self { t: self.t.clone(), x: self.x.iter().map(|x| x - offset).collect() }
     }
 
@@ -107,7 +107,7 @@ impl TimeSeries {
     ///   x̄(t) = 1/s ∫ x dt over t − s/2 … t + s/2
     ///
     /// by the trapezoid over the samples, at the same times; near an end over what there is.
-    pub fn running_mean(&self, seconds: f64) -> Self {
+    pub(crate) fn running_mean(&self, seconds: f64) -> Self { //NARROW
         let mut total = vec![0.0];
         for i in 1..self.t.len() {
             total.push(total[i - 1] + 0.5 * (self.t[i] - self.t[i - 1]) * (self.x[i] + self.x[i - 1]));
@@ -126,7 +126,7 @@ impl TimeSeries {
     }
 
     /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does.
-    pub fn first_crossing(&self, threshold: f64) -> Option<f64> {
+    pub(crate) fn first_crossing(&self, threshold: f64) -> Option<f64> { //NARROW
         let i = self.x.iter().position(|x| x.abs() >= threshold)?;
         let Some(before) = i.checked_sub(1) else { return Some(self.t[0]) };
         let (x0, x1) = (self.x[before], self.x[i]);

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
 
 /// A D×D matrix.
-pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
+pub(crate) type Matrix<const D: usize> = SMatrix<f64, D, D>; //NARROW
 
 /// What turns: an antisymmetric matrix holding a spin (rad/s) or a torque (N m; N m/m in 2-D).
 ///
@@ -22,25 +22,25 @@ pub struct Bivector<const D: usize>(pub Matrix<D>);
 
 impl<const D: usize> Bivector<D> {
     /// Number of independent components: 1 in 2-D, 3 in 3-D.
-    pub const COMPONENTS: usize = D * (D - 1) / 2;
+    pub(crate) const COMPONENTS: usize = D * (D - 1) / 2; //NARROW
 
     /// No turning.
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self { //NARROW
         Self(Matrix::zeros())
     }
 
     /// The torque of a force `f` (N) acting at the arm `r` (m): f rᵀ − r fᵀ.
-    pub fn torque(r: &Vector<D>, f: &Vector<D>) -> Self {
+    pub(crate) fn torque(r: &Vector<D>, f: &Vector<D>) -> Self { //NARROW
         Self(f * r.transpose() - r * f.transpose())
     }
 
     /// The velocity that this spin gives at the arm `r` (m): Ω r.
-    pub fn velocity_at(&self, r: &Vector<D>) -> Vector<D> {
+    pub(crate) fn velocity_at(&self, r: &Vector<D>) -> Vector<D> { //NARROW
         self.0 * r
     }
 
     /// The axial components: `[m₁₀]` in 2-D, `[m₂₁, m₀₂, m₁₀]` in 3-D.
-    pub fn axial(&self) -> Vec<f64> {
+    pub(crate) fn axial(&self) -> Vec<f64> { //NARROW
         match D {
             2 => vec![self.0[(1, 0)]],
             _ => vec![self.0[(2, 1)], self.0[(0, 2)], self.0[(1, 0)]],
@@ -48,7 +48,7 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The inverse of [`Bivector::axial`]; missing components count as zero.
-    pub fn from_axial(components: &[f64]) -> Self {
+    pub(crate) fn from_axial(components: &[f64]) -> Self { //NARROW
         let mut m = Matrix::zeros();
         let places: &[(usize, usize)] = if D == 2 { &[(1, 0)] } else { &[(2, 1), (0, 2), (1, 0)] };
         for (&(i, j), &w) in places.iter().zip(components) {
@@ -59,12 +59,12 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The power of this torque on a body of spin `spin` (W): ½ T:Ω.
-    pub fn power(&self, spin: &Self) -> f64 {
+    pub(crate) fn power(&self, spin: &Self) -> f64 { //NARROW
         0.5 * self.0.component_mul(&spin.0).sum()
     }
 
     /// The same turning, carried along by `rotation`: R Ω Rᵀ.
-    pub fn rotated(&self, rotation: &Matrix<D>) -> Self {
+    pub(crate) fn rotated(&self, rotation: &Matrix<D>) -> Self { //NARROW
         match D {
             2 => *self,
             _ => Self::from_axial((rotation * Vector::<D>::from_iterator(self.axial())).as_slice()),
@@ -72,7 +72,7 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The rotation matrix of turning with this spin for a unit of time, exp Ω (Rodrigues).
-    pub fn exp(&self) -> Matrix<D> {
+    pub(crate) fn exp(&self) -> Matrix<D> { //NARROW
         let angle = (0.5 * self.0.norm_squared()).sqrt();
         let (a, b) =
             if angle < 1e-8 { (1.0, 0.5) } else { (angle.sin() / angle, (1.0 - angle.cos()) / (angle * angle)) };
@@ -126,22 +126,22 @@ impl<const D: usize> Pose<D> {
     }
 
     /// World position of the local point `x` (m).
-    pub fn point(&self, x: &Vector<D>) -> Vector<D> {
+    pub(crate) fn point(&self, x: &Vector<D>) -> Vector<D> { //NARROW
         self.position + self.rotation * x
     }
 
     /// Local coordinates of the world point `x` (m).
-    pub fn local(&self, x: &Vector<D>) -> Vector<D> {
+    pub(crate) fn local(&self, x: &Vector<D>) -> Vector<D> { //NARROW
         self.rotation.transpose() * (x - self.position)
     }
 
     /// This pose after another: the pose of a frame that sits at `inner` inside this one.
-    pub fn then(&self, inner: &Self) -> Self {
+    pub(crate) fn then(&self, inner: &Self) -> Self { //NARROW
         Self { position: self.point(&inner.position), rotation: self.rotation * inner.rotation }
     }
 
     /// The axial angle of the rotation (rad): one component in 2-D, a rotation vector in 3-D.
-    pub fn rotation_vector(&self) -> Vec<f64> {
+    pub(crate) fn rotation_vector(&self) -> Vec<f64> { //NARROW
         let m = &self.rotation;
         if D == 2 {
             return vec![m[(1, 0)].atan2(m[(0, 0)])];
@@ -165,38 +165,38 @@ pub struct Bounds<const D: usize> {
 
 impl<const D: usize> Bounds<D> {
     /// The box that holds nothing: every union with it gives the other box.
-    pub fn empty() -> Self {
+    pub(crate) fn empty() -> Self { //NARROW
         Self { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) }
     }
 
     /// The smallest box around `points` (m).
-    pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector<D>>) -> Self {
+    pub(crate) fn around<'a>(points: impl IntoIterator<Item = &'a Vector<D>>) -> Self { //NARROW
         points.into_iter().fold(Self::empty(), |b, x| Self { min: b.min.inf(x), max: b.max.sup(x) })
     }
 
     /// The smallest box around both.
-    pub fn union(&self, other: &Self) -> Self {
+    pub(crate) fn union(&self, other: &Self) -> Self { //NARROW
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
     /// The box grown by `margin` (m) on every side.
-    pub fn grown(&self, margin: f64) -> Self {
+    pub(crate) fn grown(&self, margin: f64) -> Self { //NARROW
         Self { min: self.min.add_scalar(-margin), max: self.max.add_scalar(margin) }
     }
 
     /// Whether `x` lies inside (faces included). False for a non-finite point.
-    pub fn contains(&self, x: &Vector<D>) -> bool {
+    pub(crate) fn contains(&self, x: &Vector<D>) -> bool { //NARROW
         (0..D).all(|i| x[i] >= self.min[i] && x[i] <= self.max[i])
     }
 
     /// The corners.
-    pub fn corners(&self) -> impl Iterator<Item = Vector<D>> + use<D> {
+    pub(crate) fn corners(&self) -> impl Iterator<Item = Vector<D>> + use<D> { //NARROW
         let Self { min, max } = *self;
         (0..1usize << D).map(move |c| Vector::from_fn(|i, _| if c >> i & 1 == 1 { max[i] } else { min[i] }))
     }
 
     /// Edge lengths, m.
-    pub fn size(&self) -> Vector<D> {
+    pub(crate) fn size(&self) -> Vector<D> { //NARROW
         self.max - self.min
     }
 }

@@ -18,18 +18,18 @@ use crate::{
 };
 
 /// No particle: a pad that fills up a cluster.
-pub const PAD: u32 = u32::MAX;
+pub(crate) const PAD: u32 = u32::MAX; //NARROW
 
 /// Position of a pad: half the integer range from its cluster, so far that no kernel support reaches it and
 /// so near that no difference overflows.
-pub const FAR_POSITION: i32 = 1 << 30;
+pub(crate) const FAR_POSITION: i32 = 1 << 30; //NARROW
 
 /// Widths of a column that a cluster may span.
 const SPAN: f64 = 2.0;
 
 /// The clusters of one slab and their lists; a thread computes whole slabs.
 #[derive(Clone, Debug, Default)]
-pub struct Slab {
+pub(crate) struct Slab { //NARROW
     /// First cluster of water.
     pub first: usize,
     /// End of the water, first cluster of boundary particles.
@@ -44,7 +44,7 @@ pub struct Slab {
 
 /// All clusters.
 #[derive(Clone, Debug, Default)]
-pub struct Clusters {
+pub(crate) struct Clusters { //NARROW
     /// The particle in each slot, eight slots a cluster: an index of a water or boundary particle, or [`PAD`].
     pub source: Vec<u32>,
     /// The slabs in order.
@@ -71,12 +71,12 @@ pub(super) type Ranges = Vec<std::ops::Range<u32>>;
 
 impl Clusters {
     /// Number of clusters.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize { //NARROW
         self.source.len() / LANES
     }
 
     /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool { //NARROW
         self.source.is_empty()
     }
 
@@ -151,7 +151,7 @@ impl Clusters {
     }
 
     /// `items`, of which each cluster has `each`, slab by slab.
-    pub fn split_by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> {
+    pub(crate) fn split_by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> { //NARROW
         let mut rest = items;
         let mut parts = Vec::with_capacity(self.slabs.len());
         for slab in &self.slabs {
@@ -187,7 +187,7 @@ impl Clusters {
 
 /// The positions of a cluster in integer units, pads far away.
 #[inline(always)]
-pub fn fill_positions<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) {
+pub(crate) fn fill_positions<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) { //NARROW
     let n = occupied_lanes(source);
     for (l, &i) in source[..n].iter().enumerate() {
         for (x, r) in x.iter_mut().zip(r[i as usize].iter()) {
@@ -202,7 +202,7 @@ pub fn fill_positions<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32],
 
 /// How many lanes of a cluster hold a particle: the first ones.
 #[inline(always)]
-pub fn occupied_lanes(source: &[u32]) -> usize {
+pub(crate) fn occupied_lanes(source: &[u32]) -> usize { //NARROW
     if source[LANES - 1] == PAD { source.iter().take_while(|&&i| i != PAD).count() } else { LANES }
 }
 

@@ -10,9 +10,17 @@ mod grid;
 mod lists;
 mod search;
 
-pub use clusters::{Clusters, FAR_POSITION, PAD, Slab, fill_positions, occupied_lanes};
-pub use grid::CellGrid;
-pub use lists::{CHUNK, ParticleListChunk, ParticleLists, Span};
+pub(crate) use clusters::Clusters; //NARROW
+pub(crate) use clusters::FAR_POSITION; //NARROW
+pub(crate) use clusters::PAD; //NARROW
+pub(crate) use clusters::Slab; //NARROW
+pub(crate) use clusters::fill_positions; //NARROW
+pub(crate) use clusters::occupied_lanes; //NARROW
+pub(crate) use grid::CellGrid; //NARROW
+pub(crate) use lists::CHUNK; //NARROW
+pub(crate) use lists::ParticleListChunk; //NARROW
+pub(crate) use lists::ParticleLists; //NARROW
+pub(crate) use lists::Span; //NARROW
 
 use std::sync::OnceLock;
 
@@ -33,7 +41,7 @@ const UNITS: f64 = (1 << 24) as f64;
 
 /// The pairs.
 #[derive(Clone, Debug)]
-pub enum PairLists {
+pub(crate) enum PairLists { //NARROW
     /// Lists of single neighbours.
     Lists(ParticleLists),
     /// Lists of later clusters, searched with those instructions.
@@ -59,7 +67,7 @@ pub struct NeighbourLists<const D: usize> {
 impl<const D: usize> NeighbourLists<D> {
     /// No lists yet, for a kernel of support `reach` (m) and particles `dp` (m) apart: of clusters, searched with
     /// the instructions of `level`, or else of single neighbours.
-    pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self {
+    pub(crate) fn new(reach: f64, dp: f64, level: Option<Level>) -> Self { //NARROW
         let pairs = match level {
             Some(level) => PairLists::Clusters(Clusters::default(), level),
             None => PairLists::Lists(ParticleLists::default()),
@@ -75,7 +83,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The unit of length in which positions are whole numbers, m.
-    pub fn length_unit(reach: f64) -> f64 {
+    pub(crate) fn length_unit(reach: f64) -> f64 { //NARROW
         reach / UNITS
     }
 
@@ -87,12 +95,12 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Margin of the lists beyond the support, m.
-    pub fn margin(&self) -> f64 {
+    pub(crate) fn margin(&self) -> f64 { //NARROW
         MARGIN * self.support_radius
     }
 
     /// The order in which water at `r` lies along the columns: `order[new] = old`.
-    pub fn column_order(&self, r: &[Vector<D>]) -> Vec<u32> {
+    pub(crate) fn column_order(&self, r: &[Vector<D>]) -> Vec<u32> { //NARROW
         let columns = Columns::new(r, WIDTH * self.dp, self.list_radius());
         columns.sort(r, &all_indices(r.len())).order
     }
@@ -103,7 +111,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Builds the lists for these positions of water and boundary particles.
-    pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
+    pub(crate) fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) { //NARROW
         self.positions_at_build.0.clear();
         self.positions_at_build.0.extend_from_slice(water);
         self.positions_at_build.1.clear();
@@ -131,22 +139,22 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The positions of the water for which the lists were made, m.
-    pub fn positions_at_build(&self) -> &[Vector<D>] {
+    pub(crate) fn positions_at_build(&self) -> &[Vector<D>] { //NARROW
         &self.positions_at_build.0
     }
 
     /// The pairs.
-    pub fn pair_lists(&self) -> &PairLists {
+    pub(crate) fn pair_lists(&self) -> &PairLists { //NARROW
         &self.pair_lists
     }
 
     /// The boundary particles that have water within the lists' reach, in ascending order.
-    pub fn boundary_near_fluid(&self) -> &[u32] {
+    pub(crate) fn boundary_near_fluid(&self) -> &[u32] { //NARROW
         &self.boundary_near_fluid
     }
 
     /// Memory of the lists and of the packed particles, B.
-    pub fn memory_bytes(&self) -> usize {
+    pub(crate) fn memory_bytes(&self) -> usize { //NARROW
         match &self.pair_lists {
             PairLists::Lists(lists) => {
                 lists.memory_bytes()
@@ -160,12 +168,12 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
-    pub fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+    pub(crate) fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) { //NARROW
         self.visit_around(&self.grids().0, x, visit);
     }
 
     /// The indices of every water particle that may be within `bounds` (m), in order.
-    pub fn fluid_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
+    pub(crate) fn fluid_within(&self, bounds: &Bounds<D>) -> Vec<usize> { //NARROW
         let mut these = Vec::new();
         let bounds = bounds.grown(self.margin());
         self.grids().0.visit_rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
@@ -174,7 +182,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Calls `visit` with the index of every boundary particle that may be within the support of `x`.
-    pub fn visit_boundary_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
+    pub(crate) fn visit_boundary_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) { //NARROW
         self.visit_around(&self.grids().1, x, visit);
     }
 
@@ -200,7 +208,7 @@ fn all_indices(n: usize) -> Vec<u32> {
 /// `x` (m) in integer units of which `inv_unit` are a metre, modulo 2³²: differences of near positions are
 /// exact up to 2⁵¹ units from the origin.
 #[inline(always)]
-pub fn to_integer(x: f64, inv_unit: f64) -> i32 {
+pub(crate) fn to_integer(x: f64, inv_unit: f64) -> i32 { //NARROW
     // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.
     (x * inv_unit + 6_755_399_441_055_744.0).to_bits() as i32
 }

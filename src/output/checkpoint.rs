@@ -18,13 +18,13 @@ use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folde
 use crate::error::{Error, ErrorKind, Result};
 
 /// The last checkpoint, in the run's folder.
-pub const LAST: &str = "checkpoint.bin";
+pub(crate) const LAST: &str = "checkpoint.bin"; //NARROW
 
 /// The one before.
-pub const PREVIOUS: &str = "checkpoint.previous.bin";
+pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin"; //NARROW
 
 /// What a run that was killed while it wrote one leaves behind.
-pub const PART: &str = "checkpoint.bin.part";
+pub(crate) const PART: &str = "checkpoint.bin.part"; //NARROW
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
 const FORMAT: u32 = 5;
@@ -35,7 +35,7 @@ const MAX_EXPANSION: u64 = 1000;
 
 /// How far the outputs of a run are.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct OutputPositions {
+pub(crate) struct OutputPositions { //NARROW
     /// Length of each table, bytes, in the order of the probes, then of the lists.
     pub table_bytes: Vec<u64>,
     /// Means in the making, of the probes that take some.
@@ -48,7 +48,7 @@ pub struct OutputPositions {
 
 /// What a checkpoint holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint {
+pub(crate) struct Checkpoint { //NARROW
     /// Version of this crate that wrote it.
     pub version: String,
     /// [`fnv1a`] of the scene with every default filled in.
@@ -74,7 +74,7 @@ pub struct Checkpoint {
 
 impl Checkpoint {
     /// What there is to say before the first step of the `scene`, with `sets` changed.
-    pub fn initial(scene: &str, sets: &[(String, String)]) -> Self {
+    pub(crate) fn initial(scene: &str, sets: &[(String, String)]) -> Self { //NARROW
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             scene_hash: fnv1a(scene.as_bytes()),
@@ -94,7 +94,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// `File` if it cannot be written; those before stay.
-    pub fn write(&self, folder: &Path, good: bool) -> Result<()> {
+    pub(crate) fn write(&self, folder: &Path, good: bool) -> Result<()> { //NARROW
         let (last, previous) = (folder.join(LAST), folder.join(PREVIOUS));
         let bytes = self.to_bytes()?;
         // On the disk under its passing name before the others move: from here on there are two whole ones.
@@ -117,7 +117,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// `Restart` if it cannot be packed.
-    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+    pub(crate) fn to_bytes(&self) -> Result<Vec<u8>> { //NARROW
         let cannot = |why: &dyn std::fmt::Display| {
             Error::new(ErrorKind::Restart, format!("the checkpoint cannot be packed: {why}"))
         };
@@ -140,7 +140,7 @@ impl Checkpoint {
     /// # Errors
     /// `Restart` if there is none, or it is no checkpoint, damaged, or of another format or version; `File` if it
     /// cannot be read.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(crate) fn read(path: &Path) -> Result<Self> { //NARROW
         let bytes = fs::read(path).map_err(|why| match why.kind() {
             io::ErrorKind::NotFound => restart_error(
                 "there is no checkpoint",
@@ -160,7 +160,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// As [`Checkpoint::read`].
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self> { //NARROW
         const AFRESH: &str = "start the run afresh with `pontoon run`";
         const OTHER: &str = "resume with the version that wrote it";
         let short = || restart_error("the checkpoint is cut short", AFRESH);
@@ -213,7 +213,7 @@ fn restart_error(what: &str, help: &str) -> Error {
 }
 
 /// FNV-1a hash of `bytes`.
-pub fn fnv1a(bytes: &[u8]) -> u64 {
+pub(crate) fn fnv1a(bytes: &[u8]) -> u64 { //NARROW
     fnv1a_continue(0xcbf2_9ce4_8422_2325, bytes)
 }
 

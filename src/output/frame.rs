@@ -21,14 +21,14 @@ use crate::{
 };
 
 /// Fields that a frame may hold.
-pub const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
+pub(crate) const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"]; //NARROW
 
 /// Part of a frame that remains after compression, where water moves, –; where it rests, a third remains.
 const COMPRESSED: f64 = 0.6;
 
 /// Bytes of a water particle and of a boundary particle in a frame with these `fields`, rarely more: position, vertex and
 /// fields, compressed.
-pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
+pub(crate) fn particle_bytes(fields: &[String]) -> (f64, f64) { //NARROW
     let fields: f64 = fields.iter().map(|field| if field == "velocity" { 12.0 } else { 4.0 }).sum();
     let place = 12.0 + 8.0 + 8.0 + 1.0;
     (COMPRESSED * (place + fields), COMPRESSED * (place + fields + 4.0))
@@ -41,7 +41,7 @@ const VERTEX: u8 = 1;
 const PARTS: [&str; 2] = ["water", "solids"];
 
 /// The frames of a run. Solids carry the number of their solid besides the chosen fields.
-pub struct FrameWriter {
+pub(crate) struct FrameWriter { //NARROW
     folder: PathBuf,
     fields: Vec<String>,
     /// Lowest and highest corner (m) of the box whose water is written; `None` for all water.
@@ -58,7 +58,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
-    pub fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> {
+    pub(crate) fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> { //NARROW
         let FramesPlan { fields, crop, .. } = words.clone();
         if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
             let help = match nearest_name(word, FIELDS) {
@@ -78,7 +78,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub fn truncate(&mut self, kept: usize) -> Result<()> {
+    pub(crate) fn truncate(&mut self, kept: usize) -> Result<()> { //NARROW
         if kept >= self.times.len() {
             return Ok(());
         }
@@ -109,12 +109,12 @@ impl FrameWriter {
     }
 
     /// Times of the frames so far, s.
-    pub fn times(&self) -> &[f64] {
+    pub(crate) fn times(&self) -> &[f64] { //NARROW
         &self.times
     }
 
     /// Their size on the disk, B.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 { //NARROW
         self.bytes
     }
 
@@ -122,7 +122,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `File` if it cannot be written; the frames before stay as they are.
-    pub fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> {
+    pub(crate) fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> { //NARROW
         let number = self.times.len();
         let water = system.fluid();
         let kept = self.crop.as_ref().map(|[min, max]| {
@@ -146,7 +146,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `File` if one cannot be opened or the disk refuses.
-    pub fn sync(&mut self) -> Result<()> {
+    pub(crate) fn sync(&mut self) -> Result<()> { //NARROW
         let files = self.folder.join("frames");
         for number in self.synced..self.times.len() {
             for name in piece_names(number).map(|name| files.join(name)) {

@@ -1,25 +1,28 @@
 //! The files of a run: tables (CSV), frames (VTK), checkpoints, the manifest.
 
-pub mod checkpoint;
-pub mod csv;
-pub mod frame;
-pub mod frame_sequence;
-pub mod manifest;
-pub mod interval_mean;
+pub(crate) mod checkpoint; //NARROW
+pub(crate) mod csv; //NARROW
+pub(crate) mod frame; //NARROW
+pub(crate) mod frame_sequence; //NARROW
+pub(crate) mod manifest; //NARROW
+pub(crate) mod interval_mean; //NARROW
 #[cfg(feature = "cli")]
-pub mod npz;
-pub mod removed_particles;
+pub(crate) mod npz; //NARROW
+pub(crate) mod removed_particles; //NARROW
 mod base64;
 mod vtu;
 #[cfg(feature = "surface")]
-pub mod free_surface_mesh;
+pub(crate) mod free_surface_mesh; //NARROW
 
-pub use checkpoint::{Checkpoint, OutputPositions};
-pub use csv::{CsvTable, SeriesTable};
-pub use frame::FrameWriter;
-pub use frame_sequence::{FramePoints, FrameSequence};
-pub use interval_mean::IntervalMean;
-pub use manifest::Manifest;
+pub(crate) use checkpoint::Checkpoint; //NARROW
+pub(crate) use checkpoint::OutputPositions; //NARROW
+pub(crate) use csv::CsvTable; //NARROW
+pub(crate) use csv::SeriesTable; //NARROW
+pub(crate) use frame::FrameWriter; //NARROW
+pub(crate) use frame_sequence::FramePoints; //NARROW
+pub(crate) use frame_sequence::FrameSequence; //NARROW
+pub(crate) use interval_mean::IntervalMean; //NARROW
+pub(crate) use manifest::Manifest; //NARROW
 
 use std::{
     fs::{self, File},
@@ -33,7 +36,7 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// `File`, naming the file, if the disk is full or the folder cannot be written; the old file stays.
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> { //NARROW
     write_partial(path, |file| file.write_all(bytes))?;
     commit_partial(path)
 }
@@ -42,7 +45,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// `File` if there is none.
-pub fn require_parent_folder(path: &Path) -> Result<()> {
+pub(crate) fn require_parent_folder(path: &Path) -> Result<()> { //NARROW
     match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
         Some(folder) => Err(Error::file(path, format!("there is no folder {}", folder.display()))
             .help("make it first, or name a file in another")),

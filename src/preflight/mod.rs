@@ -23,12 +23,17 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-pub use absorption_limits::AbsorberSummary;
-pub use floating_bodies::{BodySummary, Equilibrium, Tilt};
-pub use generated_waves::GeneratedWave;
-pub use rounding::three_digits;
-pub use run_size::{DiskUse, RunSize};
-pub use sound_speed::{ExpectedSpeed, SoundSpeed, StepSizeLimits};
+pub(crate) use absorption_limits::AbsorberSummary; //NARROW
+pub(crate) use floating_bodies::BodySummary; //NARROW
+pub(crate) use floating_bodies::Equilibrium; //NARROW
+pub(crate) use floating_bodies::Tilt; //NARROW
+pub(crate) use generated_waves::GeneratedWave; //NARROW
+pub(crate) use rounding::three_digits; //NARROW
+pub(crate) use run_size::DiskUse; //NARROW
+pub(crate) use run_size::RunSize; //NARROW
+pub(crate) use sound_speed::ExpectedSpeed; //NARROW
+pub(crate) use sound_speed::SoundSpeed; //NARROW
+pub(crate) use sound_speed::StepSizeLimits; //NARROW
 
 use crate::{
     error::Error,
@@ -46,7 +51,7 @@ const MOST: usize = 3;
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Severity {
+pub(crate) enum Severity { //NARROW
     /// The results will suffer, or the run will not show what it is meant to.
     Warning,
     /// Worth knowing; it may well be meant.
@@ -55,7 +60,7 @@ pub enum Severity {
 
 /// Something that may not be as it was meant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Finding {
+pub(crate) struct Finding { //NARROW
     /// How much it matters.
     pub severity: Severity,
     /// Its kind, for programs: `capsizes`, `thin_body`, ...
@@ -76,25 +81,25 @@ impl Finding {
     }
 
     /// That the scene writes a key or a value with an old name.
-    pub fn renamed_name(name: &RenamedName) -> Self {
+    pub(crate) fn renamed_name(name: &RenamedName) -> Self { //NARROW
         Self::note("old_name", name.to_string(), format!("write  {}", name.new))
     }
 
     /// That the timing stopped with `error` after so many `steps`.
-    pub fn timing_stopped(error: &Error, steps: usize) -> Self {
+    pub(crate) fn timing_stopped(error: &Error, steps: usize) -> Self { //NARROW
         let mend = error.help.clone().unwrap_or_else(|| "see the other findings".into());
         Self::warning("breaks_down", format!("after {steps} steps: {}", error.message), mend)
     }
 
     /// The finding in one line, for a record.
-    pub fn one_line(&self) -> String {
+    pub(crate) fn one_line(&self) -> String { //NARROW
         format!("{}: {}", self.what, self.mend)
     }
 }
 
 /// What is known before the first step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Preflight {
+pub(crate) struct Preflight { //NARROW
     /// Particles, memory, disk.
     pub size: RunSize,
     /// Speed of sound and the speeds that it must outrun.
@@ -113,7 +118,7 @@ pub struct Preflight {
 
 impl Preflight {
     /// The findings to read: of a kind the first three, and how many more there are.
-    pub fn brief(&self) -> Vec<Finding> {
+    pub(crate) fn brief(&self) -> Vec<Finding> { //NARROW
         let kind = |finding: &Finding| (finding.severity, finding.topic);
         let (mut all, mut seen) = (BTreeMap::new(), BTreeMap::new());
         self.findings.iter().for_each(|finding| *all.entry(kind(finding)).or_insert(0) += 1);
@@ -134,7 +139,7 @@ impl Preflight {
     }
 
     /// The findings that a run tells at its start.
-    pub fn warnings(&self) -> Vec<String> {
+    pub(crate) fn warnings(&self) -> Vec<String> { //NARROW
         self.brief().iter().filter(|f| f.severity == Severity::Warning).map(Finding::one_line).collect()
     }
 }
@@ -152,7 +157,7 @@ struct PreflightContext<'a, const D: usize> {
 
 /// Looks at a simulation before its first step. `columns`: how many columns each of the plan's probes writes beside the
 /// time; `overlapped`: places of the water's lattice that solids took.
-pub fn preflight<const D: usize>(
+pub(crate) fn preflight<const D: usize>( //NARROW
     sim: &Simulation<D>,
     plan: &Plan,
     still: StillWaterLevel,
@@ -199,7 +204,7 @@ impl<const D: usize> PreflightContext<'_, D> {
 }
 
 /// What moves a solid, in a word of the scene.
-pub fn role_name<const D: usize>(role: &Role<D>) -> &'static str {
+pub(crate) fn role_name<const D: usize>(role: &Role<D>) -> &'static str { //NARROW
     match role {
         Role::Fixed => "fixed",
         Role::Driven(_) => "driven",

@@ -1,7 +1,7 @@
 //! Numbers in sentences: three digits to read, two to write into a scene, rounded to the side that helps.
 
 /// `x` to three digits, without trailing zeros.
-pub fn three_digits(x: f64) -> String {
+pub(crate) fn three_digits(x: f64) -> String { //NARROW
     let size = x.abs();
     if x == 0.0 {
         return "0".into();
@@ -18,18 +18,18 @@ pub fn three_digits(x: f64) -> String {
 }
 
 /// A place (m) as a scene writes it: `[0.42, 0.1]`.
-pub fn place<'a>(x: impl IntoIterator<Item = &'a f64>) -> String {
+pub(crate) fn place<'a>(x: impl IntoIterator<Item = &'a f64>) -> String { //NARROW
     let numbers: Vec<String> = x.into_iter().map(|x| three_digits(1e-6 * (x * 1e6).round())).collect();
     format!("[{}]", numbers.join(", "))
 }
 
 /// The largest number of two digits that is not above `x` > 0.
-pub fn two_digits_down(x: f64) -> String {
+pub(crate) fn two_digits_down(x: f64) -> String { //NARROW
     two_digits(x, f64::floor)
 }
 
 /// The smallest number of two digits that is not below `x` > 0.
-pub fn two_digits_up(x: f64) -> String {
+pub(crate) fn two_digits_up(x: f64) -> String { //NARROW
     two_digits(x, f64::ceil)
 }
 

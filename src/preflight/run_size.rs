@@ -19,7 +19,7 @@ const NUMBER: f64 = 19.0;
 
 /// How large a run is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RunSize {
+pub(crate) struct RunSize { //NARROW
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of water.
@@ -44,7 +44,7 @@ pub struct RunSize {
 
 /// What a run will write, about, B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DiskUse {
+pub(crate) struct DiskUse { //NARROW
     /// Tables of the probes.
     pub tables_bytes: f64,
     /// Number of frames.

@@ -24,7 +24,7 @@ const PLACES_SEEN: usize = 32;
 
 /// Speed of sound and what it must outrun.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SoundSpeed {
+pub(crate) struct SoundSpeed { //NARROW
     /// Speed of sound c₀, m/s.
     pub c0_mps: f64,
     /// c₀ over √(g·depth), –; absent without gravity.
@@ -35,7 +35,7 @@ pub struct SoundSpeed {
 
 /// A speed known beforehand.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ExpectedSpeed {
+pub(crate) struct ExpectedSpeed { //NARROW
     /// Of what.
     pub what: String,
     /// m/s.
@@ -44,14 +44,14 @@ pub struct ExpectedSpeed {
 
 impl SoundSpeed {
     /// The largest speed expected, m/s; 0 if none is known.
-    pub fn fastest(&self) -> f64 {
+    pub(crate) fn fastest(&self) -> f64 { //NARROW
         self.expected.first().map_or(0.0, |e| e.speed_mps)
     }
 }
 
 /// How long a step may be, s.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StepSizeLimits {
+pub(crate) struct StepSizeLimits { //NARROW
     /// The longest step: the least of those below. Impacts shorten it further.
     pub dt_s: f64,
     /// What binds it: `sound`, `gravity`, `viscosity`, `springs` or `dt_max`.

@@ -43,13 +43,13 @@ impl ProbeDefinition for EnergyBudgetPlan {
 /// Measures the energy (J; J/m in 2-D) that water and bodies have stored since the start: kinetic, potential and compression energy.
 /// Then follow each entry of the [`EnergyBudget`], and the stored energy less their sum. All are NaN unless the budget is
 /// recorded ([`Simulation::enable_energy_budget`]).
-pub struct EnergyBudgetProbe {
+pub(crate) struct EnergyBudgetProbe { //NARROW
     energy: EnergyProbe,
     start: f64,
 }
 
 /// The residual of a row of an [`EnergyBudgetProbe`] over the sum of |entries|, –; `None` while that sum is 0.
-pub fn relative_residual(row: &[f64]) -> Option<f64> {
+pub(crate) fn relative_residual(row: &[f64]) -> Option<f64> { //NARROW
     let (residual, rest) = row.split_last()?;
     let turnover: f64 = rest.get(1..)?.iter().map(|energy| energy.abs()).sum();
     (turnover > 0.0).then(|| residual.abs() / turnover)
@@ -57,7 +57,7 @@ pub fn relative_residual(row: &[f64]) -> Option<f64> {
 
 impl EnergyBudgetProbe {
     /// The probe; stored energy counts from now.
-    pub fn new<const D: usize>(system: &System<D>) -> Self {
+    pub(crate) fn new<const D: usize>(system: &System<D>) -> Self { //NARROW
         let energy = EnergyProbe::new(system);
         let start = energy.total(system);
         Self { energy, start }

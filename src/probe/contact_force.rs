@@ -61,7 +61,7 @@ pub(super) fn verify_list(config: &ProbeConfig, key: &str, scene: &dyn ProbeScop
 
 /// Measures the contact of two solids in the last step: the sum of the normal forces (N), the force on the second with friction (N),
 /// and its point of action (m). The point is NaN while they do not touch.
-pub struct ContactForceProbe {
+pub(crate) struct ContactForceProbe { //NARROW
     solids: [usize; 2],
 }
 
@@ -70,7 +70,7 @@ impl ContactForceProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
-    pub fn new<const D: usize>(system: &System<D>, [first, second]: [&str; 2]) -> Result<Self> {
+    pub(crate) fn new<const D: usize>(system: &System<D>, [first, second]: [&str; 2]) -> Result<Self> { //NARROW
         Ok(Self { solids: [find_solid(system, first)?, find_solid(system, second)?] })
     }
 }
@@ -92,16 +92,16 @@ impl<const D: usize> Probe<D> for ContactForceProbe {
 
 /// Lists all contacts in the last step: a row for each pair that touches, with the two names and then the columns of
 /// [`ContactForceProbe`]. The force is that on the second.
-pub struct ContactList;
+pub(crate) struct ContactList; //NARROW
 
 impl ContactList {
     /// Names of the columns.
-    pub fn columns<const D: usize>() -> Vec<String> {
+    pub(crate) fn columns<const D: usize>() -> Vec<String> { //NARROW
         ["first", "second"].map(String::from).into_iter().chain(columns::<D>()).collect()
     }
 
     /// The names of the two solids of each pair and its numbers, in the order of the scene.
-    pub fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> {
+    pub(crate) fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> { //NARROW
         let solids = sim.system().solids();
         let row = |contact: ContactForce<D>| {
             let names = contact.between.map(|i| solids[i].spec.name.as_str());

@@ -24,23 +24,48 @@ mod probe_row;
 mod runup;
 mod velocity;
 
-pub use balance::{LoadBalancePlan, LoadBalanceProbe};
-pub use budget::{EnergyBudgetPlan, EnergyBudgetProbe, relative_residual};
-pub use contact_force::{ContactForcePlan, ContactForceProbe, ContactList, ContactListPlan};
-pub use elevation::{ElevationPlan, ElevationProbe, GaugeConfig, GaugeSurface};
-pub use energy::{EnergyPlan, EnergyProbe};
-pub use flow::{FlowPlan, FlowProbe, SectionConfig};
-pub use force::{ForcePlan, ForceProbe};
-pub use front::{FrontPlan, FrontProbe};
-pub use joint::{JointPlan, JointProbe};
-pub use line::{LineProbe, RopePlan, SpringPlan};
-pub use motion::{MotionPlan, MotionProbe};
-pub use patch::{PatchConfig, PatchPlan, PatchProbe};
-pub use points::{PointRowConfig, PointsConfig};
-pub use pressure::{PressurePlan, PressureProbe};
-pub use probe_row::{ProbeRow, column_at_place};
-pub use runup::{RunupPlan, RunupProbe};
-pub use velocity::{VelocityPlan, VelocityProbe};
+pub(crate) use balance::LoadBalancePlan; //NARROW
+pub(crate) use balance::LoadBalanceProbe; //NARROW
+pub(crate) use budget::EnergyBudgetPlan; //NARROW
+pub(crate) use budget::EnergyBudgetProbe; //NARROW
+pub(crate) use budget::relative_residual; //NARROW
+pub(crate) use contact_force::ContactForcePlan; //NARROW
+pub(crate) use contact_force::ContactForceProbe; //NARROW
+pub(crate) use contact_force::ContactList; //NARROW
+pub(crate) use contact_force::ContactListPlan; //NARROW
+pub(crate) use elevation::ElevationPlan; //NARROW
+pub use elevation::ElevationProbe;
+pub(crate) use elevation::GaugeConfig; //NARROW
+pub(crate) use elevation::GaugeSurface; //NARROW
+pub(crate) use energy::EnergyPlan; //NARROW
+pub use energy::EnergyProbe;
+pub(crate) use flow::FlowPlan; //NARROW
+pub(crate) use flow::FlowProbe; //NARROW
+pub(crate) use flow::SectionConfig; //NARROW
+pub(crate) use force::ForcePlan; //NARROW
+pub(crate) use force::ForceProbe; //NARROW
+pub(crate) use front::FrontPlan; //NARROW
+pub(crate) use front::FrontProbe; //NARROW
+pub(crate) use joint::JointPlan; //NARROW
+pub(crate) use joint::JointProbe; //NARROW
+pub(crate) use line::LineProbe; //NARROW
+pub(crate) use line::RopePlan; //NARROW
+pub(crate) use line::SpringPlan; //NARROW
+pub(crate) use motion::MotionPlan; //NARROW
+pub(crate) use motion::MotionProbe; //NARROW
+pub(crate) use patch::PatchConfig; //NARROW
+pub(crate) use patch::PatchPlan; //NARROW
+pub(crate) use patch::PatchProbe; //NARROW
+pub(crate) use points::PointRowConfig; //NARROW
+pub(crate) use points::PointsConfig; //NARROW
+pub(crate) use pressure::PressurePlan; //NARROW
+pub(crate) use pressure::PressureProbe; //NARROW
+pub(crate) use probe_row::ProbeRow; //NARROW
+pub(crate) use probe_row::column_at_place; //NARROW
+pub(crate) use runup::RunupPlan; //NARROW
+pub(crate) use runup::RunupProbe; //NARROW
+pub(crate) use velocity::VelocityPlan; //NARROW
+pub(crate) use velocity::VelocityProbe; //NARROW
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -75,7 +100,7 @@ pub trait Probe<const D: usize>: Send {
 }
 
 /// A kind of probe, implemented by its resolved plan.
-pub trait ProbeDefinition: Sized {
+pub(crate) trait ProbeDefinition: Sized { //NARROW
     /// The value of its key in a `[[probe]]` section.
     type Config;
 
@@ -129,7 +154,7 @@ pub trait ProbeDefinition: Sized {
 }
 
 /// A scene, as the validation of a probe sees it. Keys are as in `probe.0.flow.from`.
-pub trait ProbeScope {
+pub(crate) trait ProbeScope { //NARROW
     /// 2 or 3.
     fn dimension(&self) -> usize;
 
@@ -181,7 +206,7 @@ pub trait ProbeScope {
 
 /// Where a probe measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ProbeLocation<'a> {
+pub(crate) enum ProbeLocation<'a> { //NARROW
     /// At points, m.
     Points(&'a [Vec<f64>]),
     /// On vertical lines at horizontal places, m.
@@ -192,7 +217,7 @@ pub enum ProbeLocation<'a> {
 
 /// The energy that the rows of a probe end with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EnergyReading {
+pub(crate) enum EnergyReading { //NARROW
     /// The residual of the energy budget.
     Budget,
     /// The total energy.
@@ -250,7 +275,7 @@ macro_rules! probe_kinds {
         const KEYS: &[&str] = &[$(stringify!($key)),*];
 
         /// A valid line of a scene file for the kind of probe with this key.
-        pub fn example(key: &str) -> Option<&'static str> {
+        pub(crate) fn example(key: &str) -> Option<&'static str> { //NARROW
             $($(
                 if key == stringify!($key) {
                     return Some(<$plan as ProbeDefinition>::EXAMPLE);
@@ -261,7 +286,7 @@ macro_rules! probe_kinds {
 
         impl ProbeConfig {
             /// The keys of the kinds that it names: one, if it is valid.
-            pub fn keys(&self) -> Vec<&'static str> {
+            pub(crate) fn keys(&self) -> Vec<&'static str> { //NARROW
                 let given = [$((stringify!($key), self.$key.is_some())),*];
                 given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
             }
@@ -299,32 +324,32 @@ macro_rules! probe_kinds {
 
         impl ProbeKind {
             /// Its key in a scene file.
-            pub fn key(&self) -> &'static str {
+            pub(crate) fn key(&self) -> &'static str { //NARROW
                 match self { $($(Self::$variant(_) => stringify!($key),)?)* }
             }
 
             /// Name of its table in a report.
-            pub fn label(&self) -> &'static str {
+            pub(crate) fn label(&self) -> &'static str { //NARROW
                 match self { $($(Self::$variant(_) => $plan::LABEL,)?)* }
             }
 
             /// As [`ProbeDefinition::location`].
-            pub fn location(&self) -> Option<ProbeLocation<'_>> {
+            pub(crate) fn location(&self) -> Option<ProbeLocation<'_>> { //NARROW
                 match self { $($(Self::$variant(plan) => plan.location(),)?)* }
             }
 
             /// As [`ProbeDefinition::series`].
-            pub fn series(&self, dimension: usize) -> Vec<(String, Option<Vec<f64>>)> {
+            pub(crate) fn series(&self, dimension: usize) -> Vec<(String, Option<Vec<f64>>)> { //NARROW
                 match self { $($(Self::$variant(plan) => plan.series(dimension),)?)* }
             }
 
             /// As [`ProbeDefinition::energy_reading`].
-            pub fn energy_reading(&self) -> Option<EnergyReading> {
+            pub(crate) fn energy_reading(&self) -> Option<EnergyReading> { //NARROW
                 match self { $($(Self::$variant(plan) => plan.energy_reading(),)?)* }
             }
 
             /// As [`ProbeDefinition::enable_records`].
-            pub fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
+            pub(crate) fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>) //NARROW
             where
                 Dim<D>: Dimension<D>,
             {
@@ -335,7 +360,7 @@ macro_rules! probe_kinds {
             ///
             /// # Errors
             /// `Scene` or `Usage` if what it names is not in the system.
-            pub fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+            pub(crate) fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> { //NARROW
                 match self { $($(Self::$variant(plan) => plan.build(system),)?)* }
             }
         }
@@ -385,33 +410,33 @@ probe_kinds! {
 
 impl ProbeConfig {
     /// The motion of the solid of this name.
-    pub fn motion(solid: impl Into<String>) -> Self {
+    pub(crate) fn motion(solid: impl Into<String>) -> Self { //NARROW
         Self { motion: Some(solid.into()), ..Self::default() }
     }
 
     /// Force and torque on the solid of this name.
-    pub fn force(solid: impl Into<String>) -> Self {
+    pub(crate) fn force(solid: impl Into<String>) -> Self { //NARROW
         Self { force: Some(solid.into()), ..Self::default() }
     }
 
     /// Reaction and motion of the joint of this name.
-    pub fn joint(joint: impl Into<String>) -> Self {
+    pub(crate) fn joint(joint: impl Into<String>) -> Self { //NARROW
         Self { joint: Some(joint.into()), ..Self::default() }
     }
 
     /// Length and tension of the spring of this name.
-    pub fn spring(spring: impl Into<String>) -> Self {
+    pub(crate) fn spring(spring: impl Into<String>) -> Self { //NARROW
         Self { spring: Some(spring.into()), ..Self::default() }
     }
 
     /// The plan of the probe in a run that ends at `until` (s); `None` for a list.
-    pub fn to_plan(&self, until: f64) -> Option<ProbePlan> {
+    pub(crate) fn to_plan(&self, until: f64) -> Option<ProbePlan> { //NARROW
         let (name, every) = (self.name.clone().unwrap_or_default(), self.every.unwrap_or(until));
         self.kind().map(|kind| ProbePlan { name, kind, every, average: self.average.unwrap_or_default() })
     }
 
     /// The plan of the list of contacts; `None` for a probe that writes a series.
-    pub fn to_contact_list(&self, until: f64) -> Option<ContactListPlan> {
+    pub(crate) fn to_contact_list(&self, until: f64) -> Option<ContactListPlan> { //NARROW
         let (name, every) = (self.name.clone().unwrap_or_default(), self.every.unwrap_or(until));
         self.contacts.map(|_| ContactListPlan { name, every })
     }
@@ -420,7 +445,7 @@ impl ProbeConfig {
     ///
     /// # Errors
     /// `Scene` if it names no kind, several, or what its scene does not have.
-    pub fn verify(&self, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+    pub(crate) fn verify(&self, key: &str, scene: &dyn ProbeScope) -> Result<()> { //NARROW
         scene.require_positive(&format!("{key}.every"), self.every)?;
         let named = self.keys();
         if named.len() != 1 {
@@ -434,7 +459,7 @@ impl ProbeConfig {
     }
 
     /// Stems of the files of `probes`: the name, the default name, or the key with a number from the second on.
-    pub fn names(probes: &[Self]) -> Vec<String> {
+    pub(crate) fn names(probes: &[Self]) -> Vec<String> { //NARROW
         let nameless = |probe: &&Self| probe.name.is_none();
         let name = |(i, probe): (usize, &Self)| {
             let key = probe.keys().first().copied().unwrap_or("probe");

@@ -4,7 +4,7 @@ use super::Probe;
 use crate::{error::Result, simulation::Simulation};
 
 /// A row of probes. A column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
-pub struct ProbeRow<const D: usize> {
+pub(crate) struct ProbeRow<const D: usize> { //NARROW
     members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>,
 }
 
@@ -13,7 +13,7 @@ impl<const D: usize> ProbeRow<D> {
     ///
     /// # Errors
     /// As `make`.
-    pub fn at_places(
+    pub(crate) fn at_places( //NARROW
         places: &[Vec<f64>],
         make: impl Fn(&[f64]) -> Result<Box<dyn Probe<D>>>,
     ) -> Result<Box<dyn Probe<D>>> {
@@ -27,13 +27,13 @@ impl<const D: usize> ProbeRow<D> {
     }
 
     /// The probes of `members`, each with its place (m).
-    pub fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self {
+    pub(crate) fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self { //NARROW
         Self { members }
     }
 }
 
 /// The name of the column `column` at the place `at` (m), to a micrometre.
-pub fn column_at_place(column: &str, at: &[f64]) -> String {
+pub(crate) fn column_at_place(column: &str, at: &[f64]) -> String { //NARROW
     let rounded = at.iter().map(|x| format!("{}", (x * 1e6).round() / 1e6 + 0.0));
     let place = rounded.collect::<Vec<_>>().join("_");
     match column.rsplit_once('_') {

@@ -29,7 +29,7 @@ const MOST_READ: u64 = 1 << 30;
 
 /// What the page says of a film; numbers are places in the blob.
 #[derive(Clone, Debug, Serialize)]
-pub struct Animation {
+pub(crate) struct Animation { //NARROW
     /// Times of the kept frames, s.
     pub times: Vec<f64>,
     /// Particles in each.
@@ -54,7 +54,7 @@ pub struct Animation {
 
 /// A number that every particle has: value = min + step × whole number.
 #[derive(Clone, Debug, Serialize)]
-pub struct QuantisedChannel {
+pub(crate) struct QuantisedChannel { //NARROW
     /// Its name.
     pub name: &'static str,
     /// Value of 0.
@@ -65,7 +65,7 @@ pub struct QuantisedChannel {
 
 /// The boundary particles, and the way of their solids.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct BoundaryAnimation {
+pub(crate) struct BoundaryAnimation { //NARROW
     /// The local coordinates of all.
     pub channels: Vec<QuantisedChannel>,
     /// Where each coordinate begins.
@@ -88,7 +88,7 @@ struct FrameSamples {
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
-pub fn encode_animation(
+pub(crate) fn encode_animation( //NARROW
     run: &RunData,
     film: &FrameSequence,
     samples: usize,
@@ -307,12 +307,12 @@ fn encode_boundaries(
 }
 
 /// The boundary particles of solid `number` among those of all.
-pub fn points_of_solid(all: &FramePoints, number: usize) -> Vec<usize> {
+pub(crate) fn points_of_solid(all: &FramePoints, number: usize) -> Vec<usize> { //NARROW
     (0..all.solid_index.len()).filter(|&k| all.solid_index[k] as usize == number).collect()
 }
 
 /// Where a solid with the boundary particles `own` is `now`.
-pub fn solid_placement(
+pub(crate) fn solid_placement( //NARROW
     fixed: bool,
     start: &Placement,
     own: &[usize],

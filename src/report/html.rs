@@ -1,14 +1,17 @@
 //! Words of HTML, and numbers as they are set in print. For all pages of the program.
 
-pub use crate::math::format::{bytes, column_label, duration, unit};
+pub(crate) use crate::math::format::bytes; //NARROW
+pub(crate) use crate::math::format::column_label; //NARROW
+pub(crate) use crate::math::format::duration; //NARROW
+pub(crate) use crate::math::format::unit; //NARROW
 
 /// `text` with the signs that HTML means otherwise written out.
-pub fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String { //NARROW
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// A table; the first row is its head.
-pub fn table(rows: &[Vec<String>]) -> String {
+pub(crate) fn table(rows: &[Vec<String>]) -> String { //NARROW
     let row = |cells: &Vec<String>, tag: &str| {
         let cells = cells.iter().map(|cell| {
             let class = if cell == "MISSED" || cell == "failed" { " class=\"missed\"" } else { "" };
@@ -22,7 +25,7 @@ pub fn table(rows: &[Vec<String>]) -> String {
 }
 
 /// A number with four digits that count.
-pub fn four_digits(x: f64) -> String {
+pub(crate) fn four_digits(x: f64) -> String { //NARROW
     match x.abs() {
         _ if !x.is_finite() => "–".into(),
         0.0 => "0".into(),
@@ -35,12 +38,12 @@ pub fn four_digits(x: f64) -> String {
 }
 
 /// A number as it is set in print: with a minus, not a hyphen.
-pub fn with_minus_sign(number: &str) -> String {
+pub(crate) fn with_minus_sign(number: &str) -> String { //NARROW
     number.replace('-', "−")
 }
 
 /// A whole number with thin spaces between its thousands.
-pub fn thousands(n: u64) -> String {
+pub(crate) fn thousands(n: u64) -> String { //NARROW
     let digits = n.to_string();
     let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
     groups.join("\u{202f}")

@@ -25,8 +25,13 @@ mod sections;
 mod mesh_edges;
 pub(crate) mod html;
 
-pub use picture::{ColourField, PictureOptions, write_picture};
-pub use plot::{LineStyle, PlotLine, line_plot, log_log_plot};
+pub(crate) use picture::ColourField; //NARROW
+pub(crate) use picture::PictureOptions; //NARROW
+pub(crate) use picture::write_picture; //NARROW
+pub use plot::LineStyle;
+pub use plot::PlotLine;
+pub use plot::line_plot;
+pub use plot::log_log_plot;
 
 use std::{
     path::{Path, PathBuf},
@@ -41,14 +46,14 @@ use crate::{
 use run_data::RunData;
 
 /// Most bytes of a page.
-pub const MAX_PAGE_BYTES: usize = 15_000_000;
+pub(crate) const MAX_PAGE_BYTES: usize = 15_000_000; //NARROW
 
 /// Name of the page in a run's folder.
-pub const REPORT_FILE: &str = "report.html";
+pub(crate) const REPORT_FILE: &str = "report.html"; //NARROW
 
 /// A page that was written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Page {
+pub(crate) struct Page { //NARROW
     /// Where.
     pub path: PathBuf,
     /// Its size, B.
@@ -63,7 +68,7 @@ pub struct Page {
 ///
 /// # Errors
 /// `Restart` if there is no run in `folder`; `File` if a frame cannot be read or the page cannot be written.
-pub fn write(folder: &Path) -> Result<Page> {
+pub(crate) fn write(folder: &Path) -> Result<Page> { //NARROW
     write_page(&[folder.to_owned()], &folder.join(REPORT_FILE))
 }
 
@@ -71,7 +76,7 @@ pub fn write(folder: &Path) -> Result<Page> {
 ///
 /// # Errors
 /// `Usage` if there are fewer than two; else as [`write()`].
-pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
+pub(crate) fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> { //NARROW
     if folders.len() < 2 {
         return Err(Error::new(ErrorKind::Usage, "a comparison needs two runs or more")
             .help("name their folders, as in `pontoon compare runs/raft runs/raft-2`"));

@@ -19,7 +19,7 @@ use crate::{
 
 /// What the particles of a picture are coloured by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourField {
+pub(crate) enum ColourField { //NARROW
     /// The pressure, Pa.
     #[default]
     Pressure,
@@ -31,7 +31,7 @@ pub enum ColourField {
 
 /// What a picture is to show.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PictureOptions {
+pub(crate) struct PictureOptions { //NARROW
     /// Times, s: of each the nearest frame. The last frame if there is none.
     pub times: Vec<f64>,
     /// What colours the particles.
@@ -51,7 +51,7 @@ type DepthPoint = (f64, [f64; 2], Option<f64>);
 type DrawnLine = (Vec<[f64; 2]>, bool, bool);
 
 /// A frame of a run as it is drawn.
-pub struct Panel<'a> {
+pub(crate) struct Panel<'a> { //NARROW
     /// Its scene.
     pub geometry: &'a SceneGeometry,
     /// Its time, s.
@@ -66,7 +66,7 @@ pub struct Panel<'a> {
 
 impl ColourField {
     /// Its colours.
-    pub fn colour_map(self) -> ColourMap {
+    pub(crate) fn colour_map(self) -> ColourMap { //NARROW
         match self {
             Self::Pressure => FIELD_COLOUR_MAPS.pressure,
             Self::ExcessPressure => FIELD_COLOUR_MAPS.excess,
@@ -75,7 +75,7 @@ impl ColourField {
     }
 
     /// What stands at the bar of colours.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str { //NARROW
         match self {
             Self::Pressure => "pressure, Pa",
             Self::ExcessPressure => "pressure − that of still water, Pa",
@@ -110,7 +110,7 @@ impl ColourField {
 /// # Errors
 /// `Restart` if a folder holds no run; `Usage` if it has no frames, its frames lack the field, or the picture would be
 /// too large; `File` if a frame cannot be read or `out` not be written.
-pub fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<(u32, u32)> {
+pub(crate) fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<(u32, u32)> { //NARROW
     require_parent_folder(out)?;
     let runs = RunData::read_all(folders)?;
     let mut rows: Vec<Vec<Panel>> = Vec::new();

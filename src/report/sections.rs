@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// How a run stands, in a word, and the class of its badge.
-pub fn status_badge(manifest: &Manifest) -> (&'static str, &'static str) {
+pub(crate) fn status_badge(manifest: &Manifest) -> (&'static str, &'static str) { //NARROW
     match manifest.status {
         RunStatus::Finished if manifest.checks.iter().any(|check| check.passed == Some(false)) => {
             ("finished, a check is missed", "bad")
@@ -33,7 +33,7 @@ fn date(time: SystemTime) -> String {
 }
 
 /// The facts under the title: each a word and a value.
-pub fn facts(run: &RunData) -> Vec<(&'static str, String)> {
+pub(crate) fn facts(run: &RunData) -> Vec<(&'static str, String)> { //NARROW
     let m = &run.manifest;
     let mut facts = Vec::new();
     if let Some(set) = &run.geometry {
@@ -64,7 +64,7 @@ fn program_version(m: &Manifest) -> String {
 }
 
 /// The head of a page of one run.
-pub fn page_head(run: &RunData) -> String {
+pub(crate) fn page_head(run: &RunData) -> String { //NARROW
     let (word, class) = status_badge(&run.manifest);
     let facts =
         facts(run).iter().map(|(k, x)| format!("<div><dt>{k}</dt><dd>{}</dd></div>", escape(x))).collect::<String>();
@@ -104,7 +104,7 @@ fn failure(m: &Manifest) -> String {
 }
 
 /// Warnings of the run and remarks of the page.
-pub fn warnings(runs: &[RunData]) -> String {
+pub(crate) fn warnings(runs: &[RunData]) -> String { //NARROW
     let all: Vec<String> = runs
         .iter()
         .flat_map(|run| {
@@ -120,7 +120,7 @@ pub fn warnings(runs: &[RunData]) -> String {
 }
 
 /// The figures of a verdict in words.
-pub fn caption(verdict: &Verdict) -> String {
+pub(crate) fn caption(verdict: &Verdict) -> String { //NARROW
     let rows = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
     let said: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect();
@@ -128,12 +128,12 @@ pub fn caption(verdict: &Verdict) -> String {
 }
 
 /// A table that scrolls where the page is narrow.
-pub fn scrolling_table(rows: &[Vec<String>]) -> String {
+pub(crate) fn scrolling_table(rows: &[Vec<String>]) -> String { //NARROW
     format!("<div class=\"wide\" tabindex=\"0\">{}</div>\n", table(rows))
 }
 
 /// The verdicts of all runs.
-pub fn verdicts(runs: &[RunData]) -> String {
+pub(crate) fn verdicts(runs: &[RunData]) -> String { //NARROW
     let names: Vec<[String; 1]> = runs.iter().map(|run| [run.name.clone()]).collect();
     let several = runs.len() > 1;
     let pairs: Vec<(&[String], &Verdict)> = runs
@@ -153,7 +153,7 @@ pub fn verdicts(runs: &[RunData]) -> String {
 }
 
 /// What the scene asks for of its series; empty if it asks for nothing.
-pub fn statistics(run: &RunData) -> String {
+pub(crate) fn statistics(run: &RunData) -> String { //NARROW
     let mut rows =
         vec![["statistic", "series", "figure", "value", "unit", "from, s", "until, s"].map(String::from).to_vec()];
     rows.extend(run.statistics.rows.iter().filter(|row| !row.name.is_empty()).map(|row| {
@@ -167,7 +167,7 @@ pub fn statistics(run: &RunData) -> String {
 }
 
 /// Energies and where they went; empty without a table of them.
-pub fn energy(run: &RunData) -> String {
+pub(crate) fn energy(run: &RunData) -> String { //NARROW
     let budgets = run
         .tables
         .iter()
@@ -178,7 +178,7 @@ pub fn energy(run: &RunData) -> String {
 }
 
 /// What was run: the scene's words, every value in force, the machine.
-pub fn scene_and_values(run: &RunData) -> String {
+pub(crate) fn scene_and_values(run: &RunData) -> String { //NARROW
     let m = &run.manifest;
     let machine = &m.machine;
     let rows = [
@@ -212,7 +212,7 @@ pub fn scene_and_values(run: &RunData) -> String {
 }
 
 /// Where the files are.
-pub fn files(run: &RunData) -> String {
+pub(crate) fn files(run: &RunData) -> String { //NARROW
     let folder = run.folder.canonicalize().unwrap_or_else(|_| run.folder.clone());
     let mut rows = vec![["file", "size"].map(String::from).to_vec()];
     for file in &run.manifest.files {
@@ -231,7 +231,7 @@ pub fn files(run: &RunData) -> String {
 }
 
 /// What of a film the page shows, and what it leaves out.
-pub fn animation_note(reel: &Animation) -> String {
+pub(crate) fn animation_note(reel: &Animation) -> String { //NARROW
     let [frames, particles] = reel.of;
     let kept = (reel.times.len(), reel.counts.first().copied().unwrap_or(0));
     let mut said = if kept.0 == frames {
@@ -254,7 +254,7 @@ pub fn animation_note(reel: &Animation) -> String {
 }
 
 /// What differs between the values in force of several runs: a row for each key.
-pub fn differences(runs: &[RunData]) -> String {
+pub(crate) fn differences(runs: &[RunData]) -> String { //NARROW
     let mut keys: Vec<&str> = Vec::new();
     for value in runs.iter().flat_map(|run| &run.manifest.values) {
         if !keys.contains(&value.key.as_str()) {
@@ -286,7 +286,7 @@ fn runs_with_series<'a>(runs: &'a [RunData], table: &str, column: Option<&str>) 
 }
 
 /// Whether several runs have no series in common.
-pub fn no_common_series(runs: &[RunData]) -> bool {
+pub(crate) fn no_common_series(runs: &[RunData]) -> bool { //NARROW
     let common = |t: &ProbeTable| {
         t.columns.iter().any(|column| runs_with_series(runs, &t.name, Some(column)).len() == runs.len())
     };
@@ -294,7 +294,7 @@ pub fn no_common_series(runs: &[RunData]) -> bool {
 }
 
 /// Which series not all of several runs have, and who has them; empty if all have all.
-pub fn missing_series(runs: &[RunData]) -> String {
+pub(crate) fn missing_series(runs: &[RunData]) -> String { //NARROW
     let mut groups: Vec<(Vec<&str>, Vec<String>)> = Vec::new();
     for table in runs.iter().flat_map(|run| &run.tables) {
         let whole = (table.name.clone(), runs_with_series(runs, &table.name, None));
@@ -319,7 +319,7 @@ pub fn missing_series(runs: &[RunData]) -> String {
 }
 
 /// The facts of several runs side by side.
-pub fn facts_table(runs: &[RunData]) -> String {
+pub(crate) fn facts_table(runs: &[RunData]) -> String { //NARROW
     let all: Vec<Vec<(&str, String)>> = runs
         .iter()
         .map(|run| {

@@ -11,7 +11,7 @@ use crate::{
 
 /// Energy drift since the start, by the latest reading of a probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EnergyDrift {
+pub(crate) enum EnergyDrift { //NARROW
     /// By a `budget`: its residual over the sum of its entries' magnitudes, –.
     Unaccounted(f64),
     /// By an `energy`: the change of the total since the start, and its unit, J or J/m.
@@ -20,12 +20,12 @@ pub enum EnergyDrift {
 
 impl EnergyDrift {
     /// By the last row of a `budget`; `None` while its entries are 0.
-    pub fn from_budget(last: &[f64]) -> Option<Self> {
+    pub(crate) fn from_budget(last: &[f64]) -> Option<Self> { //NARROW
         relative_residual(last).map(Self::Unaccounted)
     }
 
     /// By the first and the last row of an `energy`, which ends with the total.
-    pub fn from_energy(first: &[f64], last: &[f64], unit: &'static str) -> Option<Self> {
+    pub(crate) fn from_energy(first: &[f64], last: &[f64], unit: &'static str) -> Option<Self> { //NARROW
         Some(Self::Changed(last.last()? - first.last()?, unit))
     }
 }
@@ -52,7 +52,7 @@ pub(super) struct DriftMonitor {
 
 impl DriftMonitor {
     /// The first budget of `plan`, else the first probe of the energy, of a run in so many dimensions.
-    pub fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> {
+    pub(crate) fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> { //NARROW
         let find = |reading| plan.probes.iter().position(|probe| probe.kind.energy_reading() == Some(reading));
         let unit = if dimension == 2 { "J/m" } else { "J" };
         let of = |probe, budget| Self { probe, budget, unit };
@@ -61,7 +61,7 @@ impl DriftMonitor {
     }
 
     /// The drift by the rows of the probe's `table` so far.
-    pub fn drift(self, table: &CsvTable) -> Option<EnergyDrift> {
+    pub(crate) fn drift(self, table: &CsvTable) -> Option<EnergyDrift> { //NARROW
         let (first, (_, last)) = (table.first_row()?, table.last_row()?);
         if self.budget { EnergyDrift::from_budget(last) } else { EnergyDrift::from_energy(first, last, self.unit) }
     }

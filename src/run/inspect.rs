@@ -23,7 +23,7 @@ const LASTS: f64 = 1.0;
 
 /// What an inspection is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct InspectOptions {
+pub(crate) struct InspectOptions { //NARROW
     /// Keys of the scene and the values that replace the scene's own.
     pub overrides: Vec<(String, String)>,
     /// Threads; by default one for each processor.
@@ -34,7 +34,7 @@ pub struct InspectOptions {
 
 /// What a scene would run.
 #[derive(Clone, Debug, Serialize)]
-pub struct InspectReport {
+pub(crate) struct InspectReport { //NARROW
     /// Its caption.
     pub title: String,
     /// Simulated time at the end, s.
@@ -56,7 +56,7 @@ pub struct InspectReport {
 
 /// A solid and its boundary particles.
 #[derive(Clone, Debug, Serialize)]
-pub struct SolidSummary {
+pub(crate) struct SolidSummary { //NARROW
     /// Its name.
     pub name: String,
     /// `fixed`, `driven` or `free`.
@@ -70,7 +70,7 @@ pub struct SolidSummary {
 
 /// A solid from a mesh, measured.
 #[derive(Clone, Debug, Serialize)]
-pub struct MeshSummary {
+pub(crate) struct MeshSummary { //NARROW
     /// Number of its facets.
     pub facets: usize,
     /// Its volume, m³.
@@ -95,7 +95,7 @@ impl MeshSummary {
 
 /// The file of a probe.
 #[derive(Clone, Debug, Serialize)]
-pub struct SeriesColumns {
+pub(crate) struct SeriesColumns { //NARROW
     /// Stem of the file.
     pub name: String,
     /// Its columns beside the time.
@@ -104,7 +104,7 @@ pub struct SeriesColumns {
 
 /// Some steps of the scene, timed. Nothing was written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct StepTiming {
+pub(crate) struct StepTiming { //NARROW
     /// Threads.
     pub threads: usize,
     /// Steps timed.
@@ -119,7 +119,7 @@ pub struct StepTiming {
 ///
 /// # Errors
 /// Those that [`run`](super::run) would meet before its first step.
-pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> {
+pub(crate) fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> { //NARROW
     let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]

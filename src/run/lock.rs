@@ -13,12 +13,12 @@ use crate::error::{Error, ErrorKind, Result};
 const LOCK: &str = "run.lock";
 
 /// The process that writes in the run's `folder`, or was killed there, if one has left its number.
-pub fn lock_owner(folder: &Path) -> Option<u32> {
+pub(crate) fn lock_owner(folder: &Path) -> Option<u32> { //NARROW
     fs::read_to_string(folder.join(LOCK)).ok()?.trim().parse().ok()
 }
 
 /// The right to write in a run's folder; the file goes when this is dropped.
-pub struct Lock {
+pub(crate) struct Lock { //NARROW
     path: PathBuf,
     _file: File,
 }
@@ -28,7 +28,7 @@ impl Lock {
     ///
     /// # Errors
     /// `Restart` if a run goes on there: names its process; `File` if the lock cannot be made.
-    pub fn acquire(folder: &Path) -> Result<Self> {
+    pub(crate) fn acquire(folder: &Path) -> Result<Self> { //NARROW
         let path = folder.join(LOCK);
         let refused = |why: std::io::Error| Error::file(&path, format!("cannot be written: {why}"));
         let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(refused)?;

@@ -18,15 +18,16 @@ use crate::{
     scene::Scene,
 };
 
-pub use rao_table::{RAO_FILE, RaoResult};
-pub use spectra_table::SPECTRA_FILE;
+pub(crate) use rao_table::RAO_FILE; //NARROW
+pub(crate) use rao_table::RaoResult; //NARROW
+pub(crate) use spectra_table::SPECTRA_FILE; //NARROW
 
 /// The file, in the run's folder.
-pub const STATISTICS_FILE: &str = "statistics.csv";
+pub(crate) const STATISTICS_FILE: &str = "statistics.csv"; //NARROW
 
 /// A figure of a series, or of several.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Statistic {
+pub(crate) struct Statistic { //NARROW
     /// Name of the `[[statistic]]`; empty for what is said of every series.
     pub name: String,
     /// Which series, as `probe.column`; of a reflection the first gauge's, of an RAO the motion's.
@@ -45,7 +46,7 @@ pub struct Statistic {
 
 /// What is asked of a run's series beside what its scene asks.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct StatisticsFilter {
+pub(crate) struct StatisticsFilter { //NARROW
     /// Only of this probe, or of this series.
     pub series: Option<String>,
     /// First time that counts, s.
@@ -56,7 +57,7 @@ pub struct StatisticsFilter {
 
 /// Figures of a run, and why some are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct RunStatistics {
+pub(crate) struct RunStatistics { //NARROW
     /// The figures.
     pub rows: Vec<Statistic>,
     /// How motions answer irregular waves over frequency.
@@ -69,7 +70,7 @@ pub struct RunStatistics {
 ///
 /// # Errors
 /// `Restart` if there is no run in `folder`; `Usage` if it has no such series; else as [`Scene::read`].
-pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> {
+pub(crate) fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> { //NARROW
     let manifest = Manifest::read(folder)?;
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
     let plan = Scene::read(&scene_file(&folder.join("scene")), &sets)?.plan()?;

@@ -46,7 +46,7 @@ pub struct BuiltScene<const D: usize> {
 }
 
 /// The solids around the water: enough to draw a scene.
-pub struct SceneLayout<const D: usize> {
+pub(crate) struct SceneLayout<const D: usize> { //NARROW
     /// The solids, where they start.
     pub solids: Vec<SolidSpec<D>>,
     /// The laws and constants.
@@ -57,7 +57,7 @@ pub struct SceneLayout<const D: usize> {
 
 /// Estimated size of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SizeEstimate {
+pub(crate) struct SizeEstimate { //NARROW
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of water.
@@ -74,7 +74,7 @@ pub struct SizeEstimate {
 
 impl SizeEstimate {
     /// Water particles × force evaluations: about proportional to the time of a run.
-    pub fn particle_passes(&self) -> f64 {
+    pub(crate) fn particle_passes(&self) -> f64 { //NARROW
         self.fluid * self.steps * self.passes
     }
 }
@@ -158,7 +158,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::build`].
-    pub fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
+    pub(crate) fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> { //NARROW
         let (scene, _) = self.with_defaults()?;
         let water = scene.water_bodies::<D>()?;
         let still = StillWaterLevel::of(&water);
@@ -170,7 +170,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, or a table that a check names is missing or wrong.
-    pub fn plan(&self) -> Result<Plan> {
+    pub(crate) fn plan(&self) -> Result<Plan> { //NARROW
         let (scene, _) = self.with_defaults()?;
         scene.resolved_plan(&scene.still_water()?)
     }
@@ -179,7 +179,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, a shape is not valid, or the particles are too many.
-    pub fn estimate_size(&self) -> Result<SizeEstimate> {
+    pub(crate) fn estimate_size(&self) -> Result<SizeEstimate> { //NARROW
         let (scene, _) = self.with_defaults()?;
         match scene.dimension {
             2 => scene.estimate::<2>(),

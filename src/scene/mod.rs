@@ -16,27 +16,27 @@ mod overrides;
 mod resolve;
 mod schema;
 mod svg;
-pub mod table;
+pub(crate) mod table; //NARROW
 mod toml_source;
 mod untagged;
 mod verify_probes;
 
 /// The sections of a scene.
 mod section {
-    pub mod analysis;
-    pub mod contact;
-    pub mod domain;
-    pub mod force_element;
-    pub mod joint;
-    pub mod model;
-    pub mod motion;
-    pub mod output;
-    pub mod shape;
-    pub mod solid;
-    pub mod sponge_layer;
-    pub mod water;
-    pub mod wave;
-    pub mod wavemaker;
+    pub(crate) mod analysis; //NARROW
+    pub(crate) mod contact; //NARROW
+    pub(crate) mod domain; //NARROW
+    pub(crate) mod force_element; //NARROW
+    pub(crate) mod joint; //NARROW
+    pub(crate) mod model; //NARROW
+    pub(crate) mod motion; //NARROW
+    pub(crate) mod output; //NARROW
+    pub(crate) mod shape; //NARROW
+    pub(crate) mod solid; //NARROW
+    pub(crate) mod sponge_layer; //NARROW
+    pub(crate) mod water; //NARROW
+    pub(crate) mod wave; //NARROW
+    pub(crate) mod wavemaker; //NARROW
 }
 
 use std::{
@@ -50,41 +50,84 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
-pub use crate::plan::{Align, CheckPlan, FramesPlan, Plan, Reference, Score, StatisticKind, StatisticPlan};
-pub use crate::{
-    math::{BoxConfig, NumberOrArray},
-    probe::{
-        GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbeConfig, ProbeKind, ProbePlan,
-        SectionConfig,
-    },
-};
-pub use build::{BuiltScene, SceneLayout, SizeEstimate};
-pub use bundled::{BundledScene, bundled_scenes};
-pub use resolve::ResolvedValue;
-pub use schema::schema;
+pub(crate) use crate::plan::Align; //NARROW
+pub(crate) use crate::plan::CheckPlan; //NARROW
+pub(crate) use crate::plan::FramesPlan; //NARROW
+pub(crate) use crate::plan::Plan; //NARROW
+pub(crate) use crate::plan::Reference; //NARROW
+pub(crate) use crate::plan::Score; //NARROW
+pub(crate) use crate::plan::StatisticKind; //NARROW
+pub(crate) use crate::plan::StatisticPlan; //NARROW
+pub(crate) use crate::math::BoxConfig; //NARROW
+pub(crate) use crate::math::NumberOrArray; //NARROW
+pub(crate) use crate::probe::GaugeConfig; //NARROW
+pub(crate) use crate::probe::GaugeSurface; //NARROW
+pub(crate) use crate::probe::PatchConfig; //NARROW
+pub(crate) use crate::probe::PointRowConfig; //NARROW
+pub(crate) use crate::probe::PointsConfig; //NARROW
+pub(crate) use crate::probe::ProbeConfig; //NARROW
+pub(crate) use crate::probe::ProbeKind; //NARROW
+pub(crate) use crate::probe::ProbePlan; //NARROW
+pub(crate) use crate::probe::SectionConfig; //NARROW
+pub use build::BuiltScene;
+pub(crate) use build::SceneLayout; //NARROW
+pub(crate) use build::SizeEstimate; //NARROW
+pub(crate) use bundled::BundledScene; //NARROW
+pub(crate) use bundled::bundled_scenes; //NARROW
+pub(crate) use resolve::ResolvedValue; //NARROW
+pub(crate) use schema::schema; //NARROW
 pub(crate) use section::shape::world_bounds;
-pub use section::{
-    analysis::{CheckConfig, RaoConfig, StatisticConfig},
-    contact::ContactConfig,
-    domain::{GuardConfig, PeriodicConfig},
-    force_element::{ForceConfig, ForceFrame, RopeConfig, SpringConfig},
-    joint::{JointConfig, JointKindConfig, LimitsConfig, MotorConfig},
-    model::{ModelConfig, TimeSteppingConfig},
-    motion::DrivenConfig,
-    output::{CheckpointConfig, FramesChoice, FramesConfig},
-    shape::{AxisName, CompoundPartConfig, MeshConfig, PlacementConfig, ShapeConfig},
-    solid::{FreeBodyConfig, MotionMode, SolidConfig},
-    sponge_layer::SpongeLayerConfig,
-    water::{FillConfig, StillWaterLevel, WaterConfig},
-    wave::{
-        AbsorbChoice, AbsorptionConfig, FocusedWaveConfig, IrregularWaveConfig, MeasuredElevationConfig,
-        RegularWaveConfig, SolitaryWaveConfig, WaveComponentsConfig, WaveConfig,
-    },
-};
-pub use toml_source::{RenamedName, ValueSource, current_key};
-pub use untagged::{
-    DraftChoice, FieldFormulaConfig, LengthUnit, PolylineConfig, TimeFunctionConfig, TimeValueConfig, TimeVectorConfig,
-};
+pub(crate) use section::analysis::CheckConfig; //NARROW
+pub(crate) use section::analysis::RaoConfig; //NARROW
+pub(crate) use section::analysis::StatisticConfig; //NARROW
+pub(crate) use section::contact::ContactConfig; //NARROW
+pub(crate) use section::domain::GuardConfig; //NARROW
+pub(crate) use section::domain::PeriodicConfig; //NARROW
+pub(crate) use section::force_element::ForceConfig; //NARROW
+pub(crate) use section::force_element::ForceFrame; //NARROW
+pub(crate) use section::force_element::RopeConfig; //NARROW
+pub use section::force_element::SpringConfig;
+pub use section::joint::JointConfig;
+pub use section::joint::JointKindConfig;
+pub(crate) use section::joint::LimitsConfig; //NARROW
+pub use section::joint::MotorConfig;
+pub(crate) use section::model::ModelConfig; //NARROW
+pub(crate) use section::model::TimeSteppingConfig; //NARROW
+pub use section::motion::DrivenConfig;
+pub(crate) use section::output::CheckpointConfig; //NARROW
+pub(crate) use section::output::FramesChoice; //NARROW
+pub(crate) use section::output::FramesConfig; //NARROW
+pub(crate) use section::shape::AxisName; //NARROW
+pub use section::shape::CompoundPartConfig;
+pub(crate) use section::shape::MeshConfig; //NARROW
+pub use section::shape::PlacementConfig;
+pub use section::shape::ShapeConfig;
+pub(crate) use section::solid::FreeBodyConfig; //NARROW
+pub(crate) use section::solid::MotionMode; //NARROW
+pub use section::solid::SolidConfig;
+pub(crate) use section::sponge_layer::SpongeLayerConfig; //NARROW
+pub(crate) use section::water::FillConfig; //NARROW
+pub(crate) use section::water::StillWaterLevel; //NARROW
+pub(crate) use section::water::WaterConfig; //NARROW
+pub(crate) use section::wave::AbsorbChoice; //NARROW
+pub(crate) use section::wave::AbsorptionConfig; //NARROW
+pub(crate) use section::wave::FocusedWaveConfig; //NARROW
+pub(crate) use section::wave::IrregularWaveConfig; //NARROW
+pub(crate) use section::wave::MeasuredElevationConfig; //NARROW
+pub(crate) use section::wave::RegularWaveConfig; //NARROW
+pub(crate) use section::wave::SolitaryWaveConfig; //NARROW
+pub(crate) use section::wave::WaveComponentsConfig; //NARROW
+pub(crate) use section::wave::WaveConfig; //NARROW
+pub(crate) use toml_source::RenamedName; //NARROW
+pub(crate) use toml_source::ValueSource; //NARROW
+pub(crate) use toml_source::current_key; //NARROW
+pub(crate) use untagged::DraftChoice; //NARROW
+pub(crate) use untagged::FieldFormulaConfig; //NARROW
+pub(crate) use untagged::LengthUnit; //NARROW
+pub(crate) use untagged::PolylineConfig; //NARROW
+pub(crate) use untagged::TimeFunctionConfig; //NARROW
+pub use untagged::TimeValueConfig;
+pub(crate) use untagged::TimeVectorConfig; //NARROW
 
 /// Most bytes of a scene's text; the longest bundled one has 3,000.
 const MOST_TEXT: u64 = 1 << 20;
@@ -186,25 +229,25 @@ impl Scene {
     }
 
     /// The same scene with these laws.
-    pub fn model(mut self, model: ModelConfig) -> Self {
+    pub(crate) fn model(mut self, model: ModelConfig) -> Self { //NARROW
         self.model = model;
         self
     }
 
     /// The same scene with a probe more.
-    pub fn probe(mut self, probe: ProbeConfig) -> Self {
+    pub(crate) fn probe(mut self, probe: ProbeConfig) -> Self { //NARROW
         self.probe.push(probe);
         self
     }
 
     /// The same scene without frames.
-    pub fn without_frames(mut self) -> Self {
+    pub(crate) fn without_frames(mut self) -> Self { //NARROW
         self.frames = Some(FramesChoice::Off);
         self
     }
 
     /// The same scene with a damping zone more.
-    pub fn with_damping(mut self, zone: SpongeLayerConfig) -> Self {
+    pub(crate) fn with_damping(mut self, zone: SpongeLayerConfig) -> Self { //NARROW
         self.damping.push(zone);
         self
     }
@@ -259,13 +302,13 @@ impl Scene {
     }
 
     /// The keys and values that the scene writes with an old name.
-    pub fn renamed_names(&self) -> &[RenamedName] {
+    pub(crate) fn renamed_names(&self) -> &[RenamedName] { //NARROW
         &self.origin.renamed
     }
 
     /// An error of a simulation that this scene was built into, with the file and the line of the key that it names, if it
     /// names one.
-    pub fn with_location(&self, mut error: Error) -> Error {
+    pub(crate) fn with_location(&self, mut error: Error) -> Error { //NARROW
         match error.location.take() {
             Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
             place => Error { location: place, ..error },
@@ -276,7 +319,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if a number cannot be written.
-    pub fn to_toml(&self) -> Result<String> {
+    pub(crate) fn to_toml(&self) -> Result<String> { //NARROW
         toml::to_string(self).map_err(|e| Error::scene(format!("this scene cannot be written: {e}")))
     }
 }

@@ -37,19 +37,19 @@ pub(super) struct OverrideLocations {
 
 impl OverrideLocations {
     /// None yet, for an override of `text`.
-    pub fn after(text: &str) -> Self {
+    pub(crate) fn after(text: &str) -> Self { //NARROW
         Self { first: text.len() + 1, keys: Vec::new() }
     }
 
     /// A new location for `key`.
-    pub fn place(&mut self, key: &str) -> Range<usize> {
+    pub(crate) fn place(&mut self, key: &str) -> Range<usize> { //NARROW
         let place = self.first + self.keys.len();
         self.keys.push(key.into());
         place..place
     }
 
     /// The key at a location; `None` if that is in the text.
-    pub fn key(&self, place: usize) -> Option<String> {
+    pub(crate) fn key(&self, place: usize) -> Option<String> { //NARROW
         self.keys.get(place.checked_sub(self.first)?).cloned()
     }
 }

@@ -14,7 +14,7 @@ const MOST_BYTES: u64 = 256 << 20;
 ///
 /// # Errors
 /// `Scene` if the name, or a link, leads out of the folder, or no file is there.
-pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
+pub(crate) fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> { //NARROW
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     let path = Path::new(name);
     if name.is_empty() || name.contains('\\') || !path.components().all(inside) {
@@ -40,7 +40,7 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
 }
 
 /// Whether the file at `full`, links followed, lies in `folder`; true if there is no such file.
-pub fn is_within(folder: &Path, full: &Path) -> bool {
+pub(crate) fn is_within(folder: &Path, full: &Path) -> bool { //NARROW
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     match (folder.canonicalize(), full.canonicalize()) {
         (Ok(folder), Ok(full)) => full.starts_with(folder),
@@ -62,7 +62,7 @@ fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is too large.
-pub fn read_header(path: &Path) -> Result<Vec<String>> {
+pub(crate) fn read_header(path: &Path) -> Result<Vec<String>> { //NARROW
     let mut reader = reader(path)?;
     let header = reader.headers().map_err(|e| Error::file(path, e))?;
     Ok(header.iter().map(String::from).collect())
@@ -82,7 +82,7 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number.
-pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
+pub(crate) fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> { //NARROW
     let mut reader = reader(path)?;
     let file = path.display().to_string();
     let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
@@ -118,7 +118,7 @@ pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
 ///
 /// # Errors
 /// As `read_columns`, and as [`TimeSeries::new`].
-pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> {
+pub(crate) fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> { //NARROW
     let mut both = read_columns(path, &[time, column])?;
     let x = both.pop().unwrap_or_default();
     let t = both.pop().unwrap_or_default();

@@ -47,7 +47,7 @@ pub(super) struct SceneSource {
 
 /// A key or a value that is written with an old name, which still works.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RenamedName {
+pub(crate) struct RenamedName { //NARROW
     /// The key, with the names of solids.
     pub key: String,
     /// The old name.
@@ -79,7 +79,7 @@ impl PartialEq for SceneSource {
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ValueSource {
+pub(crate) enum ValueSource { //NARROW
     /// The default, with its reason.
     Default(String),
     /// This line of the scene.
@@ -104,7 +104,7 @@ impl fmt::Display for ValueSource {
 impl SceneSource {
     /// The place of `key`, or of the nearest key above it that was written, put on `error`.
     /// A check of the domain may have named a part of `key`.
-    pub fn with_location(&self, mut error: Error, key: &str) -> Error {
+    pub(crate) fn with_location(&self, mut error: Error, key: &str) -> Error { //NARROW
         let part = error.location.take_if(|location| location.file.is_empty());
         let key = &part.map_or(key.to_string(), |part| subkey(key, &part.key));
         if self.is_set(key) {
@@ -122,7 +122,7 @@ impl SceneSource {
     }
 
     /// The source of `key`; `None` if it is not written.
-    pub fn source(&self, key: &str) -> Option<ValueSource> {
+    pub(crate) fn source(&self, key: &str) -> Option<ValueSource> { //NARROW
         if self.is_set(key) {
             return Some(ValueSource::Set);
         }
@@ -147,7 +147,7 @@ impl SceneSource {
     }
 
     /// `key` with the names of solids in place of their numbers.
-    pub fn key_with_names(&self, key: &str) -> String {
+    pub(crate) fn key_with_names(&self, key: &str) -> String { //NARROW
         let mut parts: Vec<&str> = key.split('.').collect();
         if let ["solid", number, ..] = parts[..]
             && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.names.get(i))
@@ -315,7 +315,7 @@ fn renamed_key(key: &str) -> Option<(&'static str, &'static str)> {
 }
 
 /// `key`, an override's, with the current name of its last part.
-pub fn current_key(key: &str) -> String {
+pub(crate) fn current_key(key: &str) -> String { //NARROW
     match renamed_key(key) {
         Some((old, new)) => format!("{}{new}", key.strip_suffix(old).unwrap_or(key)),
         None => key.into(),

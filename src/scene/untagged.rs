@@ -119,7 +119,7 @@ pub enum LengthUnit {
 
 impl LengthUnit {
     /// Its length, m.
-    pub fn metres(self) -> f64 {
+    pub(crate) fn metres(self) -> f64 { //NARROW
         match self {
             Self::M => 1.0,
             Self::Cm => 0.01,
@@ -150,7 +150,7 @@ pub struct PolylineConfig {
 
 impl PolylineConfig {
     /// The line through `points` (m).
-    pub fn through<const N: usize>(points: [[f64; 2]; N]) -> Self {
+    pub(crate) fn through<const N: usize>(points: [[f64; 2]; N]) -> Self { //NARROW
         Self { points: Some(points.iter().map(|p| p.to_vec()).collect()), ..Self::default() }
     }
 
@@ -358,12 +358,12 @@ enum TimeVectorForm {
 
 impl TimeVectorConfig {
     /// These components.
-    pub fn new(components: impl IntoIterator<Item = TimeValueConfig>) -> Self {
+    pub(crate) fn new(components: impl IntoIterator<Item = TimeValueConfig>) -> Self { //NARROW
         Self(TimeVectorForm::Many(components.into_iter().collect()))
     }
 
     /// The components.
-    pub fn components(&self) -> &[TimeValueConfig] {
+    pub(crate) fn components(&self) -> &[TimeValueConfig] { //NARROW
         match &self.0 {
             TimeVectorForm::One(one) => std::slice::from_ref(one),
             TimeVectorForm::Many(many) => many,

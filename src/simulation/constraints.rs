@@ -24,7 +24,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
-    pub fn spring_step_limit(&self) -> f64 {
+    pub(crate) fn spring_step_limit(&self) -> f64 { //NARROW
         self.bodies.step_limit(&self.system, self.clock.time)
     }
 
@@ -34,7 +34,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
-    pub fn violated_joints(&self) -> Vec<String> {
+    pub(crate) fn violated_joints(&self) -> Vec<String> { //NARROW
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
         let said = |(i, joint): (usize, &JointSpec<D>)| {
             let [apart, turned] = self.bodies.constraints().joint_gap(i, &solids);
@@ -51,7 +51,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.
-    pub fn joint_coordinates(&self, joint: usize) -> Vec<f64> {
+    pub(crate) fn joint_coordinates(&self, joint: usize) -> Vec<f64> { //NARROW
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
         self.bodies.constraints().joint_coordinates(joint, &solids)
     }
@@ -62,7 +62,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// What rope number `rope` felt in the last step.
-    pub fn rope_reading(&self, rope: usize) -> LineReading {
+    pub(crate) fn rope_reading(&self, rope: usize) -> LineReading { //NARROW
         self.bodies.constraints().rope_reading(rope)
     }
 

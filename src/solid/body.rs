@@ -14,7 +14,7 @@ impl<const D: usize> SolidSpec<D> {
     /// Pose and velocity of the solid at t = 0.
     ///
     /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
-    pub fn initial_kinematics(&self) -> Kinematics<D> {
+    pub(crate) fn initial_kinematics(&self) -> Kinematics<D> { //NARROW
         let still = Kinematics {
             pose: self.pose,
             centre: self.pose.position,
@@ -35,7 +35,7 @@ impl<const D: usize> SolidSpec<D> {
     ///
     /// # Errors
     /// `Scene`: names the solid, what is wrong with it, and what would be right.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> { //NARROW
         self.shape.check().map_err(|e| self.named(e))?;
         if let Role::Free(_) = self.role {
             self.shape.check_no_overlap().map_err(|e| self.named(e))?;
@@ -105,7 +105,7 @@ impl<const D: usize> FreeBody<D> {
     }
 
     /// The homogeneous body of `mass` (kg; kg/m in 2-D) that fills `shape`, at rest.
-    pub fn from_mass(shape: &Shape<D>, mass: f64) -> Self {
+    pub(crate) fn from_mass(shape: &Shape<D>, mass: f64) -> Self { //NARROW
         Self::from_density(shape, mass / shape.volume_properties().volume)
     }
 
@@ -113,7 +113,7 @@ impl<const D: usize> FreeBody<D> {
     ///
     /// # Errors
     /// `Scene` if a number is not finite, the mass is not positive, or the inertia is not that of any body.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> { //NARROW
         let mass = self.mass;
         require(mass > 0.0 && mass.is_finite(), || format!("its mass is {mass} kg"), "more than 0 and finite")?;
         let rest = self.centre.norm() + self.velocity.norm() + self.spin.0.norm();

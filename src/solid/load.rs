@@ -18,17 +18,17 @@ pub struct Load<const D: usize> {
 
 impl<const D: usize> Load<D> {
     /// None.
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self { //NARROW
         Self { force: Vector::zeros(), torque: Bivector::zero() }
     }
 
     /// `force` (N) alone, at the arm `r` (m) from the centre.
-    pub fn from_force_at(r: &Vector<D>, force: Vector<D>) -> Self {
+    pub(crate) fn from_force_at(r: &Vector<D>, force: Vector<D>) -> Self { //NARROW
         Self { force, torque: Bivector::torque(r, &force) }
     }
 
     /// Power (W) on a solid that moves so: F·V + T·Ω.
-    pub fn power(&self, motion: &Kinematics<D>) -> f64 {
+    pub(crate) fn power(&self, motion: &Kinematics<D>) -> f64 { //NARROW
         self.force.dot(&motion.velocity) + self.torque.power(&motion.spin)
     }
 }

@@ -1,31 +1,48 @@
 //! Solids: fixed, driven and free, with their kinematics, loads, constraints and the rigid-body engine. No sums over pairs.
 
 mod body;
-pub mod boundary_motion;
-pub mod constraint;
+pub(crate) mod boundary_motion; //NARROW
+pub(crate) mod constraint; //NARROW
 pub(crate) mod containment;
-pub mod force;
+pub(crate) mod force; //NARROW
 pub mod hydrostatics;
 mod load;
-pub mod prescribed_motion;
-pub mod rapier;
+pub(crate) mod prescribed_motion; //NARROW
+pub(crate) mod rapier; //NARROW
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../tests/unit/solid/bodies.rs"]
 mod tests;
 
-pub use constraint::{
-    Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind, JointReading, JointSpec, LineEnd,
-    LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters, SpringSpec,
-};
-pub use force::ForceSpec;
+pub(crate) use constraint::Constraints; //NARROW
+pub(crate) use constraint::ContactPairs; //NARROW
+pub(crate) use constraint::ContactSpec; //NARROW
+pub(crate) use constraint::FreeMode; //NARROW
+pub(crate) use constraint::InitialHold; //NARROW
+pub(crate) use constraint::JointKind; //NARROW
+pub(crate) use constraint::JointReading; //NARROW
+pub(crate) use constraint::JointSpec; //NARROW
+pub(crate) use constraint::LineEnd; //NARROW
+pub(crate) use constraint::LineReading; //NARROW
+pub(crate) use constraint::Mobility; //NARROW
+pub use constraint::Motor;
+pub(crate) use constraint::MotorCommand; //NARROW
+pub(crate) use constraint::RopeSpec; //NARROW
+pub(crate) use constraint::SpringParameters; //NARROW
+pub(crate) use constraint::SpringSpec; //NARROW
+pub(crate) use force::ForceSpec; //NARROW
 pub use load::Load;
 pub(crate) use load::LoadContext;
-pub use prescribed_motion::{PrescribedMotion, TimeFunction};
+pub(crate) use prescribed_motion::PrescribedMotion; //NARROW
+pub use prescribed_motion::TimeFunction;
 #[cfg(feature = "dim2")]
 pub use rapier::rapier2d;
 #[cfg(feature = "dim3")]
-pub use rapier::rapier3d;
-pub use rapier::{ContactForce, Dim, Engine, EngineFault, HasEngine};
+pub(crate) use rapier::rapier3d; //NARROW
+pub(crate) use rapier::ContactForce; //NARROW
+pub use rapier::Dim;
+pub(crate) use rapier::Engine; //NARROW
+pub(crate) use rapier::EngineFault; //NARROW
+pub(crate) use rapier::HasEngine; //NARROW
 
 use std::ops::Range;
 
@@ -141,7 +158,7 @@ impl<const D: usize> Solid<D> {
     }
 
     /// Energy of its motion, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 of a solid that is not free.
-    pub fn kinetic_energy(&self) -> f64 {
+    pub(crate) fn kinetic_energy(&self) -> f64 { //NARROW
         let Role::Free(body) = &self.spec.role else { return 0.0 };
         let now = &self.kinematics;
         let turning = rotational_energy_twice(&body.inertia, &now.pose.rotation, &now.spin.axial());
@@ -149,18 +166,18 @@ impl<const D: usize> Solid<D> {
     }
 
     /// Energy of its height under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 of a solid that is not free.
-    pub fn potential_energy(&self, gravity: &Vector<D>) -> f64 {
+    pub(crate) fn potential_energy(&self, gravity: &Vector<D>) -> f64 { //NARROW
         let Role::Free(body) = &self.spec.role else { return 0.0 };
         -body.mass * gravity.dot(&self.kinematics.centre)
     }
 
     /// Both energies, J (J/m in 2-D).
-    pub fn energy(&self, gravity: &Vector<D>) -> f64 {
+    pub(crate) fn energy(&self, gravity: &Vector<D>) -> f64 { //NARROW
         self.kinetic_energy() + self.potential_energy(gravity)
     }
 
     /// Acceleration (m/s²) of its point at the world position `x` (m).
-    pub fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> {
+    pub(crate) fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> { //NARROW
         let (arm, spin) = (x - self.kinematics.centre, &self.kinematics.spin);
         self.acceleration + self.angular_acceleration.velocity_at(&arm) + spin.velocity_at(&spin.velocity_at(&arm))
     }

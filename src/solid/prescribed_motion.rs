@@ -31,7 +31,7 @@ impl TimeFunction {
     }
 
     /// Value (m or rad) and its rate (m/s or rad/s) at time `t` (s).
-    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
+    pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) { //NARROW
         match self {
             Self::Table(series) => series.value_and_rate(t),
             Self::Formula(formula) => formula.value_and_rate(t),
@@ -75,7 +75,7 @@ enum Path<const D: usize> {
 
 impl<const D: usize> PrescribedMotion<D> {
     /// Sliding along `direction` (any length but zero) by the law's value (m).
-    pub fn slide(direction: Vector<D>, law: TimeFunction) -> Self {
+    pub(crate) fn slide(direction: Vector<D>, law: TimeFunction) -> Self { //NARROW
         Self::of(Path::Slide(direction.normalize()), law)
     }
 
@@ -83,7 +83,7 @@ impl<const D: usize> PrescribedMotion<D> {
     ///
     /// `axis`: axial components of any length but zero: `[1.0]` in 2-D, where positive angles turn
     /// counter-clockwise (`[-1.0]`: clockwise); the three of the axis in 3-D, right-handed.
-    pub fn hinge(centre: Vector<D>, axis: &[f64], law: TimeFunction) -> Self {
+    pub(crate) fn hinge(centre: Vector<D>, axis: &[f64], law: TimeFunction) -> Self { //NARROW
         let axis = Bivector::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
         Self::of(Path::Hinge { centre, axis: axis * (1.0 / length) }, law)
@@ -95,23 +95,23 @@ impl<const D: usize> PrescribedMotion<D> {
 
     /// Several motions at once, from the ground up: each goes in the frame that those before it have moved, its direction or hinge being
     /// where it says when they are all at zero. What lies at x then lies at A₁(t) A₂(t) … Aₙ(t) x. None of them makes a wave.
-    pub fn chain(motions: impl IntoIterator<Item = Self>) -> Self {
+    pub(crate) fn chain(motions: impl IntoIterator<Item = Self>) -> Self { //NARROW
         Self { stages: motions.into_iter().flat_map(|motion| motion.stages).collect(), absorbing: None }
     }
 
     /// The same motion, of a paddle that absorbs: its gauge is above `gauge` (m) when it is at rest, and goes with it along
     /// `way`, a unit vector. Without effect on a law that is no wave's.
-    pub fn with_absorber(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
+    pub(crate) fn with_absorber(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self { //NARROW
         Self { absorbing: Some(Box::new(Absorbing { absorber, gauge, way })), ..self }
     }
 
     /// The absorber, if there is one.
-    pub fn absorber(&self) -> Option<&Absorber> {
+    pub(crate) fn absorber(&self) -> Option<&Absorber> { //NARROW
         self.absorbing.as_ref().map(|own| &own.absorber)
     }
 
     /// The wave that it generates, if it is a paddle with a wave by name.
-    pub fn wave(&self) -> Option<&PaddleMotion> {
+    pub(crate) fn wave(&self) -> Option<&PaddleMotion> { //NARROW
         match &self.stages[..] {
             [Stage { law: TimeFunction::Wave(wave), .. }] => Some(wave),
             _ => None,
@@ -141,13 +141,13 @@ impl<const D: usize> PrescribedMotion<D> {
     }
 
     /// Height (m) of the world point about which it turns; none of a slide, or of several motions.
-    pub fn hinge_height(&self) -> Option<f64> {
+    pub(crate) fn hinge_height(&self) -> Option<f64> { //NARROW
         self.hinged().map(|centre| centre[D - 1])
     }
 
     /// Which way its point that is at `x` (m) at the start goes as the value of each of its laws grows: unit vectors, from the ground
     /// up; zero on the axis of a hinge.
-    pub fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> {
+    pub(crate) fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> { //NARROW
         let way = |k: usize| {
             let alone = |i: usize, law: &TimeFunction| (law.value_and_rate(0.0).0, if i == k { 1.0 } else { 0.0 });
             let now = self.moved(&Pose::identity(), alone);
@@ -192,7 +192,7 @@ impl<const D: usize> PrescribedMotion<D> {
     ///
     /// # Errors
     /// `Scene` if there is none, one of several makes a wave, a direction or axis is zero or not finite, or a law is not finite at time 0.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> { //NARROW
         let several = self.stages.len() > 1;
         if self.stages.is_empty() {
             return Err(Error::scene("its list of motions is empty").help("give one or more, or make the solid fixed"));

@@ -30,12 +30,12 @@ pub struct Units {
 
 impl Units {
     /// Metre and second.
-    pub const SI: Self = Self { length: 1.0, time: 1.0 };
+    pub(crate) const SI: Self = Self { length: 1.0, time: 1.0 }; //NARROW
 }
 
 impl<const D: usize> FluidProperties<D> {
     /// The same constants in `units` (ρ₀ stays in kg/m³: no law reads it).
-    pub fn in_units(&self, units: &Units) -> Self {
+    pub(crate) fn in_units(&self, units: &Units) -> Self { //NARROW
         let Units { length, time } = *units;
         Self {
             h: self.h / length,
@@ -47,12 +47,12 @@ impl<const D: usize> FluidProperties<D> {
     }
 
     /// Volume of a particle at ρ₀, dpᴰ (m³; m² in 2-D): every particle's mass divided by ρ₀.
-    pub fn particle_volume(&self) -> f64 {
+    pub(crate) fn particle_volume(&self) -> f64 { //NARROW
         self.dp.powi(D as i32)
     }
 
     /// η² = 0.01 h² (m²), which keeps 1/(r² + η²) finite @monaghan1992.
-    pub fn eta2(&self) -> f64 {
+    pub(crate) fn eta2(&self) -> f64 { //NARROW
         0.01 * self.h * self.h
     }
 }

@@ -6,16 +6,21 @@
 
 pub mod continuity;
 pub mod density_diffusion;
-pub mod gradient_correction;
+pub(crate) mod gradient_correction; //NARROW
 pub mod kernel;
 mod simd;
 mod fluid_properties;
 mod pair;
 pub mod pressure;
-pub mod particle_shifting;
-pub mod equation_of_state;
+pub(crate) mod particle_shifting; //NARROW
+pub(crate) mod equation_of_state; //NARROW
 pub mod viscosity;
 pub mod boundary;
 
-pub use fluid_properties::{FluidProperties, Units};
-pub use pair::{AuxiliarySums, Num, Pair, PairSide, Term};
+pub(crate) use fluid_properties::FluidProperties; //NARROW
+pub(crate) use fluid_properties::Units; //NARROW
+pub(crate) use pair::AuxiliarySums; //NARROW
+pub use pair::Num;
+pub use pair::Pair;
+pub(crate) use pair::PairSide; //NARROW
+pub use pair::Term;

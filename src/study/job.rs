@@ -24,7 +24,7 @@ const OUTPUT_KEYS: [&str; 4] = ["title", "frames", "checkpoint", "check"];
 
 /// One run of a list.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Job {
+pub(crate) struct Job { //NARROW
     /// Its name in the list; repeats share it.
     pub name: String,
     /// Which of the runs of this name it is: 1, or more where runs are repeated.
@@ -45,7 +45,7 @@ pub struct Job {
 
 /// How a job stands.
 #[derive(Clone, Debug, PartialEq)]
-pub enum JobState {
+pub(crate) enum JobState { //NARROW
     /// Nothing has been run.
     Planned,
     /// It was asked to stop, and goes on when it is run again.
@@ -58,7 +58,7 @@ pub enum JobState {
 
 /// A job and what came out of it.
 #[derive(Clone, Debug)]
-pub struct JobResult {
+pub(crate) struct JobResult { //NARROW
     /// How it stands.
     pub state: JobState,
     /// The run's manifest, if there is one.
@@ -79,7 +79,7 @@ impl Job {
     ///
     /// # Errors
     /// `Usage` for no time, or if the job varies `jitter` itself; those of the scene's words.
-    pub fn repeated(self, times: usize) -> Result<Vec<Self>> {
+    pub(crate) fn repeated(self, times: usize) -> Result<Vec<Self>> { //NARROW
         if times == 0 {
             return Err(Error::new(ErrorKind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
         }
@@ -100,7 +100,7 @@ impl Job {
     }
 
     /// Its name, with the number of the repeat from the second on.
-    pub fn display_name(&self) -> String {
+    pub(crate) fn display_name(&self) -> String { //NARROW
         match self.repeat {
             1 => self.name.clone(),
             n => format!("{}, repeat {n}", self.name),
@@ -111,7 +111,7 @@ impl Job {
     ///
     /// # Errors
     /// As [`Scene::read`].
-    pub fn read_scene(&self) -> Result<Scene> {
+    pub(crate) fn read_scene(&self) -> Result<Scene> { //NARROW
         Scene::read(&self.scene, &self.overrides)
     }
 
@@ -119,7 +119,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words.
-    pub fn estimated_size(&self) -> Result<SizeEstimate> {
+    pub(crate) fn estimated_size(&self) -> Result<SizeEstimate> { //NARROW
         let scene = self.read_scene()?;
         scene.plan()?;
         scene.estimate_size()
@@ -129,7 +129,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables.
-    pub fn checks(&self) -> Result<Vec<ReferenceCheck>> {
+    pub(crate) fn checks(&self) -> Result<Vec<ReferenceCheck>> { //NARROW
         let plan = self.read_scene()?.plan()?;
         plan.checks.iter().map(|words| ReferenceCheck::new(words, &plan.folder)).collect()
     }
@@ -138,7 +138,7 @@ impl Job {
     ///
     /// # Errors
     /// As [`Job::checks`].
-    pub fn curves(&self) -> Result<Vec<Option<CheckCurves>>> {
+    pub(crate) fn curves(&self) -> Result<Vec<Option<CheckCurves>>> { //NARROW
         let series = outputs::series_folder(&self.folder);
         Ok(self.checks()?.iter().map(|check| check.curves(&series).ok()).collect())
     }
@@ -147,7 +147,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables.
-    pub fn existing_result(&self) -> Result<JobResult> {
+    pub(crate) fn existing_result(&self) -> Result<JobResult> { //NARROW
         match Manifest::read(&self.folder) {
             Ok(manifest) if self.matches(&manifest)? => self.with_verdicts(manifest),
             _ => Ok(JobResult::without_run(JobState::Planned)),
@@ -159,7 +159,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables. That the run itself fails is no error: the result says so.
-    pub fn run_or_resume(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<JobResult> {
+    pub(crate) fn run_or_resume(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<JobResult> { //NARROW
         let before = self.existing_result()?;
         let broke_down = before.manifest.as_ref().is_some_and(|m| m.fault.is_some());
         let outcome = match before.state {

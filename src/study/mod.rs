@@ -14,15 +14,32 @@ mod html_page;
 mod result_rows;
 mod results;
 mod repeat_spread;
-pub mod stress;
+pub(crate) mod stress; //NARROW
 mod validation;
 
-pub use convergence::{Convergence, convergence, least_squares};
-pub use job::{Job, JobResult, JobState};
-pub use parameter_grid::{ParameterGrid, VariedKey, distinguishing_labels, frame_interval, split_values};
-pub use repeat_spread::{REPEATS_NOTE, Spread, spread_table};
-pub use result_rows::{ResultRow, result_rows, rows_to_csv};
-pub use results::StudyResults;
-pub use time_estimate::{DEFAULT_SPEED, TimeEstimate, estimate_times};
-pub use validation::Validation;
-pub use validation_cases::{CaseResolution, ValidationCase, select_cases, validation_cases};
+pub(crate) use convergence::Convergence; //NARROW
+pub(crate) use convergence::convergence; //NARROW
+pub(crate) use convergence::least_squares; //NARROW
+pub(crate) use job::Job; //NARROW
+pub(crate) use job::JobResult; //NARROW
+pub(crate) use job::JobState; //NARROW
+pub(crate) use parameter_grid::ParameterGrid; //NARROW
+pub(crate) use parameter_grid::VariedKey; //NARROW
+pub(crate) use parameter_grid::distinguishing_labels; //NARROW
+pub(crate) use parameter_grid::frame_interval; //NARROW
+pub(crate) use parameter_grid::split_values; //NARROW
+pub(crate) use repeat_spread::REPEATS_NOTE; //NARROW
+pub(crate) use repeat_spread::Spread; //NARROW
+pub(crate) use repeat_spread::spread_table; //NARROW
+pub(crate) use result_rows::ResultRow; //NARROW
+pub(crate) use result_rows::result_rows; //NARROW
+pub(crate) use result_rows::rows_to_csv; //NARROW
+pub(crate) use results::StudyResults; //NARROW
+pub(crate) use time_estimate::DEFAULT_SPEED; //NARROW
+pub(crate) use time_estimate::TimeEstimate; //NARROW
+pub(crate) use time_estimate::estimate_times; //NARROW
+pub(crate) use validation::Validation; //NARROW
+pub(crate) use validation_cases::CaseResolution; //NARROW
+pub(crate) use validation_cases::ValidationCase; //NARROW
+pub(crate) use validation_cases::select_cases; //NARROW
+pub(crate) use validation_cases::validation_cases; //NARROW

@@ -16,7 +16,7 @@ const MOST_FRAMES: f64 = 200.0;
 
 /// A key of the scene and the values that it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct VariedKey {
+pub(crate) struct VariedKey { //NARROW
     /// The key.
     pub key: String,
     /// Its values, as TOML.
@@ -25,7 +25,7 @@ pub struct VariedKey {
 
 /// A grid of runs of one scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ParameterGrid {
+pub(crate) struct ParameterGrid { //NARROW
     /// The scene's name.
     pub name: String,
     /// The scene, a folder or a file.
@@ -48,7 +48,7 @@ impl ParameterGrid {
     ///
     /// # Errors
     /// `Usage` if a spacing or a list of values is empty or given twice; those of [`Job::repeated`].
-    pub fn jobs(&self, out: &Path) -> Result<Vec<Job>> {
+    pub(crate) fn jobs(&self, out: &Path) -> Result<Vec<Job>> { //NARROW
         let mut dp = self.dp.clone();
         dp.sort_by(|a, b| b.total_cmp(a));
         if dp.is_empty() || self.vary.iter().any(|vary| vary.values.iter().any(String::is_empty)) {
@@ -82,7 +82,7 @@ impl ParameterGrid {
     }
 
     /// Every combination of the varied values; one that is empty if nothing is varied.
-    pub fn combinations(&self) -> Vec<Vec<(String, String)>> {
+    pub(crate) fn combinations(&self) -> Vec<Vec<(String, String)>> { //NARROW
         self.vary.iter().fold(vec![vec![]], |all, vary| {
             let with = |before: &Vec<(String, String)>, value: &String| {
                 before.iter().cloned().chain([(vary.key.clone(), value.clone())]).collect()
@@ -100,7 +100,7 @@ impl ParameterGrid {
 /// assert_eq!(frame_interval(&[0.3, 0.5], 1.5), 0.1);
 /// assert_eq!(frame_interval(&[], 1.5), 1.5);
 /// ```
-pub fn frame_interval(times: &[f64], until: f64) -> f64 {
+pub(crate) fn frame_interval(times: &[f64], until: f64) -> f64 { //NARROW
     let common = |mut a: u64, mut b: u64| {
         while b > 0 {
             (a, b) = (b, a % b);
@@ -114,7 +114,7 @@ pub fn frame_interval(times: &[f64], until: f64) -> f64 {
 }
 
 /// What makes each of `jobs` another than the rest, briefly.
-pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> {
+pub(crate) fn distinguishing_labels(jobs: &[Job]) -> Vec<String> { //NARROW
     let spacings = jobs.windows(2).any(|pair| pair[0].dp != pair[1].dp);
     let head = |job: &Job| {
         let spacing = spacings.then(|| format!("dp = {} m", job.dp));
@@ -127,7 +127,7 @@ pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> {
 }
 
 /// A combination in words.
-pub fn combination_label(varied: &[(String, String)]) -> String {
+pub(crate) fn combination_label(varied: &[(String, String)]) -> String { //NARROW
     varied.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
@@ -138,7 +138,7 @@ pub fn combination_label(varied: &[(String, String)]) -> String {
 /// assert_eq!(split_values("none,{ artificial = { alpha = 0.02, x = [1,2] } }, \"a,b\""),
 ///     ["none", "{ artificial = { alpha = 0.02, x = [1,2] } }", "\"a,b\""]);
 /// ```
-pub fn split_values(text: &str) -> Vec<String> {
+pub(crate) fn split_values(text: &str) -> Vec<String> { //NARROW
     let (mut parts, mut part, mut depth, mut quote) = (Vec::new(), String::new(), 0, None);
     for c in text.chars() {
         match (quote, c) {

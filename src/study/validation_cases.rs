@@ -16,7 +16,7 @@ const TEXT: &str = include_str!("../../scenes/validation.toml");
 /// A scene with some keys changed, run coarse or fine, and what its checks are expected to say.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct ValidationCase {
+pub(crate) struct ValidationCase { //NARROW
     /// Its name.
     pub name: String,
     /// The entry of `[base]` that it starts from.
@@ -39,7 +39,7 @@ pub struct ValidationCase {
 /// How fine and how long a case is run.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct CaseResolution {
+pub(crate) struct CaseResolution { //NARROW
     /// Particle spacing, m; the scene's if none.
     pub dp: Option<f64>,
     /// Simulated time at the end, s; the scene's if none.
@@ -61,7 +61,7 @@ struct CasesFile {
 ///
 /// # Errors
 /// `Scene` if the list that was compiled in is wrong, which its test rules out.
-pub fn validation_cases() -> Result<Vec<ValidationCase>> {
+pub(crate) fn validation_cases() -> Result<Vec<ValidationCase>> { //NARROW
     let CasesFile { base, case } =
         toml::from_str(TEXT).map_err(|e| Error::scene(e.message().to_string()).at("validation.toml", None, ""))?;
     case.into_iter()
@@ -81,7 +81,7 @@ pub fn validation_cases() -> Result<Vec<ValidationCase>> {
 ///
 /// # Errors
 /// `Usage` if there is no such case: names the nearest.
-pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>> {
+pub(crate) fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>> { //NARROW
     let all = validation_cases()?;
     if names.is_empty() {
         return Ok(all.into_iter().filter(|case| full || case.quick.usual).collect());
@@ -119,7 +119,7 @@ impl ValidationCase {
     ///
     /// # Errors
     /// Those of the scene's words; `Scene` if the case names a check that the scene has not.
-    pub fn job(&self, full: bool, scene: &Path, out: &Path) -> Result<Job> {
+    pub(crate) fn job(&self, full: bool, scene: &Path, out: &Path) -> Result<Job> { //NARROW
         let extent = if full { &self.full } else { &self.quick };
         let words = Scene::read(scene, &[])?;
         let mut sets = vec![("frames".to_string(), "off".to_string())];

@@ -8,7 +8,7 @@ mod change;
 mod checkpoint;
 mod fluid;
 mod free_surface;
-pub mod periodic;
+pub(crate) mod periodic; //NARROW
 mod setup;
 mod sponge_layer;
 mod step_check;
@@ -18,13 +18,16 @@ pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
 pub(crate) use fluid::{Fluid, permute};
 use periodic::Images;
-pub use periodic::Periodic;
+pub(crate) use periodic::Periodic; //NARROW
 pub use setup::Setup;
-pub use sponge_layer::SpongeLayer;
+pub(crate) use sponge_layer::SpongeLayer; //NARROW
 pub(crate) use step_check::StepCheck;
-pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
+pub(crate) use step_check::Escape; //NARROW
+pub(crate) use step_check::ExitPath; //NARROW
+pub(crate) use step_check::ParticleLimits; //NARROW
+pub(crate) use step_check::RemovedParticle; //NARROW
 
-pub use crate::interaction::StepLimits;
+pub(crate) use crate::interaction::StepLimits; //NARROW
 
 use std::time::{Duration, Instant};
 
@@ -342,7 +345,7 @@ impl<const D: usize> System<D> {
     }
 
     /// The largest values that limit the next step.
-    pub fn step_limits(&self) -> StepLimits {
+    pub(crate) fn step_limits(&self) -> StepLimits { //NARROW
         self.status.step_limits
     }
 

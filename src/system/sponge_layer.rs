@@ -25,12 +25,12 @@ pub struct SpongeLayer<const D: usize> {
 
 impl<const D: usize> SpongeLayer<D> {
     /// Distance from the beginning to the full strength, m.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 { //NARROW
         (self.to - self.from).norm()
     }
 
     /// β sⁿ (1/s) at `x` (m).
-    pub fn rate(&self, x: &Vector<D>) -> f64 {
+    pub(crate) fn rate(&self, x: &Vector<D>) -> f64 { //NARROW
         let way = self.to - self.from;
         let s = ((x - self.from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
         // The usual one without a power, which costs as much as the exponential.
@@ -41,7 +41,7 @@ impl<const D: usize> SpongeLayer<D> {
     ///
     /// # Errors
     /// `Scene` if it has no length, no strength or no power.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> { //NARROW
         let good = |x: f64| x > 0.0 && x.is_finite();
         match good(self.length()) && good(self.strength) && good(self.power) {
             true => Ok(()),
@@ -53,7 +53,7 @@ impl<const D: usize> SpongeLayer<D> {
 
 impl<const D: usize> System<D> {
     /// The sponge layers.
-    pub fn sponge_layers(&self) -> &[SpongeLayer<D>] {
+    pub(crate) fn sponge_layers(&self) -> &[SpongeLayer<D>] { //NARROW
         &self.fluid_domain.sponge_layers
     }
 }

@@ -13,12 +13,12 @@ use crate::{
 
 impl<const D: usize> System<D> {
     /// The model.
-    pub fn model(&self) -> &Model {
+    pub(crate) fn model(&self) -> &Model { //NARROW
         &self.model
     }
 
     /// The constants that the laws share.
-    pub fn properties(&self) -> &FluidProperties<D> {
+    pub(crate) fn properties(&self) -> &FluidProperties<D> { //NARROW
         &self.properties
     }
 
@@ -28,7 +28,7 @@ impl<const D: usize> System<D> {
     }
 
     /// The boundary particles of all solids.
-    pub fn boundary(&self) -> ParticlesView<'_, D> {
+    pub(crate) fn boundary(&self) -> ParticlesView<'_, D> { //NARROW
         self.boundary.particles.first_n(self.boundary.particles.len())
     }
 
@@ -38,7 +38,7 @@ impl<const D: usize> System<D> {
     }
 
     /// What ties the solids, as it was made.
-    pub fn constraints(&self) -> &Constraints<D> {
+    pub(crate) fn constraints(&self) -> &Constraints<D> { //NARROW
         &self.constraints
     }
 
@@ -48,12 +48,12 @@ impl<const D: usize> System<D> {
     }
 
     /// Where particles may be.
-    pub fn domain(&self) -> &Bounds<D> {
+    pub(crate) fn domain(&self) -> &Bounds<D> { //NARROW
         &self.fluid_domain.domain
     }
 
     /// Which sides are periodic.
-    pub fn periodic(&self) -> &Periodic<D> {
+    pub(crate) fn periodic(&self) -> &Periodic<D> { //NARROW
         &self.fluid.images.periodic
     }
 
@@ -63,18 +63,18 @@ impl<const D: usize> System<D> {
     }
 
     /// Pressure (Pa) at density `rho` (kg/m³).
-    pub fn pressure(&self, rho: f64) -> f64 {
+    pub(crate) fn pressure(&self, rho: f64) -> f64 { //NARROW
         self.properties.rho0 * self.equation_of_state.pressure(rho / self.properties.rho0 - 1.0)
     }
 
     /// Pressure (Pa) with which water of density `rho` (kg/m³) acts where its particles lie dp apart: a little less than
     /// [`System::pressure`].
-    pub fn lattice_pressure(&self, rho: f64) -> f64 {
+    pub(crate) fn lattice_pressure(&self, rho: f64) -> f64 { //NARROW
         self.properties.rho0 * self.equation_of_state.lattice_pressure(rho / self.properties.rho0 - 1.0)
     }
 
     /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
-    pub fn compression_energy(&self, rho: f64) -> f64 {
+    pub(crate) fn compression_energy(&self, rho: f64) -> f64 { //NARROW
         self.equation_of_state.compression_energy(rho / self.properties.rho0 - 1.0)
     }
 
@@ -86,37 +86,37 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
-    pub fn fluid_acceleration(&self, i: usize) -> Vector<D> {
+    pub(crate) fn fluid_acceleration(&self, i: usize) -> Vector<D> { //NARROW
         self.rates.fluid[i].acceleration
     }
 
     /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
-    pub fn fluid_density_rate(&self, i: usize) -> f64 {
+    pub(crate) fn fluid_density_rate(&self, i: usize) -> f64 { //NARROW
         self.rates.fluid[i].compression_rate * self.properties.rho0
     }
 
     /// Number of boundary particles that have water near them; the others cost nothing.
-    pub fn boundary_near_fluid_count(&self) -> usize {
+    pub(crate) fn boundary_near_fluid_count(&self) -> usize { //NARROW
         self.neighbours.boundary_near_fluid().len()
     }
 
     /// Memory of the neighbour lists, B.
-    pub fn neighbour_list_bytes(&self) -> usize {
+    pub(crate) fn neighbour_list_bytes(&self) -> usize { //NARROW
         self.neighbours.memory_bytes()
     }
 
     /// Time spent so far on lists and sorting, and on pairs.
-    pub fn time_spent(&self) -> (Duration, Duration) {
+    pub(crate) fn time_spent(&self) -> (Duration, Duration) { //NARROW
         (self.status.neighbour_time, self.pair_loop.time_spent())
     }
 
     /// Force passes so far.
-    pub fn force_passes(&self) -> u64 {
+    pub(crate) fn force_passes(&self) -> u64 { //NARROW
         self.status.passes
     }
 
     /// Acceleration of gravity, m/s².
-    pub fn gravity(&self) -> Vector<D> {
+    pub(crate) fn gravity(&self) -> Vector<D> { //NARROW
         self.properties.gravity
     }
 
@@ -137,12 +137,12 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
-    pub fn non_periodic_gravity(&self) -> Vector<D> {
+    pub(crate) fn non_periodic_gravity(&self) -> Vector<D> { //NARROW
         Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { self.properties.gravity[i] })
     }
 
     /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).
-    pub fn periodic_gravity_power(&self) -> f64 {
+    pub(crate) fn periodic_gravity_power(&self) -> f64 { //NARROW
         let along = self.properties.gravity - self.non_periodic_gravity();
         if along.norm_squared() == 0.0 {
             return 0.0;
@@ -152,7 +152,7 @@ impl<const D: usize> System<D> {
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
-    pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+    pub(crate) fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //NARROW
         let real = self.particle_count();
         self.neighbours.visit_fluid_around(x, &mut |i| {
             let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.originals[k] as usize);
@@ -161,14 +161,14 @@ impl<const D: usize> System<D> {
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
-    pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+    pub(crate) fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //NARROW
         self.neighbours
             .visit_boundary_around(x, &mut |i| self.visit_within_support(&self.boundary.particles.r[i], x, i, visit));
     }
 
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
-    pub fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
+    pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) { //NARROW
         let (mass, skin) = (self.particle_mass(), &self.solids[solid].boundary);
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
             if skin.contains(&(i as usize)) && self.fluid.images.is_inside(&self.boundary.particles.r[i as usize]) {

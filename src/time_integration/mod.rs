@@ -1,12 +1,12 @@
 //! Time integration: the length of a step and the schemes that advance the water. No sums over pairs.
 
 mod sponge;
-pub mod step_size;
+pub(crate) mod step_size; //NARROW
 mod symplectic;
 mod verlet;
 
-pub use symplectic::Symplectic;
-pub use verlet::Verlet;
+pub(crate) use symplectic::Symplectic; //NARROW
+pub(crate) use verlet::Verlet; //NARROW
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ use crate::{
 
 /// The chosen scheme with its state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub enum Stepper<const D: usize> {
+pub(crate) enum Stepper<const D: usize> { //NARROW
     /// Verlet.
     Verlet(Verlet<D>),
     /// Symplectic.
@@ -31,7 +31,7 @@ pub enum Stepper<const D: usize> {
 
 impl<const D: usize> Stepper<D> {
     /// The stepper of a model's scheme, at the start of a run.
-    pub fn new(model: &Model) -> Self {
+    pub(crate) fn new(model: &Model) -> Self { //NARROW
         match model.scheme {
             TimeScheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
             TimeScheme::Symplectic => Self::Symplectic,

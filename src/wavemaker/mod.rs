@@ -18,12 +18,18 @@ mod solitary;
 mod spectrum;
 mod train;
 
-pub use absorption::{Absorber, AbsorptionSettings, AbsorptionState};
-pub use extent::LINEAR_SPEED_RATIO_MAX;
-pub use paddle::Paddle;
-pub use solitary::{SolitaryTheory, SolitaryWave};
-pub use spectrum::WaveSpectrum;
-pub use train::{DepthRegime, LinearWave, TheoryRegion, wave_number};
+pub(crate) use absorption::Absorber; //NARROW
+pub(crate) use absorption::AbsorptionSettings; //NARROW
+pub(crate) use absorption::AbsorptionState; //NARROW
+pub(crate) use extent::LINEAR_SPEED_RATIO_MAX; //NARROW
+pub(crate) use paddle::Paddle; //NARROW
+pub(crate) use solitary::SolitaryTheory; //NARROW
+pub(crate) use solitary::SolitaryWave; //NARROW
+pub(crate) use spectrum::WaveSpectrum; //NARROW
+pub(crate) use train::DepthRegime; //NARROW
+pub(crate) use train::LinearWave; //NARROW
+pub(crate) use train::TheoryRegion; //NARROW
+pub(crate) use train::wave_number; //NARROW
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -33,17 +39,17 @@ use crate::{
 };
 
 /// Most components of one wave: their sum is formed at every step.
-pub const COMPONENTS_MAX: usize = 2000;
+pub(crate) const COMPONENTS_MAX: usize = 2000; //NARROW
 
 /// Components of a sea or a group where nobody says how many.
-pub const COMPONENTS_DEFAULT: usize = 100;
+pub(crate) const COMPONENTS_DEFAULT: usize = 100; //NARROW
 
 /// The largest displacement of a flap over its arm: 60°.
 const STEEPEST: f64 = 1.7321;
 
 /// A component of the surface: η(x, t) = a cos(ω t − k x + φ), x (m) from the paddle's face at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaveComponent {
+pub(crate) struct WaveComponent { //NARROW
     /// a, m.
     pub amplitude: f64,
     /// ω, rad/s.
@@ -54,7 +60,7 @@ pub struct WaveComponent {
 
 /// A paddle and the water before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wavemaker {
+pub(crate) struct Wavemaker { //NARROW
     /// Depth of the still water at the paddle, m.
     pub depth: f64,
     /// Acceleration of gravity, m/s².
@@ -65,7 +71,7 @@ pub struct Wavemaker {
 
 /// What a wave is, for those who want to say it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaveProperties {
+pub(crate) struct WaveProperties { //NARROW
     /// Its kind, in the words of a scene.
     pub kind: &'static str,
     /// Height, m: significant (4 √m₀) of a sea or a record, twice the crest of a focused group.
@@ -101,23 +107,23 @@ enum Course {
 
 impl PaddleMotion {
     /// The same wave with another ramp (s).
-    pub fn with_ramp(mut self, ramp: f64) -> Self {
+    pub(crate) fn with_ramp(mut self, ramp: f64) -> Self { //NARROW
         self.ramp = ramp;
         self
     }
 
     /// How long (s) it takes to its full size.
-    pub fn ramp_time(&self) -> f64 {
+    pub(crate) fn ramp_time(&self) -> f64 { //NARROW
         self.ramp
     }
 
     /// The paddle that it is for.
-    pub fn paddle(&self) -> Paddle {
+    pub(crate) fn paddle(&self) -> Paddle { //NARROW
         self.paddle
     }
 
     /// Depth of the still water that it is for, m.
-    pub fn depth(&self) -> f64 {
+    pub(crate) fn depth(&self) -> f64 { //NARROW
         self.facts
             .linear_wave
             .map(|train| train.depth)
@@ -126,7 +132,7 @@ impl PaddleMotion {
     }
 
     /// About how far (m) the face goes from end to end.
-    pub fn stroke(&self) -> f64 {
+    pub(crate) fn stroke(&self) -> f64 { //NARROW
         match &self.course {
             Course::Tones(tones) => 2.0 * size(tones),
             Course::Solitary(wave) => wave.stroke(),
@@ -134,7 +140,7 @@ impl PaddleMotion {
     }
 
     /// What it is.
-    pub fn properties(&self) -> &WaveProperties {
+    pub(crate) fn properties(&self) -> &WaveProperties { //NARROW
         &self.facts
     }
 
@@ -147,7 +153,7 @@ impl PaddleMotion {
     }
 
     /// Displacement (m) of the face at the still level and its rate (m/s) at time `t` (s).
-    pub fn displacement(&self, t: f64) -> (f64, f64) {
+    pub(crate) fn displacement(&self, t: f64) -> (f64, f64) { //NARROW
         if t <= 0.0 || t >= self.end {
             return (0.0, 0.0);
         }
@@ -165,7 +171,7 @@ impl PaddleMotion {
 
     /// What drives the paddle: displacement (m) and rate (m/s) of a piston, angle (rad) and rate (rad/s) of a flap,
     /// positive where the waves go.
-    pub fn coordinate_and_rate(&self, t: f64) -> (f64, f64) {
+    pub(crate) fn coordinate_and_rate(&self, t: f64) -> (f64, f64) { //NARROW
         self.turned(self.displacement(t))
     }
 
@@ -184,7 +190,7 @@ impl PaddleMotion {
 
     /// The surface (m) at `x` (m) before the paddle's face at rest and time `t` (s) by linear theory, the ramp left
     /// out; none of a solitary wave.
-    pub fn elevation(&self, x: f64, t: f64) -> Option<f64> {
+    pub(crate) fn elevation(&self, x: f64, t: f64) -> Option<f64> { //NARROW
         let (Course::Tones(tones), Some(train)) = (&self.course, &self.facts.linear_wave) else { return None };
         let parts = tones.iter().filter(|tone| self.facts.order == 1 || tone.omega < 1.5 * train.omega).map(|tone| {
             let own = LinearWave::new(tone.omega, train.depth, train.g);
@@ -210,7 +216,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if the wave would break, the paddle outrun it, or the order is neither 1 nor 2.
-    pub fn regular(&self, height: f64, period: f64, phase: f64, order: usize) -> Result<PaddleMotion> {
+    pub(crate) fn regular(&self, height: f64, period: f64, phase: f64, order: usize) -> Result<PaddleMotion> { //NARROW
         let train = self.train(period)?;
         self.unbroken("a regular wave", height, &train)?;
         let component = WaveComponent { amplitude: 0.5 * height, omega: train.omega, phase };
@@ -233,7 +239,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if even a regular wave of this height would break, or the components are none or too many.
-    pub fn irregular(&self, height: f64, spectrum: &WaveSpectrum, seed: u64, count: usize) -> Result<PaddleMotion> {
+    pub(crate) fn irregular(&self, height: f64, spectrum: &WaveSpectrum, seed: u64, count: usize) -> Result<PaddleMotion> { //NARROW
         let train = self.train(spectrum.peak_period)?;
         self.unbroken("a wave of the significant height and the peak period", height, &train)?;
         let omegas = counted(count).map(|()| spectrum.equal_energy_frequencies(count))?;
@@ -250,7 +256,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` as [`Wavemaker::irregular`], for a wave of height `crest`.
-    pub fn focused(
+    pub(crate) fn focused( //NARROW
         &self,
         crest: f64,
         spectrum: &WaveSpectrum,
@@ -275,7 +281,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if there are none or too many, or one of them would break by itself.
-    pub fn components(&self, components: &[WaveComponent]) -> Result<PaddleMotion> {
+    pub(crate) fn components(&self, components: &[WaveComponent]) -> Result<PaddleMotion> { //NARROW
         counted(components.len())?;
         for component in components {
             let own = LinearWave::new(component.omega, self.depth, self.g);
@@ -293,7 +299,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if it is too short or still, or as [`Wavemaker::components`].
-    pub fn measured(&self, elevation: &TimeSeries, distance: f64, delay: f64) -> Result<PaddleMotion> {
+    pub(crate) fn measured(&self, elevation: &TimeSeries, distance: f64, delay: f64) -> Result<PaddleMotion> { //NARROW
         let found = record::fourier_components(elevation)?;
         let early = |c: &WaveComponent| WaveComponent {
             phase: c.phase + wave_number(c.omega, self.depth, self.g) * distance - c.omega * delay,
@@ -310,7 +316,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if it would break, or the paddle is a flap, for which there is no theory.
-    pub fn solitary(&self, height: f64, theory: SolitaryTheory) -> Result<PaddleMotion> {
+    pub(crate) fn solitary(&self, height: f64, theory: SolitaryTheory) -> Result<PaddleMotion> { //NARROW
         if self.paddle != Paddle::Piston {
             return Err(Error::scene("a solitary wave needs a piston: there is no theory of a flap that makes one")
                 .help("write  driven = { along = [1.0, 0.0], wave = { solitary = { height = 0.1 } } }"));
@@ -331,7 +337,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if the period is none.
-    pub fn at_rest(&self, period: f64) -> Result<PaddleMotion> {
+    pub(crate) fn at_rest(&self, period: f64) -> Result<PaddleMotion> { //NARROW
         Ok(self.wave("none", 0.0, 1, self.train(period)?, Vec::new()))
     }
 

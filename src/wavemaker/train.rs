@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use serde::Serialize;
 
 /// Largest height of a wave over the depth @mccowan1894.
-pub const MCCOWAN_LIMIT: f64 = 0.78;
+pub(crate) const MCCOWAN_LIMIT: f64 = 0.78; //NARROW
 
 /// Largest height of a wave over its length in deep water @miche1944.
 const MICHE: f64 = 0.142;
@@ -15,7 +15,7 @@ const URSELL: f64 = 26.0;
 
 /// A wave of small height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearWave {
+pub(crate) struct LinearWave { //NARROW
     /// Depth, m.
     pub depth: f64,
     /// Acceleration of gravity, m/s².
@@ -29,7 +29,7 @@ pub struct LinearWave {
 /// How deep the water is for a wave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum DepthRegime {
+pub(crate) enum DepthRegime { //NARROW
     /// kd > π.
     Deep,
     /// Between.
@@ -40,7 +40,7 @@ pub enum DepthRegime {
 
 /// Where a wave lies on the chart of @lemehaute1976.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum TheoryRegion {
+pub(crate) enum TheoryRegion { //NARROW
     /// Stokes' second term is less than a hundredth of the first.
     Airy,
     /// Below a quarter of the breaking height.
@@ -62,7 +62,7 @@ pub enum TheoryRegion {
 
 impl DepthRegime {
     /// The word for it.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str { //NARROW
         match self {
             Self::Deep => "deep",
             Self::Intermediate => "intermediate",
@@ -73,7 +73,7 @@ impl DepthRegime {
 
 impl TheoryRegion {
     /// The word for it.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str { //NARROW
         match self {
             Self::Airy => "Airy",
             Self::Stokes2 => "Stokes 2",
@@ -87,38 +87,38 @@ impl TheoryRegion {
 
 impl LinearWave {
     /// The wave of angular frequency `omega` (rad/s) in water `depth` (m) deep.
-    pub fn new(omega: f64, depth: f64, g: f64) -> Self {
+    pub(crate) fn new(omega: f64, depth: f64, g: f64) -> Self { //NARROW
         Self { depth, g, omega, k: wave_number(omega, depth, g) }
     }
 
     /// Period, s.
-    pub fn period(&self) -> f64 {
+    pub(crate) fn period(&self) -> f64 { //NARROW
         TAU / self.omega
     }
 
     /// Length, m.
-    pub fn wavelength(&self) -> f64 {
+    pub(crate) fn wavelength(&self) -> f64 { //NARROW
         TAU / self.k
     }
 
     /// kd, –.
-    pub fn kd(&self) -> f64 {
+    pub(crate) fn kd(&self) -> f64 { //NARROW
         self.k * self.depth
     }
 
     /// Speed of its crests, m/s.
-    pub fn celerity(&self) -> f64 {
+    pub(crate) fn celerity(&self) -> f64 { //NARROW
         self.omega / self.k
     }
 
     /// Speed of its energy, m/s: ½ (1 + 2kd/sinh 2kd) ω/k.
-    pub fn group_velocity(&self) -> f64 {
+    pub(crate) fn group_velocity(&self) -> f64 { //NARROW
         let x = 2.0 * self.kd();
         0.5 * (1.0 + if x > 600.0 { 0.0 } else { x / x.sinh() }) * self.celerity()
     }
 
     /// How deep the water is for it.
-    pub fn depth_regime(&self) -> DepthRegime {
+    pub(crate) fn depth_regime(&self) -> DepthRegime { //NARROW
         match self.kd() {
             kd if kd > PI => DepthRegime::Deep,
             kd if kd < 0.1 * PI => DepthRegime::Shallow,
@@ -127,30 +127,30 @@ impl LinearWave {
     }
 
     /// Height (m) of the highest of its length: the lesser of 0.142 L tanh kd and 0.78 d.
-    pub fn breaking_height(&self) -> f64 {
+    pub(crate) fn breaking_height(&self) -> f64 { //NARROW
         (MICHE * self.wavelength() * self.kd().tanh()).min(MCCOWAN_LIMIT * self.depth)
     }
 
     /// H L²/d³ of a wave of `height` (m), –.
-    pub fn ursell(&self, height: f64) -> f64 {
+    pub(crate) fn ursell(&self, height: f64) -> f64 { //NARROW
         height * self.wavelength().powi(2) / self.depth.powi(3)
     }
 
     /// The greatest height (m) for which two terms of Stokes are enough: H L²/d³ = 26.
-    pub fn stokes_height_max(&self) -> f64 {
+    pub(crate) fn stokes_height_max(&self) -> f64 { //NARROW
         URSELL / self.ursell(1.0)
     }
 
     /// The longest period (s) at which two terms of Stokes are enough for a wave of `height` (m) in this depth; none if
     /// it would break.
-    pub fn stokes_period_max(&self, height: f64) -> Option<f64> {
+    pub(crate) fn stokes_period_max(&self, height: f64) -> Option<f64> { //NARROW
         let k = TAU / (URSELL * self.depth.powi(3) / height).sqrt();
         let own = Self { k, omega: (self.g * k * (k * self.depth).tanh()).sqrt(), ..*self };
         (height < own.breaking_height()).then(|| own.period())
     }
 
     /// Which theory holds for a wave of `height` (m).
-    pub fn theory_region(&self, height: f64) -> TheoryRegion {
+    pub(crate) fn theory_region(&self, height: f64) -> TheoryRegion { //NARROW
         match height {
             h if h >= self.breaking_height() => TheoryRegion::Breaking,
             h if self.second_order_ratio(h) < 0.01 => TheoryRegion::Airy,
@@ -161,14 +161,14 @@ impl LinearWave {
     }
 
     /// Stokes' second term over the first: (πH/4L) cosh kd (2 + cosh 2kd)/sinh³ kd.
-    pub fn second_order_ratio(&self, height: f64) -> f64 {
+    pub(crate) fn second_order_ratio(&self, height: f64) -> f64 { //NARROW
         let kd = self.kd().min(100.0);
         0.25 * PI * height / self.wavelength() * kd.cosh() * (2.0 + (2.0 * kd).cosh()) / kd.sinh().powi(3)
     }
 }
 
 /// k (1/m) of a wave of angular frequency `omega` (rad/s) in water `depth` (m) deep: ω² = g k tanh kd, by Newton.
-pub fn wave_number(omega: f64, depth: f64, g: f64) -> f64 {
+pub(crate) fn wave_number(omega: f64, depth: f64, g: f64) -> f64 { //NARROW
     let deep = omega * omega * depth / g;
     let mut kd = deep.max(deep.sqrt());
     for _ in 0..50 {

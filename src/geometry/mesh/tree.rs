@@ -1,9 +1,9 @@
 //! The nearest place of a mesh, by parry's tree of boxes; without `dim3` there is none, and no mesh.
 
 #[cfg(feature = "dim3")]
-pub use with_parry::FacetTree;
+pub(crate) use with_parry::FacetTree; //NARROW
 #[cfg(not(feature = "dim3"))]
-pub use without::FacetTree;
+pub(crate) use without::FacetTree; //NARROW
 
 #[cfg(feature = "dim3")]
 mod with_parry {
@@ -26,10 +26,10 @@ mod with_parry {
 
     /// The facets in a tree of boxes, with the normals of facets, edges and corners.
     #[derive(Clone)]
-    pub struct FacetTree(TriMesh);
+    pub(crate) struct FacetTree(TriMesh); //NARROW
 
     impl FacetTree {
-        pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
+        pub(crate) fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> { //NARROW
             let points = points.iter().map(|p| Point::from_array((*p).into())).collect();
             TriMesh::with_flags(points, facets.to_vec(), TriMeshFlags::ORIENTED)
                 .map(Self)
@@ -37,7 +37,7 @@ mod with_parry {
         }
 
         /// See [`Mesh::distance_and_normal`].
-        pub fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
+        pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) { //NARROW
             let at = Point::from_array((*x).into());
             let (foot, (facet, location)) = self.0.project_local_point_and_get_location(at, false);
             let way = x - Vector::from(foot.point.to_array());
@@ -63,7 +63,7 @@ mod with_parry {
         }
 
         /// Two facets without a common corner that pass through each other.
-        pub fn find_crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> {
+        pub(crate) fn find_crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> { //NARROW
             let apart = |a: usize, b: usize| mesh.facets[a].iter().all(|p| !mesh.facets[b].contains(p));
             (0..mesh.facets.len()).into_par_iter().find_map_first(|a| {
                 let around = self.0.triangle(a as u32).local_aabb();
@@ -85,19 +85,19 @@ mod without {
 
     /// There is none.
     #[derive(Clone)]
-    pub enum FacetTree {}
+    pub(crate) enum FacetTree {} //NARROW
 
     impl FacetTree {
-        pub fn new(_: &[Vector<3>], _: &[[u32; 3]]) -> Result<Self> {
+        pub(crate) fn new(_: &[Vector<3>], _: &[[u32; 3]]) -> Result<Self> { //NARROW
             Err(Error::scene("a mesh needs three dimensions, which this program was built without")
                 .help("build it with the feature dim3"))
         }
 
-        pub fn distance_and_normal(&self, _: &Vector<3>) -> (f64, Vector<3>) {
+        pub(crate) fn distance_and_normal(&self, _: &Vector<3>) -> (f64, Vector<3>) { //NARROW
             match *self {}
         }
 
-        pub fn find_crossing(&self, _: &Mesh) -> Option<(usize, usize)> {
+        pub(crate) fn find_crossing(&self, _: &Mesh) -> Option<(usize, usize)> { //NARROW
             match *self {}
         }
     }

@@ -7,11 +7,11 @@ use serde::{Serialize, Serializer};
 use crate::{analysis::RaoPoint, error::Result, output::write_atomically};
 
 /// The file, in the run's folder.
-pub const RAO_FILE: &str = "rao.csv";
+pub(crate) const RAO_FILE: &str = "rao.csv"; //NARROW
 
 /// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO_FILE`] for keys.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RaoResult {
+pub(crate) struct RaoResult { //NARROW
     /// Name of the `[[statistic]]`.
     pub name: String,
     /// The motion, as `probe.column`.
@@ -24,7 +24,7 @@ pub struct RaoResult {
 
 impl RaoResult {
     /// Phase of the motion less that of the wave, degrees.
-    pub fn phase_degrees(&self) -> f64 {
+    pub(crate) fn phase_degrees(&self) -> f64 { //NARROW
         self.point.phase * 180.0 / PI
     }
 
@@ -66,7 +66,7 @@ struct RaoRow<'a> {
 ///
 /// # Errors
 /// `File` if it cannot be written.
-pub fn write(folder: &Path, answers: &[RaoResult]) -> Result<()> {
+pub(crate) fn write(folder: &Path, answers: &[RaoResult]) -> Result<()> { //NARROW
     if answers.is_empty() {
         return Ok(());
     }

@@ -6,13 +6,13 @@ use super::{ProbeTables, series_in_window};
 use crate::{analysis::displayed_spectrum, error::Result, math::format::unit, output::write_atomically};
 
 /// The file, in the run's folder.
-pub const SPECTRA_FILE: &str = "spectra.csv";
+pub(crate) const SPECTRA_FILE: &str = "spectra.csv"; //NARROW
 
 /// Writes the spectra of all series of `tables` that swing into the run's `folder`; no file if none does.
 ///
 /// # Errors
 /// `File` if it cannot be written.
-pub fn write(folder: &Path, tables: &ProbeTables) -> Result<()> {
+pub(crate) fn write(folder: &Path, tables: &ProbeTables) -> Result<()> { //NARROW
     let mut text = String::new();
     for (probe, table) in tables {
         for column in &table.columns {

@@ -21,7 +21,7 @@ pub struct Mobility<const D: usize> {
 
 impl<const D: usize> Mobility<D> {
     /// The mobility of a solid that is not free.
-    pub fn none() -> Self {
+    pub(crate) fn none() -> Self { //NARROW
         Self { linear: Vector::zeros(), angular: SMatrix::zeros() }
     }
 

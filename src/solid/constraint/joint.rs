@@ -75,7 +75,7 @@ pub struct JointSpec<const D: usize> {
 impl<const D: usize> JointSpec<D> {
     /// A joint of this kind at the world point `at` (m), along or about `axis`, without limits or motor. The second of `between`
     /// moves against the first.
-    pub fn new(
+    pub(crate) fn new( //NARROW
         name: impl Into<String>,
         kind: JointKind,
         between: [Option<usize>; 2],
@@ -96,20 +96,20 @@ impl<const D: usize> JointSpec<D> {
     }
 
     /// The same joint, generic, with one more mode left free: 0 to D − 1 along the axes of its frame, from D on about them.
-    pub fn with_free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
+    pub(crate) fn with_free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self { //NARROW
         self.kind = JointKind::Generic;
         self.free_modes.push(FreeMode { mode, limits });
         self
     }
 
     /// The same joint with end stops, m or rad from the start.
-    pub fn with_limits(mut self, min: f64, max: f64) -> Self {
+    pub(crate) fn with_limits(mut self, min: f64, max: f64) -> Self { //NARROW
         self.limits = Some([min, max]);
         self
     }
 
     /// The same joint with a motor.
-    pub fn with_motor(mut self, motor: Motor) -> Self {
+    pub(crate) fn with_motor(mut self, motor: Motor) -> Self { //NARROW
         self.motor = Some(motor);
         self
     }

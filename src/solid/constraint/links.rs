@@ -46,7 +46,7 @@ impl InitialHold {
 
 /// Contact properties of a pair of solids.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSpec {
+pub(crate) struct ContactSpec { //NARROW
     /// Numbers of the two.
     pub between: [usize; 2],
     /// Whether they have contact, or pass through one another.
@@ -63,17 +63,17 @@ pub struct ContactPairs(BTreeMap<[usize; 2], ContactSpec>);
 
 impl ContactPairs {
     /// How many pairs there are.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize { //NARROW
         self.0.len()
     }
 
     /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool { //NARROW
         self.0.is_empty()
     }
 
     /// That of solids `a` and `b`.
-    pub fn find(&self, a: usize, b: usize) -> Option<&ContactSpec> {
+    pub(crate) fn find(&self, a: usize, b: usize) -> Option<&ContactSpec> { //NARROW
         self.0.get(&[a.min(b), a.max(b)])
     }
 }
@@ -98,7 +98,7 @@ impl FromIterator<ContactSpec> for ContactPairs {
 
 impl<const D: usize> Constraints<D> {
     /// Whether there is nothing.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool { //NARROW
         self.joints.is_empty()
             && self.springs.is_empty()
             && self.ropes.is_empty()
@@ -108,7 +108,7 @@ impl<const D: usize> Constraints<D> {
     }
 
     /// Whether solids `a` and `b` may have contact: not if a joint between them or a pair excludes it.
-    pub fn can_touch(&self, a: usize, b: usize) -> bool {
+    pub(crate) fn can_touch(&self, a: usize, b: usize) -> bool { //NARROW
         let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts_enabled;
         self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }
@@ -129,7 +129,7 @@ impl<const D: usize> Constraints<D> {
     ///
     /// # Errors
     /// `Scene`: names the tie, what is wrong with it, and what would be right.
-    pub fn check(&self, solids: &[SolidSpec<D>]) -> Result<()> {
+    pub(crate) fn check(&self, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
         (0..self.joints.len()).try_for_each(|i| self.check_joint(i, solids))?;
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
@@ -142,7 +142,7 @@ impl<const D: usize> Constraints<D> {
     ///
     /// # Errors
     /// `Scene`, as [`Constraints::check`].
-    pub fn check_joint(&self, i: usize, solids: &[SolidSpec<D>]) -> Result<()> {
+    pub(crate) fn check_joint(&self, i: usize, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
         let joint = &self.joints[i];
         let who = format!("joint \"{}\"", joint.name);
         check_ends(&who, joint.between, solids)?;
@@ -196,7 +196,7 @@ fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
-pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+pub(crate) fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
     let who = format!("spring \"{}\"", spring.name);
     check_line(&who, &spring.ends, solids)?;
     let numbers = [("stiffness", spring.stiffness, 0.0), ("damping", spring.damping, 0.0)];
@@ -217,7 +217,7 @@ pub fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
-pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+pub(crate) fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
     let who = format!("rope \"{}\"", rope.name);
     check_line(&who, &rope.ends, solids)?;
     let start = start_length(&rope.ends);
@@ -237,7 +237,7 @@ pub fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
-pub fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+pub(crate) fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
     let who = format!("force \"{}\"", force.name);
     check_ends(&who, [Some(force.solid), None], solids)?;
     let finite = |laws: &[crate::solid::TimeFunction]| laws.iter().all(|law| law.value_and_rate(0.0).0.is_finite());

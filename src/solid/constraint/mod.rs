@@ -2,15 +2,25 @@
 
 pub(crate) mod assembly;
 mod jacobian;
-pub mod joint;
-pub mod lines;
-pub mod links;
+pub(crate) mod joint; //NARROW
+pub(crate) mod lines; //NARROW
+pub(crate) mod links; //NARROW
 mod motor;
 mod reactions;
 
-pub use assembly::{JointReading, LineReading};
-pub use jacobian::Mobility;
-pub use joint::{FreeMode, JointKind, JointSpec};
-pub use lines::{LineEnd, RopeSpec, SpringParameters, SpringSpec};
-pub use links::{Constraints, ContactPairs, ContactSpec, InitialHold};
-pub use motor::{Motor, MotorCommand};
+pub(crate) use assembly::JointReading; //NARROW
+pub(crate) use assembly::LineReading; //NARROW
+pub(crate) use jacobian::Mobility; //NARROW
+pub(crate) use joint::FreeMode; //NARROW
+pub(crate) use joint::JointKind; //NARROW
+pub(crate) use joint::JointSpec; //NARROW
+pub(crate) use lines::LineEnd; //NARROW
+pub(crate) use lines::RopeSpec; //NARROW
+pub(crate) use lines::SpringParameters; //NARROW
+pub(crate) use lines::SpringSpec; //NARROW
+pub(crate) use links::Constraints; //NARROW
+pub(crate) use links::ContactPairs; //NARROW
+pub(crate) use links::ContactSpec; //NARROW
+pub(crate) use links::InitialHold; //NARROW
+pub use motor::Motor;
+pub(crate) use motor::MotorCommand; //NARROW

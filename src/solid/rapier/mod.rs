@@ -4,6 +4,10 @@ mod engine;
 #[cfg(feature = "dim2")]
 pub mod rapier2d;
 #[cfg(feature = "dim3")]
-pub mod rapier3d;
+pub(crate) mod rapier3d; //NARROW
 
-pub use engine::{ContactForce, Dim, Engine, EngineFault, HasEngine};
+pub(crate) use engine::ContactForce; //NARROW
+pub use engine::Dim;
+pub(crate) use engine::Engine; //NARROW
+pub(crate) use engine::EngineFault; //NARROW
+pub(crate) use engine::HasEngine; //NARROW

@@ -25,7 +25,10 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::{apply_load, kinematics, set_kinematic, solid_from_body};
+pub use external::apply_load;
+pub use external::kinematics;
+pub(crate) use external::set_kinematic; //NARROW
+pub use external::solid_from_body;
 pub(super) use world::RapierWorld;
 
 use nalgebra::SMatrix;

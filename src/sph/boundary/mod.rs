@@ -5,7 +5,10 @@ mod relaxed_adami;
 mod repulsion;
 mod slip;
 
-pub use dynamic::DynamicBoundary;
-pub use relaxed_adami::{SupportCoverage, WallExtrapolation, relaxation};
+pub(crate) use dynamic::DynamicBoundary; //NARROW
+pub(crate) use relaxed_adami::SupportCoverage; //NARROW
+pub(crate) use relaxed_adami::WallExtrapolation; //NARROW
+pub(crate) use relaxed_adami::relaxation; //NARROW
 pub use repulsion::Repulsion;
-pub use slip::{Slip, no_slip_velocity};
+pub(crate) use slip::Slip; //NARROW
+pub(crate) use slip::no_slip_velocity; //NARROW

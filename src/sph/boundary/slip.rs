@@ -27,7 +27,7 @@ pub enum Slip {
 
 impl Slip {
     /// Share of the viscosity that acts between water and solids, –.
-    pub fn wall_viscosity_factor(self) -> f64 {
+    pub(crate) fn wall_viscosity_factor(self) -> f64 { //NARROW
         if self == Self::Free { 0.0 } else { 1.0 }
     }
 }
@@ -37,7 +37,7 @@ const MAX_RATIO: f64 = 4.0;
 
 /// The velocity (m/s) without slip of a boundary particle whose solid moves there with `v` (m/s), `depth` (m) below the face with
 /// outward normal `normal`, with sums `fit` over the water. Where the water is not before that face, its solid's.
-pub fn no_slip_velocity<const D: usize>(
+pub(crate) fn no_slip_velocity<const D: usize>( //NARROW
     fit: &WallExtrapolation<f64, D>,
     v: Vector<D>,
     normal: &Vector<D>,

@@ -3,8 +3,9 @@
 mod fourtakas;
 mod molteni;
 
-pub use fourtakas::{Fourtakas, FourtakasTerm};
-pub use molteni::Molteni;
+pub use fourtakas::Fourtakas;
+pub(crate) use fourtakas::FourtakasTerm; //NARROW
+pub(crate) use molteni::Molteni; //NARROW
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,7 +26,7 @@ pub enum Diffusion {
 
 impl Diffusion {
     /// The term in the pair loop.
-    pub fn term<const D: usize>(&self, properties: &FluidProperties<D>) -> Option<FourtakasTerm<D>> {
+    pub(crate) fn term<const D: usize>(&self, properties: &FluidProperties<D>) -> Option<FourtakasTerm<D>> { //NARROW
         match self {
             Self::None => None,
             Self::Molteni(law) => Some(law.term(properties)),
@@ -34,7 +35,7 @@ impl Diffusion {
     }
 
     /// λ h/c₀ (–) of the shortest waves, λ the rate at which the diffusion damps them: 7 δ.
-    pub fn damping(&self) -> f64 {
+    pub(crate) fn damping(&self) -> f64 { //NARROW
         7.0 * match self {
             Self::None => 0.0,
             Self::Molteni(law) => law.delta,

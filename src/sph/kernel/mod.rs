@@ -1,10 +1,10 @@
 //! Kernels W(r, h), normalised to ∫ W dV = 1, zero from r = 2h on.
 
 mod cubic;
-pub mod lattice;
+pub(crate) mod lattice; //NARROW
 mod wendland;
 
-pub use cubic::Cubic;
+pub(crate) use cubic::Cubic; //NARROW
 pub use wendland::Wendland;
 
 use super::{FluidProperties, Num};
@@ -52,4 +52,4 @@ fn moment<K: Kernel, const D: usize>(kernel: &K, medium: &FluidProperties<D>, f:
 }
 
 /// Support radius over smoothing length, the same for every kernel here.
-pub const SUPPORT_RATIO: f64 = 2.0;
+pub(crate) const SUPPORT_RATIO: f64 = 2.0; //NARROW

@@ -5,9 +5,12 @@ mod artificial;
 mod laminar;
 mod sps;
 
-pub use artificial::{Artificial, ArtificialTerm};
-pub use laminar::{Laminar, LaminarTerm};
-pub use sps::{Sps, SpsTerm};
+pub use artificial::Artificial;
+pub(crate) use artificial::ArtificialTerm; //NARROW
+pub(crate) use laminar::Laminar; //NARROW
+pub(crate) use laminar::LaminarTerm; //NARROW
+pub(crate) use sps::Sps; //NARROW
+pub(crate) use sps::SpsTerm; //NARROW
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -29,7 +32,7 @@ pub enum Viscosity {
 }
 
 /// Continues with the terms of a viscosity: `fluid` between water particles, `wall` between water and solids.
-pub trait TermConsumer<const D: usize> {
+pub(crate) trait TermConsumer<const D: usize> { //NARROW
     /// The result.
     type Output;
     /// Continues.
@@ -39,7 +42,7 @@ pub trait TermConsumer<const D: usize> {
 impl Viscosity {
     /// Calls `next` with the terms in the given units. `wall_share` (–) is the part of the viscosity that acts between water and
     /// solids, `viscous_sum` that of a viscous force that η² leaves on the lattice.
-    pub fn terms<const D: usize, N: TermConsumer<D>>(
+    pub(crate) fn terms<const D: usize, N: TermConsumer<D>>( //NARROW
         self,
         properties: &FluidProperties<D>,
         units: &Units,
@@ -65,7 +68,7 @@ impl Viscosity {
     }
 
     /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity @morris1997.
-    pub fn step_limit(&self, h: f64) -> f64 {
+    pub(crate) fn step_limit(&self, h: f64) -> f64 { //NARROW
         let nu0 = match self {
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,
@@ -75,12 +78,12 @@ impl Viscosity {
     }
 
     /// The stress law, if the viscosity keeps a stress tensor for each particle.
-    pub fn stress(&self) -> Option<Sps> {
+    pub(crate) fn stress(&self) -> Option<Sps> { //NARROW
         if let Self::Sps(law) = self { Some(*law) } else { None }
     }
 
     /// λ h/c₀ (–) of the shortest waves, λ the rate at which the viscosity damps them: 3.5 α.
-    pub fn damping(&self) -> f64 {
+    pub(crate) fn damping(&self) -> f64 { //NARROW
         if let Self::Artificial(law) = self { 3.5 * law.alpha } else { 0.0 }
     }
 }

@@ -20,11 +20,11 @@ use crate::{
 
 /// Water and wet boundary particles × force passes that a case may take: about half a minute of a slow processor in 2-D, two
 /// in 3-D. In particles, not seconds, so that every machine cuts the same cases.
-pub const BUDGET: f64 = 1.5e8;
+pub(crate) const BUDGET: f64 = 1.5e8; //NARROW
 
 /// What came out of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CaseRun {
+pub(crate) struct CaseRun { //NARROW
     /// The map.
     pub map: String,
     /// The values along its axes.
@@ -48,7 +48,7 @@ pub struct CaseRun {
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum CaseEnd {
+pub(crate) enum CaseEnd { //NARROW
     /// At its end.
     Reached,
     /// The budget was used up.
@@ -66,7 +66,7 @@ impl CaseRun {
     ///
     /// # Errors
     /// `Usage` if its thread cannot be started. That the run fails is no error: the trial says so.
-    pub fn execute(case: &StressCase) -> Result<Self> {
+    pub(crate) fn execute(case: &StressCase) -> Result<Self> { //NARROW
         let mut trial = Self {
             map: case.map.clone(),
             values: case.values.clone(),
@@ -102,7 +102,7 @@ impl CaseRun {
     }
 
     /// How it is to be taken: `missed` is what of its figures misses a bound.
-    pub fn outcome(&self, missed: &[String]) -> CaseOutcome {
+    pub(crate) fn outcome(&self, missed: &[String]) -> CaseOutcome { //NARROW
         match &self.end {
             CaseEnd::Panicked(_) => CaseOutcome::Wrong,
             CaseEnd::Stopped(_) | CaseEnd::Refused(_) => CaseOutcome::Stopped,

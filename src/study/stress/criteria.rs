@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// A bound and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Bound {
+pub(crate) struct Bound { //NARROW
     /// The largest figure that passes.
     pub within: f64,
     /// Why so much and no more.
@@ -28,7 +28,7 @@ pub struct Bound {
 /// A bound on something of a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SolidBound {
+pub(crate) struct SolidBound { //NARROW
     /// The solid's name.
     pub solid: String,
     /// The largest figure that passes.
@@ -40,7 +40,7 @@ pub struct SolidBound {
 /// A motion that is known exactly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MotionBound {
+pub(crate) struct MotionBound { //NARROW
     /// The solid's name.
     pub solid: String,
     /// A column of its motion, as in `heave_m`.
@@ -56,7 +56,7 @@ pub struct MotionBound {
 /// What a case is judged by.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Criteria {
+pub(crate) struct Criteria { //NARROW
     /// Energy made of nothing, as a share of the case's energy scale.
     pub energy: Option<Bound>,
     /// Depth of water or a body inside a solid, dp; no water may be beside or below a tank.
@@ -72,12 +72,12 @@ pub struct Criteria {
 }
 
 /// What was measured of a run, by name.
-pub type MeasuredFigures = BTreeMap<String, f64>;
+pub(crate) type MeasuredFigures = BTreeMap<String, f64>; //NARROW
 
 /// How a case came out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum CaseOutcome {
+pub(crate) enum CaseOutcome { //NARROW
     /// All figures are within their bounds.
     Right,
     /// The program stopped or refused, and said why.
@@ -90,7 +90,7 @@ pub enum CaseOutcome {
 
 impl Criteria {
     /// Names and bounds of all that is asked.
-    pub fn bounds(&self) -> Vec<(String, f64)> {
+    pub(crate) fn bounds(&self) -> Vec<(String, f64)> { //NARROW
         let plain =
             [("energy", &self.energy), ("walls", &self.walls), ("quiet", &self.quiet), ("momentum", &self.momentum)];
         let mut all: Vec<(String, f64)> =
@@ -102,14 +102,14 @@ impl Criteria {
     }
 
     /// What must be measured, whatever the bounds are: a run need not be made again for another bound.
-    pub fn required_figures(&self) -> String {
+    pub(crate) fn required_figures(&self) -> String { //NARROW
         let names: Vec<String> = self.bounds().into_iter().map(|(name, _)| name).collect();
         let formulae: Vec<&str> = self.motion.iter().map(|course| course.formula.as_str()).collect();
         format!("{}; {}", names.join(", "), formulae.join(", "))
     }
 
     /// What of `figures` misses its bound, in words; a figure that is not there misses it.
-    pub fn missed_bounds(&self, figures: &MeasuredFigures) -> Vec<String> {
+    pub(crate) fn missed_bounds(&self, figures: &MeasuredFigures) -> Vec<String> { //NARROW
         let said = |(name, within): (String, f64)| match figures.get(&name) {
             Some(figure) if *figure <= within => None,
             Some(figure) => Some(format!("{name} {} > {within}", format_figure(*figure))),
@@ -125,23 +125,23 @@ fn format_figure(x: f64) -> String {
 }
 
 /// The name of the figure of a draft.
-pub fn draft_figure(solid: &str) -> String {
+pub(crate) fn draft_figure(solid: &str) -> String { //NARROW
     format!("draft of {solid}")
 }
 
 /// The name of the figure of a motion.
-pub fn motion_figure(course: &MotionBound) -> String {
+pub(crate) fn motion_figure(course: &MotionBound) -> String { //NARROW
     format!("{} of {}", course.column, course.solid)
 }
 
 /// The larger of two figures; one that is not a number is larger than any, and still can be written down.
-pub fn max_or_invalid(a: f64, b: f64) -> f64 {
+pub(crate) fn max_or_invalid(a: f64, b: f64) -> f64 { //NARROW
     if b.is_nan() { f64::MAX } else { a.max(b.min(f64::MAX)) }
 }
 
 /// Energies (J; J/m in 2-D) at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energies {
+pub(crate) struct Energies { //NARROW
     /// Of motion.
     pub kinetic: f64,
     /// Of height, since the start.
@@ -152,7 +152,7 @@ pub struct Energies {
 
 /// The books of a run's energy.
 #[derive(Clone, Copy, Debug)]
-pub struct EnergyBalance {
+pub(crate) struct EnergyBalance { //NARROW
     start: f64,
     scale_floor: f64,
     potential_drop: f64,
@@ -166,27 +166,27 @@ impl EnergyBalance {
     ///
     /// The scale is the largest of the motion and compression at the start, the fall of the potential, the work done, and a
     /// tenth of `lift`: bodies and levels are not known better than to a tenth of dp, so less energy than that means nothing.
-    pub fn new(first: Energies, lift: f64) -> Self {
+    pub(crate) fn new(first: Energies, lift: f64) -> Self { //NARROW
         let start = first.kinetic + first.potential + first.compression;
         let floor = (0.1 * lift).max(first.kinetic + first.compression);
         Self { start, scale_floor: floor, potential_drop: 0.0, work: 0.0, largest_work: 0.0, excess: 0.0 }
     }
 
     /// Enters the work (J) of driven solids, springs, motors and forces over a step.
-    pub fn add_work(&mut self, joules: f64) {
+    pub(crate) fn add_work(&mut self, joules: f64) { //NARROW
         self.work += joules;
         self.largest_work = self.largest_work.max(self.work.abs());
     }
 
     /// Enters the energies now.
-    pub fn update(&mut self, now: Energies) {
+    pub(crate) fn update(&mut self, now: Energies) { //NARROW
         self.potential_drop = self.potential_drop.max(-now.potential);
         self.excess =
             max_or_invalid(self.excess, now.kinetic + now.potential + now.compression - self.start - self.work);
     }
 
     /// The largest excess over the scale (–).
-    pub fn relative_excess(&self) -> f64 {
+    pub(crate) fn relative_excess(&self) -> f64 { //NARROW
         let scale = self.scale_floor.max(self.potential_drop).max(self.largest_work);
         if self.excess <= 0.0 { 0.0 } else { max_or_invalid(0.0, self.excess / scale) }
     }

@@ -24,7 +24,7 @@ const DEEPEST: usize = 8;
 /// A family of cases along one or two axes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StressMap {
+pub(crate) struct StressMap { //NARROW
     /// Its name.
     pub name: String,
     /// What it asks, in a sentence.
@@ -51,7 +51,7 @@ pub struct StressMap {
 /// What is varied, and its values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MapAxis {
+pub(crate) struct MapAxis { //NARROW
     /// What it is, in words.
     pub label: String,
     /// Its unit.
@@ -62,7 +62,7 @@ pub struct MapAxis {
 
 /// One run of a map.
 #[derive(Clone, Debug)]
-pub struct StressCase {
+pub(crate) struct StressCase { //NARROW
     /// The map.
     pub map: String,
     /// Its column and row.
@@ -91,7 +91,7 @@ struct MapsFile {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is no list of maps.
-pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> {
+pub(crate) fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> { //NARROW
     let Some(path) = file else { return read(TEXT, NAME) };
     let text = std::fs::read_to_string(path).map_err(|why| {
         Error::file(path, why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
@@ -117,7 +117,7 @@ fn read(text: &str, name: &str) -> Result<Vec<StressMap>> {
 ///
 /// # Errors
 /// `Usage` if there is no such map: names the nearest.
-pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> {
+pub(crate) fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> { //NARROW
     if names.is_empty() {
         return Ok(all.into_iter().filter(|map| !(quick && map.slow)).collect());
     }
@@ -136,14 +136,14 @@ pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result
 
 impl MapAxis {
     /// Its values, in words.
-    pub fn value_labels(&self) -> Vec<String> {
+    pub(crate) fn value_labels(&self) -> Vec<String> { //NARROW
         self.values.iter().map(word).collect()
     }
 }
 
 impl StressMap {
     /// How many cases it has.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize { //NARROW
         self.x.values.len() * self.y.as_ref().map_or(1, |y| y.values.len())
     }
 
@@ -151,7 +151,7 @@ impl StressMap {
     ///
     /// # Errors
     /// `Scene` if a hole cannot be filled or the scene is none: names map and values.
-    pub fn cases(&self, quick: bool) -> Result<Vec<StressCase>> {
+    pub(crate) fn cases(&self, quick: bool) -> Result<Vec<StressCase>> { //NARROW
         let ends = |n: usize| (0..n).filter(|&i| !quick || i == 0 || i + 1 == n).collect::<Vec<_>>();
         let rows = self.y.as_ref().map_or(1, |y| y.values.len());
         let places = ends(rows).into_iter().flat_map(|j| ends(self.x.values.len()).into_iter().map(move |i| [i, j]));

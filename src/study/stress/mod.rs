@@ -11,13 +11,25 @@ mod maps;
 mod measurements;
 mod case_run;
 
-pub use case_run::{BUDGET, CaseEnd, CaseRun};
-pub use criteria::{Bound, CaseOutcome, Criteria, MeasuredFigures, MotionBound, SolidBound};
-pub use maps::{MapAxis, StressCase, StressMap, maps, select_maps};
-pub use result_store::{CaseResult, StressResults};
+pub(crate) use case_run::BUDGET; //NARROW
+pub(crate) use case_run::CaseEnd; //NARROW
+pub(crate) use case_run::CaseRun; //NARROW
+pub(crate) use criteria::Bound; //NARROW
+pub(crate) use criteria::CaseOutcome; //NARROW
+pub(crate) use criteria::Criteria; //NARROW
+pub(crate) use criteria::MeasuredFigures; //NARROW
+pub(crate) use criteria::MotionBound; //NARROW
+pub(crate) use criteria::SolidBound; //NARROW
+pub(crate) use maps::MapAxis; //NARROW
+pub(crate) use maps::StressCase; //NARROW
+pub(crate) use maps::StressMap; //NARROW
+pub(crate) use maps::maps; //NARROW
+pub(crate) use maps::select_maps; //NARROW
+pub(crate) use result_store::CaseResult; //NARROW
+pub(crate) use result_store::StressResults; //NARROW
 
 /// What came out of a case, in a line.
-pub fn summary_line(entry: &CaseResult) -> String {
+pub(crate) fn summary_line(entry: &CaseResult) -> String { //NARROW
     let values = entry.case.values.join(", ");
     let Some((outcome, missed)) = entry.verdict() else { return format!("{values}: not run") };
     let why = match entry.run.as_ref().map(|trial| &trial.end) {

@@ -20,7 +20,7 @@ use crate::{
 
 /// A case, what came out of it if it has been run, and what that is worth.
 #[derive(Clone, Debug)]
-pub struct CaseResult {
+pub(crate) struct CaseResult { //NARROW
     /// The case.
     pub case: StressCase,
     /// Its run.
@@ -28,7 +28,7 @@ pub struct CaseResult {
 }
 
 /// Many maps, and where their results go.
-pub struct StressResults {
+pub(crate) struct StressResults { //NARROW
     out: PathBuf,
     maps: Vec<StressMap>,
     /// All cases, map by map.
@@ -54,7 +54,7 @@ struct StoredRow {
 
 impl CaseResult {
     /// What the run is worth, and which bounds it misses; none if it has not been run.
-    pub fn verdict(&self) -> Option<(CaseOutcome, Vec<String>)> {
+    pub(crate) fn verdict(&self) -> Option<(CaseOutcome, Vec<String>)> { //NARROW
         let trial = self.run.as_ref()?;
         let missed = self.case.criteria.missed_bounds(&trial.figures);
         Some((trial.outcome(&missed), missed))
@@ -66,7 +66,7 @@ impl StressResults {
     ///
     /// # Errors
     /// Those of the maps; `File` if the results there cannot be read.
-    pub fn open(maps: Vec<StressMap>, quick: bool, out: PathBuf) -> Result<Self> {
+    pub(crate) fn open(maps: Vec<StressMap>, quick: bool, out: PathBuf) -> Result<Self> { //NARROW
         let cases = maps.iter().map(|map| map.cases(quick)).collect::<Result<Vec<_>>>()?.concat();
         let entries = cases.into_iter().map(|case| CaseResult { case, run: None }).collect();
         let mut ledger = Self { out, maps, entries, unlisted: Vec::new() };
@@ -85,7 +85,7 @@ impl StressResults {
     }
 
     /// The file of all results.
-    pub fn file(&self) -> PathBuf {
+    pub(crate) fn file(&self) -> PathBuf { //NARROW
         self.out.join("stress.json")
     }
 
@@ -94,7 +94,7 @@ impl StressResults {
     ///
     /// # Errors
     /// `File` if the results cannot be written; `Usage` if threads cannot be started.
-    pub fn run_missing(
+    pub(crate) fn run_missing( //NARROW
         &mut self,
         workers: usize,
         stop: &AtomicBool,
@@ -128,7 +128,7 @@ impl StressResults {
     }
 
     /// How many cases came out how; those that have not been run are not counted.
-    pub fn counts(&self, map: Option<&str>) -> BTreeMap<CaseOutcome, usize> {
+    pub(crate) fn counts(&self, map: Option<&str>) -> BTreeMap<CaseOutcome, usize> { //NARROW
         let mut counts = BTreeMap::new();
         for entry in self.entries.iter().filter(|entry| map.is_none_or(|map| entry.case.map == map)) {
             if let Some((outcome, _)) = entry.verdict() {
@@ -139,7 +139,7 @@ impl StressResults {
     }
 
     /// Processor time of all cases, s.
-    pub fn cpu_seconds(&self) -> f64 {
+    pub(crate) fn cpu_seconds(&self) -> f64 { //NARROW
         self.entries.iter().filter_map(|entry| Some(entry.run.as_ref()?.cpu_s)).sum()
     }
 
@@ -163,7 +163,7 @@ impl StressResults {
     ///
     /// # Errors
     /// `File` if one cannot be written.
-    pub fn write(&self) -> Result<Vec<PathBuf>> {
+    pub(crate) fn write(&self) -> Result<Vec<PathBuf>> { //NARROW
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         self.write_results()?;
         let mut files = Vec::new();
@@ -177,7 +177,7 @@ impl StressResults {
     }
 
     /// A row for each map: how many came out how. The first row is its head, the last the sum.
-    pub fn table(&self) -> Vec<Vec<String>> {
+    pub(crate) fn table(&self) -> Vec<Vec<String>> { //NARROW
         let all = [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished];
         let row = |name: &str, map: Option<&str>| {
             let counts = self.counts(map);
