@@ -21,23 +21,23 @@ pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 
-pub(crate) use energy_drift::EnergyDrift; //NARROW
-pub(crate) use inspect::InspectOptions; //NARROW
-pub(crate) use inspect::InspectReport; //NARROW
+pub use energy_drift::EnergyDrift; //HIDE
+pub use inspect::InspectOptions; //HIDE
+pub use inspect::InspectReport; //HIDE
 pub(crate) use inspect::MeshSummary; //NARROW
 pub(crate) use inspect::SeriesColumns; //NARROW
 pub(crate) use inspect::SolidSummary; //NARROW
 pub(crate) use inspect::StepTiming; //NARROW
-pub(crate) use inspect::inspect; //NARROW
+pub use inspect::inspect; //HIDE
 pub(crate) use lock::Lock;
-pub(crate) use lock::lock_owner; //NARROW
-pub(crate) use statistics::RAO_FILE; //NARROW
-pub(crate) use statistics::RaoResult; //NARROW
-pub(crate) use statistics::RunStatistics; //NARROW
-pub(crate) use statistics::SPECTRA_FILE; //NARROW
-pub(crate) use statistics::Statistic; //NARROW
-pub(crate) use statistics::StatisticsFilter; //NARROW
-pub(crate) use statistics::statistics; //NARROW
+pub use lock::lock_owner; //HIDE
+pub use statistics::RAO_FILE; //HIDE
+pub use statistics::RaoResult; //HIDE
+pub use statistics::RunStatistics; //HIDE
+pub use statistics::SPECTRA_FILE; //HIDE
+pub use statistics::Statistic; //HIDE
+pub use statistics::StatisticsFilter; //HIDE
+pub use statistics::statistics; //HIDE
 
 use std::path::{Path, PathBuf};
 
@@ -54,7 +54,7 @@ use crate::{
 
 /// What a run is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct RunOptions { //NARROW
+pub struct RunOptions { //HIDE
     /// Folder for the results, new or empty. By default `runs/<scene>`, with a number if that is taken.
     pub out: Option<PathBuf>,
     /// Keys of the scene and the values that replace the scene's own, as in `("dp", "0.02")`.
@@ -65,7 +65,7 @@ pub(crate) struct RunOptions { //NARROW
 
 /// What is known when a run begins.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RunStart<'a> { //NARROW
+pub struct RunStart<'a> { //HIDE
     /// The run's folder.
     pub folder: &'a Path,
     /// What the manifest says at the start: caption, particles, threads, warnings.
@@ -76,7 +76,7 @@ pub(crate) struct RunStart<'a> { //NARROW
 
 /// How far a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Progress { //NARROW
+pub struct Progress { //HIDE
     /// Simulated time, s.
     pub time: f64,
     /// Simulated time at the end, s.
@@ -94,7 +94,7 @@ pub(crate) struct Progress { //NARROW
 }
 
 /// Someone who follows a run. Any `FnMut(&Progress) -> bool` does.
-pub(crate) trait RunObserver: Send { //NARROW
+pub trait RunObserver: Send { //HIDE
     /// Told once, before the first step.
     fn start(&mut self, start: &RunStart) {
         let _ = start;
@@ -117,7 +117,7 @@ impl<F: FnMut(&Progress) -> bool + Send> RunObserver for F {
 
 /// Where a free body is at the end.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FinalBodyState { //NARROW
+pub struct FinalBodyState { //HIDE
     /// Its name.
     pub name: String,
     /// Position of its centre of mass, m.
@@ -130,7 +130,7 @@ pub(crate) struct FinalBodyState { //NARROW
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct RunOutcome { //NARROW
+pub struct RunOutcome { //HIDE
     /// The run's folder.
     pub folder: PathBuf,
     /// The manifest as written there.
@@ -143,7 +143,7 @@ pub(crate) struct RunOutcome { //NARROW
 
 impl RunOutcome {
     /// Whether a check misses its bound.
-    pub(crate) fn has_failed_checks(&self) -> bool { //NARROW
+    pub fn has_failed_checks(&self) -> bool { //HIDE
         self.manifest.checks.iter().any(|verdict| verdict.passed == Some(false))
     }
 }
@@ -153,7 +153,7 @@ impl RunOutcome {
 /// # Errors
 /// `Scene`, `Usage`, `File` before anything is written or when a file cannot be written; `Fault` when the
 /// computation cannot go on: then the run's folder holds everything up to then and `failure.json`.
-pub(crate) fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> { //NARROW
+pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> { //HIDE
     let file = run_folder::scene_file(path);
     let scene = Scene::read(&file, &options.overrides)?;
     let origin = RunOrigin::Fresh { file: &file, out: options.out.as_deref(), overrides: &options.overrides };
@@ -167,7 +167,7 @@ pub(crate) fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver
 /// # Errors
 /// `Restart` if it has finished or still goes on, holds no whole checkpoint, or its scene has changed since;
 /// `Usage` if `guards` names any other key; else as [`run`].
-pub(crate) fn resume( //NARROW
+pub fn resume( //HIDE
     folder: &Path,
     guards: &[(String, String)],
     threads: Option<usize>,

@@ -9,13 +9,13 @@ mod constraints;
 use std::time::{Duration, Instant};
 
 pub(crate) use crate::coupling::BodyStep; //NARROW
-pub(crate) use crate::system::Escape; //NARROW
-pub(crate) use crate::system::ParticleLimits; //NARROW
+pub use crate::system::Escape; //HIDE
+pub use crate::system::ParticleLimits; //HIDE
 pub(crate) use crate::system::RemovedParticle; //NARROW
 pub use crate::system::Setup;
 pub(crate) use add_remove::AddedSolid; //NARROW
 pub(crate) use constraints::find_by_name;
-pub(crate) use rollback::Rollback; //NARROW
+pub use rollback::Rollback; //HIDE
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -182,7 +182,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Disables the rollback: the first alarm ends the run.
-    pub(crate) fn without_rollback(mut self) -> Self { //NARROW
+    pub fn without_rollback(mut self) -> Self { //HIDE
         self.rollback = RollbackControl::disabled();
         self
     }
@@ -198,12 +198,12 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The rollbacks so far, with their causes and times.
-    pub(crate) fn rollbacks(&self) -> &[Rollback] { //NARROW
+    pub fn rollbacks(&self) -> &[Rollback] { //HIDE
         &self.rollback.log
     }
 
     /// The particles that left the domain and were removed ([`Escape::Remove`]), and the times of removal (s).
-    pub(crate) fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] { //NARROW
+    pub fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] { //HIDE
         &self.removed
     }
 
@@ -235,7 +235,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The longest step (s) that the present rates, the springs and the model allow.
-    pub(crate) fn step_limit(&self) -> f64 { //NARROW
+    pub fn step_limit(&self) -> f64 { //HIDE
         let model = self.system.model();
         let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
         let ties = self.spring_step_limit().min(self.bodies.constraints().next_release(self.clock.time));
@@ -293,7 +293,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Steps so far.
-    pub(crate) fn steps(&self) -> u64 { //NARROW
+    pub fn steps(&self) -> u64 { //HIDE
         self.clock.steps
     }
 
@@ -312,12 +312,12 @@ impl<const D: usize> Simulation<D> {
 
     /// Impulse (N s; N s/m in 2-D) of the water not yet applied to free solid number `solid`. Non-zero only for bodies with
     /// acoustic added mass.
-    pub(crate) fn pending_impulse(&self, solid: usize) -> Vector<D> { //NARROW
+    pub fn pending_impulse(&self, solid: usize) -> Vector<D> { //HIDE
         self.bodies.pending_impulse(solid)
     }
 
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
-    pub(crate) fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) { //NARROW
+    pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) { //HIDE
         if let Some(engine) = self.bodies.engine_mut() {
             engine.set_velocity(solid, velocity, spin);
             let kinematics = &mut self.system.solids[solid].kinematics;
@@ -333,7 +333,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
-    pub(crate) fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) { //NARROW
+    pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) { //HIDE
         let fluid = &mut self.system.fluid.particles;
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
     }
@@ -347,7 +347,7 @@ impl<const D: usize> Simulation<D> {
     ///
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
-    pub(crate) fn save(&self) -> Result<Vec<u8>> { //NARROW
+    pub fn save(&self) -> Result<Vec<u8>> { //HIDE
         self.save_with_rollbacks(self.rollback.log.len())
     }
 
@@ -389,7 +389,7 @@ impl<const D: usize> Simulation<D> {
     ///
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup.
-    pub(crate) fn restore(&mut self, bytes: &[u8]) -> Result<()> { //NARROW
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> { //HIDE
         let kept = Self::read(bytes)?;
         if kept.removed_solids != self.removed_solids() {
             return Err(Error::new(

@@ -3,7 +3,7 @@
 
 mod alignment;
 mod error_metrics;
-pub(crate) mod format_verdicts; //NARROW
+pub mod format_verdicts; //HIDE
 mod harmonic;
 mod moments;
 mod rao;
@@ -13,19 +13,19 @@ mod spectrum;
 mod verdict;
 mod zero_crossings;
 
-pub(crate) use crate::plan::Align; //NARROW
-pub(crate) use crate::plan::CheckPlan; //NARROW
-pub(crate) use crate::plan::Reference; //NARROW
-pub(crate) use crate::plan::Score; //NARROW
+pub use crate::plan::Align; //HIDE
+pub use crate::plan::CheckPlan; //HIDE
+pub use crate::plan::Reference; //HIDE
+pub use crate::plan::Score; //HIDE
 pub(crate) use alignment::AlignedMetrics; //NARROW
 pub(crate) use alignment::ArrivalTimes; //NARROW
 pub(crate) use alignment::best_delay; //NARROW
-pub(crate) use error_metrics::amplitude_ratio; //NARROW
-pub(crate) use error_metrics::first_peak_error; //NARROW
-pub(crate) use error_metrics::max_abs; //NARROW
-pub(crate) use error_metrics::relative_l2; //NARROW
-pub(crate) use harmonic::Harmonic; //NARROW
-pub(crate) use harmonic::harmonic; //NARROW
+pub use error_metrics::amplitude_ratio; //HIDE
+pub use error_metrics::first_peak_error; //HIDE
+pub use error_metrics::max_abs; //HIDE
+pub use error_metrics::relative_l2; //HIDE
+pub use harmonic::Harmonic; //HIDE
+pub use harmonic::harmonic; //HIDE
 pub(crate) use moments::Moments; //NARROW
 pub(crate) use moments::moments; //NARROW
 pub(crate) use rao::MIN_WAVES_FOR_RAO; //NARROW
@@ -41,8 +41,8 @@ pub(crate) use spectrum::displayed_spectrum; //NARROW
 pub(crate) use spectrum::spectrum; //NARROW
 pub(crate) use verdict::CheckCurves; //NARROW
 pub(crate) use verdict::ErrorMetrics; //NARROW
-pub(crate) use verdict::ReferenceCheck; //NARROW
+pub use verdict::ReferenceCheck; //HIDE
 pub(crate) use verdict::RunningMeanMetrics; //NARROW
-pub(crate) use verdict::Verdict; //NARROW
+pub use verdict::Verdict; //HIDE
 pub(crate) use zero_crossings::ZeroCrossingWaves; //NARROW
 pub(crate) use zero_crossings::zero_crossing_waves; //NARROW

@@ -18,7 +18,7 @@ use crate::{
 
 /// A reference that a run is to be held against.
 #[derive(Clone, Debug)]
-pub(crate) struct ReferenceCheck { //NARROW
+pub struct ReferenceCheck { //HIDE
     plan: CheckPlan,
     reference: KnownReference,
 }
@@ -49,7 +49,7 @@ pub(crate) struct CheckCurves { //NARROW
 
 /// Figures of a comparison; one is none where it cannot be formed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ErrorMetrics { //NARROW
+pub struct ErrorMetrics { //HIDE
     /// Relative deviation, –.
     #[serde(rename = "N")]
     pub relative_l2: Option<f64>,
@@ -64,7 +64,7 @@ pub(crate) struct ErrorMetrics { //NARROW
 
 /// The figures of the run as an instrument shows it that takes a running mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RunningMeanMetrics { //NARROW
+pub struct RunningMeanMetrics { //HIDE
     /// Over how long, s.
     pub seconds: f64,
     /// The figures.
@@ -74,7 +74,7 @@ pub(crate) struct RunningMeanMetrics { //NARROW
 
 /// How a run did against a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Verdict { //NARROW
+pub struct Verdict { //HIDE
     /// Which series, as `probe.column`.
     pub series: String,
     /// The figures of the run as it is.
@@ -104,7 +104,7 @@ impl ReferenceCheck {
     /// # Errors
     /// `File` if the table cannot be read; `Scene` if it lacks a column, has fewer than two samples in the
     /// window, or the formula is none.
-    pub(crate) fn new(words: &CheckPlan, folder: &Path) -> Result<Self> { //NARROW
+    pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> { //HIDE
         let reference = match &words.reference {
             Reference::Formula(text) => KnownReference::Formula(Formula::parse(text)?),
             Reference::Table { file, time, column, delay } => {
@@ -138,7 +138,7 @@ impl ReferenceCheck {
 
     /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
     /// comparison that cannot be made says so in its note, and misses its bound unless the run is too short.
-    pub(crate) fn verdict(&self, folder: &Path) -> Verdict { //NARROW
+    pub fn verdict(&self, folder: &Path) -> Verdict { //HIDE
         let mut verdict = self.empty_verdict();
         let (sim, meaned) = match self.run_series(folder) {
             Ok(run) => run,

@@ -194,7 +194,7 @@ pub struct BodyStep<'a, const D: usize> {
 
 impl<const D: usize> BodyStep<'_, D> {
     /// Time at the start of the step, s.
-    pub(crate) fn time(&self) -> f64 { //NARROW
+    pub fn time(&self) -> f64 { //HIDE
         self.over.t
     }
 
@@ -211,7 +211,7 @@ impl<const D: usize> BodyStep<'_, D> {
 
     /// Adds `load` (N, N m) about the centre of free solid number `solid` in this step, before [`BodyStep::advance_bodies`].
     /// Without effect where the bodies are external: there your program applies forces.
-    pub(crate) fn push(&mut self, solid: usize, load: &Load<D>) { //NARROW
+    pub fn push(&mut self, solid: usize, load: &Load<D>) { //HIDE
         if let Some(engine) = &mut self.bodies.engine {
             engine.add_load(solid, load);
         }
@@ -226,7 +226,7 @@ impl<const D: usize> BodyStep<'_, D> {
     ///
     /// # Errors
     /// `Usage` where the bodies are external; `Fault` if a body leaves the valid range.
-    pub(crate) fn advance_bodies(&mut self) -> Result<()> { //NARROW
+    pub fn advance_bodies(&mut self) -> Result<()> { //HIDE
         if self.bodies.external {
             return Err(Error::new(
                 ErrorKind::Usage,

@@ -10,7 +10,7 @@ use crate::{
 
 /// The loads on a free body in the last step, about its centre of mass, by their origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LoadBreakdown<const D: usize> { //NARROW
+pub struct LoadBreakdown<const D: usize> { //HIDE
     /// Pressure of the water.
     pub pressure: Load<D>,
     /// Viscosity of the water.
@@ -62,7 +62,7 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// All loads with their names, without the change of momentum.
-    pub(crate) fn kinds(&self) -> [(&'static str, Load<D>); 12] { //NARROW
+    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] { //HIDE
         [
             ("pressure", self.pressure),
             ("viscous", self.viscous),
@@ -85,7 +85,7 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// The change of momentum less the sum.
-    pub(crate) fn residual(&self) -> Load<D> { //NARROW
+    pub fn residual(&self) -> Load<D> { //HIDE
         self.change - self.sum()
     }
 

@@ -6,7 +6,7 @@ mod energy_budget;
 mod load_breakdown;
 mod power_breakdown;
 
-pub(crate) use acoustic_added_mass::stiffest_frequency; //NARROW
+pub use acoustic_added_mass::stiffest_frequency; //HIDE
 pub(crate) use acoustic_added_mass::{AcousticAddedMass, AddedMassState};
 pub(crate) use body_step::BodyStep; //NARROW
 pub(crate) use body_step::{Bodies, Hook};

@@ -24,8 +24,8 @@ use crate::math::{Matrix, Pose, Vector};
 pub(crate) use fill::FilledWater; //NARROW
 pub use fill::WaterRegion;
 pub use fill::fill;
-pub(crate) use mesh::ContactGeometry; //NARROW
-pub(crate) use mesh::Mesh; //NARROW
+pub use mesh::ContactGeometry; //HIDE
+pub use mesh::Mesh; //HIDE
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +68,7 @@ pub struct VolumeProperties<const D: usize> {
 
 /// A boundary particle, in the shape's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct BoundaryPoint<const D: usize> { //NARROW
+pub struct BoundaryPoint<const D: usize> { //HIDE
     /// Position, m.
     pub r: Vector<D>,
     /// Layer, 0 the one nearest the water, half a dp inside the true face.

@@ -7,7 +7,7 @@ use crate::math::{Bounds, Matrix, Pose, Vector};
 
 impl<const D: usize> Shape<D> {
     /// The smallest axis-aligned box around the shape in its own frame, m.
-    pub(crate) fn bounds(&self) -> Bounds<D> { //NARROW
+    pub fn bounds(&self) -> Bounds<D> { //HIDE
         let around = |half: Vector<D>| Bounds { min: -half, max: half };
         match self {
             Shape::Box { size } => around(size * 0.5),
@@ -44,7 +44,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// Exact volume, centroid and second moment.
-    pub(crate) fn volume_properties(&self) -> VolumeProperties<D> { //NARROW
+    pub fn volume_properties(&self) -> VolumeProperties<D> { //HIDE
         match self {
             Shape::Box { size } => {
                 let volume = size.product();

@@ -66,7 +66,7 @@ pub struct PairSums<const D: usize> {
 
 impl<const D: usize> PairSums<D> {
     /// No neighbour.
-    pub(crate) fn zero() -> Self { //NARROW
+    pub fn zero() -> Self { //HIDE
         Self { acceleration: Vector::zeros(), compression_rate: 0.0 }
     }
 }
@@ -104,7 +104,7 @@ pub trait PairLoop<const D: usize>: Send + Sync {
 
 /// The pair loop of the terms `inner` between water particles and `wall` between water and solids, with the properties
 /// `medium` in `units`: in SIMD lanes with the instructions of `level`, or the reference in SI if there is none.
-pub(crate) fn compile<K, T, W, const D: usize>( //NARROW
+pub fn compile<K, T, W, const D: usize>( //HIDE
     kernel: K,
     inner: T,
     wall: W,

@@ -6,11 +6,11 @@ use super::CellGrid;
 use crate::math::{Bounds, Vector};
 
 /// Particles in a chunk: the unit of parallel work, fixed so that no result depends on the threads.
-pub(crate) const CHUNK: usize = 128; //NARROW
+pub const CHUNK: usize = 128; //HIDE
 
 /// Where in its chunk's `index` a particle's neighbours are.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Span { //NARROW
+pub struct Span { //HIDE
     /// First neighbour of the first kind.
     pub start: u32,
     /// End of the first kind, start of the second.
@@ -21,7 +21,7 @@ pub(crate) struct Span { //NARROW
 
 /// The neighbours of [`CHUNK`] particles.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct ParticleListChunk { //NARROW
+pub struct ParticleListChunk { //HIDE
     /// One span a particle.
     pub spans: Vec<Span>,
     /// Neighbours, one particle after the other.
@@ -31,7 +31,7 @@ pub(crate) struct ParticleListChunk { //NARROW
 impl ParticleListChunk {
     /// Neighbours of both kinds of the chunk's `i`-th particle.
     #[inline(always)]
-    pub(crate) fn neighbours_of(&self, i: usize) -> (&[u32], &[u32]) { //NARROW
+    pub fn neighbours_of(&self, i: usize) -> (&[u32], &[u32]) { //HIDE
         let s = self.spans[i];
         (&self.index[s.start as usize..s.middle as usize], &self.index[s.middle as usize..s.end as usize])
     }
@@ -39,7 +39,7 @@ impl ParticleListChunk {
 
 /// The lists of all particles.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct ParticleLists { //NARROW
+pub struct ParticleLists { //HIDE
     /// Of water particles: first kind water, second kind boundary.
     pub fluid: Vec<ParticleListChunk>,
     /// For the wet boundary particles: first kind water; no second.

@@ -10,14 +10,14 @@ mod grid;
 mod lists;
 mod search;
 
-pub(crate) use clusters::Clusters; //NARROW
+pub use clusters::Clusters; //HIDE
 pub(crate) use clusters::FAR_POSITION; //NARROW
-pub(crate) use clusters::PAD; //NARROW
+pub use clusters::PAD; //HIDE
 pub(crate) use clusters::Slab; //NARROW
 pub(crate) use clusters::fill_positions; //NARROW
 pub(crate) use clusters::occupied_lanes; //NARROW
 pub(crate) use grid::CellGrid; //NARROW
-pub(crate) use lists::CHUNK; //NARROW
+pub use lists::CHUNK; //HIDE
 pub(crate) use lists::ParticleListChunk; //NARROW
 pub(crate) use lists::ParticleLists; //NARROW
 pub(crate) use lists::Span; //NARROW
@@ -41,7 +41,7 @@ const UNITS: f64 = (1 << 24) as f64;
 
 /// The pairs.
 #[derive(Clone, Debug)]
-pub(crate) enum PairLists { //NARROW
+pub enum PairLists { //HIDE
     /// Lists of single neighbours.
     Lists(ParticleLists),
     /// Lists of later clusters, searched with those instructions.
@@ -67,7 +67,7 @@ pub struct NeighbourLists<const D: usize> {
 impl<const D: usize> NeighbourLists<D> {
     /// No lists yet, for a kernel of support `reach` (m) and particles `dp` (m) apart: of clusters, searched with
     /// the instructions of `level`, or else of single neighbours.
-    pub(crate) fn new(reach: f64, dp: f64, level: Option<Level>) -> Self { //NARROW
+    pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self { //HIDE
         let pairs = match level {
             Some(level) => PairLists::Clusters(Clusters::default(), level),
             None => PairLists::Lists(ParticleLists::default()),
@@ -83,7 +83,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The unit of length in which positions are whole numbers, m.
-    pub(crate) fn length_unit(reach: f64) -> f64 { //NARROW
+    pub fn length_unit(reach: f64) -> f64 { //HIDE
         reach / UNITS
     }
 
@@ -95,7 +95,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Margin of the lists beyond the support, m.
-    pub(crate) fn margin(&self) -> f64 { //NARROW
+    pub fn margin(&self) -> f64 { //HIDE
         MARGIN * self.support_radius
     }
 
@@ -111,7 +111,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Builds the lists for these positions of water and boundary particles.
-    pub(crate) fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) { //NARROW
+    pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) { //HIDE
         self.positions_at_build.0.clear();
         self.positions_at_build.0.extend_from_slice(water);
         self.positions_at_build.1.clear();
@@ -144,12 +144,12 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The pairs.
-    pub(crate) fn pair_lists(&self) -> &PairLists { //NARROW
+    pub fn pair_lists(&self) -> &PairLists { //HIDE
         &self.pair_lists
     }
 
     /// The boundary particles that have water within the lists' reach, in ascending order.
-    pub(crate) fn boundary_near_fluid(&self) -> &[u32] { //NARROW
+    pub fn boundary_near_fluid(&self) -> &[u32] { //HIDE
         &self.boundary_near_fluid
     }
 

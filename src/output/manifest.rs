@@ -13,7 +13,7 @@ use crate::{
 
 /// The manifest of a run. Its keys are read by other programs: add some, rename none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Manifest { //NARROW
+pub struct Manifest { //HIDE
     /// How the run stands.
     pub status: RunStatus,
     /// Caption of the scene.
@@ -75,7 +75,7 @@ pub(crate) struct Manifest { //NARROW
 
 /// A value in force.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct ValueInForce { //NARROW
+pub struct ValueInForce { //HIDE
     /// The scene's key.
     pub key: String,
     /// Its value.
@@ -87,7 +87,7 @@ pub(crate) struct ValueInForce { //NARROW
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum RunStatus { //NARROW
+pub enum RunStatus { //HIDE
     /// It goes on, or was killed.
     Running,
     /// It reached its end.
@@ -100,7 +100,7 @@ pub(crate) enum RunStatus { //NARROW
 
 /// Numbers of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct ParticleCounts { //NARROW
+pub struct ParticleCounts { //HIDE
     /// Of the water.
     pub fluid: usize,
     /// Of all skins.
@@ -109,7 +109,7 @@ pub(crate) struct ParticleCounts { //NARROW
 
 /// Frames on the disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct FrameTotals { //NARROW
+pub struct FrameTotals { //HIDE
     /// How many.
     pub count: usize,
     /// What they take, B.
@@ -118,7 +118,7 @@ pub(crate) struct FrameTotals { //NARROW
 
 /// The computer that ran it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Machine { //NARROW
+pub struct Machine { //HIDE
     /// Operating system.
     pub os: String,
     /// Processor family.
@@ -135,7 +135,7 @@ pub(crate) struct Machine { //NARROW
 
 impl Machine {
     /// This computer.
-    pub(crate) fn current() -> Self { //NARROW
+    pub fn current() -> Self { //HIDE
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|m| m.1));
         Self {
@@ -155,7 +155,7 @@ impl Manifest {
     }
 
     /// Notes that the run failed with `error`.
-    pub(crate) fn record_failure(&mut self, error: &Error) { //NARROW
+    pub fn record_failure(&mut self, error: &Error) { //HIDE
         self.status = RunStatus::Failed;
         self.error = Some(error.to_string());
         self.fault = error.fault.as_deref().and_then(|fault: &Fault| serde_json::to_value(fault).ok());
@@ -165,7 +165,7 @@ impl Manifest {
     ///
     /// # Errors
     /// `File` if it cannot be written.
-    pub(crate) fn write(&self, folder: &Path) -> Result<()> { //NARROW
+    pub fn write(&self, folder: &Path) -> Result<()> { //HIDE
         let path = folder.join("manifest.json");
         let text = serde_json::to_string_pretty(self).map_err(|e| Error::file(&path, e))?;
         write_atomically(&path, (text + "\n").as_bytes())
@@ -175,7 +175,7 @@ impl Manifest {
     ///
     /// # Errors
     /// `Restart` if there is none or it is not one of this program's.
-    pub(crate) fn read(folder: &Path) -> Result<Self> { //NARROW
+    pub fn read(folder: &Path) -> Result<Self> { //HIDE
         let path = folder.join("manifest.json");
         let text = std::fs::read_to_string(&path).map_err(|why| {
             Error::new(ErrorKind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))

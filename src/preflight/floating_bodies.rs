@@ -33,7 +33,7 @@ const LEVEL: f64 = 0.5 * PI / 180.0;
 
 /// A free body before its first step. In 2-D masses are kg/m and volumes m².
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct BodySummary { //NARROW
+pub struct BodySummary { //HIDE
     /// Its name.
     pub name: String,
     /// Mass, kg.
@@ -60,7 +60,7 @@ pub(crate) struct BodySummary { //NARROW
 
 /// How a body floats.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Equilibrium { //NARROW
+pub struct Equilibrium { //HIDE
     /// Draft at rest, m.
     pub draft_m: f64,
     /// Area of its waterplane, m²; its breadth, m, in 2-D.
@@ -79,7 +79,7 @@ pub(crate) struct Equilibrium { //NARROW
 
 /// A tilt of a floating body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Tilt { //NARROW
+pub struct Tilt { //HIDE
     /// The axis: axial components.
     pub axis: Vec<f64>,
     /// Metacentric height, m: negative, and it turns over.

@@ -23,13 +23,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-pub(crate) use absorption_limits::AbsorberSummary; //NARROW
-pub(crate) use floating_bodies::BodySummary; //NARROW
+pub use absorption_limits::AbsorberSummary; //HIDE
+pub use floating_bodies::BodySummary; //HIDE
 pub(crate) use floating_bodies::Equilibrium; //NARROW
 pub(crate) use floating_bodies::Tilt; //NARROW
-pub(crate) use generated_waves::GeneratedWave; //NARROW
-pub(crate) use rounding::three_digits; //NARROW
-pub(crate) use run_size::DiskUse; //NARROW
+pub use generated_waves::GeneratedWave; //HIDE
+pub use rounding::three_digits; //HIDE
+pub use run_size::DiskUse; //HIDE
 pub(crate) use run_size::RunSize; //NARROW
 pub(crate) use sound_speed::ExpectedSpeed; //NARROW
 pub(crate) use sound_speed::SoundSpeed; //NARROW
@@ -51,7 +51,7 @@ const MOST: usize = 3;
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Severity { //NARROW
+pub enum Severity { //HIDE
     /// The results will suffer, or the run will not show what it is meant to.
     Warning,
     /// Worth knowing; it may well be meant.
@@ -60,7 +60,7 @@ pub(crate) enum Severity { //NARROW
 
 /// Something that may not be as it was meant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Finding { //NARROW
+pub struct Finding { //HIDE
     /// How much it matters.
     pub severity: Severity,
     /// Its kind, for programs: `capsizes`, `thin_body`, ...
@@ -99,7 +99,7 @@ impl Finding {
 
 /// What is known before the first step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Preflight { //NARROW
+pub struct Preflight { //HIDE
     /// Particles, memory, disk.
     pub size: RunSize,
     /// Speed of sound and the speeds that it must outrun.
@@ -118,7 +118,7 @@ pub(crate) struct Preflight { //NARROW
 
 impl Preflight {
     /// The findings to read: of a kind the first three, and how many more there are.
-    pub(crate) fn brief(&self) -> Vec<Finding> { //NARROW
+    pub fn brief(&self) -> Vec<Finding> { //HIDE
         let kind = |finding: &Finding| (finding.severity, finding.topic);
         let (mut all, mut seen) = (BTreeMap::new(), BTreeMap::new());
         self.findings.iter().for_each(|finding| *all.entry(kind(finding)).or_insert(0) += 1);
@@ -139,7 +139,7 @@ impl Preflight {
     }
 
     /// The findings that a run tells at its start.
-    pub(crate) fn warnings(&self) -> Vec<String> { //NARROW
+    pub fn warnings(&self) -> Vec<String> { //HIDE
         self.brief().iter().filter(|f| f.severity == Severity::Warning).map(Finding::one_line).collect()
     }
 }
@@ -157,7 +157,7 @@ struct PreflightContext<'a, const D: usize> {
 
 /// Looks at a simulation before its first step. `columns`: how many columns each of the plan's probes writes beside the
 /// time; `overlapped`: places of the water's lattice that solids took.
-pub(crate) fn preflight<const D: usize>( //NARROW
+pub fn preflight<const D: usize>( //HIDE
     sim: &Simulation<D>,
     plan: &Plan,
     still: StillWaterLevel,

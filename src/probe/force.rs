@@ -36,7 +36,7 @@ impl ProbeDefinition for ForcePlan {
 
 /// Measures the force (N) of the water on a solid and the torque (N m) about its centre: pressure and viscosity, without weight and
 /// contacts. In 2-D both are per metre of width, as the columns state.
-pub(crate) struct ForceProbe { //NARROW
+pub struct ForceProbe { //HIDE
     solid: usize,
 }
 
@@ -45,7 +45,7 @@ impl ForceProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
-    pub(crate) fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> { //NARROW
+    pub fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> { //HIDE
         Ok(Self { solid: find_solid(system, solid)? })
     }
 }

@@ -27,7 +27,7 @@ mod velocity;
 pub(crate) use balance::LoadBalancePlan; //NARROW
 pub(crate) use balance::LoadBalanceProbe; //NARROW
 pub(crate) use budget::EnergyBudgetPlan; //NARROW
-pub(crate) use budget::EnergyBudgetProbe; //NARROW
+pub use budget::EnergyBudgetProbe; //HIDE
 pub(crate) use budget::relative_residual; //NARROW
 pub(crate) use contact_force::ContactForcePlan; //NARROW
 pub(crate) use contact_force::ContactForceProbe; //NARROW
@@ -36,36 +36,36 @@ pub(crate) use contact_force::ContactListPlan; //NARROW
 pub(crate) use elevation::ElevationPlan; //NARROW
 pub use elevation::ElevationProbe;
 pub(crate) use elevation::GaugeConfig; //NARROW
-pub(crate) use elevation::GaugeSurface; //NARROW
+pub use elevation::GaugeSurface; //HIDE
 pub(crate) use energy::EnergyPlan; //NARROW
 pub use energy::EnergyProbe;
 pub(crate) use flow::FlowPlan; //NARROW
-pub(crate) use flow::FlowProbe; //NARROW
+pub use flow::FlowProbe; //HIDE
 pub(crate) use flow::SectionConfig; //NARROW
 pub(crate) use force::ForcePlan; //NARROW
-pub(crate) use force::ForceProbe; //NARROW
+pub use force::ForceProbe; //HIDE
 pub(crate) use front::FrontPlan; //NARROW
-pub(crate) use front::FrontProbe; //NARROW
+pub use front::FrontProbe; //HIDE
 pub(crate) use joint::JointPlan; //NARROW
-pub(crate) use joint::JointProbe; //NARROW
-pub(crate) use line::LineProbe; //NARROW
+pub use joint::JointProbe; //HIDE
+pub use line::LineProbe; //HIDE
 pub(crate) use line::RopePlan; //NARROW
 pub(crate) use line::SpringPlan; //NARROW
 pub(crate) use motion::MotionPlan; //NARROW
-pub(crate) use motion::MotionProbe; //NARROW
+pub use motion::MotionProbe; //HIDE
 pub(crate) use patch::PatchConfig; //NARROW
 pub(crate) use patch::PatchPlan; //NARROW
-pub(crate) use patch::PatchProbe; //NARROW
+pub use patch::PatchProbe; //HIDE
 pub(crate) use points::PointRowConfig; //NARROW
 pub(crate) use points::PointsConfig; //NARROW
 pub(crate) use pressure::PressurePlan; //NARROW
-pub(crate) use pressure::PressureProbe; //NARROW
-pub(crate) use probe_row::ProbeRow; //NARROW
+pub use pressure::PressureProbe; //HIDE
+pub use probe_row::ProbeRow; //HIDE
 pub(crate) use probe_row::column_at_place; //NARROW
 pub(crate) use runup::RunupPlan; //NARROW
-pub(crate) use runup::RunupProbe; //NARROW
+pub use runup::RunupProbe; //HIDE
 pub(crate) use velocity::VelocityPlan; //NARROW
-pub(crate) use velocity::VelocityProbe; //NARROW
+pub use velocity::VelocityProbe; //HIDE
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -410,7 +410,7 @@ probe_kinds! {
 
 impl ProbeConfig {
     /// The motion of the solid of this name.
-    pub(crate) fn motion(solid: impl Into<String>) -> Self { //NARROW
+    pub fn motion(solid: impl Into<String>) -> Self { //HIDE
         Self { motion: Some(solid.into()), ..Self::default() }
     }
 

@@ -35,7 +35,7 @@ impl ProbeDefinition for VelocityPlan {
 }
 
 /// Measures the water's velocity (m/s) at a fixed point; NaN while the point is dry.
-pub(crate) struct VelocityProbe<const D: usize> { //NARROW
+pub struct VelocityProbe<const D: usize> { //HIDE
     at: Vector<D>,
 }
 
@@ -44,7 +44,7 @@ impl<const D: usize> VelocityProbe<D> {
     ///
     /// # Errors
     /// `Usage` if the count of coordinates is another or one is not finite.
-    pub(crate) fn new(at: &[f64]) -> Result<Self> { //NARROW
+    pub fn new(at: &[f64]) -> Result<Self> { //HIDE
         Ok(Self { at: point(at, D)? })
     }
 }

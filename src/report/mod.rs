@@ -25,9 +25,9 @@ mod sections;
 mod mesh_edges;
 pub(crate) mod html;
 
-pub(crate) use picture::ColourField; //NARROW
-pub(crate) use picture::PictureOptions; //NARROW
-pub(crate) use picture::write_picture; //NARROW
+pub use picture::ColourField; //HIDE
+pub use picture::PictureOptions; //HIDE
+pub use picture::write_picture; //HIDE
 pub use plot::LineStyle;
 pub use plot::PlotLine;
 pub use plot::line_plot;
@@ -46,14 +46,14 @@ use crate::{
 use run_data::RunData;
 
 /// Most bytes of a page.
-pub(crate) const MAX_PAGE_BYTES: usize = 15_000_000; //NARROW
+pub const MAX_PAGE_BYTES: usize = 15_000_000; //HIDE
 
 /// Name of the page in a run's folder.
-pub(crate) const REPORT_FILE: &str = "report.html"; //NARROW
+pub const REPORT_FILE: &str = "report.html"; //HIDE
 
 /// A page that was written.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Page { //NARROW
+pub struct Page { //HIDE
     /// Where.
     pub path: PathBuf,
     /// Its size, B.
@@ -68,7 +68,7 @@ pub(crate) struct Page { //NARROW
 ///
 /// # Errors
 /// `Restart` if there is no run in `folder`; `File` if a frame cannot be read or the page cannot be written.
-pub(crate) fn write(folder: &Path) -> Result<Page> { //NARROW
+pub fn write(folder: &Path) -> Result<Page> { //HIDE
     write_page(&[folder.to_owned()], &folder.join(REPORT_FILE))
 }
 
@@ -76,7 +76,7 @@ pub(crate) fn write(folder: &Path) -> Result<Page> { //NARROW
 ///
 /// # Errors
 /// `Usage` if there are fewer than two; else as [`write()`].
-pub(crate) fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> { //NARROW
+pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> { //HIDE
     if folders.len() < 2 {
         return Err(Error::new(ErrorKind::Usage, "a comparison needs two runs or more")
             .help("name their folders, as in `pontoon compare runs/raft runs/raft-2`"));

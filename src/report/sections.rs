@@ -153,7 +153,7 @@ pub(crate) fn verdicts(runs: &[RunData]) -> String { //NARROW
 }
 
 /// What the scene asks for of its series; empty if it asks for nothing.
-pub(crate) fn statistics(run: &RunData) -> String { //NARROW
+pub fn statistics(run: &RunData) -> String { //HIDE
     let mut rows =
         vec![["statistic", "series", "figure", "value", "unit", "from, s", "until, s"].map(String::from).to_vec()];
     rows.extend(run.statistics.rows.iter().filter(|row| !row.name.is_empty()).map(|row| {

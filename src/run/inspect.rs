@@ -23,7 +23,7 @@ const LASTS: f64 = 1.0;
 
 /// What an inspection is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct InspectOptions { //NARROW
+pub struct InspectOptions { //HIDE
     /// Keys of the scene and the values that replace the scene's own.
     pub overrides: Vec<(String, String)>,
     /// Threads; by default one for each processor.
@@ -34,7 +34,7 @@ pub(crate) struct InspectOptions { //NARROW
 
 /// What a scene would run.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct InspectReport { //NARROW
+pub struct InspectReport { //HIDE
     /// Its caption.
     pub title: String,
     /// Simulated time at the end, s.
@@ -56,7 +56,7 @@ pub(crate) struct InspectReport { //NARROW
 
 /// A solid and its boundary particles.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct SolidSummary { //NARROW
+pub struct SolidSummary { //HIDE
     /// Its name.
     pub name: String,
     /// `fixed`, `driven` or `free`.
@@ -70,7 +70,7 @@ pub(crate) struct SolidSummary { //NARROW
 
 /// A solid from a mesh, measured.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct MeshSummary { //NARROW
+pub struct MeshSummary { //HIDE
     /// Number of its facets.
     pub facets: usize,
     /// Its volume, m³.
@@ -95,7 +95,7 @@ impl MeshSummary {
 
 /// The file of a probe.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct SeriesColumns { //NARROW
+pub struct SeriesColumns { //HIDE
     /// Stem of the file.
     pub name: String,
     /// Its columns beside the time.
@@ -104,7 +104,7 @@ pub(crate) struct SeriesColumns { //NARROW
 
 /// Some steps of the scene, timed. Nothing was written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct StepTiming { //NARROW
+pub struct StepTiming { //HIDE
     /// Threads.
     pub threads: usize,
     /// Steps timed.
@@ -119,7 +119,7 @@ pub(crate) struct StepTiming { //NARROW
 ///
 /// # Errors
 /// Those that [`run`](super::run) would meet before its first step.
-pub(crate) fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> { //NARROW
+pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> { //HIDE
     let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]

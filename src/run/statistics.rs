@@ -18,16 +18,16 @@ use crate::{
     scene::Scene,
 };
 
-pub(crate) use rao_table::RAO_FILE; //NARROW
-pub(crate) use rao_table::RaoResult; //NARROW
-pub(crate) use spectra_table::SPECTRA_FILE; //NARROW
+pub use rao_table::RAO_FILE; //HIDE
+pub use rao_table::RaoResult; //HIDE
+pub use spectra_table::SPECTRA_FILE; //HIDE
 
 /// The file, in the run's folder.
 pub(crate) const STATISTICS_FILE: &str = "statistics.csv"; //NARROW
 
 /// A figure of a series, or of several.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Statistic { //NARROW
+pub struct Statistic { //HIDE
     /// Name of the `[[statistic]]`; empty for what is said of every series.
     pub name: String,
     /// Which series, as `probe.column`; of a reflection the first gauge's, of an RAO the motion's.
@@ -46,7 +46,7 @@ pub(crate) struct Statistic { //NARROW
 
 /// What is asked of a run's series beside what its scene asks.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct StatisticsFilter { //NARROW
+pub struct StatisticsFilter { //HIDE
     /// Only of this probe, or of this series.
     pub series: Option<String>,
     /// First time that counts, s.
@@ -57,7 +57,7 @@ pub(crate) struct StatisticsFilter { //NARROW
 
 /// Figures of a run, and why some are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct RunStatistics { //NARROW
+pub struct RunStatistics { //HIDE
     /// The figures.
     pub rows: Vec<Statistic>,
     /// How motions answer irregular waves over frequency.
@@ -70,7 +70,7 @@ pub(crate) struct RunStatistics { //NARROW
 ///
 /// # Errors
 /// `Restart` if there is no run in `folder`; `Usage` if it has no such series; else as [`Scene::read`].
-pub(crate) fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> { //NARROW
+pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> { //HIDE
     let manifest = Manifest::read(folder)?;
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
     let plan = Scene::read(&scene_file(&folder.join("scene")), &sets)?.plan()?;

@@ -16,7 +16,7 @@ mod overrides;
 mod resolve;
 mod schema;
 mod svg;
-pub(crate) mod table; //NARROW
+pub mod table; //HIDE
 mod toml_source;
 mod untagged;
 mod verify_probes;
@@ -65,17 +65,17 @@ pub(crate) use crate::probe::GaugeSurface; //NARROW
 pub(crate) use crate::probe::PatchConfig; //NARROW
 pub(crate) use crate::probe::PointRowConfig; //NARROW
 pub(crate) use crate::probe::PointsConfig; //NARROW
-pub(crate) use crate::probe::ProbeConfig; //NARROW
+pub use crate::probe::ProbeConfig; //HIDE
 pub(crate) use crate::probe::ProbeKind; //NARROW
 pub(crate) use crate::probe::ProbePlan; //NARROW
 pub(crate) use crate::probe::SectionConfig; //NARROW
 pub use build::BuiltScene;
 pub(crate) use build::SceneLayout; //NARROW
 pub(crate) use build::SizeEstimate; //NARROW
-pub(crate) use bundled::BundledScene; //NARROW
-pub(crate) use bundled::bundled_scenes; //NARROW
+pub use bundled::BundledScene; //HIDE
+pub use bundled::bundled_scenes; //HIDE
 pub(crate) use resolve::ResolvedValue; //NARROW
-pub(crate) use schema::schema; //NARROW
+pub use schema::schema; //HIDE
 pub(crate) use section::shape::world_bounds;
 pub(crate) use section::analysis::CheckConfig; //NARROW
 pub(crate) use section::analysis::RaoConfig; //NARROW
@@ -95,7 +95,7 @@ pub(crate) use section::model::ModelConfig; //NARROW
 pub(crate) use section::model::TimeSteppingConfig; //NARROW
 pub use section::motion::DrivenConfig;
 pub(crate) use section::output::CheckpointConfig; //NARROW
-pub(crate) use section::output::FramesChoice; //NARROW
+pub use section::output::FramesChoice; //HIDE
 pub(crate) use section::output::FramesConfig; //NARROW
 pub(crate) use section::shape::AxisName; //NARROW
 pub use section::shape::CompoundPartConfig;
@@ -105,7 +105,7 @@ pub use section::shape::ShapeConfig;
 pub(crate) use section::solid::FreeBodyConfig; //NARROW
 pub(crate) use section::solid::MotionMode; //NARROW
 pub use section::solid::SolidConfig;
-pub(crate) use section::sponge_layer::SpongeLayerConfig; //NARROW
+pub use section::sponge_layer::SpongeLayerConfig; //HIDE
 pub(crate) use section::water::FillConfig; //NARROW
 pub(crate) use section::water::StillWaterLevel; //NARROW
 pub(crate) use section::water::WaterConfig; //NARROW
@@ -117,7 +117,7 @@ pub(crate) use section::wave::MeasuredElevationConfig; //NARROW
 pub(crate) use section::wave::RegularWaveConfig; //NARROW
 pub(crate) use section::wave::SolitaryWaveConfig; //NARROW
 pub(crate) use section::wave::WaveComponentsConfig; //NARROW
-pub(crate) use section::wave::WaveConfig; //NARROW
+pub use section::wave::WaveConfig; //HIDE
 pub(crate) use toml_source::RenamedName; //NARROW
 pub(crate) use toml_source::ValueSource; //NARROW
 pub(crate) use toml_source::current_key; //NARROW
@@ -235,19 +235,19 @@ impl Scene {
     }
 
     /// The same scene with a probe more.
-    pub(crate) fn probe(mut self, probe: ProbeConfig) -> Self { //NARROW
+    pub fn probe(mut self, probe: ProbeConfig) -> Self { //HIDE
         self.probe.push(probe);
         self
     }
 
     /// The same scene without frames.
-    pub(crate) fn without_frames(mut self) -> Self { //NARROW
+    pub fn without_frames(mut self) -> Self { //HIDE
         self.frames = Some(FramesChoice::Off);
         self
     }
 
     /// The same scene with a damping zone more.
-    pub(crate) fn with_damping(mut self, zone: SpongeLayerConfig) -> Self { //NARROW
+    pub fn with_damping(mut self, zone: SpongeLayerConfig) -> Self { //HIDE
         self.damping.push(zone);
         self
     }
@@ -302,13 +302,13 @@ impl Scene {
     }
 
     /// The keys and values that the scene writes with an old name.
-    pub(crate) fn renamed_names(&self) -> &[RenamedName] { //NARROW
+    pub fn renamed_names(&self) -> &[RenamedName] { //HIDE
         &self.origin.renamed
     }
 
     /// An error of a simulation that this scene was built into, with the file and the line of the key that it names, if it
     /// names one.
-    pub(crate) fn with_location(&self, mut error: Error) -> Error { //NARROW
+    pub fn with_location(&self, mut error: Error) -> Error { //HIDE
         match error.location.take() {
             Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
             place => Error { location: place, ..error },
@@ -319,7 +319,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if a number cannot be written.
-    pub(crate) fn to_toml(&self) -> Result<String> { //NARROW
+    pub fn to_toml(&self) -> Result<String> { //HIDE
         toml::to_string(self).map_err(|e| Error::scene(format!("this scene cannot be written: {e}")))
     }
 }

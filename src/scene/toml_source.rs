@@ -47,7 +47,7 @@ pub(super) struct SceneSource {
 
 /// A key or a value that is written with an old name, which still works.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct RenamedName { //NARROW
+pub struct RenamedName { //HIDE
     /// The key, with the names of solids.
     pub key: String,
     /// The old name.
@@ -79,7 +79,7 @@ impl PartialEq for SceneSource {
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum ValueSource { //NARROW
+pub enum ValueSource { //HIDE
     /// The default, with its reason.
     Default(String),
     /// This line of the scene.

@@ -64,7 +64,7 @@ pub fn equilibrium_height<const D: usize>(
 ///
 /// # Errors
 /// As [`equilibrium_height`].
-pub(crate) fn metacentric_height<const D: usize>( //NARROW
+pub fn metacentric_height<const D: usize>( //HIDE
     shape: &Shape<D>,
     pose: &Pose<D>,
     body: &FreeBody<D>,

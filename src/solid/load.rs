@@ -18,7 +18,7 @@ pub struct Load<const D: usize> {
 
 impl<const D: usize> Load<D> {
     /// None.
-    pub(crate) fn zero() -> Self { //NARROW
+    pub fn zero() -> Self { //HIDE
         Self { force: Vector::zeros(), torque: Bivector::zero() }
     }
 

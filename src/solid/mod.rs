@@ -13,9 +13,9 @@ pub(crate) mod rapier; //NARROW
 #[path = "../../tests/unit/solid/bodies.rs"]
 mod tests;
 
-pub(crate) use constraint::Constraints; //NARROW
+pub use constraint::Constraints; //HIDE
 pub(crate) use constraint::ContactPairs; //NARROW
-pub(crate) use constraint::ContactSpec; //NARROW
+pub use constraint::ContactSpec; //HIDE
 pub(crate) use constraint::FreeMode; //NARROW
 pub(crate) use constraint::InitialHold; //NARROW
 pub(crate) use constraint::JointKind; //NARROW
@@ -32,17 +32,17 @@ pub(crate) use constraint::SpringSpec; //NARROW
 pub(crate) use force::ForceSpec; //NARROW
 pub use load::Load;
 pub(crate) use load::LoadContext;
-pub(crate) use prescribed_motion::PrescribedMotion; //NARROW
+pub use prescribed_motion::PrescribedMotion; //HIDE
 pub use prescribed_motion::TimeFunction;
 #[cfg(feature = "dim2")]
 pub use rapier::rapier2d;
 #[cfg(feature = "dim3")]
-pub(crate) use rapier::rapier3d; //NARROW
+pub use rapier::rapier3d; //HIDE
 pub(crate) use rapier::ContactForce; //NARROW
 pub use rapier::Dim;
-pub(crate) use rapier::Engine; //NARROW
+pub use rapier::Engine; //HIDE
 pub(crate) use rapier::EngineFault; //NARROW
-pub(crate) use rapier::HasEngine; //NARROW
+pub use rapier::HasEngine; //HIDE
 
 use std::ops::Range;
 

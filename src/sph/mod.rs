@@ -6,21 +6,21 @@
 
 pub mod continuity;
 pub mod density_diffusion;
-pub(crate) mod gradient_correction; //NARROW
+pub mod gradient_correction; //HIDE
 pub mod kernel;
 mod simd;
 mod fluid_properties;
 mod pair;
 pub mod pressure;
-pub(crate) mod particle_shifting; //NARROW
-pub(crate) mod equation_of_state; //NARROW
+pub mod particle_shifting; //HIDE
+pub mod equation_of_state; //HIDE
 pub mod viscosity;
 pub mod boundary;
 
-pub(crate) use fluid_properties::FluidProperties; //NARROW
-pub(crate) use fluid_properties::Units; //NARROW
-pub(crate) use pair::AuxiliarySums; //NARROW
+pub use fluid_properties::FluidProperties; //HIDE
+pub use fluid_properties::Units; //HIDE
+pub use pair::AuxiliarySums; //HIDE
 pub use pair::Num;
 pub use pair::Pair;
-pub(crate) use pair::PairSide; //NARROW
+pub use pair::PairSide; //HIDE
 pub use pair::Term;

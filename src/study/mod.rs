@@ -14,32 +14,32 @@ mod html_page;
 mod result_rows;
 mod results;
 mod repeat_spread;
-pub(crate) mod stress; //NARROW
+pub mod stress; //HIDE
 mod validation;
 
 pub(crate) use convergence::Convergence; //NARROW
 pub(crate) use convergence::convergence; //NARROW
 pub(crate) use convergence::least_squares; //NARROW
-pub(crate) use job::Job; //NARROW
-pub(crate) use job::JobResult; //NARROW
-pub(crate) use job::JobState; //NARROW
-pub(crate) use parameter_grid::ParameterGrid; //NARROW
-pub(crate) use parameter_grid::VariedKey; //NARROW
-pub(crate) use parameter_grid::distinguishing_labels; //NARROW
-pub(crate) use parameter_grid::frame_interval; //NARROW
-pub(crate) use parameter_grid::split_values; //NARROW
-pub(crate) use repeat_spread::REPEATS_NOTE; //NARROW
+pub use job::Job; //HIDE
+pub use job::JobResult; //HIDE
+pub use job::JobState; //HIDE
+pub use parameter_grid::ParameterGrid; //HIDE
+pub use parameter_grid::VariedKey; //HIDE
+pub use parameter_grid::distinguishing_labels; //HIDE
+pub use parameter_grid::frame_interval; //HIDE
+pub use parameter_grid::split_values; //HIDE
+pub use repeat_spread::REPEATS_NOTE; //HIDE
 pub(crate) use repeat_spread::Spread; //NARROW
-pub(crate) use repeat_spread::spread_table; //NARROW
-pub(crate) use result_rows::ResultRow; //NARROW
+pub use repeat_spread::spread_table; //HIDE
+pub use result_rows::ResultRow; //HIDE
 pub(crate) use result_rows::result_rows; //NARROW
 pub(crate) use result_rows::rows_to_csv; //NARROW
-pub(crate) use results::StudyResults; //NARROW
-pub(crate) use time_estimate::DEFAULT_SPEED; //NARROW
-pub(crate) use time_estimate::TimeEstimate; //NARROW
-pub(crate) use time_estimate::estimate_times; //NARROW
-pub(crate) use validation::Validation; //NARROW
+pub use results::StudyResults; //HIDE
+pub use time_estimate::DEFAULT_SPEED; //HIDE
+pub use time_estimate::TimeEstimate; //HIDE
+pub use time_estimate::estimate_times; //HIDE
+pub use validation::Validation; //HIDE
 pub(crate) use validation_cases::CaseResolution; //NARROW
-pub(crate) use validation_cases::ValidationCase; //NARROW
-pub(crate) use validation_cases::select_cases; //NARROW
-pub(crate) use validation_cases::validation_cases; //NARROW
+pub use validation_cases::ValidationCase; //HIDE
+pub use validation_cases::select_cases; //HIDE
+pub use validation_cases::validation_cases; //HIDE

@@ -5,11 +5,11 @@ use crate::{error::Result, scene::SizeEstimate};
 
 /// Water particles × force passes a second of one thread, in 2-D and 3-D, where no run has told yet: half of what
 /// `pontoon bench` gives on a slow machine with the default laws.
-pub(crate) const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6]; //NARROW
+pub const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6]; //HIDE
 
 /// A job before it is run.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct TimeEstimate { //NARROW
+pub struct TimeEstimate { //HIDE
     /// About how large it is.
     pub size: SizeEstimate,
     /// About how long it will take, s; 0 if it has been run.
@@ -25,7 +25,7 @@ pub(crate) struct TimeEstimate { //NARROW
 ///
 /// # Errors
 /// Those of a scene's words: nothing should be run then.
-pub(crate) fn estimate_times(jobs: &[Job], ran: &[JobResult], threads: usize) -> Result<Vec<TimeEstimate>> { //NARROW
+pub fn estimate_times(jobs: &[Job], ran: &[JobResult], threads: usize) -> Result<Vec<TimeEstimate>> { //HIDE
     let sizes = jobs.iter().map(Job::estimated_size).collect::<Result<Vec<SizeEstimate>>>()?;
     let speed = |same: &dyn Fn(usize) -> bool| {
         let finished =

@@ -20,14 +20,14 @@ pub(crate) use fluid::{Fluid, permute};
 use periodic::Images;
 pub(crate) use periodic::Periodic; //NARROW
 pub use setup::Setup;
-pub(crate) use sponge_layer::SpongeLayer; //NARROW
+pub use sponge_layer::SpongeLayer; //HIDE
 pub(crate) use step_check::StepCheck;
-pub(crate) use step_check::Escape; //NARROW
+pub use step_check::Escape; //HIDE
 pub(crate) use step_check::ExitPath; //NARROW
-pub(crate) use step_check::ParticleLimits; //NARROW
+pub use step_check::ParticleLimits; //HIDE
 pub(crate) use step_check::RemovedParticle; //NARROW
 
-pub(crate) use crate::interaction::StepLimits; //NARROW
+pub use crate::interaction::StepLimits; //HIDE
 
 use std::time::{Duration, Instant};
 
@@ -345,7 +345,7 @@ impl<const D: usize> System<D> {
     }
 
     /// The largest values that limit the next step.
-    pub(crate) fn step_limits(&self) -> StepLimits { //NARROW
+    pub fn step_limits(&self) -> StepLimits { //HIDE
         self.status.step_limits
     }
 

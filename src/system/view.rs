@@ -13,12 +13,12 @@ use crate::{
 
 impl<const D: usize> System<D> {
     /// The model.
-    pub(crate) fn model(&self) -> &Model { //NARROW
+    pub fn model(&self) -> &Model { //HIDE
         &self.model
     }
 
     /// The constants that the laws share.
-    pub(crate) fn properties(&self) -> &FluidProperties<D> { //NARROW
+    pub fn properties(&self) -> &FluidProperties<D> { //HIDE
         &self.properties
     }
 
@@ -28,7 +28,7 @@ impl<const D: usize> System<D> {
     }
 
     /// The boundary particles of all solids.
-    pub(crate) fn boundary(&self) -> ParticlesView<'_, D> { //NARROW
+    pub fn boundary(&self) -> ParticlesView<'_, D> { //HIDE
         self.boundary.particles.first_n(self.boundary.particles.len())
     }
 
@@ -63,7 +63,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Pressure (Pa) at density `rho` (kg/m³).
-    pub(crate) fn pressure(&self, rho: f64) -> f64 { //NARROW
+    pub fn pressure(&self, rho: f64) -> f64 { //HIDE
         self.properties.rho0 * self.equation_of_state.pressure(rho / self.properties.rho0 - 1.0)
     }
 
@@ -74,7 +74,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
-    pub(crate) fn compression_energy(&self, rho: f64) -> f64 { //NARROW
+    pub fn compression_energy(&self, rho: f64) -> f64 { //HIDE
         self.equation_of_state.compression_energy(rho / self.properties.rho0 - 1.0)
     }
 
@@ -86,12 +86,12 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
-    pub(crate) fn fluid_acceleration(&self, i: usize) -> Vector<D> { //NARROW
+    pub fn fluid_acceleration(&self, i: usize) -> Vector<D> { //HIDE
         self.rates.fluid[i].acceleration
     }
 
     /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
-    pub(crate) fn fluid_density_rate(&self, i: usize) -> f64 { //NARROW
+    pub fn fluid_density_rate(&self, i: usize) -> f64 { //HIDE
         self.rates.fluid[i].compression_rate * self.properties.rho0
     }
 
@@ -116,7 +116,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration of gravity, m/s².
-    pub(crate) fn gravity(&self) -> Vector<D> { //NARROW
+    pub fn gravity(&self) -> Vector<D> { //HIDE
         self.properties.gravity
     }
 
@@ -152,7 +152,7 @@ impl<const D: usize> System<D> {
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
-    pub(crate) fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //NARROW
+    pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //HIDE
         let real = self.particle_count();
         self.neighbours.visit_fluid_around(x, &mut |i| {
             let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.originals[k] as usize);
@@ -161,7 +161,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
-    pub(crate) fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //NARROW
+    pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //HIDE
         self.neighbours
             .visit_boundary_around(x, &mut |i| self.visit_within_support(&self.boundary.particles.r[i], x, i, visit));
     }

@@ -28,8 +28,8 @@ pub(crate) use solitary::SolitaryWave; //NARROW
 pub(crate) use spectrum::WaveSpectrum; //NARROW
 pub(crate) use train::DepthRegime; //NARROW
 pub(crate) use train::LinearWave; //NARROW
-pub(crate) use train::TheoryRegion; //NARROW
-pub(crate) use train::wave_number; //NARROW
+pub use train::TheoryRegion; //HIDE
+pub use train::wave_number; //HIDE
 
 use std::f64::consts::FRAC_PI_2;
 

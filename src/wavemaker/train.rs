@@ -29,7 +29,7 @@ pub(crate) struct LinearWave { //NARROW
 /// How deep the water is for a wave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum DepthRegime { //NARROW
+pub enum DepthRegime { //HIDE
     /// kd > π.
     Deep,
     /// Between.
@@ -40,7 +40,7 @@ pub(crate) enum DepthRegime { //NARROW
 
 /// Where a wave lies on the chart of @lemehaute1976.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub(crate) enum TheoryRegion { //NARROW
+pub enum TheoryRegion { //HIDE
     /// Stokes' second term is less than a hundredth of the first.
     Airy,
     /// Below a quarter of the breaking height.
@@ -62,7 +62,7 @@ pub(crate) enum TheoryRegion { //NARROW
 
 impl DepthRegime {
     /// The word for it.
-    pub(crate) fn name(self) -> &'static str { //NARROW
+    pub fn name(self) -> &'static str { //HIDE
         match self {
             Self::Deep => "deep",
             Self::Intermediate => "intermediate",
@@ -73,7 +73,7 @@ impl DepthRegime {
 
 impl TheoryRegion {
     /// The word for it.
-    pub(crate) fn name(self) -> &'static str { //NARROW
+    pub fn name(self) -> &'static str { //HIDE
         match self {
             Self::Airy => "Airy",
             Self::Stokes2 => "Stokes 2",
@@ -168,7 +168,7 @@ impl LinearWave {
 }
 
 /// k (1/m) of a wave of angular frequency `omega` (rad/s) in water `depth` (m) deep: ω² = g k tanh kd, by Newton.
-pub(crate) fn wave_number(omega: f64, depth: f64, g: f64) -> f64 { //NARROW
+pub fn wave_number(omega: f64, depth: f64, g: f64) -> f64 { //HIDE
     let deep = omega * omega * depth / g;
     let mut kd = deep.max(deep.sqrt());
     for _ in 0..50 {

@@ -179,12 +179,12 @@ impl<'de> Deserialize<'de> for AbsorbChoice {
 
 impl WaveConfig {
     /// A regular wave of `height` (m) and `period` (s).
-    pub(crate) fn regular(height: f64, period: f64) -> Self { //NARROW
+    pub fn regular(height: f64, period: f64) -> Self { //HIDE
         Self { regular: Some(RegularWaveConfig { height, period, ..Default::default() }), ..Self::default() }
     }
 
     /// The sea number `seed` of significant height `height` (m) and JONSWAP's spectrum.
-    pub(crate) fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self { //NARROW
+    pub fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self { //HIDE
         let sea =
             IrregularWaveConfig { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
         Self { jonswap: Some(sea), ..Self::default() }

@@ -18,9 +18,9 @@ pub(crate) use lines::LineEnd; //NARROW
 pub(crate) use lines::RopeSpec; //NARROW
 pub(crate) use lines::SpringParameters; //NARROW
 pub(crate) use lines::SpringSpec; //NARROW
-pub(crate) use links::Constraints; //NARROW
+pub use links::Constraints; //HIDE
 pub(crate) use links::ContactPairs; //NARROW
-pub(crate) use links::ContactSpec; //NARROW
+pub use links::ContactSpec; //HIDE
 pub(crate) use links::InitialHold; //NARROW
 pub use motor::Motor;
 pub(crate) use motor::MotorCommand; //NARROW

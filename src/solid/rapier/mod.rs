@@ -4,10 +4,10 @@ mod engine;
 #[cfg(feature = "dim2")]
 pub mod rapier2d;
 #[cfg(feature = "dim3")]
-pub(crate) mod rapier3d; //NARROW
+pub mod rapier3d; //HIDE
 
 pub(crate) use engine::ContactForce; //NARROW
 pub use engine::Dim;
-pub(crate) use engine::Engine; //NARROW
+pub use engine::Engine; //HIDE
 pub(crate) use engine::EngineFault; //NARROW
-pub(crate) use engine::HasEngine; //NARROW
+pub use engine::HasEngine; //HIDE

@@ -16,7 +16,7 @@
 //! `examples/own_world.rs` is a whole program.
 
 /// The engine itself, in the version that this crate is made with.
-pub(crate) use rapier3d as rapier; //NARROW
+pub use rapier3d as rapier; //HIDE
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "external.rs"]

@@ -6,9 +6,9 @@ mod repulsion;
 mod slip;
 
 pub(crate) use dynamic::DynamicBoundary; //NARROW
-pub(crate) use relaxed_adami::SupportCoverage; //NARROW
-pub(crate) use relaxed_adami::WallExtrapolation; //NARROW
-pub(crate) use relaxed_adami::relaxation; //NARROW
+pub use relaxed_adami::SupportCoverage; //HIDE
+pub use relaxed_adami::WallExtrapolation; //HIDE
+pub use relaxed_adami::relaxation; //HIDE
 pub use repulsion::Repulsion;
-pub(crate) use slip::Slip; //NARROW
-pub(crate) use slip::no_slip_velocity; //NARROW
+pub use slip::Slip; //HIDE
+pub use slip::no_slip_velocity; //HIDE

@@ -5,7 +5,7 @@ mod molteni;
 
 pub use fourtakas::Fourtakas;
 pub(crate) use fourtakas::FourtakasTerm; //NARROW
-pub(crate) use molteni::Molteni; //NARROW
+pub use molteni::Molteni; //HIDE
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,10 +1,10 @@
 //! Kernels W(r, h), normalised to ∫ W dV = 1, zero from r = 2h on.
 
 mod cubic;
-pub(crate) mod lattice; //NARROW
+pub mod lattice; //HIDE
 mod wendland;
 
-pub(crate) use cubic::Cubic; //NARROW
+pub use cubic::Cubic; //HIDE
 pub use wendland::Wendland;
 
 use super::{FluidProperties, Num};

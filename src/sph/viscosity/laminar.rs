@@ -23,14 +23,14 @@ impl Default for Laminar {
 impl Laminar {
     /// The law, in those units. Of a viscous force on a lattice η² leaves the part `damped`, which is made good: 0.8 % at
     /// h = 1.7 dp.
-    pub(crate) fn term(&self, units: &Units, damped: f64) -> LaminarTerm { //NARROW
+    pub fn term(&self, units: &Units, damped: f64) -> LaminarTerm { //HIDE
         LaminarTerm { nu0: self.nu0 / damped * units.time / (units.length * units.length) }
     }
 }
 
 /// The law of [`Laminar`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LaminarTerm { //NARROW
+pub struct LaminarTerm { //HIDE
     nu0: f64,
 }
 

@@ -7,10 +7,10 @@ mod sps;
 
 pub use artificial::Artificial;
 pub(crate) use artificial::ArtificialTerm; //NARROW
-pub(crate) use laminar::Laminar; //NARROW
+pub use laminar::Laminar; //HIDE
 pub(crate) use laminar::LaminarTerm; //NARROW
-pub(crate) use sps::Sps; //NARROW
-pub(crate) use sps::SpsTerm; //NARROW
+pub use sps::Sps; //HIDE
+pub use sps::SpsTerm; //HIDE
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ impl Viscosity {
     }
 
     /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity @morris1997.
-    pub(crate) fn step_limit(&self, h: f64) -> f64 { //NARROW
+    pub fn step_limit(&self, h: f64) -> f64 { //HIDE
         let nu0 = match self {
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,

@@ -24,7 +24,7 @@ const DEEPEST: usize = 8;
 /// A family of cases along one or two axes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct StressMap { //NARROW
+pub struct StressMap { //HIDE
     /// Its name.
     pub name: String,
     /// What it asks, in a sentence.
@@ -51,7 +51,7 @@ pub(crate) struct StressMap { //NARROW
 /// What is varied, and its values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct MapAxis { //NARROW
+pub struct MapAxis { //HIDE
     /// What it is, in words.
     pub label: String,
     /// Its unit.
@@ -62,7 +62,7 @@ pub(crate) struct MapAxis { //NARROW
 
 /// One run of a map.
 #[derive(Clone, Debug)]
-pub(crate) struct StressCase { //NARROW
+pub struct StressCase { //HIDE
     /// The map.
     pub map: String,
     /// Its column and row.
@@ -91,7 +91,7 @@ struct MapsFile {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is no list of maps.
-pub(crate) fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> { //NARROW
+pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> { //HIDE
     let Some(path) = file else { return read(TEXT, NAME) };
     let text = std::fs::read_to_string(path).map_err(|why| {
         Error::file(path, why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
@@ -117,7 +117,7 @@ fn read(text: &str, name: &str) -> Result<Vec<StressMap>> {
 ///
 /// # Errors
 /// `Usage` if there is no such map: names the nearest.
-pub(crate) fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> { //NARROW
+pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> { //HIDE
     if names.is_empty() {
         return Ok(all.into_iter().filter(|map| !(quick && map.slow)).collect());
     }
@@ -143,7 +143,7 @@ impl MapAxis {
 
 impl StressMap {
     /// How many cases it has.
-    pub(crate) fn count(&self) -> usize { //NARROW
+    pub fn count(&self) -> usize { //HIDE
         self.x.values.len() * self.y.as_ref().map_or(1, |y| y.values.len())
     }
 

@@ -15,21 +15,21 @@ pub(crate) use case_run::BUDGET; //NARROW
 pub(crate) use case_run::CaseEnd; //NARROW
 pub(crate) use case_run::CaseRun; //NARROW
 pub(crate) use criteria::Bound; //NARROW
-pub(crate) use criteria::CaseOutcome; //NARROW
+pub use criteria::CaseOutcome; //HIDE
 pub(crate) use criteria::Criteria; //NARROW
 pub(crate) use criteria::MeasuredFigures; //NARROW
 pub(crate) use criteria::MotionBound; //NARROW
 pub(crate) use criteria::SolidBound; //NARROW
 pub(crate) use maps::MapAxis; //NARROW
 pub(crate) use maps::StressCase; //NARROW
-pub(crate) use maps::StressMap; //NARROW
-pub(crate) use maps::maps; //NARROW
-pub(crate) use maps::select_maps; //NARROW
-pub(crate) use result_store::CaseResult; //NARROW
-pub(crate) use result_store::StressResults; //NARROW
+pub use maps::StressMap; //HIDE
+pub use maps::maps; //HIDE
+pub use maps::select_maps; //HIDE
+pub use result_store::CaseResult; //HIDE
+pub use result_store::StressResults; //HIDE
 
 /// What came out of a case, in a line.
-pub(crate) fn summary_line(entry: &CaseResult) -> String { //NARROW
+pub fn summary_line(entry: &CaseResult) -> String { //HIDE
     let values = entry.case.values.join(", ");
     let Some((outcome, missed)) = entry.verdict() else { return format!("{values}: not run") };
     let why = match entry.run.as_ref().map(|trial| &trial.end) {
