@@ -29,7 +29,7 @@ const DEPTH: f64 = 0.6;
 
 /// One work: so many particles of water, and what else the scene says.
 #[derive(Clone, Debug)]
-pub struct BenchCase { //HIDE
+pub struct BenchCase {
     /// What it is called.
     pub name: String,
     /// 2 or 3.
@@ -50,7 +50,7 @@ pub struct BenchCase { //HIDE
 
 /// What a timing gave.
 #[derive(Clone, Debug, Serialize)]
-pub struct BenchTiming { //HIDE
+pub struct BenchTiming {
     /// Name of the work.
     pub work: String,
     /// Dimensions.
@@ -89,7 +89,7 @@ pub struct BenchTiming { //HIDE
 
 impl BenchCase {
     /// The standard work with the standard model.
-    pub fn standard(dimension: usize, water: usize) -> Self { //HIDE
+    pub fn standard(dimension: usize, water: usize) -> Self {
         let (sets, watched) = (Vec::new(), String::new());
         Self {
             name: "wendland".into(),
@@ -104,7 +104,7 @@ impl BenchCase {
     }
 
     /// The same under another name with other keys of the scene.
-    pub fn with_overrides(&self, name: &str, sets: &[(&'static str, &'static str)]) -> Self { //HIDE
+    pub fn with_overrides(&self, name: &str, sets: &[(&'static str, &'static str)]) -> Self {
         Self { name: name.into(), overrides: sets.to_vec(), ..self.clone() }
     }
 
@@ -153,7 +153,7 @@ impl BenchCase {
 ///
 /// # Errors
 /// Whatever stops a simulation, and `Usage` if threads cannot be had.
-pub fn time(works: &[BenchCase], threads: &[usize], rounds: usize) -> Result<Vec<BenchTiming>> { //HIDE
+pub fn time(works: &[BenchCase], threads: &[usize], rounds: usize) -> Result<Vec<BenchTiming>> {
     let pools = threads.iter().map(|&n| Ok((n, thread_pool(Some(n))?))).collect::<Result<Vec<_>>>()?;
     let Some((_, largest)) = pools.iter().max_by_key(|(n, _)| n) else { return Ok(Vec::new()) };
     let mut ready = largest.install(|| works.iter().map(prepare).collect::<Result<Vec<_>>>())?;
@@ -301,7 +301,7 @@ impl<const D: usize> TimedCase for PreparedCase<D> {
 }
 
 /// The laws and other things that a scene may name, each against the standard work (the first).
-pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> { //HIDE
+pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> {
     let base = BenchCase::standard(dimension, water);
     let mut works = vec![
         base.clone(),
@@ -343,7 +343,7 @@ pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> { //HIDE
 ///
 /// # Errors
 /// `Usage` if there is no such work, and whatever stops a simulation.
-pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> { //HIDE
+pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> {
     let work = |dimension| term_cases(dimension, 3000).into_iter().find(|w| w.name == name);
     let (Some(plane), Some(space)) = (work(2), work(3)) else {
         let names: Vec<String> = term_cases(2, 3000).into_iter().map(|w| w.name).collect();

@@ -70,6 +70,7 @@ pub mod math;
 pub mod sph;
 pub mod particles;
 pub mod geometry;
+#[doc(hidden)]
 pub mod neighbours;
 pub mod wavemaker;
 pub mod solid;
@@ -77,6 +78,7 @@ pub mod interaction;
 pub mod model;
 pub mod system;
 pub mod coupling;
+#[doc(hidden)]
 pub mod time_integration;
 pub mod simulation;
 pub mod plan;

@@ -1,7 +1,7 @@
 //! The chosen laws as data; the one place where a name becomes a type.
 
-pub use crate::sph::boundary::Slip; //HIDE
-pub use crate::sph::density_diffusion::Diffusion; //HIDE
+pub use crate::sph::boundary::Slip;
+pub use crate::sph::density_diffusion::Diffusion;
 pub use crate::sph::viscosity::Viscosity;
 
 use schemars::JsonSchema;
@@ -93,7 +93,7 @@ pub enum PairLoopKind {
 
 impl PairLoopKind {
     /// The SIMD instructions that it uses, if any.
-    pub fn instruction_set(self) -> Option<Level> { //HIDE
+    pub fn instruction_set(self) -> Option<Level> {
         match self {
             Self::Fast => simd::best_instruction_set(),
             Self::Reference => None,
@@ -207,7 +207,7 @@ impl Model {
     }
 
     /// The kernel's support radius 2h, m.
-    pub fn support_radius(&self) -> f64 { //HIDE
+    pub fn support_radius(&self) -> f64 {
         SUPPORT_RATIO * self.h
     }
 
@@ -218,7 +218,7 @@ impl Model {
     }
 
     /// The constants that the laws share.
-    pub fn fluid_properties<const D: usize>(&self) -> FluidProperties<D> { //HIDE
+    pub fn fluid_properties<const D: usize>(&self) -> FluidProperties<D> {
         FluidProperties {
             h: self.h,
             dp: self.dp,
@@ -250,7 +250,7 @@ impl Model {
     }
 
     /// The choices that cannot be combined, if any.
-    pub fn conflict(&self) -> Option<&'static str> { //HIDE
+    pub fn conflict(&self) -> Option<&'static str> {
         let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
         (self.gradient == PressureGradient::Corrected && !alone).then_some(clash)

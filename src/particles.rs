@@ -22,7 +22,7 @@ pub struct Particles<const D: usize> {
 
 impl<const D: usize> Particles<D> {
     /// Number of particles.
-    pub fn len(&self) -> usize { //HIDE
+    pub fn len(&self) -> usize {
         self.r.len()
     }
 
@@ -37,7 +37,7 @@ impl<const D: usize> Particles<D> {
     }
 
     /// Adds a particle at rest at `r` (m) of density `rho` (kg/m³); its id is its number.
-    pub fn push(&mut self, r: Vector<D>, rho: f64) { //HIDE
+    pub fn push(&mut self, r: Vector<D>, rho: f64) {
         self.id.push(self.r.len() as u32);
         self.r.push(r);
         self.v.push(Vector::zeros());

@@ -21,23 +21,19 @@ pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 
-pub use energy_drift::EnergyDrift; //HIDE
-pub use inspect::InspectOptions; //HIDE
-pub use inspect::InspectReport; //HIDE
-pub(crate) use inspect::MeshSummary; //NARROW
-pub(crate) use inspect::SeriesColumns; //NARROW
-pub(crate) use inspect::SolidSummary; //NARROW
-pub(crate) use inspect::StepTiming; //NARROW
-pub use inspect::inspect; //HIDE
+pub use energy_drift::EnergyDrift;
+pub use inspect::InspectOptions;
+pub use inspect::InspectReport;
+pub use inspect::inspect;
 pub(crate) use lock::Lock;
-pub use lock::lock_owner; //HIDE
-pub use statistics::RAO_FILE; //HIDE
-pub use statistics::RaoResult; //HIDE
-pub use statistics::RunStatistics; //HIDE
-pub use statistics::SPECTRA_FILE; //HIDE
-pub use statistics::Statistic; //HIDE
-pub use statistics::StatisticsFilter; //HIDE
-pub use statistics::statistics; //HIDE
+pub use lock::lock_owner;
+pub use statistics::RAO_FILE;
+pub use statistics::RaoResult;
+pub use statistics::RunStatistics;
+pub use statistics::SPECTRA_FILE;
+pub use statistics::Statistic;
+pub use statistics::StatisticsFilter;
+pub use statistics::statistics;
 
 use std::path::{Path, PathBuf};
 
@@ -54,7 +50,7 @@ use crate::{
 
 /// What a run is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct RunOptions { //HIDE
+pub struct RunOptions {
     /// Folder for the results, new or empty. By default `runs/<scene>`, with a number if that is taken.
     pub out: Option<PathBuf>,
     /// Keys of the scene and the values that replace the scene's own, as in `("dp", "0.02")`.
@@ -65,7 +61,7 @@ pub struct RunOptions { //HIDE
 
 /// What is known when a run begins.
 #[derive(Clone, Copy, Debug)]
-pub struct RunStart<'a> { //HIDE
+pub struct RunStart<'a> {
     /// The run's folder.
     pub folder: &'a Path,
     /// What the manifest says at the start: caption, particles, threads, warnings.
@@ -76,7 +72,7 @@ pub struct RunStart<'a> { //HIDE
 
 /// How far a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress { //HIDE
+pub struct Progress {
     /// Simulated time, s.
     pub time: f64,
     /// Simulated time at the end, s.
@@ -94,7 +90,7 @@ pub struct Progress { //HIDE
 }
 
 /// Someone who follows a run. Any `FnMut(&Progress) -> bool` does.
-pub trait RunObserver: Send { //HIDE
+pub trait RunObserver: Send {
     /// Told once, before the first step.
     fn start(&mut self, start: &RunStart) {
         let _ = start;
@@ -117,7 +113,7 @@ impl<F: FnMut(&Progress) -> bool + Send> RunObserver for F {
 
 /// Where a free body is at the end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FinalBodyState { //HIDE
+pub struct FinalBodyState {
     /// Its name.
     pub name: String,
     /// Position of its centre of mass, m.
@@ -130,7 +126,7 @@ pub struct FinalBodyState { //HIDE
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RunOutcome { //HIDE
+pub struct RunOutcome {
     /// The run's folder.
     pub folder: PathBuf,
     /// The manifest as written there.
@@ -143,7 +139,7 @@ pub struct RunOutcome { //HIDE
 
 impl RunOutcome {
     /// Whether a check misses its bound.
-    pub fn has_failed_checks(&self) -> bool { //HIDE
+    pub fn has_failed_checks(&self) -> bool {
         self.manifest.checks.iter().any(|verdict| verdict.passed == Some(false))
     }
 }
@@ -153,7 +149,7 @@ impl RunOutcome {
 /// # Errors
 /// `Scene`, `Usage`, `File` before anything is written or when a file cannot be written; `Fault` when the
 /// computation cannot go on: then the run's folder holds everything up to then and `failure.json`.
-pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> { //HIDE
+pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
     let file = run_folder::scene_file(path);
     let scene = Scene::read(&file, &options.overrides)?;
     let origin = RunOrigin::Fresh { file: &file, out: options.out.as_deref(), overrides: &options.overrides };
@@ -167,7 +163,7 @@ pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Re
 /// # Errors
 /// `Restart` if it has finished or still goes on, holds no whole checkpoint, or its scene has changed since;
 /// `Usage` if `guards` names any other key; else as [`run`].
-pub fn resume( //HIDE
+pub fn resume(
     folder: &Path,
     guards: &[(String, String)],
     threads: Option<usize>,

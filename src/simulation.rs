@@ -9,13 +9,12 @@ mod constraints;
 use std::time::{Duration, Instant};
 
 pub(crate) use crate::coupling::BodyStep; //NARROW
-pub use crate::system::Escape; //HIDE
-pub use crate::system::ParticleLimits; //HIDE
+pub use crate::system::Escape;
+pub use crate::system::ParticleLimits;
 pub(crate) use crate::system::RemovedParticle; //NARROW
 pub use crate::system::Setup;
-pub(crate) use add_remove::AddedSolid; //NARROW
 pub(crate) use constraints::find_by_name;
-pub use rollback::Rollback; //HIDE
+pub use rollback::Rollback;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -182,7 +181,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Disables the rollback: the first alarm ends the run.
-    pub fn without_rollback(mut self) -> Self { //HIDE
+    pub fn without_rollback(mut self) -> Self {
         self.rollback = RollbackControl::disabled();
         self
     }
@@ -198,12 +197,12 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The rollbacks so far, with their causes and times.
-    pub fn rollbacks(&self) -> &[Rollback] { //HIDE
+    pub fn rollbacks(&self) -> &[Rollback] {
         &self.rollback.log
     }
 
     /// The particles that left the domain and were removed ([`Escape::Remove`]), and the times of removal (s).
-    pub fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] { //HIDE
+    pub fn removed_particles(&self) -> &[(f64, RemovedParticle<D>)] {
         &self.removed
     }
 
@@ -235,7 +234,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The longest step (s) that the present rates, the springs and the model allow.
-    pub fn step_limit(&self) -> f64 { //HIDE
+    pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
         let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
         let ties = self.spring_step_limit().min(self.bodies.constraints().next_release(self.clock.time));
@@ -293,7 +292,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Steps so far.
-    pub fn steps(&self) -> u64 { //HIDE
+    pub fn steps(&self) -> u64 {
         self.clock.steps
     }
 
@@ -312,12 +311,12 @@ impl<const D: usize> Simulation<D> {
 
     /// Impulse (N s; N s/m in 2-D) of the water not yet applied to free solid number `solid`. Non-zero only for bodies with
     /// acoustic added mass.
-    pub fn pending_impulse(&self, solid: usize) -> Vector<D> { //HIDE
+    pub fn pending_impulse(&self, solid: usize) -> Vector<D> {
         self.bodies.pending_impulse(solid)
     }
 
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
-    pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) { //HIDE
+    pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
         if let Some(engine) = self.bodies.engine_mut() {
             engine.set_velocity(solid, velocity, spin);
             let kinematics = &mut self.system.solids[solid].kinematics;
@@ -333,7 +332,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
-    pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) { //HIDE
+    pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) {
         let fluid = &mut self.system.fluid.particles;
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
     }
@@ -347,7 +346,7 @@ impl<const D: usize> Simulation<D> {
     ///
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
-    pub fn save(&self) -> Result<Vec<u8>> { //HIDE
+    pub fn save(&self) -> Result<Vec<u8>> {
         self.save_with_rollbacks(self.rollback.log.len())
     }
 
@@ -389,7 +388,7 @@ impl<const D: usize> Simulation<D> {
     ///
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> { //HIDE
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
         if kept.removed_solids != self.removed_solids() {
             return Err(Error::new(

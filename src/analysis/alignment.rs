@@ -17,7 +17,7 @@ const MIN_OVERLAP: f64 = 0.9;
 
 /// A run against its reference once one constant delay is taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AlignedMetrics { //HIDE
+pub struct AlignedMetrics {
     /// By how much the run is late, s; negative where it leads.
     pub delay: f64,
     /// Relative deviation then, –.
@@ -30,7 +30,7 @@ pub struct AlignedMetrics { //HIDE
 
 /// When both series first pass a threshold, s; none if they never do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ArrivalTimes { //HIDE
+pub struct ArrivalTimes {
     /// The run.
     pub run: Option<f64>,
     /// Its reference; 0 where its clock starts then.

@@ -24,7 +24,7 @@ use crate::{
 /// assert_eq!(relative_l2(&sim, &reference)?, (10.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> { //HIDE
+pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     relative_norm(sim, reference, |s, r| (s - r) * (s - r))
 }
 
@@ -42,7 +42,7 @@ pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> { //
 /// assert_eq!(amplitude_ratio(&sim, &reference)?, (108.0_f64 / 25.0).sqrt());
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> { //HIDE
+pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     relative_norm(sim, reference, |s, _| s * s)
 }
 
@@ -64,7 +64,7 @@ pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> 
 /// assert_eq!(first_peak_error(&sim, &reference)?, 0.25);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> { //HIDE
+pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     let expected = first_peak(reference.values());
     if expected == 0.0 {
         return Err(all_zero());
@@ -88,7 +88,7 @@ pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64>
 /// assert_eq!(max_abs(&sim, &still)?, 0.5);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub fn max_abs(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> { //HIDE
+pub fn max_abs(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     require_coverage(sim, reference)?;
     let pairs = reference.times().iter().zip(reference.values());
     Ok(pairs.map(|(&t, &r)| (sim.value_at(t) - r).abs()).fold(0.0, f64::max))

@@ -91,7 +91,7 @@ fn has_limit(verdict: &Verdict, which: fn(&Score) -> Option<f64>) -> bool {
 
 /// The table of `verdicts`, the first row its head; before each stand the cells that it comes with, under
 /// `heads`.
-pub fn verdict_rows(verdicts: &[(&[String], &Verdict)], heads: &[&str]) -> Vec<Vec<String>> { //HIDE
+pub fn verdict_rows(verdicts: &[(&[String], &Verdict)], heads: &[&str]) -> Vec<Vec<String>> {
     let used = |(i, (_, text)): &(usize, &VerdictColumn)| *i < 3 || verdicts.iter().any(|(_, v)| !text(v).is_empty());
     let columns: Vec<&VerdictColumn> = COLUMNS.iter().enumerate().filter(used).map(|(_, column)| column).collect();
     let mut head: Vec<String> = heads.iter().map(|h| h.to_string()).collect();

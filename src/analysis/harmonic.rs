@@ -6,7 +6,7 @@ use crate::math::time_series::TimeSeries;
 
 /// What swings in a series: x(t) ≈ mean + amplitude · cos(ωt + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Harmonic { //HIDE
+pub struct Harmonic {
     /// Mean, in the unit of the series.
     pub mean: f64,
     /// Amplitude, in the unit of the series.
@@ -17,7 +17,7 @@ pub struct Harmonic { //HIDE
 
 /// The harmonic of angular frequency `omega` (1/s) in `series`, by least squares over the samples: exact for one that has no
 /// other, whatever the samples' times. None if the samples do not tell it, as less than a few of them.
-pub fn harmonic(series: &TimeSeries, omega: f64) -> Option<Harmonic> { //HIDE
+pub fn harmonic(series: &TimeSeries, omega: f64) -> Option<Harmonic> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (&t, &x) in series.times().iter().zip(series.values()) {
         let row = Vector3::new(1.0, (omega * t).cos(), (omega * t).sin());

@@ -55,7 +55,7 @@ pub(crate) fn rao(motion: &TimeSeries, wave: &TimeSeries, period: Option<f64>) -
 
 /// An answer at one frequency of irregular waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RaoPoint { //HIDE
+pub struct RaoPoint {
     /// Hz.
     pub frequency: f64,
     /// Amplitude of the motion over that of the wave, in the units of both.

@@ -18,7 +18,7 @@ use crate::{
 
 /// A reference that a run is to be held against.
 #[derive(Clone, Debug)]
-pub struct ReferenceCheck { //HIDE
+pub struct ReferenceCheck {
     plan: CheckPlan,
     reference: KnownReference,
 }
@@ -49,7 +49,7 @@ pub(crate) struct CheckCurves { //NARROW
 
 /// Figures of a comparison; one is none where it cannot be formed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ErrorMetrics { //HIDE
+pub struct ErrorMetrics {
     /// Relative deviation, –.
     #[serde(rename = "N")]
     pub relative_l2: Option<f64>,
@@ -64,7 +64,7 @@ pub struct ErrorMetrics { //HIDE
 
 /// The figures of the run as an instrument shows it that takes a running mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RunningMeanMetrics { //HIDE
+pub struct RunningMeanMetrics {
     /// Over how long, s.
     pub seconds: f64,
     /// The figures.
@@ -74,7 +74,7 @@ pub struct RunningMeanMetrics { //HIDE
 
 /// How a run did against a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdict { //HIDE
+pub struct Verdict {
     /// Which series, as `probe.column`.
     pub series: String,
     /// The figures of the run as it is.
@@ -104,7 +104,7 @@ impl ReferenceCheck {
     /// # Errors
     /// `File` if the table cannot be read; `Scene` if it lacks a column, has fewer than two samples in the
     /// window, or the formula is none.
-    pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> { //HIDE
+    pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> {
         let reference = match &words.reference {
             Reference::Formula(text) => KnownReference::Formula(Formula::parse(text)?),
             Reference::Table { file, time, column, delay } => {
@@ -138,7 +138,7 @@ impl ReferenceCheck {
 
     /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
     /// comparison that cannot be made says so in its note, and misses its bound unless the run is too short.
-    pub fn verdict(&self, folder: &Path) -> Verdict { //HIDE
+    pub fn verdict(&self, folder: &Path) -> Verdict {
         let mut verdict = self.empty_verdict();
         let (sim, meaned) = match self.run_series(folder) {
             Ok(run) => run,

@@ -286,7 +286,7 @@ fn angular<const D: usize>(six: &Six) -> Bivector<D> {
 /// ω_b (1/s), the highest frequency of a body on the compressibility of water all around: the larger of the largest
 /// translational and the largest rotational one. Every boundary particle of the outer layer is a spring of stiffness
 /// ρ₀ c₀² dpᴰ⁻² (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
-pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 { //HIDE
+pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 {
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
     for point in shape.boundary_points(medium.dp, 1) {

@@ -194,7 +194,7 @@ pub struct BodyStep<'a, const D: usize> {
 
 impl<const D: usize> BodyStep<'_, D> {
     /// Time at the start of the step, s.
-    pub fn time(&self) -> f64 { //HIDE
+    pub fn time(&self) -> f64 {
         self.over.t
     }
 
@@ -211,7 +211,7 @@ impl<const D: usize> BodyStep<'_, D> {
 
     /// Adds `load` (N, N m) about the centre of free solid number `solid` in this step, before [`BodyStep::advance_bodies`].
     /// Without effect where the bodies are external: there your program applies forces.
-    pub fn push(&mut self, solid: usize, load: &Load<D>) { //HIDE
+    pub fn push(&mut self, solid: usize, load: &Load<D>) {
         if let Some(engine) = &mut self.bodies.engine {
             engine.add_load(solid, load);
         }
@@ -226,7 +226,7 @@ impl<const D: usize> BodyStep<'_, D> {
     ///
     /// # Errors
     /// `Usage` where the bodies are external; `Fault` if a body leaves the valid range.
-    pub fn advance_bodies(&mut self) -> Result<()> { //HIDE
+    pub fn advance_bodies(&mut self) -> Result<()> {
         if self.bodies.external {
             return Err(Error::new(
                 ErrorKind::Usage,

@@ -20,7 +20,7 @@ use crate::{
 
 /// Energies since the start, J (J/m in 2-D): positive where water and bodies have gained.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct EnergyBudget { //HIDE
+pub struct EnergyBudget {
     /// Work of driven solids on the water, and of gravity along periodic sides.
     pub driven: f64,
     /// Work of motors.
@@ -55,7 +55,7 @@ pub struct EnergyBudget { //HIDE
 
 impl EnergyBudget {
     /// All entries with their names.
-    pub fn entries(&self) -> [(&'static str, f64); 15] { //HIDE
+    pub fn entries(&self) -> [(&'static str, f64); 15] {
         [
             ("driven", self.driven),
             ("motors", self.motors),

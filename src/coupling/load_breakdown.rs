@@ -10,7 +10,7 @@ use crate::{
 
 /// The loads on a free body in the last step, about its centre of mass, by their origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LoadBreakdown<const D: usize> { //HIDE
+pub struct LoadBreakdown<const D: usize> {
     /// Pressure of the water.
     pub pressure: Load<D>,
     /// Viscosity of the water.
@@ -62,7 +62,7 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// All loads with their names, without the change of momentum.
-    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] { //HIDE
+    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] {
         [
             ("pressure", self.pressure),
             ("viscous", self.viscous),
@@ -85,7 +85,7 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// The change of momentum less the sum.
-    pub fn residual(&self) -> Load<D> { //HIDE
+    pub fn residual(&self) -> Load<D> {
         self.change - self.sum()
     }
 

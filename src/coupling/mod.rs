@@ -6,7 +6,7 @@ mod energy_budget;
 mod load_breakdown;
 mod power_breakdown;
 
-pub use acoustic_added_mass::stiffest_frequency; //HIDE
+pub use acoustic_added_mass::stiffest_frequency;
 pub(crate) use acoustic_added_mass::{AcousticAddedMass, AddedMassState};
 pub(crate) use body_step::BodyStep; //NARROW
 pub(crate) use body_step::{Bodies, Hook};

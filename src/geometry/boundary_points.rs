@@ -21,7 +21,7 @@ impl<const D: usize> Shape<D> {
     /// outlines parallel curves, meshes even places on surfaces of equal depth, the innermost
     /// up to a quarter dp short of it where faces are too near each other. A tank's layers go outwards into its walls, as many as are asked for.
     /// A polygon or a tip thinner than dp has no room for a particle half a dp inside and gets none there.
-    pub fn boundary_points(&self, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> { //HIDE
+    pub fn boundary_points(&self, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
         let layers = layers.min(u8::MAX as usize);
         let points = match self {
             Shape::Box { size } => return box_skin(size, dp, layers),

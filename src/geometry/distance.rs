@@ -8,7 +8,7 @@ impl<const D: usize> Shape<D> {
     ///
     /// A tank or a polyline is inside in the material of its walls. Of a compound it is the least of its
     /// parts' distances: exact outside, at the joint of two parts too shallow.
-    pub fn signed_distance(&self, x: &Vector<D>) -> f64 { //HIDE
+    pub fn signed_distance(&self, x: &Vector<D>) -> f64 {
         match self {
             Shape::Box { size } => to_box(x, &(size * 0.5)),
             Shape::Ball { radius } => x.norm() - radius,

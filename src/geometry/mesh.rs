@@ -59,7 +59,7 @@ impl Mesh {
     /// `Scene` if a corner is not finite or not there, there are too many facets, the surface is open, turned inside
     /// out or partly turned over, passes through itself, or has a shell within a shell that faces the same way: says where (m), how
     /// often, and what to do.
-    pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> { //HIDE
+    pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
         if facets.len() > MAX_FACETS {
             return Err(Error::scene(format!("a mesh of {} facets; the most is {MAX_FACETS}", facets.len()))
                 .help("thin it out (\"decimate\"): what is finer than dp cannot be seen"));
@@ -100,7 +100,7 @@ impl Mesh {
     }
 
     /// The corners, m.
-    pub fn points(&self) -> &[Vector<3>] { //HIDE
+    pub fn points(&self) -> &[Vector<3>] {
         &self.points
     }
 

@@ -21,11 +21,10 @@ use std::sync::Arc;
 
 use crate::math::{Matrix, Pose, Vector};
 
-pub(crate) use fill::FilledWater; //NARROW
 pub use fill::WaterRegion;
 pub use fill::fill;
-pub use mesh::ContactGeometry; //HIDE
-pub use mesh::Mesh; //HIDE
+pub use mesh::ContactGeometry;
+pub use mesh::Mesh;
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +67,7 @@ pub struct VolumeProperties<const D: usize> {
 
 /// A boundary particle, in the shape's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoundaryPoint<const D: usize> { //HIDE
+pub struct BoundaryPoint<const D: usize> {
     /// Position, m.
     pub r: Vector<D>,
     /// Layer, 0 the one nearest the water, half a dp inside the true face.

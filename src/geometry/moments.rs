@@ -7,7 +7,7 @@ use crate::math::{Bounds, Matrix, Pose, Vector};
 
 impl<const D: usize> Shape<D> {
     /// The smallest axis-aligned box around the shape in its own frame, m.
-    pub fn bounds(&self) -> Bounds<D> { //HIDE
+    pub fn bounds(&self) -> Bounds<D> {
         let around = |half: Vector<D>| Bounds { min: -half, max: half };
         match self {
             Shape::Box { size } => around(size * 0.5),
@@ -44,7 +44,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// Exact volume, centroid and second moment.
-    pub fn volume_properties(&self) -> VolumeProperties<D> { //HIDE
+    pub fn volume_properties(&self) -> VolumeProperties<D> {
         match self {
             Shape::Box { size } => {
                 let volume = size.product();

@@ -66,7 +66,7 @@ pub struct PairSums<const D: usize> {
 
 impl<const D: usize> PairSums<D> {
     /// No neighbour.
-    pub fn zero() -> Self { //HIDE
+    pub fn zero() -> Self {
         Self { acceleration: Vector::zeros(), compression_rate: 0.0 }
     }
 }
@@ -104,7 +104,7 @@ pub trait PairLoop<const D: usize>: Send + Sync {
 
 /// The pair loop of the terms `inner` between water particles and `wall` between water and solids, with the properties
 /// `medium` in `units`: in SIMD lanes with the instructions of `level`, or the reference in SI if there is none.
-pub fn compile<K, T, W, const D: usize>( //HIDE
+pub fn compile<K, T, W, const D: usize>(
     kernel: K,
     inner: T,
     wall: W,

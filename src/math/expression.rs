@@ -73,7 +73,7 @@ impl Formula {
     ///
     /// # Errors
     /// `Scene` if it cannot be read: says what is wrong, at which character, and which words are known.
-    pub fn parse(text: &str) -> Result<Self> { //HIDE
+    pub fn parse(text: &str) -> Result<Self> {
         read(text, &["t"]).map(|root| Self { root })
     }
 

@@ -25,7 +25,7 @@ const UNITS: [(&str, &str); 20] = [
 ];
 
 /// The unit of a column by the end of its name, as in `fx_N_per_m`; what follows a comma or a space is no part of it.
-pub fn unit(column: &str) -> &'static str { //HIDE
+pub fn unit(column: &str) -> &'static str {
     let column = column.split([',', ' ']).next().unwrap_or(column);
     UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("–", |(_, unit)| unit)
 }
@@ -42,7 +42,7 @@ pub(crate) fn column_label(column: &str) -> String { //NARROW
 }
 
 /// A number of bytes as a user says it.
-pub fn bytes(count: f64) -> String { //HIDE
+pub fn bytes(count: f64) -> String {
     match count {
         n if n >= 1e9 => format!("{:.1} GB", n / 1e9),
         n if n >= 1e6 => format!("{:.1} MB", n / 1e6),
@@ -52,7 +52,7 @@ pub fn bytes(count: f64) -> String { //HIDE
 }
 
 /// A wall time (s) as a user says it.
-pub fn duration(seconds: f64) -> String { //HIDE
+pub fn duration(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {
         0..=59 => format!("{seconds:.1} s"),

@@ -3,7 +3,7 @@
 //! The width is eight on every processor, and AVX-512, AVX2 and NEON all have fused multiply-add, so that no sum
 //! depends on the instruction set.
 
-pub use fearless_simd::Level; //HIDE
+pub use fearless_simd::Level;
 pub(crate) use fearless_simd::Simd; //NARROW
 pub(crate) use fearless_simd::f32x8; //NARROW
 pub(crate) use fearless_simd::i32x8; //NARROW
@@ -20,7 +20,7 @@ pub(crate) struct LaneRow(pub [f32; LANES]); //NARROW
 
 /// The instructions for lanes that this processor has, the fastest first: AVX-512 and AVX2 on x86-64, whatever there
 /// is elsewhere. A processor of 2012 has none.
-pub fn instruction_sets() -> Vec<Level> { //HIDE
+pub fn instruction_sets() -> Vec<Level> {
     #[cfg(target_arch = "x86_64")]
     {
         let all = Level::new();

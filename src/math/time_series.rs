@@ -15,7 +15,7 @@ impl TimeSeries {
     /// # Errors
     /// `Scene` if the lengths differ, fewer than two samples are given, a number is not finite, or the
     /// times do not increase: says which sample.
-    pub fn new(t: impl Into<Vec<f64>>, x: impl Into<Vec<f64>>) -> Result<Self> { //HIDE
+    pub fn new(t: impl Into<Vec<f64>>, x: impl Into<Vec<f64>>) -> Result<Self> {
         let (t, x) = (t.into(), x.into());
         if t.len() != x.len() || t.len() < 2 {
             return Err(Error::scene(format!(
@@ -39,12 +39,12 @@ impl TimeSeries {
     }
 
     /// Sample times, s.
-    pub fn times(&self) -> &[f64] { //HIDE
+    pub fn times(&self) -> &[f64] {
         &self.t
     }
 
     /// Sample values.
-    pub fn values(&self) -> &[f64] { //HIDE
+    pub fn values(&self) -> &[f64] {
         &self.x
     }
 
@@ -54,7 +54,7 @@ impl TimeSeries {
     }
 
     /// Value at time `t` (s), linear between samples; the end values outside the span.
-    pub fn value_at(&self, t: f64) -> f64 { //HIDE
+    pub fn value_at(&self, t: f64) -> f64 {
         let (i, s) = self.locate(t);
         self.x[i] + s * (self.x[i + 1] - self.x[i])
     }
@@ -107,7 +107,7 @@ impl TimeSeries {
     ///   x̄(t) = 1/s ∫ x dt over t − s/2 … t + s/2
     ///
     /// by the trapezoid over the samples, at the same times; near an end over what there is.
-    pub fn running_mean(&self, seconds: f64) -> Self { //HIDE
+    pub fn running_mean(&self, seconds: f64) -> Self {
         let mut total = vec![0.0];
         for i in 1..self.t.len() {
             total.push(total[i - 1] + 0.5 * (self.t[i] - self.t[i - 1]) * (self.x[i] + self.x[i - 1]));

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
 
 /// A D×D matrix.
-pub type Matrix<const D: usize> = SMatrix<f64, D, D>; //HIDE
+pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
 
 /// What turns: an antisymmetric matrix holding a spin (rad/s) or a torque (N m; N m/m in 2-D).
 ///
@@ -22,15 +22,15 @@ pub struct Bivector<const D: usize>(pub Matrix<D>);
 
 impl<const D: usize> Bivector<D> {
     /// Number of independent components: 1 in 2-D, 3 in 3-D.
-    pub const COMPONENTS: usize = D * (D - 1) / 2; //HIDE
+    pub const COMPONENTS: usize = D * (D - 1) / 2;
 
     /// No turning.
-    pub fn zero() -> Self { //HIDE
+    pub fn zero() -> Self {
         Self(Matrix::zeros())
     }
 
     /// The torque of a force `f` (N) acting at the arm `r` (m): f rᵀ − r fᵀ.
-    pub fn torque(r: &Vector<D>, f: &Vector<D>) -> Self { //HIDE
+    pub fn torque(r: &Vector<D>, f: &Vector<D>) -> Self {
         Self(f * r.transpose() - r * f.transpose())
     }
 
@@ -40,7 +40,7 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The axial components: `[m₁₀]` in 2-D, `[m₂₁, m₀₂, m₁₀]` in 3-D.
-    pub fn axial(&self) -> Vec<f64> { //HIDE
+    pub fn axial(&self) -> Vec<f64> {
         match D {
             2 => vec![self.0[(1, 0)]],
             _ => vec![self.0[(2, 1)], self.0[(0, 2)], self.0[(1, 0)]],
@@ -48,7 +48,7 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The inverse of [`Bivector::axial`]; missing components count as zero.
-    pub fn from_axial(components: &[f64]) -> Self { //HIDE
+    pub fn from_axial(components: &[f64]) -> Self {
         let mut m = Matrix::zeros();
         let places: &[(usize, usize)] = if D == 2 { &[(1, 0)] } else { &[(2, 1), (0, 2), (1, 0)] };
         for (&(i, j), &w) in places.iter().zip(components) {
@@ -72,7 +72,7 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The rotation matrix of turning with this spin for a unit of time, exp Ω (Rodrigues).
-    pub fn exp(&self) -> Matrix<D> { //HIDE
+    pub fn exp(&self) -> Matrix<D> {
         let angle = (0.5 * self.0.norm_squared()).sqrt();
         let (a, b) =
             if angle < 1e-8 { (1.0, 0.5) } else { (angle.sin() / angle, (1.0 - angle.cos()) / (angle * angle)) };
@@ -126,22 +126,22 @@ impl<const D: usize> Pose<D> {
     }
 
     /// World position of the local point `x` (m).
-    pub fn point(&self, x: &Vector<D>) -> Vector<D> { //HIDE
+    pub fn point(&self, x: &Vector<D>) -> Vector<D> {
         self.position + self.rotation * x
     }
 
     /// Local coordinates of the world point `x` (m).
-    pub fn local(&self, x: &Vector<D>) -> Vector<D> { //HIDE
+    pub fn local(&self, x: &Vector<D>) -> Vector<D> {
         self.rotation.transpose() * (x - self.position)
     }
 
     /// This pose after another: the pose of a frame that sits at `inner` inside this one.
-    pub fn then(&self, inner: &Self) -> Self { //HIDE
+    pub fn then(&self, inner: &Self) -> Self {
         Self { position: self.point(&inner.position), rotation: self.rotation * inner.rotation }
     }
 
     /// The axial angle of the rotation (rad): one component in 2-D, a rotation vector in 3-D.
-    pub fn rotation_vector(&self) -> Vec<f64> { //HIDE
+    pub fn rotation_vector(&self) -> Vec<f64> {
         let m = &self.rotation;
         if D == 2 {
             return vec![m[(1, 0)].atan2(m[(0, 0)])];
@@ -196,7 +196,7 @@ impl<const D: usize> Bounds<D> {
     }
 
     /// Edge lengths, m.
-    pub fn size(&self) -> Vector<D> { //HIDE
+    pub fn size(&self) -> Vector<D> {
         self.max - self.min
     }
 }

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// No particle: a pad that fills up a cluster.
-pub const PAD: u32 = u32::MAX; //HIDE
+pub const PAD: u32 = u32::MAX;
 
 /// Position of a pad: half the integer range from its cluster, so far that no kernel support reaches it and
 /// so near that no difference overflows.
@@ -29,7 +29,7 @@ const SPAN: f64 = 2.0;
 
 /// The clusters of one slab and their lists; a thread computes whole slabs.
 #[derive(Clone, Debug, Default)]
-pub struct Slab { //HIDE
+pub struct Slab {
     /// First cluster of water.
     pub first: usize,
     /// End of the water, first cluster of boundary particles.
@@ -44,7 +44,7 @@ pub struct Slab { //HIDE
 
 /// All clusters.
 #[derive(Clone, Debug, Default)]
-pub struct Clusters { //HIDE
+pub struct Clusters {
     /// The particle in each slot, eight slots a cluster: an index of a water or boundary particle, or [`PAD`].
     pub source: Vec<u32>,
     /// The slabs in order.

@@ -6,11 +6,11 @@ use super::CellGrid;
 use crate::math::{Bounds, Vector};
 
 /// Particles in a chunk: the unit of parallel work, fixed so that no result depends on the threads.
-pub const CHUNK: usize = 128; //HIDE
+pub const CHUNK: usize = 128;
 
 /// Where in its chunk's `index` a particle's neighbours are.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Span { //HIDE
+pub struct Span {
     /// First neighbour of the first kind.
     pub start: u32,
     /// End of the first kind, start of the second.
@@ -21,7 +21,7 @@ pub struct Span { //HIDE
 
 /// The neighbours of [`CHUNK`] particles.
 #[derive(Clone, Debug, Default)]
-pub struct ParticleListChunk { //HIDE
+pub struct ParticleListChunk {
     /// One span a particle.
     pub spans: Vec<Span>,
     /// Neighbours, one particle after the other.
@@ -31,7 +31,7 @@ pub struct ParticleListChunk { //HIDE
 impl ParticleListChunk {
     /// Neighbours of both kinds of the chunk's `i`-th particle.
     #[inline(always)]
-    pub fn neighbours_of(&self, i: usize) -> (&[u32], &[u32]) { //HIDE
+    pub fn neighbours_of(&self, i: usize) -> (&[u32], &[u32]) {
         let s = self.spans[i];
         (&self.index[s.start as usize..s.middle as usize], &self.index[s.middle as usize..s.end as usize])
     }
@@ -39,7 +39,7 @@ impl ParticleListChunk {
 
 /// The lists of all particles.
 #[derive(Clone, Debug, Default)]
-pub struct ParticleLists { //HIDE
+pub struct ParticleLists {
     /// Of water particles: first kind water, second kind boundary.
     pub fluid: Vec<ParticleListChunk>,
     /// For the wet boundary particles: first kind water; no second.

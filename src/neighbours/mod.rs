@@ -10,17 +10,15 @@ mod grid;
 mod lists;
 mod search;
 
-pub use clusters::Clusters; //HIDE
-pub(crate) use clusters::FAR_POSITION; //NARROW
-pub use clusters::PAD; //HIDE
+pub use clusters::Clusters;
+pub use clusters::PAD;
 pub(crate) use clusters::Slab; //NARROW
 pub(crate) use clusters::fill_positions; //NARROW
 pub(crate) use clusters::occupied_lanes; //NARROW
 pub(crate) use grid::CellGrid; //NARROW
-pub use lists::CHUNK; //HIDE
+pub use lists::CHUNK;
 pub(crate) use lists::ParticleListChunk; //NARROW
 pub(crate) use lists::ParticleLists; //NARROW
-pub(crate) use lists::Span; //NARROW
 
 use std::sync::OnceLock;
 
@@ -41,7 +39,7 @@ const UNITS: f64 = (1 << 24) as f64;
 
 /// The pairs.
 #[derive(Clone, Debug)]
-pub enum PairLists { //HIDE
+pub enum PairLists {
     /// Lists of single neighbours.
     Lists(ParticleLists),
     /// Lists of later clusters, searched with those instructions.
@@ -67,7 +65,7 @@ pub struct NeighbourLists<const D: usize> {
 impl<const D: usize> NeighbourLists<D> {
     /// No lists yet, for a kernel of support `reach` (m) and particles `dp` (m) apart: of clusters, searched with
     /// the instructions of `level`, or else of single neighbours.
-    pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self { //HIDE
+    pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self {
         let pairs = match level {
             Some(level) => PairLists::Clusters(Clusters::default(), level),
             None => PairLists::Lists(ParticleLists::default()),
@@ -83,7 +81,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The unit of length in which positions are whole numbers, m.
-    pub fn length_unit(reach: f64) -> f64 { //HIDE
+    pub fn length_unit(reach: f64) -> f64 {
         reach / UNITS
     }
 
@@ -95,7 +93,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Margin of the lists beyond the support, m.
-    pub fn margin(&self) -> f64 { //HIDE
+    pub fn margin(&self) -> f64 {
         MARGIN * self.support_radius
     }
 
@@ -111,7 +109,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Builds the lists for these positions of water and boundary particles.
-    pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) { //HIDE
+    pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
         self.positions_at_build.0.clear();
         self.positions_at_build.0.extend_from_slice(water);
         self.positions_at_build.1.clear();
@@ -144,12 +142,12 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The pairs.
-    pub fn pair_lists(&self) -> &PairLists { //HIDE
+    pub fn pair_lists(&self) -> &PairLists {
         &self.pair_lists
     }
 
     /// The boundary particles that have water within the lists' reach, in ascending order.
-    pub fn boundary_near_fluid(&self) -> &[u32] { //HIDE
+    pub fn boundary_near_fluid(&self) -> &[u32] {
         &self.boundary_near_fluid
     }
 

@@ -35,7 +35,7 @@ const MAX_EXPANSION: u64 = 1000;
 
 /// How far the outputs of a run are.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct OutputPositions { //HIDE
+pub struct OutputPositions {
     /// Length of each table, bytes, in the order of the probes, then of the lists.
     pub table_bytes: Vec<u64>,
     /// Means in the making, of the probes that take some.
@@ -48,7 +48,7 @@ pub struct OutputPositions { //HIDE
 
 /// What a checkpoint holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint { //HIDE
+pub struct Checkpoint {
     /// Version of this crate that wrote it.
     pub version: String,
     /// [`fnv1a`] of the scene with every default filled in.
@@ -140,7 +140,7 @@ impl Checkpoint {
     /// # Errors
     /// `Restart` if there is none, or it is no checkpoint, damaged, or of another format or version; `File` if it
     /// cannot be read.
-    pub fn read(path: &Path) -> Result<Self> { //HIDE
+    pub fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).map_err(|why| match why.kind() {
             io::ErrorKind::NotFound => restart_error(
                 "there is no checkpoint",
@@ -160,7 +160,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// As [`Checkpoint::read`].
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self> { //HIDE
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         const AFRESH: &str = "start the run afresh with `pontoon run`";
         const OTHER: &str = "resume with the version that wrote it";
         let short = || restart_error("the checkpoint is cut short", AFRESH);

@@ -152,7 +152,7 @@ impl CsvTable {
 
 /// A table as it stands in its file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SeriesTable { //HIDE
+pub struct SeriesTable {
     /// Names of the columns after the time.
     pub columns: Vec<String>,
     /// Times, s.
@@ -166,7 +166,7 @@ impl SeriesTable {
     ///
     /// # Errors
     /// `File` if it cannot be read.
-    pub fn read(path: &Path) -> Result<Self> { //HIDE
+    pub fn read(path: &Path) -> Result<Self> {
         let broken = |why: csv::Error| Error::file(path, why);
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path).map_err(broken)?;
         let columns: Vec<String> = reader.headers().map_err(broken)?.iter().skip(1).map(String::from).collect();

@@ -28,7 +28,7 @@ const COMPRESSED: f64 = 0.6;
 
 /// Bytes of a water particle and of a boundary particle in a frame with these `fields`, rarely more: position, vertex and
 /// fields, compressed.
-pub fn particle_bytes(fields: &[String]) -> (f64, f64) { //HIDE
+pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
     let fields: f64 = fields.iter().map(|field| if field == "velocity" { 12.0 } else { 4.0 }).sum();
     let place = 12.0 + 8.0 + 8.0 + 1.0;
     (COMPRESSED * (place + fields), COMPRESSED * (place + fields + 4.0))

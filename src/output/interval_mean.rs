@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// A mean in the making: all that it needs to go on to the same bits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct IntervalMean { //HIDE
+pub struct IntervalMean {
     /// Time (s) and values of the last reading.
     last: Option<(f64, Vec<f64>)>,
     /// ∫ x dt since the last row by the trapezoid, and how long x was known (s): two for each column.

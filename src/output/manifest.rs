@@ -13,7 +13,7 @@ use crate::{
 
 /// The manifest of a run. Its keys are read by other programs: add some, rename none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Manifest { //HIDE
+pub struct Manifest {
     /// How the run stands.
     pub status: RunStatus,
     /// Caption of the scene.
@@ -75,7 +75,7 @@ pub struct Manifest { //HIDE
 
 /// A value in force.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ValueInForce { //HIDE
+pub struct ValueInForce {
     /// The scene's key.
     pub key: String,
     /// Its value.
@@ -87,7 +87,7 @@ pub struct ValueInForce { //HIDE
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RunStatus { //HIDE
+pub enum RunStatus {
     /// It goes on, or was killed.
     Running,
     /// It reached its end.
@@ -100,7 +100,7 @@ pub enum RunStatus { //HIDE
 
 /// Numbers of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ParticleCounts { //HIDE
+pub struct ParticleCounts {
     /// Of the water.
     pub fluid: usize,
     /// Of all skins.
@@ -109,7 +109,7 @@ pub struct ParticleCounts { //HIDE
 
 /// Frames on the disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FrameTotals { //HIDE
+pub struct FrameTotals {
     /// How many.
     pub count: usize,
     /// What they take, B.
@@ -118,7 +118,7 @@ pub struct FrameTotals { //HIDE
 
 /// The computer that ran it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Machine { //HIDE
+pub struct Machine {
     /// Operating system.
     pub os: String,
     /// Processor family.
@@ -135,7 +135,7 @@ pub struct Machine { //HIDE
 
 impl Machine {
     /// This computer.
-    pub fn current() -> Self { //HIDE
+    pub fn current() -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|m| m.1));
         Self {
@@ -155,7 +155,7 @@ impl Manifest {
     }
 
     /// Notes that the run failed with `error`.
-    pub fn record_failure(&mut self, error: &Error) { //HIDE
+    pub fn record_failure(&mut self, error: &Error) {
         self.status = RunStatus::Failed;
         self.error = Some(error.to_string());
         self.fault = error.fault.as_deref().and_then(|fault: &Fault| serde_json::to_value(fault).ok());
@@ -165,7 +165,7 @@ impl Manifest {
     ///
     /// # Errors
     /// `File` if it cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<()> { //HIDE
+    pub fn write(&self, folder: &Path) -> Result<()> {
         let path = folder.join("manifest.json");
         let text = serde_json::to_string_pretty(self).map_err(|e| Error::file(&path, e))?;
         write_atomically(&path, (text + "\n").as_bytes())
@@ -175,7 +175,7 @@ impl Manifest {
     ///
     /// # Errors
     /// `Restart` if there is none or it is not one of this program's.
-    pub fn read(folder: &Path) -> Result<Self> { //HIDE
+    pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join("manifest.json");
         let text = std::fs::read_to_string(&path).map_err(|why| {
             Error::new(ErrorKind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))

@@ -2,27 +2,27 @@
 
 pub(crate) mod checkpoint; //NARROW
 pub(crate) mod csv; //NARROW
-pub mod frame; //HIDE
+pub mod frame;
 pub(crate) mod frame_sequence; //NARROW
-pub mod manifest; //HIDE
+pub mod manifest;
 pub(crate) mod interval_mean; //NARROW
 #[cfg(feature = "cli")]
-pub mod npz; //HIDE
+pub mod npz;
 pub(crate) mod removed_particles; //NARROW
 mod base64;
 mod vtu;
 #[cfg(feature = "surface")]
 pub(crate) mod free_surface_mesh; //NARROW
 
-pub use checkpoint::Checkpoint; //HIDE
+pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::OutputPositions; //NARROW
 pub(crate) use csv::CsvTable; //NARROW
-pub use csv::SeriesTable; //HIDE
+pub use csv::SeriesTable;
 pub(crate) use frame::FrameWriter; //NARROW
 pub(crate) use frame_sequence::FramePoints; //NARROW
 pub(crate) use frame_sequence::FrameSequence; //NARROW
 pub(crate) use interval_mean::IntervalMean; //NARROW
-pub use manifest::Manifest; //HIDE
+pub use manifest::Manifest;
 
 use std::{
     fs::{self, File},
@@ -45,7 +45,7 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> { //NARR
 ///
 /// # Errors
 /// `File` if there is none.
-pub fn require_parent_folder(path: &Path) -> Result<()> { //HIDE
+pub fn require_parent_folder(path: &Path) -> Result<()> {
     match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
         Some(folder) => Err(Error::file(path, format!("there is no folder {}", folder.display()))
             .help("make it first, or name a file in another")),

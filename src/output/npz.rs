@@ -17,7 +17,7 @@ const ALIGNED: usize = 64;
 ///
 /// # Errors
 /// `File` if it cannot be written, or two arrays have the same name.
-pub fn write<'a>(path: &Path, arrays: impl IntoIterator<Item = (String, &'a [f64])>) -> Result<()> { //HIDE
+pub fn write<'a>(path: &Path, arrays: impl IntoIterator<Item = (String, &'a [f64])>) -> Result<()> {
     require_parent_folder(path)?;
     let bytes = npz_bytes(arrays).map_err(|why| Error::new(ErrorKind::File, format!("{}: {why}", path.display())))?;
     write_atomically(path, &bytes)

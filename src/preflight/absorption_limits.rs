@@ -10,7 +10,7 @@ const BESIDE: [f64; 2] = [2.0 / 3.0, 1.5];
 
 /// A paddle that takes the waves which come to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AbsorberSummary { //HIDE
+pub struct AbsorberSummary {
     /// Name of the solid.
     pub solid: String,
     /// The period whose waves it takes whole, s.

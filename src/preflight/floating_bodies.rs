@@ -33,7 +33,7 @@ const LEVEL: f64 = 0.5 * PI / 180.0;
 
 /// A free body before its first step. In 2-D masses are kg/m and volumes m².
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BodySummary { //HIDE
+pub struct BodySummary {
     /// Its name.
     pub name: String,
     /// Mass, kg.
@@ -60,7 +60,7 @@ pub struct BodySummary { //HIDE
 
 /// How a body floats.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Equilibrium { //HIDE
+pub struct Equilibrium {
     /// Draft at rest, m.
     pub draft_m: f64,
     /// Area of its waterplane, m²; its breadth, m, in 2-D.
@@ -79,7 +79,7 @@ pub struct Equilibrium { //HIDE
 
 /// A tilt of a floating body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Tilt { //HIDE
+pub struct Tilt {
     /// The axis: axial components.
     pub axis: Vec<f64>,
     /// Metacentric height, m: negative, and it turns over.

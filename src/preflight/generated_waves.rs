@@ -23,7 +23,7 @@ const SHORTEST: f64 = 15.0;
 
 /// The wave of a driven solid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GeneratedWave { //HIDE
+pub struct GeneratedWave {
     /// Name of the solid.
     pub solid: String,
     /// Its kind, in the words of a scene; absent if the solid's motion was given instead.
@@ -210,7 +210,7 @@ impl<const D: usize> PreflightContext<'_, D> {
 
 impl GeneratedWave {
     /// When the first answer is back at the paddle, and from where, in one line.
-    pub fn first_reflection(&self) -> String { //HIDE
+    pub fn first_reflection(&self) -> String {
         let (reach, far, back) = (three_digits(self.reach_m), three_digits(self.far_s), three_digits(self.back_s));
         let what = self.answers.as_ref().map_or("the far end".into(), |name| format!("\"{name}\""));
         let zone = self.damping_m.map(|begins| format!("; a damping zone begins at {} m", three_digits(begins)));

@@ -23,15 +23,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-pub use absorption_limits::AbsorberSummary; //HIDE
-pub use floating_bodies::BodySummary; //HIDE
-pub(crate) use floating_bodies::Equilibrium; //NARROW
-pub(crate) use floating_bodies::Tilt; //NARROW
-pub use generated_waves::GeneratedWave; //HIDE
-pub use rounding::three_digits; //HIDE
-pub use run_size::DiskUse; //HIDE
+pub use absorption_limits::AbsorberSummary;
+pub use floating_bodies::BodySummary;
+pub use generated_waves::GeneratedWave;
+pub use rounding::three_digits;
+pub use run_size::DiskUse;
 pub(crate) use run_size::RunSize; //NARROW
-pub(crate) use sound_speed::ExpectedSpeed; //NARROW
 pub(crate) use sound_speed::SoundSpeed; //NARROW
 pub(crate) use sound_speed::StepSizeLimits; //NARROW
 
@@ -51,7 +48,7 @@ const MOST: usize = 3;
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Severity { //HIDE
+pub enum Severity {
     /// The results will suffer, or the run will not show what it is meant to.
     Warning,
     /// Worth knowing; it may well be meant.
@@ -60,7 +57,7 @@ pub enum Severity { //HIDE
 
 /// Something that may not be as it was meant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Finding { //HIDE
+pub struct Finding {
     /// How much it matters.
     pub severity: Severity,
     /// Its kind, for programs: `capsizes`, `thin_body`, ...
@@ -99,7 +96,7 @@ impl Finding {
 
 /// What is known before the first step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Preflight { //HIDE
+pub struct Preflight {
     /// Particles, memory, disk.
     pub size: RunSize,
     /// Speed of sound and the speeds that it must outrun.
@@ -118,7 +115,7 @@ pub struct Preflight { //HIDE
 
 impl Preflight {
     /// The findings to read: of a kind the first three, and how many more there are.
-    pub fn brief(&self) -> Vec<Finding> { //HIDE
+    pub fn brief(&self) -> Vec<Finding> {
         let kind = |finding: &Finding| (finding.severity, finding.topic);
         let (mut all, mut seen) = (BTreeMap::new(), BTreeMap::new());
         self.findings.iter().for_each(|finding| *all.entry(kind(finding)).or_insert(0) += 1);
@@ -139,7 +136,7 @@ impl Preflight {
     }
 
     /// The findings that a run tells at its start.
-    pub fn warnings(&self) -> Vec<String> { //HIDE
+    pub fn warnings(&self) -> Vec<String> {
         self.brief().iter().filter(|f| f.severity == Severity::Warning).map(Finding::one_line).collect()
     }
 }
@@ -157,7 +154,7 @@ struct PreflightContext<'a, const D: usize> {
 
 /// Looks at a simulation before its first step. `columns`: how many columns each of the plan's probes writes beside the
 /// time; `overlapped`: places of the water's lattice that solids took.
-pub fn preflight<const D: usize>( //HIDE
+pub fn preflight<const D: usize>(
     sim: &Simulation<D>,
     plan: &Plan,
     still: StillWaterLevel,

@@ -1,7 +1,7 @@
 //! Numbers in sentences: three digits to read, two to write into a scene, rounded to the side that helps.
 
 /// `x` to three digits, without trailing zeros.
-pub fn three_digits(x: f64) -> String { //HIDE
+pub fn three_digits(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 {
         return "0".into();

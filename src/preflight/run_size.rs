@@ -19,7 +19,7 @@ const NUMBER: f64 = 19.0;
 
 /// How large a run is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RunSize { //HIDE
+pub struct RunSize {
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of water.
@@ -44,7 +44,7 @@ pub struct RunSize { //HIDE
 
 /// What a run will write, about, B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DiskUse { //HIDE
+pub struct DiskUse {
     /// Tables of the probes.
     pub tables_bytes: f64,
     /// Number of frames.

@@ -24,7 +24,7 @@ const PLACES_SEEN: usize = 32;
 
 /// Speed of sound and what it must outrun.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SoundSpeed { //HIDE
+pub struct SoundSpeed {
     /// Speed of sound c₀, m/s.
     pub c0_mps: f64,
     /// c₀ over √(g·depth), –; absent without gravity.
@@ -35,7 +35,7 @@ pub struct SoundSpeed { //HIDE
 
 /// A speed known beforehand.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ExpectedSpeed { //HIDE
+pub struct ExpectedSpeed {
     /// Of what.
     pub what: String,
     /// m/s.
@@ -51,7 +51,7 @@ impl SoundSpeed {
 
 /// How long a step may be, s.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StepSizeLimits { //HIDE
+pub struct StepSizeLimits {
     /// The longest step: the least of those below. Impacts shorten it further.
     pub dt_s: f64,
     /// What binds it: `sound`, `gravity`, `viscosity`, `springs` or `dt_max`.

@@ -43,7 +43,7 @@ impl ProbeDefinition for EnergyBudgetPlan {
 /// Measures the energy (J; J/m in 2-D) that water and bodies have stored since the start: kinetic, potential and compression energy.
 /// Then follow each entry of the [`EnergyBudget`], and the stored energy less their sum. All are NaN unless the budget is
 /// recorded ([`Simulation::enable_energy_budget`]).
-pub struct EnergyBudgetProbe { //HIDE
+pub struct EnergyBudgetProbe {
     energy: EnergyProbe,
     start: f64,
 }
@@ -57,7 +57,7 @@ pub(crate) fn relative_residual(row: &[f64]) -> Option<f64> { //NARROW
 
 impl EnergyBudgetProbe {
     /// The probe; stored energy counts from now.
-    pub fn new<const D: usize>(system: &System<D>) -> Self { //HIDE
+    pub fn new<const D: usize>(system: &System<D>) -> Self {
         let energy = EnergyProbe::new(system);
         let start = energy.total(system);
         Self { energy, start }

@@ -150,7 +150,7 @@ impl<const D: usize> ElevationProbe<D> {
     ///
     /// # Errors
     /// As [`ElevationProbe::new`].
-    pub fn with_surface(system: &System<D>, at: &[f64], surface: GaugeSurface) -> Result<Self> { //HIDE
+    pub fn with_surface(system: &System<D>, at: &[f64], surface: GaugeSurface) -> Result<Self> {
         let mut gauge = Self { at: point(at, D - 1)?, surface, start: f64::NAN };
         gauge.start = gauge.surface_heights(system)[0];
         Ok(gauge)

@@ -74,7 +74,7 @@ const HALF_THICKNESS: f64 = 2.0;
 const NO_RECTANGLE: &str = "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one";
 
 /// Measures the flow through a section (m³/s; m²/s in 2-D) and the net volume (m³; m²) since the start.
-pub struct FlowProbe<const D: usize> { //HIDE
+pub struct FlowProbe<const D: usize> {
     middle: Vector<D>,
     normal: Vector<D>,
     /// Directions of the section's sides and half their lengths, m.
@@ -87,7 +87,7 @@ impl<const D: usize> FlowProbe<D> {
     ///
     /// # Errors
     /// `Usage` if there is no such section.
-    pub fn new(from: &[f64], to: &[f64]) -> Result<Self> { //HIDE
+    pub fn new(from: &[f64], to: &[f64]) -> Result<Self> {
         let (from, to) = (super::point::<D>(from, D)?, super::point::<D>(to, D)?);
         let (middle, across) = (0.5 * (from + to), to - from);
         let axis = |i: usize| Vector::<D>::from_fn(|k, _| f64::from(u8::from(k == i)));

@@ -36,7 +36,7 @@ impl ProbeDefinition for ForcePlan {
 
 /// Measures the force (N) of the water on a solid and the torque (N m) about its centre: pressure and viscosity, without weight and
 /// contacts. In 2-D both are per metre of width, as the columns state.
-pub struct ForceProbe { //HIDE
+pub struct ForceProbe {
     solid: usize,
 }
 
@@ -45,7 +45,7 @@ impl ForceProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
-    pub fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> { //HIDE
+    pub fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> {
         Ok(Self { solid: find_solid(system, solid)? })
     }
 }

@@ -29,7 +29,7 @@ impl ProbeDefinition for FrontPlan {
 
 /// Measures the leading edge of the water (m) along x: the far side of the foremost particle. Spray counts, so the column is
 /// meaningful only until the water meets a wall.
-pub struct FrontProbe; //HIDE
+pub struct FrontProbe;
 
 impl<const D: usize> Probe<D> for FrontProbe {
     fn columns(&self) -> Vec<String> {

@@ -43,7 +43,7 @@ impl ProbeDefinition for JointPlan {
 /// Measures a joint: force (N) and torque (N m) of its locks and end stops on its second solid; of a hinge or a slider its angle
 /// (deg) or position (m), the rate, the motor's force, power absorbed (W), energy absorbed (J); of a generic joint the positions
 /// (m) and turns (deg) in its free modes.
-pub struct JointProbe { //HIDE
+pub struct JointProbe {
     joint: usize,
     kind: JointKind,
     /// Free modes of a generic joint.
@@ -55,7 +55,7 @@ impl JointProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such joint.
-    pub fn new<const D: usize>(system: &System<D>, joint: &str) -> Result<Self> { //HIDE
+    pub fn new<const D: usize>(system: &System<D>, joint: &str) -> Result<Self> {
         let joints = &system.constraints().joints;
         let joint = find_by_name("joint", joint, joints.iter().map(|joint| joint.name.as_str()))?;
         let free = joints[joint].free_modes.iter().map(|free| free.mode).collect();

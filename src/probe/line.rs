@@ -68,7 +68,7 @@ impl ProbeDefinition for RopePlan {
 }
 
 /// Measures the length (m) of a spring, mooring line or rope and its tension (N; N/m in 2-D), negative where a spring pushes.
-pub struct LineProbe { //HIDE
+pub struct LineProbe {
     line: usize,
     rope: bool,
 }
@@ -78,7 +78,7 @@ impl LineProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such spring.
-    pub fn spring<const D: usize>(system: &System<D>, name: &str) -> Result<Self> { //HIDE
+    pub fn spring<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
         let springs = system.constraints().springs.iter();
         Ok(Self { line: find_by_name("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
     }

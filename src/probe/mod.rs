@@ -25,47 +25,45 @@ mod runup;
 mod velocity;
 
 pub(crate) use balance::LoadBalancePlan; //NARROW
-pub(crate) use balance::LoadBalanceProbe; //NARROW
 pub(crate) use budget::EnergyBudgetPlan; //NARROW
-pub use budget::EnergyBudgetProbe; //HIDE
+pub use budget::EnergyBudgetProbe;
 pub(crate) use budget::relative_residual; //NARROW
 pub(crate) use contact_force::ContactForcePlan; //NARROW
-pub(crate) use contact_force::ContactForceProbe; //NARROW
 pub(crate) use contact_force::ContactList; //NARROW
 pub(crate) use contact_force::ContactListPlan; //NARROW
 pub(crate) use elevation::ElevationPlan; //NARROW
 pub use elevation::ElevationProbe;
 pub(crate) use elevation::GaugeConfig; //NARROW
-pub use elevation::GaugeSurface; //HIDE
+pub use elevation::GaugeSurface;
 pub(crate) use energy::EnergyPlan; //NARROW
 pub use energy::EnergyProbe;
 pub(crate) use flow::FlowPlan; //NARROW
-pub use flow::FlowProbe; //HIDE
+pub use flow::FlowProbe;
 pub(crate) use flow::SectionConfig; //NARROW
 pub(crate) use force::ForcePlan; //NARROW
-pub use force::ForceProbe; //HIDE
+pub use force::ForceProbe;
 pub(crate) use front::FrontPlan; //NARROW
-pub use front::FrontProbe; //HIDE
+pub use front::FrontProbe;
 pub(crate) use joint::JointPlan; //NARROW
-pub use joint::JointProbe; //HIDE
-pub use line::LineProbe; //HIDE
+pub use joint::JointProbe;
+pub use line::LineProbe;
 pub(crate) use line::RopePlan; //NARROW
 pub(crate) use line::SpringPlan; //NARROW
 pub(crate) use motion::MotionPlan; //NARROW
-pub use motion::MotionProbe; //HIDE
+pub use motion::MotionProbe;
 pub(crate) use patch::PatchConfig; //NARROW
 pub(crate) use patch::PatchPlan; //NARROW
-pub use patch::PatchProbe; //HIDE
+pub use patch::PatchProbe;
 pub(crate) use points::PointRowConfig; //NARROW
 pub(crate) use points::PointsConfig; //NARROW
 pub(crate) use pressure::PressurePlan; //NARROW
-pub use pressure::PressureProbe; //HIDE
-pub use probe_row::ProbeRow; //HIDE
+pub use pressure::PressureProbe;
+pub use probe_row::ProbeRow;
 pub(crate) use probe_row::column_at_place; //NARROW
 pub(crate) use runup::RunupPlan; //NARROW
-pub use runup::RunupProbe; //HIDE
+pub use runup::RunupProbe;
 pub(crate) use velocity::VelocityPlan; //NARROW
-pub use velocity::VelocityProbe; //HIDE
+pub use velocity::VelocityProbe;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -410,22 +408,22 @@ probe_kinds! {
 
 impl ProbeConfig {
     /// The motion of the solid of this name.
-    pub fn motion(solid: impl Into<String>) -> Self { //HIDE
+    pub fn motion(solid: impl Into<String>) -> Self {
         Self { motion: Some(solid.into()), ..Self::default() }
     }
 
     /// Force and torque on the solid of this name.
-    pub(crate) fn force(solid: impl Into<String>) -> Self { //NARROW
+    pub fn force(solid: impl Into<String>) -> Self {
         Self { force: Some(solid.into()), ..Self::default() }
     }
 
     /// Reaction and motion of the joint of this name.
-    pub(crate) fn joint(joint: impl Into<String>) -> Self { //NARROW
+    pub fn joint(joint: impl Into<String>) -> Self {
         Self { joint: Some(joint.into()), ..Self::default() }
     }
 
     /// Length and tension of the spring of this name.
-    pub(crate) fn spring(spring: impl Into<String>) -> Self { //NARROW
+    pub fn spring(spring: impl Into<String>) -> Self {
         Self { spring: Some(spring.into()), ..Self::default() }
     }
 

@@ -49,7 +49,7 @@ impl ProbeDefinition for MotionPlan {
 
 /// Measures position and displacement (m), angles (deg, continuous past a turn), velocity (m/s) of the centre and spin (rad/s)
 /// of a solid.
-pub struct MotionProbe<const D: usize> { //HIDE
+pub struct MotionProbe<const D: usize> {
     solid: usize,
     start: Vector<D>,
 }
@@ -59,7 +59,7 @@ impl<const D: usize> MotionProbe<D> {
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
-    pub fn new(system: &System<D>, solid: &str) -> Result<Self> { //HIDE
+    pub fn new(system: &System<D>, solid: &str) -> Result<Self> {
         let solid = find_solid(system, solid)?;
         Ok(Self { solid, start: system.solids()[solid].kinematics.centre })
     }

@@ -61,7 +61,7 @@ impl ProbeDefinition for PatchPlan {
 
 /// Measures the force (N; N/m in 2-D) of the water on a part of a solid's face, and the mean and the largest pressure there
 /// (Pa, above that of the air).
-pub struct PatchProbe<const D: usize> { //HIDE
+pub struct PatchProbe<const D: usize> {
     solid: usize,
     /// For each boundary particle of the solid, whether it lies behind the part.
     behind: Vec<bool>,
@@ -75,7 +75,7 @@ impl<const D: usize> PatchProbe<D> {
     /// # Errors
     /// `Usage` if the corners have another number of coordinates; `Scene` if there is no such solid, or none of its face
     /// there.
-    pub fn new(system: &System<D>, solid: &str, min: &[f64], max: &[f64]) -> Result<Self> { //HIDE
+    pub fn new(system: &System<D>, solid: &str, min: &[f64], max: &[f64]) -> Result<Self> {
         let part = Bounds { min: super::point(min, D)?, max: super::point(max, D)? };
         let number = find_solid(system, solid)?;
         let (of, dp) = (&system.solids()[number], system.model().dp);

@@ -36,7 +36,7 @@ impl ProbeDefinition for PressurePlan {
 }
 
 /// Measures the pressure (Pa, above that of the air) at a fixed point; 0 while the point is dry.
-pub struct PressureProbe<const D: usize> { //HIDE
+pub struct PressureProbe<const D: usize> {
     at: Vector<D>,
 }
 
@@ -45,7 +45,7 @@ impl<const D: usize> PressureProbe<D> {
     ///
     /// # Errors
     /// `Usage` if the count of coordinates is another or one is not finite.
-    pub fn new(at: &[f64]) -> Result<Self> { //HIDE
+    pub fn new(at: &[f64]) -> Result<Self> {
         Ok(Self { at: point(at, D)? })
     }
 }

@@ -4,7 +4,7 @@ use super::Probe;
 use crate::{error::Result, simulation::Simulation};
 
 /// A row of probes. A column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
-pub struct ProbeRow<const D: usize> { //HIDE
+pub struct ProbeRow<const D: usize> {
     members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>,
 }
 
@@ -27,7 +27,7 @@ impl<const D: usize> ProbeRow<D> {
     }
 
     /// The probes of `members`, each with its place (m).
-    pub fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self { //HIDE
+    pub fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self {
         Self { members }
     }
 }

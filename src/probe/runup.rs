@@ -41,7 +41,7 @@ const ON_FACE: f64 = 1.0;
 const MIN_FILLED: f64 = 0.25;
 
 /// Measures the highest place (m) of the waterline on a solid, and its height above the start. NaN while the solid is dry.
-pub struct RunupProbe<const D: usize> { //HIDE
+pub struct RunupProbe<const D: usize> {
     solid: usize,
     start: f64,
 }
@@ -51,7 +51,7 @@ impl<const D: usize> RunupProbe<D> {
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
-    pub fn new(system: &System<D>, solid: &str) -> Result<Self> { //HIDE
+    pub fn new(system: &System<D>, solid: &str) -> Result<Self> {
         let solid = find_solid(system, solid)?;
         Ok(Self { solid, start: highest_waterline(system, solid)[D - 1] })
     }

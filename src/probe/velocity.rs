@@ -35,7 +35,7 @@ impl ProbeDefinition for VelocityPlan {
 }
 
 /// Measures the water's velocity (m/s) at a fixed point; NaN while the point is dry.
-pub struct VelocityProbe<const D: usize> { //HIDE
+pub struct VelocityProbe<const D: usize> {
     at: Vector<D>,
 }
 
@@ -44,7 +44,7 @@ impl<const D: usize> VelocityProbe<D> {
     ///
     /// # Errors
     /// `Usage` if the count of coordinates is another or one is not finite.
-    pub fn new(at: &[f64]) -> Result<Self> { //HIDE
+    pub fn new(at: &[f64]) -> Result<Self> {
         Ok(Self { at: point(at, D)? })
     }
 }

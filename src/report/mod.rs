@@ -25,9 +25,9 @@ mod sections;
 mod mesh_edges;
 pub(crate) mod html;
 
-pub use picture::ColourField; //HIDE
-pub use picture::PictureOptions; //HIDE
-pub use picture::write_picture; //HIDE
+pub use picture::ColourField;
+pub use picture::PictureOptions;
+pub use picture::write_picture;
 pub use plot::LineStyle;
 pub use plot::PlotLine;
 pub use plot::line_plot;
@@ -46,14 +46,14 @@ use crate::{
 use run_data::RunData;
 
 /// Most bytes of a page.
-pub const MAX_PAGE_BYTES: usize = 15_000_000; //HIDE
+pub const MAX_PAGE_BYTES: usize = 15_000_000;
 
 /// Name of the page in a run's folder.
-pub const REPORT_FILE: &str = "report.html"; //HIDE
+pub const REPORT_FILE: &str = "report.html";
 
 /// A page that was written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Page { //HIDE
+pub struct Page {
     /// Where.
     pub path: PathBuf,
     /// Its size, B.
@@ -68,7 +68,7 @@ pub struct Page { //HIDE
 ///
 /// # Errors
 /// `Restart` if there is no run in `folder`; `File` if a frame cannot be read or the page cannot be written.
-pub fn write(folder: &Path) -> Result<Page> { //HIDE
+pub fn write(folder: &Path) -> Result<Page> {
     write_page(&[folder.to_owned()], &folder.join(REPORT_FILE))
 }
 
@@ -76,7 +76,7 @@ pub fn write(folder: &Path) -> Result<Page> { //HIDE
 ///
 /// # Errors
 /// `Usage` if there are fewer than two; else as [`write()`].
-pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> { //HIDE
+pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
     if folders.len() < 2 {
         return Err(Error::new(ErrorKind::Usage, "a comparison needs two runs or more")
             .help("name their folders, as in `pontoon compare runs/raft runs/raft-2`"));

@@ -19,7 +19,7 @@ use crate::{
 
 /// What the particles of a picture are coloured by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourField { //HIDE
+pub enum ColourField {
     /// The pressure, Pa.
     #[default]
     Pressure,
@@ -31,7 +31,7 @@ pub enum ColourField { //HIDE
 
 /// What a picture is to show.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PictureOptions { //HIDE
+pub struct PictureOptions {
     /// Times, s: of each the nearest frame. The last frame if there is none.
     pub times: Vec<f64>,
     /// What colours the particles.
@@ -110,7 +110,7 @@ impl ColourField {
 /// # Errors
 /// `Restart` if a folder holds no run; `Usage` if it has no frames, its frames lack the field, or the picture would be
 /// too large; `File` if a frame cannot be read or `out` not be written.
-pub fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<(u32, u32)> { //HIDE
+pub fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<(u32, u32)> {
     require_parent_folder(out)?;
     let runs = RunData::read_all(folders)?;
     let mut rows: Vec<Vec<Panel>> = Vec::new();

@@ -153,7 +153,7 @@ pub(crate) fn verdicts(runs: &[RunData]) -> String { //NARROW
 }
 
 /// What the scene asks for of its series; empty if it asks for nothing.
-pub fn statistics(run: &RunData) -> String { //HIDE
+pub fn statistics(run: &RunData) -> String {
     let mut rows =
         vec![["statistic", "series", "figure", "value", "unit", "from, s", "until, s"].map(String::from).to_vec()];
     rows.extend(run.statistics.rows.iter().filter(|row| !row.name.is_empty()).map(|row| {

@@ -11,7 +11,7 @@ use crate::{
 
 /// Energy drift since the start, by the latest reading of a probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EnergyDrift { //HIDE
+pub enum EnergyDrift {
     /// By a `budget`: its residual over the sum of its entries' magnitudes, –.
     Unaccounted(f64),
     /// By an `energy`: the change of the total since the start, and its unit, J or J/m.
@@ -20,12 +20,12 @@ pub enum EnergyDrift { //HIDE
 
 impl EnergyDrift {
     /// By the last row of a `budget`; `None` while its entries are 0.
-    pub fn from_budget(last: &[f64]) -> Option<Self> { //HIDE
+    pub fn from_budget(last: &[f64]) -> Option<Self> {
         relative_residual(last).map(Self::Unaccounted)
     }
 
     /// By the first and the last row of an `energy`, which ends with the total.
-    pub fn from_energy(first: &[f64], last: &[f64], unit: &'static str) -> Option<Self> { //HIDE
+    pub fn from_energy(first: &[f64], last: &[f64], unit: &'static str) -> Option<Self> {
         Some(Self::Changed(last.last()? - first.last()?, unit))
     }
 }

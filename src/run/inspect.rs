@@ -23,7 +23,7 @@ const LASTS: f64 = 1.0;
 
 /// What an inspection is asked for beside its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct InspectOptions { //HIDE
+pub struct InspectOptions {
     /// Keys of the scene and the values that replace the scene's own.
     pub overrides: Vec<(String, String)>,
     /// Threads; by default one for each processor.
@@ -34,7 +34,7 @@ pub struct InspectOptions { //HIDE
 
 /// What a scene would run.
 #[derive(Clone, Debug, Serialize)]
-pub struct InspectReport { //HIDE
+pub struct InspectReport {
     /// Its caption.
     pub title: String,
     /// Simulated time at the end, s.
@@ -56,7 +56,7 @@ pub struct InspectReport { //HIDE
 
 /// A solid and its boundary particles.
 #[derive(Clone, Debug, Serialize)]
-pub struct SolidSummary { //HIDE
+pub struct SolidSummary {
     /// Its name.
     pub name: String,
     /// `fixed`, `driven` or `free`.
@@ -70,7 +70,7 @@ pub struct SolidSummary { //HIDE
 
 /// A solid from a mesh, measured.
 #[derive(Clone, Debug, Serialize)]
-pub struct MeshSummary { //HIDE
+pub struct MeshSummary {
     /// Number of its facets.
     pub facets: usize,
     /// Its volume, m³.
@@ -95,7 +95,7 @@ impl MeshSummary {
 
 /// The file of a probe.
 #[derive(Clone, Debug, Serialize)]
-pub struct SeriesColumns { //HIDE
+pub struct SeriesColumns {
     /// Stem of the file.
     pub name: String,
     /// Its columns beside the time.
@@ -104,7 +104,7 @@ pub struct SeriesColumns { //HIDE
 
 /// Some steps of the scene, timed. Nothing was written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct StepTiming { //HIDE
+pub struct StepTiming {
     /// Threads.
     pub threads: usize,
     /// Steps timed.
@@ -119,7 +119,7 @@ pub struct StepTiming { //HIDE
 ///
 /// # Errors
 /// Those that [`run`](super::run) would meet before its first step.
-pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> { //HIDE
+pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> {
     let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]

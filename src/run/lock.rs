@@ -13,7 +13,7 @@ use crate::error::{Error, ErrorKind, Result};
 const LOCK: &str = "run.lock";
 
 /// The process that writes in the run's `folder`, or was killed there, if one has left its number.
-pub fn lock_owner(folder: &Path) -> Option<u32> { //HIDE
+pub fn lock_owner(folder: &Path) -> Option<u32> {
     fs::read_to_string(folder.join(LOCK)).ok()?.trim().parse().ok()
 }
 

@@ -18,16 +18,16 @@ use crate::{
     scene::Scene,
 };
 
-pub use rao_table::RAO_FILE; //HIDE
-pub use rao_table::RaoResult; //HIDE
-pub use spectra_table::SPECTRA_FILE; //HIDE
+pub use rao_table::RAO_FILE;
+pub use rao_table::RaoResult;
+pub use spectra_table::SPECTRA_FILE;
 
 /// The file, in the run's folder.
 pub(crate) const STATISTICS_FILE: &str = "statistics.csv"; //NARROW
 
 /// A figure of a series, or of several.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Statistic { //HIDE
+pub struct Statistic {
     /// Name of the `[[statistic]]`; empty for what is said of every series.
     pub name: String,
     /// Which series, as `probe.column`; of a reflection the first gauge's, of an RAO the motion's.
@@ -46,7 +46,7 @@ pub struct Statistic { //HIDE
 
 /// What is asked of a run's series beside what its scene asks.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct StatisticsFilter { //HIDE
+pub struct StatisticsFilter {
     /// Only of this probe, or of this series.
     pub series: Option<String>,
     /// First time that counts, s.
@@ -57,7 +57,7 @@ pub struct StatisticsFilter { //HIDE
 
 /// Figures of a run, and why some are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct RunStatistics { //HIDE
+pub struct RunStatistics {
     /// The figures.
     pub rows: Vec<Statistic>,
     /// How motions answer irregular waves over frequency.
@@ -70,7 +70,7 @@ pub struct RunStatistics { //HIDE
 ///
 /// # Errors
 /// `Restart` if there is no run in `folder`; `Usage` if it has no such series; else as [`Scene::read`].
-pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> { //HIDE
+pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> {
     let manifest = Manifest::read(folder)?;
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
     let plan = Scene::read(&scene_file(&folder.join("scene")), &sets)?.plan()?;

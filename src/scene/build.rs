@@ -57,7 +57,7 @@ pub(crate) struct SceneLayout<const D: usize> { //NARROW
 
 /// Estimated size of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SizeEstimate { //HIDE
+pub struct SizeEstimate {
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of water.
@@ -170,7 +170,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, or a table that a check names is missing or wrong.
-    pub fn plan(&self) -> Result<Plan> { //HIDE
+    pub fn plan(&self) -> Result<Plan> {
         let (scene, _) = self.with_defaults()?;
         scene.resolved_plan(&scene.still_water()?)
     }
@@ -179,7 +179,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, a shape is not valid, or the particles are too many.
-    pub fn estimate_size(&self) -> Result<SizeEstimate> { //HIDE
+    pub fn estimate_size(&self) -> Result<SizeEstimate> {
         let (scene, _) = self.with_defaults()?;
         match scene.dimension {
             2 => scene.estimate::<2>(),

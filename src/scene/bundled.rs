@@ -1,7 +1,7 @@
 //! The scenes that are compiled into the program.
 
 /// A bundled scene: the name of its folder, its `scene.toml`, and the names and texts of the other files.
-pub type BundledScene = (&'static str, &'static str, &'static [(&'static str, &'static str)]); //HIDE
+pub type BundledScene = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 /// Text of a file in the folder of a scene.
 macro_rules! text {
@@ -21,7 +21,7 @@ macro_rules! scene {
 }
 
 /// All bundled scenes.
-pub fn bundled_scenes() -> &'static [BundledScene] { //HIDE
+pub fn bundled_scenes() -> &'static [BundledScene] {
     &[
         scene!("raft"),
         scene!("hinged-raft"),

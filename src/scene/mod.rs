@@ -16,7 +16,7 @@ mod overrides;
 mod resolve;
 mod schema;
 mod svg;
-pub mod table; //HIDE
+pub mod table;
 mod toml_source;
 mod untagged;
 mod verify_probes;
@@ -50,84 +50,46 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
-pub(crate) use crate::plan::Align; //NARROW
-pub(crate) use crate::plan::CheckPlan; //NARROW
-pub(crate) use crate::plan::FramesPlan; //NARROW
 pub(crate) use crate::plan::Plan; //NARROW
-pub(crate) use crate::plan::Reference; //NARROW
-pub(crate) use crate::plan::Score; //NARROW
-pub(crate) use crate::plan::StatisticKind; //NARROW
-pub(crate) use crate::plan::StatisticPlan; //NARROW
 pub(crate) use crate::math::BoxConfig; //NARROW
-pub(crate) use crate::math::NumberOrArray; //NARROW
-pub(crate) use crate::probe::GaugeConfig; //NARROW
-pub(crate) use crate::probe::GaugeSurface; //NARROW
-pub(crate) use crate::probe::PatchConfig; //NARROW
-pub(crate) use crate::probe::PointRowConfig; //NARROW
-pub(crate) use crate::probe::PointsConfig; //NARROW
-pub use crate::probe::ProbeConfig; //HIDE
-pub(crate) use crate::probe::ProbeKind; //NARROW
-pub(crate) use crate::probe::ProbePlan; //NARROW
-pub(crate) use crate::probe::SectionConfig; //NARROW
+pub use crate::probe::ProbeConfig;
 pub use build::BuiltScene;
 pub(crate) use build::SceneLayout; //NARROW
 pub(crate) use build::SizeEstimate; //NARROW
-pub use bundled::BundledScene; //HIDE
-pub use bundled::bundled_scenes; //HIDE
+pub use bundled::BundledScene;
+pub use bundled::bundled_scenes;
 pub(crate) use resolve::ResolvedValue; //NARROW
-pub use schema::schema; //HIDE
+pub use schema::schema;
 pub(crate) use section::shape::world_bounds;
 pub(crate) use section::analysis::CheckConfig; //NARROW
-pub(crate) use section::analysis::RaoConfig; //NARROW
 pub(crate) use section::analysis::StatisticConfig; //NARROW
 pub(crate) use section::contact::ContactConfig; //NARROW
 pub(crate) use section::domain::GuardConfig; //NARROW
 pub(crate) use section::domain::PeriodicConfig; //NARROW
 pub(crate) use section::force_element::ForceConfig; //NARROW
-pub(crate) use section::force_element::ForceFrame; //NARROW
 pub(crate) use section::force_element::RopeConfig; //NARROW
 pub use section::force_element::SpringConfig;
 pub use section::joint::JointConfig;
 pub use section::joint::JointKindConfig;
-pub(crate) use section::joint::LimitsConfig; //NARROW
 pub use section::joint::MotorConfig;
 pub(crate) use section::model::ModelConfig; //NARROW
 pub(crate) use section::model::TimeSteppingConfig; //NARROW
 pub use section::motion::DrivenConfig;
 pub(crate) use section::output::CheckpointConfig; //NARROW
-pub use section::output::FramesChoice; //HIDE
+pub use section::output::FramesChoice;
 pub(crate) use section::output::FramesConfig; //NARROW
-pub(crate) use section::shape::AxisName; //NARROW
 pub use section::shape::CompoundPartConfig;
-pub(crate) use section::shape::MeshConfig; //NARROW
 pub use section::shape::PlacementConfig;
 pub use section::shape::ShapeConfig;
-pub(crate) use section::solid::FreeBodyConfig; //NARROW
-pub(crate) use section::solid::MotionMode; //NARROW
 pub use section::solid::SolidConfig;
-pub use section::sponge_layer::SpongeLayerConfig; //HIDE
+pub use section::sponge_layer::SpongeLayerConfig;
 pub(crate) use section::water::FillConfig; //NARROW
 pub(crate) use section::water::StillWaterLevel; //NARROW
 pub(crate) use section::water::WaterConfig; //NARROW
-pub(crate) use section::wave::AbsorbChoice; //NARROW
-pub(crate) use section::wave::AbsorptionConfig; //NARROW
-pub(crate) use section::wave::FocusedWaveConfig; //NARROW
-pub(crate) use section::wave::IrregularWaveConfig; //NARROW
-pub(crate) use section::wave::MeasuredElevationConfig; //NARROW
-pub(crate) use section::wave::RegularWaveConfig; //NARROW
-pub(crate) use section::wave::SolitaryWaveConfig; //NARROW
-pub(crate) use section::wave::WaveComponentsConfig; //NARROW
-pub use section::wave::WaveConfig; //HIDE
+pub use section::wave::WaveConfig;
 pub(crate) use toml_source::RenamedName; //NARROW
-pub(crate) use toml_source::ValueSource; //NARROW
 pub(crate) use toml_source::current_key; //NARROW
-pub(crate) use untagged::DraftChoice; //NARROW
-pub(crate) use untagged::FieldFormulaConfig; //NARROW
-pub(crate) use untagged::LengthUnit; //NARROW
-pub(crate) use untagged::PolylineConfig; //NARROW
-pub(crate) use untagged::TimeFunctionConfig; //NARROW
 pub use untagged::TimeValueConfig;
-pub(crate) use untagged::TimeVectorConfig; //NARROW
 
 /// Most bytes of a scene's text; the longest bundled one has 3,000.
 const MOST_TEXT: u64 = 1 << 20;
@@ -235,19 +197,19 @@ impl Scene {
     }
 
     /// The same scene with a probe more.
-    pub fn probe(mut self, probe: ProbeConfig) -> Self { //HIDE
+    pub fn probe(mut self, probe: ProbeConfig) -> Self {
         self.probe.push(probe);
         self
     }
 
     /// The same scene without frames.
-    pub fn without_frames(mut self) -> Self { //HIDE
+    pub fn without_frames(mut self) -> Self {
         self.frames = Some(FramesChoice::Off);
         self
     }
 
     /// The same scene with a damping zone more.
-    pub fn with_damping(mut self, zone: SpongeLayerConfig) -> Self { //HIDE
+    pub fn with_damping(mut self, zone: SpongeLayerConfig) -> Self {
         self.damping.push(zone);
         self
     }
@@ -302,13 +264,13 @@ impl Scene {
     }
 
     /// The keys and values that the scene writes with an old name.
-    pub fn renamed_names(&self) -> &[RenamedName] { //HIDE
+    pub fn renamed_names(&self) -> &[RenamedName] {
         &self.origin.renamed
     }
 
     /// An error of a simulation that this scene was built into, with the file and the line of the key that it names, if it
     /// names one.
-    pub fn with_location(&self, mut error: Error) -> Error { //HIDE
+    pub fn with_location(&self, mut error: Error) -> Error {
         match error.location.take() {
             Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
             place => Error { location: place, ..error },
@@ -319,7 +281,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if a number cannot be written.
-    pub fn to_toml(&self) -> Result<String> { //HIDE
+    pub fn to_toml(&self) -> Result<String> {
         toml::to_string(self).map_err(|e| Error::scene(format!("this scene cannot be written: {e}")))
     }
 }

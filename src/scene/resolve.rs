@@ -17,7 +17,7 @@ use crate::{error::Result, model::Model, probe::GaugeSurface};
 
 /// A value in force and its source.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ResolvedValue { //HIDE
+pub struct ResolvedValue {
     /// The key, as in `solid.box.free.density`.
     pub key: String,
     /// The value, as TOML.
@@ -158,7 +158,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, or a file that gives a shape is missing or wrong.
-    pub fn resolve(&self) -> Result<Vec<ResolvedValue>> { //HIDE
+    pub fn resolve(&self) -> Result<Vec<ResolvedValue>> {
         let (scene, defaults) = self.with_defaults()?;
         let values = toml::Table::try_from(&scene).unwrap_or_default();
         let mut lines = Vec::new();

@@ -34,7 +34,7 @@ const KINDS: [Kinds; 5] = [
 ];
 
 /// The JSON schema (draft 2020-12) of a scene.
-pub fn schema() -> Value { //HIDE
+pub fn schema() -> Value {
     let settings = SchemaSettings::draft2020_12().for_deserialize();
     let mut schema = settings.into_generator().into_root_schema_for::<Scene>().to_value();
     schema["title"] = json!("A scene of pontoon");

@@ -118,7 +118,7 @@ pub(crate) fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>>
 ///
 /// # Errors
 /// As `read_columns`, and as [`TimeSeries::new`].
-pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> { //HIDE
+pub fn read_series(path: &Path, time: &str, column: &str) -> Result<TimeSeries> {
     let mut both = read_columns(path, &[time, column])?;
     let x = both.pop().unwrap_or_default();
     let t = both.pop().unwrap_or_default();

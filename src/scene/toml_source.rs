@@ -47,7 +47,7 @@ pub(super) struct SceneSource {
 
 /// A key or a value that is written with an old name, which still works.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RenamedName { //HIDE
+pub struct RenamedName {
     /// The key, with the names of solids.
     pub key: String,
     /// The old name.
@@ -79,7 +79,7 @@ impl PartialEq for SceneSource {
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ValueSource { //HIDE
+pub enum ValueSource {
     /// The default, with its reason.
     Default(String),
     /// This line of the scene.

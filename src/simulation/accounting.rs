@@ -14,7 +14,7 @@ const INTERVAL: u32 = 8;
 impl<const D: usize> Simulation<D> {
     /// Enables the load breakdown of free bodies: [`Simulation::load_breakdown`]. Where the viscosity acts between water and
     /// solids, every step takes another force pass for the viscous load; otherwise the breakdown costs nothing.
-    pub fn enable_load_breakdown(&mut self) //HIDE
+    pub fn enable_load_breakdown(&mut self)
     where
         Dim<D>: Dimension<D>,
     {
@@ -25,7 +25,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Enables the energy budget: [`Simulation::energy_budget`]. Every eighth step takes another force pass.
-    pub fn enable_energy_budget(&mut self) //HIDE
+    pub fn enable_energy_budget(&mut self)
     where
         Dim<D>: Dimension<D>,
     {
@@ -47,12 +47,12 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The loads on free solid number `solid` in the last step by their origin, if they are kept.
-    pub fn load_breakdown(&self, solid: usize) -> Option<&LoadBreakdown<D>> { //HIDE
+    pub fn load_breakdown(&self, solid: usize) -> Option<&LoadBreakdown<D>> {
         self.bodies.accounting.as_ref().map(|accounting| accounting.breakdown(solid))
     }
 
     /// The energy budget since it was enabled, if it is kept.
-    pub fn energy_budget(&self) -> Option<&EnergyBudget> { //HIDE
+    pub fn energy_budget(&self) -> Option<&EnergyBudget> {
         self.bodies.accounting.as_ref().and_then(Accounting::budget)
     }
 }

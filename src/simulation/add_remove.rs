@@ -96,7 +96,7 @@ where
     ///
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup, or other solids had been added.
-    pub fn restore_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> { //HIDE
+    pub fn restore_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
         for spec in added {
             let start = spec.initial_kinematics();
             self.insert_solid(spec, start)?;

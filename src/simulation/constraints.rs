@@ -34,7 +34,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
-    pub fn violated_joints(&self) -> Vec<String> { //HIDE
+    pub fn violated_joints(&self) -> Vec<String> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
         let said = |(i, joint): (usize, &JointSpec<D>)| {
             let [apart, turned] = self.bodies.constraints().joint_gap(i, &solids);
@@ -62,7 +62,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// What rope number `rope` felt in the last step.
-    pub fn rope_reading(&self, rope: usize) -> LineReading { //HIDE
+    pub fn rope_reading(&self, rope: usize) -> LineReading {
         self.bodies.constraints().rope_reading(rope)
     }
 

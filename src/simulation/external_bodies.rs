@@ -65,7 +65,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Whether an external program moves the free solids.
-    pub(crate) fn has_external_bodies(&self) -> bool { //NARROW
+    pub fn has_external_bodies(&self) -> bool {
         self.bodies.has_external_bodies()
     }
 }

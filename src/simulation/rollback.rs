@@ -18,7 +18,7 @@ const MOST: usize = 3;
 
 /// One time that a run was rescued.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rollback { //HIDE
+pub struct Rollback {
     /// What the guard said.
     pub alarm: String,
     /// When it said so, s.

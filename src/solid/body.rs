@@ -14,7 +14,7 @@ impl<const D: usize> SolidSpec<D> {
     /// Pose and velocity of the solid at t = 0.
     ///
     /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
-    pub fn initial_kinematics(&self) -> Kinematics<D> { //HIDE
+    pub fn initial_kinematics(&self) -> Kinematics<D> {
         let still = Kinematics {
             pose: self.pose,
             centre: self.pose.position,
@@ -105,7 +105,7 @@ impl<const D: usize> FreeBody<D> {
     }
 
     /// The homogeneous body of `mass` (kg; kg/m in 2-D) that fills `shape`, at rest.
-    pub fn from_mass(shape: &Shape<D>, mass: f64) -> Self { //HIDE
+    pub fn from_mass(shape: &Shape<D>, mass: f64) -> Self {
         Self::from_density(shape, mass / shape.volume_properties().volume)
     }
 

@@ -64,7 +64,7 @@ pub fn equilibrium_height<const D: usize>(
 ///
 /// # Errors
 /// As [`equilibrium_height`].
-pub fn metacentric_height<const D: usize>( //HIDE
+pub fn metacentric_height<const D: usize>(
     shape: &Shape<D>,
     pose: &Pose<D>,
     body: &FreeBody<D>,

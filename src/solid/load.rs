@@ -18,7 +18,7 @@ pub struct Load<const D: usize> {
 
 impl<const D: usize> Load<D> {
     /// None.
-    pub fn zero() -> Self { //HIDE
+    pub fn zero() -> Self {
         Self { force: Vector::zeros(), torque: Bivector::zero() }
     }
 

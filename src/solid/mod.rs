@@ -13,9 +13,8 @@ pub(crate) mod rapier; //NARROW
 #[path = "../../tests/unit/solid/bodies.rs"]
 mod tests;
 
-pub use constraint::Constraints; //HIDE
-pub(crate) use constraint::ContactPairs; //NARROW
-pub use constraint::ContactSpec; //HIDE
+pub use constraint::Constraints;
+pub use constraint::ContactSpec;
 pub(crate) use constraint::FreeMode; //NARROW
 pub(crate) use constraint::InitialHold; //NARROW
 pub(crate) use constraint::JointKind; //NARROW
@@ -32,17 +31,17 @@ pub(crate) use constraint::SpringSpec; //NARROW
 pub(crate) use force::ForceSpec; //NARROW
 pub use load::Load;
 pub(crate) use load::LoadContext;
-pub use prescribed_motion::PrescribedMotion; //HIDE
+pub use prescribed_motion::PrescribedMotion;
 pub use prescribed_motion::TimeFunction;
 #[cfg(feature = "dim2")]
 pub use rapier::rapier2d;
 #[cfg(feature = "dim3")]
-pub use rapier::rapier3d; //HIDE
+pub use rapier::rapier3d;
 pub(crate) use rapier::ContactForce; //NARROW
 pub use rapier::Dim;
-pub use rapier::Engine; //HIDE
+pub use rapier::Engine;
 pub(crate) use rapier::EngineFault; //NARROW
-pub use rapier::HasEngine; //HIDE
+pub use rapier::HasEngine;
 
 use std::ops::Range;
 

@@ -31,7 +31,7 @@ impl TimeFunction {
     }
 
     /// Value (m or rad) and its rate (m/s or rad/s) at time `t` (s).
-    pub fn value_and_rate(&self, t: f64) -> (f64, f64) { //HIDE
+    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         match self {
             Self::Table(series) => series.value_and_rate(t),
             Self::Formula(formula) => formula.value_and_rate(t),
@@ -75,7 +75,7 @@ enum Path<const D: usize> {
 
 impl<const D: usize> PrescribedMotion<D> {
     /// Sliding along `direction` (any length but zero) by the law's value (m).
-    pub fn slide(direction: Vector<D>, law: TimeFunction) -> Self { //HIDE
+    pub fn slide(direction: Vector<D>, law: TimeFunction) -> Self {
         Self::of(Path::Slide(direction.normalize()), law)
     }
 
@@ -95,7 +95,7 @@ impl<const D: usize> PrescribedMotion<D> {
 
     /// Several motions at once, from the ground up: each goes in the frame that those before it have moved, its direction or hinge being
     /// where it says when they are all at zero. What lies at x then lies at A₁(t) A₂(t) … Aₙ(t) x. None of them makes a wave.
-    pub fn chain(motions: impl IntoIterator<Item = Self>) -> Self { //HIDE
+    pub fn chain(motions: impl IntoIterator<Item = Self>) -> Self {
         Self { stages: motions.into_iter().flat_map(|motion| motion.stages).collect(), absorbing: None }
     }
 
@@ -106,7 +106,7 @@ impl<const D: usize> PrescribedMotion<D> {
     }
 
     /// The absorber, if there is one.
-    pub(crate) fn absorber(&self) -> Option<&Absorber> { //NARROW
+    pub fn absorber(&self) -> Option<&Absorber> {
         self.absorbing.as_ref().map(|own| &own.absorber)
     }
 
@@ -192,7 +192,7 @@ impl<const D: usize> PrescribedMotion<D> {
     ///
     /// # Errors
     /// `Scene` if there is none, one of several makes a wave, a direction or axis is zero or not finite, or a law is not finite at time 0.
-    pub fn check(&self) -> Result<()> { //HIDE
+    pub fn check(&self) -> Result<()> {
         let several = self.stages.len() > 1;
         if self.stages.is_empty() {
             return Err(Error::scene("its list of motions is empty").help("give one or more, or make the solid fixed"));

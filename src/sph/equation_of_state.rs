@@ -10,7 +10,7 @@ pub struct EquationOfState {
 
 impl EquationOfState {
     /// The state of water with speed of sound `c0` (m/s) and exponent `gamma` (–).
-    pub fn new(c0: f64, gamma: f64) -> Self { //HIDE
+    pub fn new(c0: f64, gamma: f64) -> Self {
         Self { stiffness: c0 * c0 / gamma, gamma }
     }
 

@@ -30,12 +30,12 @@ pub struct Units {
 
 impl Units {
     /// Metre and second.
-    pub const SI: Self = Self { length: 1.0, time: 1.0 }; //HIDE
+    pub const SI: Self = Self { length: 1.0, time: 1.0 };
 }
 
 impl<const D: usize> FluidProperties<D> {
     /// The same constants in `units` (ρ₀ stays in kg/m³: no law reads it).
-    pub fn in_units(&self, units: &Units) -> Self { //HIDE
+    pub fn in_units(&self, units: &Units) -> Self {
         let Units { length, time } = *units;
         Self {
             h: self.h / length,
@@ -52,7 +52,7 @@ impl<const D: usize> FluidProperties<D> {
     }
 
     /// η² = 0.01 h² (m²), which keeps 1/(r² + η²) finite @monaghan1992.
-    pub fn eta2(&self) -> f64 { //HIDE
+    pub fn eta2(&self) -> f64 {
         0.01 * self.h * self.h
     }
 }

@@ -19,7 +19,7 @@ use super::{AuxiliarySums, Num, Pair, Term};
 const SINGULAR: f64 = 1e-9;
 
 /// C = B − 1 (–) from the `moment` M of a particle (`[i][j]` with j ≤ i is read).
-pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] { //HIDE
+pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
     // Gauss and Jordan without a search for pivots: M is symmetric and positive, or else there is no correction.
     let mut left: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| moment[i.max(j)][i.min(j)]));
     let mut inverse: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
@@ -45,7 +45,7 @@ pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] { //H
 
 /// The moments between water and solids.
 #[derive(Clone, Copy, Debug)]
-pub struct RenormalizationTerm; //HIDE
+pub struct RenormalizationTerm;
 
 impl<const D: usize> Term<D> for RenormalizationTerm {
     const RENORMALIZATION: bool = true;
@@ -64,7 +64,7 @@ impl<const D: usize> Term<D> for RenormalizationTerm {
 
 /// What the correction adds to the pressure among water, and the moments for the next pass.
 #[derive(Clone, Copy, Debug)]
-pub struct CorrectedGradientTerm; //HIDE
+pub struct CorrectedGradientTerm;
 
 impl<const D: usize> Term<D> for CorrectedGradientTerm {
     const GRADIENT_CORRECTION: bool = true;

@@ -6,21 +6,21 @@
 
 pub mod continuity;
 pub mod density_diffusion;
-pub mod gradient_correction; //HIDE
+pub mod gradient_correction;
 pub mod kernel;
 mod simd;
 mod fluid_properties;
 mod pair;
 pub mod pressure;
-pub mod particle_shifting; //HIDE
-pub mod equation_of_state; //HIDE
+pub mod particle_shifting;
+pub mod equation_of_state;
 pub mod viscosity;
 pub mod boundary;
 
-pub use fluid_properties::FluidProperties; //HIDE
-pub use fluid_properties::Units; //HIDE
-pub use pair::AuxiliarySums; //HIDE
+pub use fluid_properties::FluidProperties;
+pub use fluid_properties::Units;
+pub use pair::AuxiliarySums;
 pub use pair::Num;
 pub use pair::Pair;
-pub use pair::PairSide; //HIDE
+pub use pair::PairSide;
 pub use pair::Term;

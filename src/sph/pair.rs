@@ -101,7 +101,7 @@ pub struct Pair<N, const D: usize> {
 impl<N: Num, const D: usize> Pair<N, D> {
     /// The pair of `a` and `b` with r_ab, v_ab, |r_ab|² and kernel value as given; η² in m².
     #[inline(always)]
-    pub fn new(r_ab: [N; D], v_ab: [N; D], r2: N, w: N, eta2: N, a: PairSide<N, D>, b: PairSide<N, D>) -> Self { //HIDE
+    pub fn new(r_ab: [N; D], v_ab: [N; D], r2: N, w: N, eta2: N, a: PairSide<N, D>, b: PairSide<N, D>) -> Self {
         let mut vr = r_ab[0] * v_ab[0];
         for i in 1..D {
             vr = r_ab[i].fma(v_ab[i], vr);
@@ -149,7 +149,7 @@ pub struct AuxiliarySums<N, const D: usize> {
 impl<N: Num, const D: usize> AuxiliarySums<N, D> {
     /// All sums `zero`.
     #[inline(always)]
-    pub fn filled_with(zero: N) -> Self { //HIDE
+    pub fn filled_with(zero: N) -> Self {
         Self {
             concentration_gradient: [zero; D],
             position_divergence: zero,

@@ -27,7 +27,7 @@ impl Default for Shift {
 impl Shift {
     /// Displacement (m) in a step `dt` (s) of a particle of speed `speed` (m/s), from its finished sums; each
     /// component is held to 0.1 dp, so that no shift can carry a particle past another.
-    pub fn displacement<const D: usize>( //HIDE
+    pub fn displacement<const D: usize>(
         &self,
         sums: &AuxiliarySums<f64, D>,
         speed: f64,
@@ -44,7 +44,7 @@ impl Shift {
 
 /// The sums of [`Shift`], over water and solids.
 #[derive(Clone, Copy, Debug)]
-pub struct ShiftTerm; //HIDE
+pub struct ShiftTerm;
 
 impl<const D: usize> Term<D> for ShiftTerm {
     const SHIFT: bool = true;
@@ -63,7 +63,7 @@ impl<const D: usize> Term<D> for ShiftTerm {
 
 /// Sums the marked boundary particles within the support: there shifting is suppressed.
 #[derive(Clone, Copy, Debug)]
-pub struct ShiftingSuppressionTerm; //HIDE
+pub struct ShiftingSuppressionTerm;
 
 impl<const D: usize> Term<D> for ShiftingSuppressionTerm {
     const SHIFTING_SUPPRESSION: bool = true;

@@ -16,7 +16,7 @@ impl<const D: usize> Term<D> for Pressure {
 /// Tensile correction, which keeps particles under the cubic spline from pairing:
 /// adds (R_a + R_b)(W_ab/W(dp))⁴ to the pressure bracket, with R the particles' [`repulsion`] @monaghan2000.
 #[derive(Clone, Copy, Debug)]
-pub struct Tensile { //HIDE
+pub struct Tensile {
     /// 1/(V₀ W(dp)), –.
     pub inv_w_dp: f64,
 }

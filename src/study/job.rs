@@ -24,7 +24,7 @@ const OUTPUT_KEYS: [&str; 4] = ["title", "frames", "checkpoint", "check"];
 
 /// One run of a list.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Job { //HIDE
+pub struct Job {
     /// Its name in the list; repeats share it.
     pub name: String,
     /// Which of the runs of this name it is: 1, or more where runs are repeated.
@@ -45,7 +45,7 @@ pub struct Job { //HIDE
 
 /// How a job stands.
 #[derive(Clone, Debug, PartialEq)]
-pub enum JobState { //HIDE
+pub enum JobState {
     /// Nothing has been run.
     Planned,
     /// It was asked to stop, and goes on when it is run again.
@@ -58,7 +58,7 @@ pub enum JobState { //HIDE
 
 /// A job and what came out of it.
 #[derive(Clone, Debug)]
-pub struct JobResult { //HIDE
+pub struct JobResult {
     /// How it stands.
     pub state: JobState,
     /// The run's manifest, if there is one.
@@ -100,7 +100,7 @@ impl Job {
     }
 
     /// Its name, with the number of the repeat from the second on.
-    pub fn display_name(&self) -> String { //HIDE
+    pub fn display_name(&self) -> String {
         match self.repeat {
             1 => self.name.clone(),
             n => format!("{}, repeat {n}", self.name),
@@ -147,7 +147,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables.
-    pub fn existing_result(&self) -> Result<JobResult> { //HIDE
+    pub fn existing_result(&self) -> Result<JobResult> {
         match Manifest::read(&self.folder) {
             Ok(manifest) if self.matches(&manifest)? => self.with_verdicts(manifest),
             _ => Ok(JobResult::without_run(JobState::Planned)),
@@ -159,7 +159,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables. That the run itself fails is no error: the result says so.
-    pub fn run_or_resume(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<JobResult> { //HIDE
+    pub fn run_or_resume(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<JobResult> {
         let before = self.existing_result()?;
         let broke_down = before.manifest.as_ref().is_some_and(|m| m.fault.is_some());
         let outcome = match before.state {

@@ -14,32 +14,28 @@ mod html_page;
 mod result_rows;
 mod results;
 mod repeat_spread;
-pub mod stress; //HIDE
+pub mod stress;
 mod validation;
 
-pub(crate) use convergence::Convergence; //NARROW
 pub(crate) use convergence::convergence; //NARROW
 pub(crate) use convergence::least_squares; //NARROW
-pub use job::Job; //HIDE
-pub use job::JobResult; //HIDE
-pub use job::JobState; //HIDE
-pub use parameter_grid::ParameterGrid; //HIDE
-pub use parameter_grid::VariedKey; //HIDE
-pub use parameter_grid::distinguishing_labels; //HIDE
-pub use parameter_grid::frame_interval; //HIDE
-pub use parameter_grid::split_values; //HIDE
-pub use repeat_spread::REPEATS_NOTE; //HIDE
-pub(crate) use repeat_spread::Spread; //NARROW
-pub use repeat_spread::spread_table; //HIDE
-pub use result_rows::ResultRow; //HIDE
-pub(crate) use result_rows::result_rows; //NARROW
+pub use job::Job;
+pub use job::JobResult;
+pub use job::JobState;
+pub use parameter_grid::ParameterGrid;
+pub use parameter_grid::VariedKey;
+pub use parameter_grid::distinguishing_labels;
+pub use parameter_grid::frame_interval;
+pub use parameter_grid::split_values;
+pub use repeat_spread::REPEATS_NOTE;
+pub use repeat_spread::spread_table;
+pub use result_rows::ResultRow;
 pub(crate) use result_rows::rows_to_csv; //NARROW
-pub use results::StudyResults; //HIDE
-pub use time_estimate::DEFAULT_SPEED; //HIDE
-pub use time_estimate::TimeEstimate; //HIDE
-pub use time_estimate::estimate_times; //HIDE
-pub use validation::Validation; //HIDE
-pub(crate) use validation_cases::CaseResolution; //NARROW
-pub use validation_cases::ValidationCase; //HIDE
-pub use validation_cases::select_cases; //HIDE
-pub use validation_cases::validation_cases; //HIDE
+pub use results::StudyResults;
+pub use time_estimate::DEFAULT_SPEED;
+pub use time_estimate::TimeEstimate;
+pub use time_estimate::estimate_times;
+pub use validation::Validation;
+pub use validation_cases::ValidationCase;
+pub use validation_cases::select_cases;
+pub use validation_cases::validation_cases;

@@ -16,7 +16,7 @@ const MOST_FRAMES: f64 = 200.0;
 
 /// A key of the scene and the values that it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct VariedKey { //HIDE
+pub struct VariedKey {
     /// The key.
     pub key: String,
     /// Its values, as TOML.
@@ -25,7 +25,7 @@ pub struct VariedKey { //HIDE
 
 /// A grid of runs of one scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ParameterGrid { //HIDE
+pub struct ParameterGrid {
     /// The scene's name.
     pub name: String,
     /// The scene, a folder or a file.
@@ -100,7 +100,7 @@ impl ParameterGrid {
 /// assert_eq!(frame_interval(&[0.3, 0.5], 1.5), 0.1);
 /// assert_eq!(frame_interval(&[], 1.5), 1.5);
 /// ```
-pub fn frame_interval(times: &[f64], until: f64) -> f64 { //HIDE
+pub fn frame_interval(times: &[f64], until: f64) -> f64 {
     let common = |mut a: u64, mut b: u64| {
         while b > 0 {
             (a, b) = (b, a % b);
@@ -114,7 +114,7 @@ pub fn frame_interval(times: &[f64], until: f64) -> f64 { //HIDE
 }
 
 /// What makes each of `jobs` another than the rest, briefly.
-pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> { //HIDE
+pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> {
     let spacings = jobs.windows(2).any(|pair| pair[0].dp != pair[1].dp);
     let head = |job: &Job| {
         let spacing = spacings.then(|| format!("dp = {} m", job.dp));
@@ -138,7 +138,7 @@ pub(crate) fn combination_label(varied: &[(String, String)]) -> String { //NARRO
 /// assert_eq!(split_values("none,{ artificial = { alpha = 0.02, x = [1,2] } }, \"a,b\""),
 ///     ["none", "{ artificial = { alpha = 0.02, x = [1,2] } }", "\"a,b\""]);
 /// ```
-pub fn split_values(text: &str) -> Vec<String> { //HIDE
+pub fn split_values(text: &str) -> Vec<String> {
     let (mut parts, mut part, mut depth, mut quote) = (Vec::new(), String::new(), 0, None);
     for c in text.chars() {
         match (quote, c) {

@@ -142,7 +142,7 @@ pub(crate) fn error_bar_note(rows: &[ResultRow]) -> &'static str { //NARROW
 }
 
 /// The spreads as a table in words, a row for each run and check, the first row its head; empty if no run is repeated.
-pub fn spread_table(rows: &[ResultRow]) -> Vec<Vec<String>> { //HIDE
+pub fn spread_table(rows: &[ResultRow]) -> Vec<Vec<String>> {
     let all: Vec<Vec<&ResultRow>> = group_repeats(rows).into_iter().filter(|of| of.len() > 1).collect();
     let known = |(_, figure): &Metric| all.iter().any(|of| spread_of(of, *figure).is_some());
     let used: Vec<Metric> = SPREAD_METRICS.into_iter().filter(known).collect();

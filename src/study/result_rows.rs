@@ -10,7 +10,7 @@ use crate::{
 
 /// A run under one of its checks; a figure is none where it is not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ResultRow { //HIDE
+pub struct ResultRow {
     /// Name of the run; repeats share it.
     pub run: String,
     /// Which repeat of it, from 1.

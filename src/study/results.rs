@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// The table and the page of a study.
-pub struct StudyResults { //HIDE
+pub struct StudyResults {
     title: String,
     command: String,
     keys: Vec<String>,
@@ -65,7 +65,7 @@ impl StudyResults {
     ///
     /// # Errors
     /// `Usage` for a grid that is none; those of the scene's words; `File` if the folder cannot be made.
-    pub fn new(grid: &ParameterGrid, out: PathBuf, command: String) -> Result<Self> { //HIDE
+    pub fn new(grid: &ParameterGrid, out: PathBuf, command: String) -> Result<Self> {
         let jobs = grid.jobs(&out)?;
         let mut checks = Vec::new();
         if let Some(job) = jobs.first() {
@@ -76,12 +76,12 @@ impl StudyResults {
     }
 
     /// A row for each run and check, those to come too.
-    pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> { //HIDE
+    pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> {
         result_rows(&self.jobs, ran, &self.checks)
     }
 
     /// Files that [`StudyResults::write`] writes.
-    pub fn files(&self) -> [PathBuf; 3] { //HIDE
+    pub fn files(&self) -> [PathBuf; 3] {
         ["study.csv", "study.json", "study.html"].map(|name| self.out.join(name))
     }
 
@@ -89,7 +89,7 @@ impl StudyResults {
     ///
     /// # Errors
     /// `File` if one cannot be written; each is replaced as a whole.
-    pub fn write(&self, ran: &[JobResult]) -> Result<()> { //HIDE
+    pub fn write(&self, ran: &[JobResult]) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         let rows = self.rows(ran);
         let orders = self.orders(&rows);
@@ -216,7 +216,7 @@ impl StudyResults {
     }
 
     /// The rows as a table in words, for a page or a terminal.
-    pub fn run_rows(&self, rows: &[ResultRow]) -> Vec<Vec<String>> { //HIDE
+    pub fn run_rows(&self, rows: &[ResultRow]) -> Vec<Vec<String>> {
         let repeated = repeat_spread::has_repeats(rows);
         let mut head = vec!["dp, mm".to_string()];
         head.extend(self.keys.iter().cloned());

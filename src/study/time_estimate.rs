@@ -5,11 +5,11 @@ use crate::{error::Result, scene::SizeEstimate};
 
 /// Water particles × force passes a second of one thread, in 2-D and 3-D, where no run has told yet: half of what
 /// `pontoon bench` gives on a slow machine with the default laws.
-pub const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6]; //HIDE
+pub const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6];
 
 /// A job before it is run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TimeEstimate { //HIDE
+pub struct TimeEstimate {
     /// About how large it is.
     pub size: SizeEstimate,
     /// About how long it will take, s; 0 if it has been run.
@@ -25,7 +25,7 @@ pub struct TimeEstimate { //HIDE
 ///
 /// # Errors
 /// Those of a scene's words: nothing should be run then.
-pub fn estimate_times(jobs: &[Job], ran: &[JobResult], threads: usize) -> Result<Vec<TimeEstimate>> { //HIDE
+pub fn estimate_times(jobs: &[Job], ran: &[JobResult], threads: usize) -> Result<Vec<TimeEstimate>> {
     let sizes = jobs.iter().map(Job::estimated_size).collect::<Result<Vec<SizeEstimate>>>()?;
     let speed = |same: &dyn Fn(usize) -> bool| {
         let finished =

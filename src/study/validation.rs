@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Cases that are run, quick or full.
-pub struct Validation { //HIDE
+pub struct Validation {
     command: String,
     out: PathBuf,
     cases: Vec<ValidationCase>,
@@ -34,7 +34,7 @@ impl Validation {
     ///
     /// # Errors
     /// Those of the scenes' words and of [`Job::repeated`].
-    pub fn new( //HIDE
+    pub fn new(
         cases: Vec<(ValidationCase, &Path)>,
         full: bool,
         repeat: usize,
@@ -47,12 +47,12 @@ impl Validation {
     }
 
     /// Files that [`Validation::write`] writes.
-    pub fn files(&self) -> [PathBuf; 2] { //HIDE
+    pub fn files(&self) -> [PathBuf; 2] {
         ["validation.html", "validation.csv"].map(|name| self.out.join(name))
     }
 
     /// The table of the first runs, of which `ran` is known; its first row is its head.
-    pub fn table(&self, ran: &[JobResult]) -> Vec<Vec<String>> { //HIDE
+    pub fn table(&self, ran: &[JobResult]) -> Vec<Vec<String>> {
         let names: Vec<[String; 1]> = self.jobs.iter().map(|job| [job.display_name()]).collect();
         let named: Vec<Vec<Verdict>> = ran.iter().map(labelled_verdicts).collect();
         let pairs: Vec<(&[String], &Verdict)> =
@@ -70,7 +70,7 @@ impl Validation {
     }
 
     /// A row for each check of the first runs, of which `ran` is known.
-    pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> { //HIDE
+    pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> {
         result_rows(&self.jobs[..ran.len()], ran, &[])
     }
 
@@ -78,7 +78,7 @@ impl Validation {
     ///
     /// # Errors
     /// `File` if one cannot be written; each is replaced as a whole.
-    pub fn write(&self, ran: &[JobResult]) -> Result<()> { //HIDE
+    pub fn write(&self, ran: &[JobResult]) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         let first = ran.iter().find_map(|r| r.manifest.as_ref());
         let (machine, threads) = (first.map_or_else(Machine::current, |m| m.machine.clone()), first.map(|m| m.threads));

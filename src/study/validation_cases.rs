@@ -16,7 +16,7 @@ const TEXT: &str = include_str!("../../scenes/validation.toml");
 /// A scene with some keys changed, run coarse or fine, and what its checks are expected to say.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct ValidationCase { //HIDE
+pub struct ValidationCase {
     /// Its name.
     pub name: String,
     /// The entry of `[base]` that it starts from.
@@ -39,7 +39,7 @@ pub struct ValidationCase { //HIDE
 /// How fine and how long a case is run.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct CaseResolution { //HIDE
+pub struct CaseResolution {
     /// Particle spacing, m; the scene's if none.
     pub dp: Option<f64>,
     /// Simulated time at the end, s; the scene's if none.
@@ -61,7 +61,7 @@ struct CasesFile {
 ///
 /// # Errors
 /// `Scene` if the list that was compiled in is wrong, which its test rules out.
-pub fn validation_cases() -> Result<Vec<ValidationCase>> { //HIDE
+pub fn validation_cases() -> Result<Vec<ValidationCase>> {
     let CasesFile { base, case } =
         toml::from_str(TEXT).map_err(|e| Error::scene(e.message().to_string()).at("validation.toml", None, ""))?;
     case.into_iter()
@@ -81,7 +81,7 @@ pub fn validation_cases() -> Result<Vec<ValidationCase>> { //HIDE
 ///
 /// # Errors
 /// `Usage` if there is no such case: names the nearest.
-pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>> { //HIDE
+pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>> {
     let all = validation_cases()?;
     if names.is_empty() {
         return Ok(all.into_iter().filter(|case| full || case.quick.usual).collect());

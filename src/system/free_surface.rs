@@ -9,7 +9,7 @@ use crate::{math::Vector, particles::PARTICLES_PER_TASK, solid::Role};
 impl<const D: usize> System<D> {
     /// Heights (m) of the surfaces above the horizontal place `at` (m; the last axis does not count), from the highest down, to
     /// a thousandth of the spacing. Spray lighter than half a kernel does not count.
-    pub fn surface_heights(&self, at: &Vector<D>) -> impl Iterator<Item = f64> { //HIDE
+    pub fn surface_heights(&self, at: &Vector<D>) -> impl Iterator<Item = f64> {
         let (dp, h, up) = (self.model.dp, self.model.h, D - 1);
         let beside = |r: &Vector<D>| (0..up).map(|i| (r[i] - at[i]).powi(2)).sum::<f64>() < (2.0 * h).powi(2);
         let nothing = || (f64::INFINITY, f64::NEG_INFINITY);

@@ -20,14 +20,13 @@ pub(crate) use fluid::{Fluid, permute};
 use periodic::Images;
 pub(crate) use periodic::Periodic; //NARROW
 pub use setup::Setup;
-pub use sponge_layer::SpongeLayer; //HIDE
+pub use sponge_layer::SpongeLayer;
 pub(crate) use step_check::StepCheck;
-pub use step_check::Escape; //HIDE
-pub(crate) use step_check::ExitPath; //NARROW
-pub use step_check::ParticleLimits; //HIDE
+pub use step_check::Escape;
+pub use step_check::ParticleLimits;
 pub(crate) use step_check::RemovedParticle; //NARROW
 
-pub use crate::interaction::StepLimits; //HIDE
+pub use crate::interaction::StepLimits;
 
 use std::time::{Duration, Instant};
 
@@ -345,7 +344,7 @@ impl<const D: usize> System<D> {
     }
 
     /// The largest values that limit the next step.
-    pub fn step_limits(&self) -> StepLimits { //HIDE
+    pub fn step_limits(&self) -> StepLimits {
         self.status.step_limits
     }
 

@@ -30,7 +30,7 @@ impl<const D: usize> SpongeLayer<D> {
     }
 
     /// β sⁿ (1/s) at `x` (m).
-    pub fn rate(&self, x: &Vector<D>) -> f64 { //HIDE
+    pub fn rate(&self, x: &Vector<D>) -> f64 {
         let way = self.to - self.from;
         let s = ((x - self.from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
         // The usual one without a power, which costs as much as the exponential.

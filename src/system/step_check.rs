@@ -43,7 +43,7 @@ impl Default for ParticleLimits {
 
 /// A particle that left the domain and was taken out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RemovedParticle<const D: usize> { //HIDE
+pub struct RemovedParticle<const D: usize> {
     /// Its number.
     pub id: u32,
     /// Its last place, m.
@@ -58,7 +58,7 @@ pub struct RemovedParticle<const D: usize> { //HIDE
 
 /// How a particle is likely to have left the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ExitPath { //HIDE
+pub enum ExitPath {
     /// By the top: thrown up.
     Up,
     /// By a side, higher than the water stood at the start, or falling from higher: over a wall.

@@ -13,12 +13,12 @@ use crate::{
 
 impl<const D: usize> System<D> {
     /// The model.
-    pub fn model(&self) -> &Model { //HIDE
+    pub fn model(&self) -> &Model {
         &self.model
     }
 
     /// The constants that the laws share.
-    pub fn properties(&self) -> &FluidProperties<D> { //HIDE
+    pub fn properties(&self) -> &FluidProperties<D> {
         &self.properties
     }
 
@@ -28,7 +28,7 @@ impl<const D: usize> System<D> {
     }
 
     /// The boundary particles of all solids.
-    pub fn boundary(&self) -> ParticlesView<'_, D> { //HIDE
+    pub fn boundary(&self) -> ParticlesView<'_, D> {
         self.boundary.particles.first_n(self.boundary.particles.len())
     }
 
@@ -63,7 +63,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Pressure (Pa) at density `rho` (kg/m³).
-    pub fn pressure(&self, rho: f64) -> f64 { //HIDE
+    pub fn pressure(&self, rho: f64) -> f64 {
         self.properties.rho0 * self.equation_of_state.pressure(rho / self.properties.rho0 - 1.0)
     }
 
@@ -74,7 +74,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Energy of compression (J/kg) at density `rho` (kg/m³), from ρ₀.
-    pub fn compression_energy(&self, rho: f64) -> f64 { //HIDE
+    pub fn compression_energy(&self, rho: f64) -> f64 {
         self.equation_of_state.compression_energy(rho / self.properties.rho0 - 1.0)
     }
 
@@ -86,12 +86,12 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
-    pub fn fluid_acceleration(&self, i: usize) -> Vector<D> { //HIDE
+    pub fn fluid_acceleration(&self, i: usize) -> Vector<D> {
         self.rates.fluid[i].acceleration
     }
 
     /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
-    pub fn fluid_density_rate(&self, i: usize) -> f64 { //HIDE
+    pub fn fluid_density_rate(&self, i: usize) -> f64 {
         self.rates.fluid[i].compression_rate * self.properties.rho0
     }
 
@@ -116,7 +116,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration of gravity, m/s².
-    pub fn gravity(&self) -> Vector<D> { //HIDE
+    pub fn gravity(&self) -> Vector<D> {
         self.properties.gravity
     }
 
@@ -152,7 +152,7 @@ impl<const D: usize> System<D> {
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
-    pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //HIDE
+    pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         let real = self.particle_count();
         self.neighbours.visit_fluid_around(x, &mut |i| {
             let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.originals[k] as usize);
@@ -161,7 +161,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
-    pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) { //HIDE
+    pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         self.neighbours
             .visit_boundary_around(x, &mut |i| self.visit_within_support(&self.boundary.particles.r[i], x, i, visit));
     }

@@ -1,7 +1,7 @@
 //! Time integration: the length of a step and the schemes that advance the water. No sums over pairs.
 
 mod sponge;
-pub mod step_size; //HIDE
+pub mod step_size;
 mod symplectic;
 mod verlet;
 

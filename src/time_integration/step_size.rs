@@ -7,7 +7,7 @@
 use crate::{sph::FluidProperties, system::StepLimits};
 
 /// The longest step (s) that the water allows; eq. (14) of @pirkhalili2023, @monaghan1992.
-pub fn fluid_step_limit<const D: usize>(peaks: &StepLimits, medium: &FluidProperties<D>, cfl: f64) -> f64 { //HIDE
+pub fn fluid_step_limit<const D: usize>(peaks: &StepLimits, medium: &FluidProperties<D>, cfl: f64) -> f64 {
     let by_force = (medium.h / peaks.acceleration).sqrt();
     let by_sound = medium.h / (medium.c0 + medium.h * peaks.approach_rate);
     cfl * by_force.min(by_sound)

@@ -28,8 +28,8 @@ pub(crate) use solitary::SolitaryWave; //NARROW
 pub(crate) use spectrum::WaveSpectrum; //NARROW
 pub(crate) use train::DepthRegime; //NARROW
 pub(crate) use train::LinearWave; //NARROW
-pub use train::TheoryRegion; //HIDE
-pub use train::wave_number; //HIDE
+pub use train::TheoryRegion;
+pub use train::wave_number;
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -190,7 +190,7 @@ impl PaddleMotion {
 
     /// The surface (m) at `x` (m) before the paddle's face at rest and time `t` (s) by linear theory, the ramp left
     /// out; none of a solitary wave.
-    pub(crate) fn elevation(&self, x: f64, t: f64) -> Option<f64> { //NARROW
+    pub fn elevation(&self, x: f64, t: f64) -> Option<f64> {
         let (Course::Tones(tones), Some(train)) = (&self.course, &self.facts.linear_wave) else { return None };
         let parts = tones.iter().filter(|tone| self.facts.order == 1 || tone.omega < 1.5 * train.omega).map(|tone| {
             let own = LinearWave::new(tone.omega, train.depth, train.g);
@@ -256,7 +256,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` as [`Wavemaker::irregular`], for a wave of height `crest`.
-    pub(crate) fn focused( //NARROW
+    pub fn focused(
         &self,
         crest: f64,
         spectrum: &WaveSpectrum,
@@ -316,7 +316,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if it would break, or the paddle is a flap, for which there is no theory.
-    pub(crate) fn solitary(&self, height: f64, theory: SolitaryTheory) -> Result<PaddleMotion> { //NARROW
+    pub fn solitary(&self, height: f64, theory: SolitaryTheory) -> Result<PaddleMotion> {
         if self.paddle != Paddle::Piston {
             return Err(Error::scene("a solitary wave needs a piston: there is no theory of a flap that makes one")
                 .help("write  driven = { along = [1.0, 0.0], wave = { solitary = { height = 0.1 } } }"));

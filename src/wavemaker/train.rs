@@ -29,7 +29,7 @@ pub(crate) struct LinearWave { //NARROW
 /// How deep the water is for a wave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum DepthRegime { //HIDE
+pub enum DepthRegime {
     /// kd > π.
     Deep,
     /// Between.
@@ -40,7 +40,7 @@ pub enum DepthRegime { //HIDE
 
 /// Where a wave lies on the chart of @lemehaute1976.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum TheoryRegion { //HIDE
+pub enum TheoryRegion {
     /// Stokes' second term is less than a hundredth of the first.
     Airy,
     /// Below a quarter of the breaking height.
@@ -62,7 +62,7 @@ pub enum TheoryRegion { //HIDE
 
 impl DepthRegime {
     /// The word for it.
-    pub fn name(self) -> &'static str { //HIDE
+    pub fn name(self) -> &'static str {
         match self {
             Self::Deep => "deep",
             Self::Intermediate => "intermediate",
@@ -73,7 +73,7 @@ impl DepthRegime {
 
 impl TheoryRegion {
     /// The word for it.
-    pub fn name(self) -> &'static str { //HIDE
+    pub fn name(self) -> &'static str {
         match self {
             Self::Airy => "Airy",
             Self::Stokes2 => "Stokes 2",
@@ -168,7 +168,7 @@ impl LinearWave {
 }
 
 /// k (1/m) of a wave of angular frequency `omega` (rad/s) in water `depth` (m) deep: ω² = g k tanh kd, by Newton.
-pub fn wave_number(omega: f64, depth: f64, g: f64) -> f64 { //HIDE
+pub fn wave_number(omega: f64, depth: f64, g: f64) -> f64 {
     let deep = omega * omega * depth / g;
     let mut kd = deep.max(deep.sqrt());
     for _ in 0..50 {

@@ -7,11 +7,11 @@ use serde::{Serialize, Serializer};
 use crate::{analysis::RaoPoint, error::Result, output::write_atomically};
 
 /// The file, in the run's folder.
-pub const RAO_FILE: &str = "rao.csv"; //HIDE
+pub const RAO_FILE: &str = "rao.csv";
 
 /// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO_FILE`] for keys.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RaoResult { //HIDE
+pub struct RaoResult {
     /// Name of the `[[statistic]]`.
     pub name: String,
     /// The motion, as `probe.column`.
@@ -24,7 +24,7 @@ pub struct RaoResult { //HIDE
 
 impl RaoResult {
     /// Phase of the motion less that of the wave, degrees.
-    pub fn phase_degrees(&self) -> f64 { //HIDE
+    pub fn phase_degrees(&self) -> f64 {
         self.point.phase * 180.0 / PI
     }
 

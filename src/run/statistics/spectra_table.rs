@@ -6,7 +6,7 @@ use super::{ProbeTables, series_in_window};
 use crate::{analysis::displayed_spectrum, error::Result, math::format::unit, output::write_atomically};
 
 /// The file, in the run's folder.
-pub const SPECTRA_FILE: &str = "spectra.csv"; //HIDE
+pub const SPECTRA_FILE: &str = "spectra.csv";
 
 /// Writes the spectra of all series of `tables` that swing into the run's `folder`; no file if none does.
 ///

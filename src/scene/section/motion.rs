@@ -43,12 +43,12 @@ impl DrivenConfig {
     }
 
     /// A piston that makes `wave` in the direction `along`.
-    pub fn piston(along: impl Into<Vec<f64>>, wave: WaveConfig) -> Self { //HIDE
+    pub fn piston(along: impl Into<Vec<f64>>, wave: WaveConfig) -> Self {
         Self { along: Some(along.into()), wave: Some(wave), ..Self::default() }
     }
 
     /// A flap hinged at the world point `hinge` (m) that makes `wave`; 2-D, in 3-D it needs an `axis` too.
-    pub fn flap(hinge: impl Into<Vec<f64>>, wave: WaveConfig) -> Self { //HIDE
+    pub fn flap(hinge: impl Into<Vec<f64>>, wave: WaveConfig) -> Self {
         Self { hinge: Some(hinge.into()), wave: Some(wave), ..Self::default() }
     }
 

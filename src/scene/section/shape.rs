@@ -136,7 +136,7 @@ impl ShapeConfig {
     }
 
     /// A ball of `radius` (m).
-    pub(crate) fn ball(radius: f64) -> Self { //NARROW
+    pub fn ball(radius: f64) -> Self {
         Self::Ball { radius }
     }
 
@@ -146,7 +146,7 @@ impl ShapeConfig {
     }
 
     /// The solid in the mesh `file` (STL or OBJ, in m), beside the scene.
-    pub(crate) fn mesh(file: impl Into<String>) -> Self { //NARROW
+    pub fn mesh(file: impl Into<String>) -> Self {
         Self::Mesh(MeshConfig { file: file.into(), ..MeshConfig::default() })
     }
 

@@ -35,7 +35,7 @@ pub struct SpongeLayerConfig {
 
 impl SpongeLayerConfig {
     /// The layer that begins at `from` and reaches full strength at `to` (m).
-    pub fn between(from: impl Into<Vec<f64>>, to: impl Into<Vec<f64>>) -> Self { //HIDE
+    pub fn between(from: impl Into<Vec<f64>>, to: impl Into<Vec<f64>>) -> Self {
         Self { from: from.into(), to: to.into(), strength: None, power: None }
     }
 

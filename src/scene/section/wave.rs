@@ -179,36 +179,36 @@ impl<'de> Deserialize<'de> for AbsorbChoice {
 
 impl WaveConfig {
     /// A regular wave of `height` (m) and `period` (s).
-    pub fn regular(height: f64, period: f64) -> Self { //HIDE
+    pub fn regular(height: f64, period: f64) -> Self {
         Self { regular: Some(RegularWaveConfig { height, period, ..Default::default() }), ..Self::default() }
     }
 
     /// The sea number `seed` of significant height `height` (m) and JONSWAP's spectrum.
-    pub fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self { //HIDE
+    pub fn jonswap(height: f64, peak_period: f64, seed: u64) -> Self {
         let sea =
             IrregularWaveConfig { height, peak_period: Some(peak_period), seed: Some(seed), ..Default::default() };
         Self { jonswap: Some(sea), ..Self::default() }
     }
 
     /// The focused group with its crest of `crest` (m) at `distance` (m) from the paddle at `time` (s).
-    pub(crate) fn focused(crest: f64, peak_period: f64, distance: f64, time: f64) -> Self { //NARROW
+    pub fn focused(crest: f64, peak_period: f64, distance: f64, time: f64) -> Self {
         let group = FocusedWaveConfig { crest, peak_period, distance, time, ..Default::default() };
         Self { focused: Some(group), ..Self::default() }
     }
 
     /// The solitary wave of `height` (m).
-    pub(crate) fn solitary(height: f64) -> Self { //NARROW
+    pub fn solitary(height: f64) -> Self {
         Self { solitary: Some(SolitaryWaveConfig { height, theory: None }), ..Self::default() }
     }
 
     /// No wave: a paddle that absorbs waves of `period` (s).
-    pub(crate) fn absorber(period: f64) -> Self { //NARROW
+    pub fn absorber(period: f64) -> Self {
         let config = AbsorptionConfig { period: Some(period), ..AbsorptionConfig::default() };
         Self { absorb: Some(AbsorbChoice::Parameters(config)), ..Self::default() }
     }
 
     /// The same wave of a paddle that absorbs waves which come back.
-    pub(crate) fn absorbing(self) -> Self { //NARROW
+    pub fn absorbing(self) -> Self {
         Self { absorb: Some(AbsorbChoice::Switch(true)), ..self }
     }
 

@@ -96,20 +96,20 @@ impl<const D: usize> JointSpec<D> {
     }
 
     /// The same joint, generic, with one more mode left free: 0 to D − 1 along the axes of its frame, from D on about them.
-    pub(crate) fn with_free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self { //NARROW
+    pub fn with_free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
         self.kind = JointKind::Generic;
         self.free_modes.push(FreeMode { mode, limits });
         self
     }
 
     /// The same joint with end stops, m or rad from the start.
-    pub(crate) fn with_limits(mut self, min: f64, max: f64) -> Self { //NARROW
+    pub fn with_limits(mut self, min: f64, max: f64) -> Self {
         self.limits = Some([min, max]);
         self
     }
 
     /// The same joint with a motor.
-    pub(crate) fn with_motor(mut self, motor: Motor) -> Self { //NARROW
+    pub fn with_motor(mut self, motor: Motor) -> Self {
         self.motor = Some(motor);
         self
     }

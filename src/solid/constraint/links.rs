@@ -46,7 +46,7 @@ impl InitialHold {
 
 /// Contact properties of a pair of solids.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSpec { //HIDE
+pub struct ContactSpec {
     /// Numbers of the two.
     pub between: [usize; 2],
     /// Whether they have contact, or pass through one another.
@@ -63,7 +63,7 @@ pub struct ContactPairs(BTreeMap<[usize; 2], ContactSpec>);
 
 impl ContactPairs {
     /// How many pairs there are.
-    pub fn len(&self) -> usize { //HIDE
+    pub fn len(&self) -> usize {
         self.0.len()
     }
 
@@ -73,7 +73,7 @@ impl ContactPairs {
     }
 
     /// That of solids `a` and `b`.
-    pub fn find(&self, a: usize, b: usize) -> Option<&ContactSpec> { //HIDE
+    pub fn find(&self, a: usize, b: usize) -> Option<&ContactSpec> {
         self.0.get(&[a.min(b), a.max(b)])
     }
 }
@@ -108,7 +108,7 @@ impl<const D: usize> Constraints<D> {
     }
 
     /// Whether solids `a` and `b` may have contact: not if a joint between them or a pair excludes it.
-    pub fn can_touch(&self, a: usize, b: usize) -> bool { //HIDE
+    pub fn can_touch(&self, a: usize, b: usize) -> bool {
         let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts_enabled;
         self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }

@@ -18,9 +18,8 @@ pub(crate) use lines::LineEnd; //NARROW
 pub(crate) use lines::RopeSpec; //NARROW
 pub(crate) use lines::SpringParameters; //NARROW
 pub(crate) use lines::SpringSpec; //NARROW
-pub use links::Constraints; //HIDE
-pub(crate) use links::ContactPairs; //NARROW
-pub use links::ContactSpec; //HIDE
+pub use links::Constraints;
+pub use links::ContactSpec;
 pub(crate) use links::InitialHold; //NARROW
 pub use motor::Motor;
 pub(crate) use motor::MotorCommand; //NARROW

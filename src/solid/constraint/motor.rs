@@ -56,7 +56,7 @@ impl Default for Motor {
 
 impl Motor {
     /// A linear power take-off: F = −c ẋ.
-    pub(crate) fn damping(c: f64) -> Self { //NARROW
+    pub fn damping(c: f64) -> Self {
         Self { damping: TimeFunction::constant(c), ..Self::default() }
     }
 

@@ -85,7 +85,7 @@ pub fn kinematics(body: &RigidBody) -> Kinematics<D> {
 }
 
 /// Moves a body to where a solid is at the end of the step: for a kinematic body that stands for a driven solid.
-pub(crate) fn set_kinematic(body: &mut RigidBody, solid: &Kinematics<D>) { //NARROW
+pub fn set_kinematic(body: &mut RigidBody, solid: &Kinematics<D>) {
     body.set_next_kinematic_position(world::to_frame(&solid.pose));
 }
 

@@ -4,10 +4,10 @@ mod engine;
 #[cfg(feature = "dim2")]
 pub mod rapier2d;
 #[cfg(feature = "dim3")]
-pub mod rapier3d; //HIDE
+pub mod rapier3d;
 
 pub(crate) use engine::ContactForce; //NARROW
 pub use engine::Dim;
-pub use engine::Engine; //HIDE
+pub use engine::Engine;
 pub(crate) use engine::EngineFault; //NARROW
-pub use engine::HasEngine; //HIDE
+pub use engine::HasEngine;

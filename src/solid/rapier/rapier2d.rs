@@ -27,7 +27,6 @@ mod world;
 
 pub use external::apply_load;
 pub use external::kinematics;
-pub(crate) use external::set_kinematic; //NARROW
 pub use external::solid_from_body;
 pub(super) use world::RapierWorld;
 

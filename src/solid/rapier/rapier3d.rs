@@ -16,7 +16,7 @@
 //! `examples/own_world.rs` is a whole program.
 
 /// The engine itself, in the version that this crate is made with.
-pub use rapier3d as rapier; //HIDE
+pub use rapier3d as rapier;
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "external.rs"]
@@ -27,7 +27,6 @@ mod world;
 
 pub use external::apply_load;
 pub use external::kinematics;
-pub(crate) use external::set_kinematic; //NARROW
 pub use external::solid_from_body;
 pub(super) use world::RapierWorld;
 

@@ -6,9 +6,9 @@ mod repulsion;
 mod slip;
 
 pub(crate) use dynamic::DynamicBoundary; //NARROW
-pub use relaxed_adami::SupportCoverage; //HIDE
-pub use relaxed_adami::WallExtrapolation; //HIDE
-pub use relaxed_adami::relaxation; //HIDE
+pub use relaxed_adami::SupportCoverage;
+pub use relaxed_adami::WallExtrapolation;
+pub use relaxed_adami::relaxation;
 pub use repulsion::Repulsion;
-pub use slip::Slip; //HIDE
-pub use slip::no_slip_velocity; //HIDE
+pub use slip::Slip;
+pub use slip::no_slip_velocity;

@@ -22,7 +22,7 @@ const COVERAGE_MIN: f64 = 0.8;
 const COVERAGE_FULL: f64 = 1.0;
 
 /// Share (–) of the difference to its target that a boundary particle relaxes in `dt` (s), with h (m) and c₀ (m/s).
-pub fn relaxation(dt: f64, h: f64, c0: f64) -> f64 { //HIDE
+pub fn relaxation(dt: f64, h: f64, c0: f64) -> f64 {
     1.0 - (-dt * c0 / (RELAXATION_TIME * h)).exp()
 }
 
@@ -42,14 +42,14 @@ pub struct WallExtrapolation<N, const D: usize> {
 impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     /// All sums `zero`.
     #[inline(always)]
-    pub fn filled_with(zero: N) -> Self { //HIDE
+    pub fn filled_with(zero: N) -> Self {
         Self { weight_sum: zero, pressure_sum: zero, offset_sum: [zero; D], velocity_sum: [zero; D] }
     }
 
     /// Adds a water particle of pressure `p` (P/ρ₀, m²/s²) and specific volume `s` (ρ₀/ρ) at r_w − `r_wf` (m), seen with
     /// kernel weight `w` (V₀ W).
     #[inline(always)]
-    pub fn add(&mut self, w: N, p: N, s: N, r_wf: [N; D]) { //HIDE
+    pub fn add(&mut self, w: N, p: N, s: N, r_wf: [N; D]) {
         let share = w * s;
         self.weight_sum = self.weight_sum + share;
         self.pressure_sum = share.fma(p, self.pressure_sum);
@@ -60,7 +60,7 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
 
     /// Adds its velocity `v` (m/s) too.
     #[inline(always)]
-    pub fn add_velocity(&mut self, w: N, s: N, v: [N; D]) { //HIDE
+    pub fn add_velocity(&mut self, w: N, s: N, v: [N; D]) {
         let share = w * s;
         for (flow, v) in self.velocity_sum.iter_mut().zip(v) {
             *flow = share.fma(v, *flow);
@@ -71,7 +71,7 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
 impl<const D: usize> WallExtrapolation<f64, D> {
     /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle that feels `pull` = g − a_w (m/s²), of which `g` is the weight, and lies
     /// `depth` (m) below the face.
-    pub fn pressure(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 { //HIDE
+    pub fn pressure(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 {
         // At the rim of the support the weight is the square of a rounding: no water.
         if self.weight_sum < 1e-9 {
             return 0.0;
@@ -86,7 +86,7 @@ impl<const D: usize> WallExtrapolation<f64, D> {
 /// Share of a boundary particle's kernel support before the face that water fills, from the weight of its
 /// [`WallExtrapolation`].
 #[derive(Clone, Debug)]
-pub struct SupportCoverage { //HIDE
+pub struct SupportCoverage {
     /// Weights of boundary particles behind a flat face under water, at depths from 0.
     full: Vec<f64>,
     /// From one depth to the next, m.
@@ -95,7 +95,7 @@ pub struct SupportCoverage { //HIDE
 
 impl SupportCoverage {
     /// For a kernel `w` (V₀ W of the squared distance) of support `reach` (m) over particles `dp` (m) apart in `dimension`.
-    pub fn new(w: impl Fn(f64) -> f64, dp: f64, reach: f64, dimension: usize) -> Self { //HIDE
+    pub fn new(w: impl Fn(f64) -> f64, dp: f64, reach: f64, dimension: usize) -> Self {
         let (step, most) = (reach / DEPTHS as f64, (reach / dp).ceil() as i32);
         let layers = if dimension == 2 { 0 } else { most };
         let full = (0..=DEPTHS).map(|k| {
@@ -115,7 +115,7 @@ impl SupportCoverage {
 
     /// The factor (0 to 1) of an increase of pressure at a boundary particle `depth` (m) below the face whose extrapolation has
     /// `weight`: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
-    pub fn fraction(&self, weight: f64, depth: f64) -> f64 { //HIDE
+    pub fn fraction(&self, weight: f64, depth: f64) -> f64 {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);
         let (k, rest) = (place as usize, place.fract());
         let full = self.full[k] + (self.full[k + 1] - self.full[k]) * rest;

@@ -37,7 +37,7 @@ const MAX_RATIO: f64 = 4.0;
 
 /// The velocity (m/s) without slip of a boundary particle whose solid moves there with `v` (m/s), `depth` (m) below the face with
 /// outward normal `normal`, with sums `fit` over the water. Where the water is not before that face, its solid's.
-pub fn no_slip_velocity<const D: usize>( //HIDE
+pub fn no_slip_velocity<const D: usize>(
     fit: &WallExtrapolation<f64, D>,
     v: Vector<D>,
     normal: &Vector<D>,

@@ -5,7 +5,7 @@ mod molteni;
 
 pub use fourtakas::Fourtakas;
 pub(crate) use fourtakas::FourtakasTerm; //NARROW
-pub use molteni::Molteni; //HIDE
+pub use molteni::Molteni;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

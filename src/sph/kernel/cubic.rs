@@ -9,7 +9,7 @@ use super::{Kernel, Num};
 
 /// The cubic spline @monaghan1985; eq. (3) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug)]
-pub struct Cubic { //HIDE
+pub struct Cubic {
     half_inv_h: f64,
     amplitude: f64,
     slope: f64,
@@ -17,7 +17,7 @@ pub struct Cubic { //HIDE
 
 impl Cubic {
     /// The kernel of smoothing length `h` (m) in `dimension` 2 or 3.
-    pub fn new(h: f64, dimension: usize) -> Self { //HIDE
+    pub fn new(h: f64, dimension: usize) -> Self {
         let amplitude = if dimension == 2 { 10.0 / (7.0 * PI * h * h) } else { 1.0 / (PI * h * h * h) };
         // dW/dq = −3 α (u² − t²), so (dW/dr)/r = −3/2 α (u² − t²)/(q/2)/h².
         Self { half_inv_h: 0.5 / h, amplitude, slope: -1.5 * amplitude / (h * h) }

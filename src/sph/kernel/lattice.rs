@@ -18,7 +18,7 @@ const PARTS: usize = 12;
 
 /// μ (–), the least stiffness of a square (cubic) lattice of the medium's spacing against any wave under `kernel`: 0 if the lattice
 /// holds, less if a wave grows.
-pub fn lattice_stiffness<const D: usize>(kernel: impl Kernel, medium: &FluidProperties<D>) -> f64 { //HIDE
+pub fn lattice_stiffness<const D: usize>(kernel: impl Kernel, medium: &FluidProperties<D>) -> f64 {
     let neighbours = neighbours(kernel.normalised_on_lattice(medium), medium);
     let sines: Vec<f64> = (0..2 * PARTS).map(|i| (i as f64 * std::f64::consts::PI / PARTS as f64).sin()).collect();
     let mut least = 0.0_f64;

@@ -1,10 +1,10 @@
 //! Kernels W(r, h), normalised to ∫ W dV = 1, zero from r = 2h on.
 
 mod cubic;
-pub mod lattice; //HIDE
+pub mod lattice;
 mod wendland;
 
-pub use cubic::Cubic; //HIDE
+pub use cubic::Cubic;
 pub use wendland::Wendland;
 
 use super::{FluidProperties, Num};

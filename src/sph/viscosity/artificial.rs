@@ -24,14 +24,14 @@ impl Default for Artificial {
 
 impl Artificial {
     /// The law in water of the given constants.
-    pub fn term<const D: usize>(&self, medium: &FluidProperties<D>) -> ArtificialTerm { //HIDE
+    pub fn term<const D: usize>(&self, medium: &FluidProperties<D>) -> ArtificialTerm {
         ArtificialTerm { alpha_c_h: self.alpha * medium.c0 * medium.h }
     }
 }
 
 /// The law of [`Artificial`].
 #[derive(Clone, Copy, Debug)]
-pub struct ArtificialTerm { //HIDE
+pub struct ArtificialTerm {
     alpha_c_h: f64,
 }
 

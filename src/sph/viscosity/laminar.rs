@@ -23,14 +23,14 @@ impl Default for Laminar {
 impl Laminar {
     /// The law, in those units. Of a viscous force on a lattice η² leaves the part `damped`, which is made good: 0.8 % at
     /// h = 1.7 dp.
-    pub fn term(&self, units: &Units, damped: f64) -> LaminarTerm { //HIDE
+    pub fn term(&self, units: &Units, damped: f64) -> LaminarTerm {
         LaminarTerm { nu0: self.nu0 / damped * units.time / (units.length * units.length) }
     }
 }
 
 /// The law of [`Laminar`].
 #[derive(Clone, Copy, Debug)]
-pub struct LaminarTerm { //HIDE
+pub struct LaminarTerm {
     nu0: f64,
 }
 

@@ -6,11 +6,10 @@ mod laminar;
 mod sps;
 
 pub use artificial::Artificial;
-pub(crate) use artificial::ArtificialTerm; //NARROW
-pub use laminar::Laminar; //HIDE
+pub use laminar::Laminar;
 pub(crate) use laminar::LaminarTerm; //NARROW
-pub use sps::Sps; //HIDE
-pub use sps::SpsTerm; //HIDE
+pub use sps::Sps;
+pub use sps::SpsTerm;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,7 +67,7 @@ impl Viscosity {
     }
 
     /// The longest stable step (s) at smoothing length `h` (m), h²/(8 ν₀); infinite without a kinematic viscosity @morris1997.
-    pub fn step_limit(&self, h: f64) -> f64 { //HIDE
+    pub fn step_limit(&self, h: f64) -> f64 {
         let nu0 = match self {
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,

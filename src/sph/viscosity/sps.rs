@@ -35,7 +35,7 @@ impl Sps {
 
     /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
     /// a particle.
-    pub fn stress<const D: usize>(&self, strain: &[[f64; D]; D], s: f64, medium: &FluidProperties<D>) -> [[f64; D]; D] { //HIDE
+    pub fn stress<const D: usize>(&self, strain: &[[f64; D]; D], s: f64, medium: &FluidProperties<D>) -> [[f64; D]; D] {
         let strain: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
         let length2 = medium.dp * medium.dp / D as f64;
         let norm2: f64 = 2.0 * strain.iter().flatten().map(|x| x * x).sum::<f64>();
@@ -51,7 +51,7 @@ impl Sps {
 /// The stress of [`Sps`], and the strain rate for the next pass: S_ij = ½(∂_j v_i + ∂_i v_j) with
 /// ∂_j v_i = Σ V_b (v_b − v_a)_i ∂_j W. The stress that acts is that of the pass before.
 #[derive(Clone, Copy, Debug)]
-pub struct SpsTerm; //HIDE
+pub struct SpsTerm;
 
 impl<const D: usize> Term<D> for SpsTerm {
     const STRESS: bool = true;

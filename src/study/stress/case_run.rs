@@ -24,7 +24,7 @@ pub(crate) const BUDGET: f64 = 1.5e8; //NARROW
 
 /// What came out of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CaseRun { //HIDE
+pub struct CaseRun {
     /// The map.
     pub map: String,
     /// The values along its axes.
@@ -48,7 +48,7 @@ pub struct CaseRun { //HIDE
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum CaseEnd { //HIDE
+pub enum CaseEnd {
     /// At its end.
     Reached,
     /// The budget was used up.

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// A bound and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Bound { //HIDE
+pub struct Bound {
     /// The largest figure that passes.
     pub within: f64,
     /// Why so much and no more.
@@ -28,7 +28,7 @@ pub struct Bound { //HIDE
 /// A bound on something of a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SolidBound { //HIDE
+pub struct SolidBound {
     /// The solid's name.
     pub solid: String,
     /// The largest figure that passes.
@@ -40,7 +40,7 @@ pub struct SolidBound { //HIDE
 /// A motion that is known exactly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MotionBound { //HIDE
+pub struct MotionBound {
     /// The solid's name.
     pub solid: String,
     /// A column of its motion, as in `heave_m`.
@@ -56,7 +56,7 @@ pub struct MotionBound { //HIDE
 /// What a case is judged by.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Criteria { //HIDE
+pub struct Criteria {
     /// Energy made of nothing, as a share of the case's energy scale.
     pub energy: Option<Bound>,
     /// Depth of water or a body inside a solid, dp; no water may be beside or below a tank.
@@ -77,7 +77,7 @@ pub(crate) type MeasuredFigures = BTreeMap<String, f64>; //NARROW
 /// How a case came out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum CaseOutcome { //HIDE
+pub enum CaseOutcome {
     /// All figures are within their bounds.
     Right,
     /// The program stopped or refused, and said why.

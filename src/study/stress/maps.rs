@@ -24,7 +24,7 @@ const DEEPEST: usize = 8;
 /// A family of cases along one or two axes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StressMap { //HIDE
+pub struct StressMap {
     /// Its name.
     pub name: String,
     /// What it asks, in a sentence.
@@ -51,7 +51,7 @@ pub struct StressMap { //HIDE
 /// What is varied, and its values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MapAxis { //HIDE
+pub struct MapAxis {
     /// What it is, in words.
     pub label: String,
     /// Its unit.
@@ -62,7 +62,7 @@ pub struct MapAxis { //HIDE
 
 /// One run of a map.
 #[derive(Clone, Debug)]
-pub struct StressCase { //HIDE
+pub struct StressCase {
     /// The map.
     pub map: String,
     /// Its column and row.
@@ -91,7 +91,7 @@ struct MapsFile {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is no list of maps.
-pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> { //HIDE
+pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> {
     let Some(path) = file else { return read(TEXT, NAME) };
     let text = std::fs::read_to_string(path).map_err(|why| {
         Error::file(path, why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
@@ -117,7 +117,7 @@ fn read(text: &str, name: &str) -> Result<Vec<StressMap>> {
 ///
 /// # Errors
 /// `Usage` if there is no such map: names the nearest.
-pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> { //HIDE
+pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> {
     if names.is_empty() {
         return Ok(all.into_iter().filter(|map| !(quick && map.slow)).collect());
     }
@@ -143,7 +143,7 @@ impl MapAxis {
 
 impl StressMap {
     /// How many cases it has.
-    pub fn count(&self) -> usize { //HIDE
+    pub fn count(&self) -> usize {
         self.x.values.len() * self.y.as_ref().map_or(1, |y| y.values.len())
     }
 

@@ -11,25 +11,18 @@ mod maps;
 mod measurements;
 mod case_run;
 
-pub(crate) use case_run::BUDGET; //NARROW
 pub(crate) use case_run::CaseEnd; //NARROW
 pub(crate) use case_run::CaseRun; //NARROW
-pub(crate) use criteria::Bound; //NARROW
-pub use criteria::CaseOutcome; //HIDE
-pub(crate) use criteria::Criteria; //NARROW
-pub(crate) use criteria::MeasuredFigures; //NARROW
-pub(crate) use criteria::MotionBound; //NARROW
-pub(crate) use criteria::SolidBound; //NARROW
-pub(crate) use maps::MapAxis; //NARROW
+pub use criteria::CaseOutcome;
 pub(crate) use maps::StressCase; //NARROW
-pub use maps::StressMap; //HIDE
-pub use maps::maps; //HIDE
-pub use maps::select_maps; //HIDE
-pub use result_store::CaseResult; //HIDE
-pub use result_store::StressResults; //HIDE
+pub use maps::StressMap;
+pub use maps::maps;
+pub use maps::select_maps;
+pub use result_store::CaseResult;
+pub use result_store::StressResults;
 
 /// What came out of a case, in a line.
-pub fn summary_line(entry: &CaseResult) -> String { //HIDE
+pub fn summary_line(entry: &CaseResult) -> String {
     let values = entry.case.values.join(", ");
     let Some((outcome, missed)) = entry.verdict() else { return format!("{values}: not run") };
     let why = match entry.run.as_ref().map(|trial| &trial.end) {

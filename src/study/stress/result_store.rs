@@ -20,7 +20,7 @@ use crate::{
 
 /// A case, what came out of it if it has been run, and what that is worth.
 #[derive(Clone, Debug)]
-pub struct CaseResult { //HIDE
+pub struct CaseResult {
     /// The case.
     pub case: StressCase,
     /// Its run.
@@ -28,7 +28,7 @@ pub struct CaseResult { //HIDE
 }
 
 /// Many maps, and where their results go.
-pub struct StressResults { //HIDE
+pub struct StressResults {
     out: PathBuf,
     maps: Vec<StressMap>,
     /// All cases, map by map.
@@ -54,7 +54,7 @@ struct StoredRow {
 
 impl CaseResult {
     /// What the run is worth, and which bounds it misses; none if it has not been run.
-    pub fn verdict(&self) -> Option<(CaseOutcome, Vec<String>)> { //HIDE
+    pub fn verdict(&self) -> Option<(CaseOutcome, Vec<String>)> {
         let trial = self.run.as_ref()?;
         let missed = self.case.criteria.missed_bounds(&trial.figures);
         Some((trial.outcome(&missed), missed))
@@ -66,7 +66,7 @@ impl StressResults {
     ///
     /// # Errors
     /// Those of the maps; `File` if the results there cannot be read.
-    pub fn open(maps: Vec<StressMap>, quick: bool, out: PathBuf) -> Result<Self> { //HIDE
+    pub fn open(maps: Vec<StressMap>, quick: bool, out: PathBuf) -> Result<Self> {
         let cases = maps.iter().map(|map| map.cases(quick)).collect::<Result<Vec<_>>>()?.concat();
         let entries = cases.into_iter().map(|case| CaseResult { case, run: None }).collect();
         let mut ledger = Self { out, maps, entries, unlisted: Vec::new() };
@@ -85,7 +85,7 @@ impl StressResults {
     }
 
     /// The file of all results.
-    pub fn file(&self) -> PathBuf { //HIDE
+    pub fn file(&self) -> PathBuf {
         self.out.join("stress.json")
     }
 
@@ -94,7 +94,7 @@ impl StressResults {
     ///
     /// # Errors
     /// `File` if the results cannot be written; `Usage` if threads cannot be started.
-    pub fn run_missing( //HIDE
+    pub fn run_missing(
         &mut self,
         workers: usize,
         stop: &AtomicBool,
@@ -139,7 +139,7 @@ impl StressResults {
     }
 
     /// Processor time of all cases, s.
-    pub fn cpu_seconds(&self) -> f64 { //HIDE
+    pub fn cpu_seconds(&self) -> f64 {
         self.entries.iter().filter_map(|entry| Some(entry.run.as_ref()?.cpu_s)).sum()
     }
 
@@ -163,7 +163,7 @@ impl StressResults {
     ///
     /// # Errors
     /// `File` if one cannot be written.
-    pub fn write(&self) -> Result<Vec<PathBuf>> { //HIDE
+    pub fn write(&self) -> Result<Vec<PathBuf>> {
         fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
         self.write_results()?;
         let mut files = Vec::new();
@@ -177,7 +177,7 @@ impl StressResults {
     }
 
     /// A row for each map: how many came out how. The first row is its head, the last the sum.
-    pub fn table(&self) -> Vec<Vec<String>> { //HIDE
+    pub fn table(&self) -> Vec<Vec<String>> {
         let all = [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished];
         let row = |name: &str, map: Option<&str>| {
             let counts = self.counts(map);
