@@ -38,6 +38,10 @@ pub use statistics::statistics;
 use std::path::{Path, PathBuf};
 
 use resume_point::ResumePoint;
+pub use inspect::MeshSummary;
+pub use inspect::SeriesColumns;
+pub use inspect::SolidSummary;
+pub use inspect::StepTiming;
 
 use crate::{
     error::{Error, ErrorKind, Result},

@@ -8,10 +8,10 @@ mod constraints;
 
 use std::time::{Duration, Instant};
 
-pub(crate) use crate::coupling::BodyStep; //NARROW
+pub use crate::coupling::BodyStep;
 pub use crate::system::Escape;
 pub use crate::system::ParticleLimits;
-pub(crate) use crate::system::RemovedParticle; //NARROW
+pub use crate::system::RemovedParticle;
 pub use crate::system::Setup;
 pub(crate) use constraints::find_by_name;
 pub use rollback::Rollback;
@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use rollback::RollbackControl;
+pub use add_remove::AddedSolid;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},

@@ -25,7 +25,7 @@ pub use harmonic::Harmonic;
 pub use harmonic::harmonic;
 pub(crate) use moments::moments; //NARROW
 pub(crate) use rao::MIN_WAVES_FOR_RAO; //NARROW
-pub(crate) use rao::RaoPoint; //NARROW
+pub use rao::RaoPoint;
 pub(crate) use rao::rao; //NARROW
 pub(crate) use rao::rao_over_frequency; //NARROW
 pub(crate) use reflection::reflection; //NARROW
@@ -33,7 +33,10 @@ pub(crate) use spectrum::complex_amplitudes; //NARROW
 pub(crate) use spectrum::displayed_spectrum; //NARROW
 pub(crate) use spectrum::spectrum; //NARROW
 pub(crate) use verdict::CheckCurves; //NARROW
-pub(crate) use verdict::ErrorMetrics; //NARROW
+pub use verdict::ErrorMetrics;
 pub use verdict::ReferenceCheck;
 pub use verdict::Verdict;
 pub(crate) use zero_crossings::zero_crossing_waves; //NARROW
+pub use alignment::AlignedMetrics;
+pub use alignment::ArrivalTimes;
+pub use verdict::RunningMeanMetrics;

@@ -8,11 +8,11 @@ mod power_breakdown;
 
 pub use acoustic_added_mass::stiffest_frequency;
 pub(crate) use acoustic_added_mass::{AcousticAddedMass, AddedMassState};
-pub(crate) use body_step::BodyStep; //NARROW
+pub use body_step::BodyStep;
 pub(crate) use body_step::{Bodies, Hook};
 pub(crate) use energy_budget::Accounting;
-pub(crate) use energy_budget::EnergyBudget; //NARROW
-pub(crate) use load_breakdown::LoadBreakdown; //NARROW
+pub use energy_budget::EnergyBudget;
+pub use load_breakdown::LoadBreakdown;
 
 use crate::{
     math::{Pose, Vector},

@@ -25,6 +25,7 @@ pub use fill::WaterRegion;
 pub use fill::fill;
 pub use mesh::ContactGeometry;
 pub use mesh::Mesh;
+pub use fill::FilledWater;
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]

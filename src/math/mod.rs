@@ -7,8 +7,8 @@ pub mod simd;
 pub mod time_series;
 mod vector;
 
-pub(crate) use config::BoxConfig; //NARROW
-pub(crate) use config::NumberOrArray; //NARROW
+pub use config::BoxConfig;
+pub use config::NumberOrArray;
 pub use vector::Bivector;
 pub use vector::Bounds;
 pub use vector::Matrix;

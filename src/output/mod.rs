@@ -15,13 +15,13 @@ mod vtu;
 pub(crate) mod free_surface_mesh; //NARROW
 
 pub use checkpoint::Checkpoint;
-pub(crate) use checkpoint::OutputPositions; //NARROW
+pub use checkpoint::OutputPositions;
 pub(crate) use csv::CsvTable; //NARROW
 pub use csv::SeriesTable;
 pub(crate) use frame::FrameWriter; //NARROW
 pub(crate) use frame_sequence::FramePoints; //NARROW
 pub(crate) use frame_sequence::FrameSequence; //NARROW
-pub(crate) use interval_mean::IntervalMean; //NARROW
+pub use interval_mean::IntervalMean;
 pub use manifest::Manifest;
 
 use std::{

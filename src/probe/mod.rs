@@ -24,45 +24,45 @@ mod probe_row;
 mod runup;
 mod velocity;
 
-pub(crate) use balance::LoadBalancePlan; //NARROW
-pub(crate) use budget::EnergyBudgetPlan; //NARROW
+pub use balance::LoadBalancePlan;
+pub use budget::EnergyBudgetPlan;
 pub use budget::EnergyBudgetProbe;
 pub(crate) use budget::relative_residual; //NARROW
-pub(crate) use contact_force::ContactForcePlan; //NARROW
+pub use contact_force::ContactForcePlan;
 pub(crate) use contact_force::ContactList; //NARROW
-pub(crate) use contact_force::ContactListPlan; //NARROW
-pub(crate) use elevation::ElevationPlan; //NARROW
+pub use contact_force::ContactListPlan;
+pub use elevation::ElevationPlan;
 pub use elevation::ElevationProbe;
-pub(crate) use elevation::GaugeConfig; //NARROW
+pub use elevation::GaugeConfig;
 pub use elevation::GaugeSurface;
-pub(crate) use energy::EnergyPlan; //NARROW
+pub use energy::EnergyPlan;
 pub use energy::EnergyProbe;
-pub(crate) use flow::FlowPlan; //NARROW
+pub use flow::FlowPlan;
 pub use flow::FlowProbe;
-pub(crate) use flow::SectionConfig; //NARROW
-pub(crate) use force::ForcePlan; //NARROW
+pub use flow::SectionConfig;
+pub use force::ForcePlan;
 pub use force::ForceProbe;
-pub(crate) use front::FrontPlan; //NARROW
+pub use front::FrontPlan;
 pub use front::FrontProbe;
-pub(crate) use joint::JointPlan; //NARROW
+pub use joint::JointPlan;
 pub use joint::JointProbe;
 pub use line::LineProbe;
-pub(crate) use line::RopePlan; //NARROW
-pub(crate) use line::SpringPlan; //NARROW
-pub(crate) use motion::MotionPlan; //NARROW
+pub use line::RopePlan;
+pub use line::SpringPlan;
+pub use motion::MotionPlan;
 pub use motion::MotionProbe;
-pub(crate) use patch::PatchConfig; //NARROW
-pub(crate) use patch::PatchPlan; //NARROW
+pub use patch::PatchConfig;
+pub use patch::PatchPlan;
 pub use patch::PatchProbe;
-pub(crate) use points::PointRowConfig; //NARROW
-pub(crate) use points::PointsConfig; //NARROW
-pub(crate) use pressure::PressurePlan; //NARROW
+pub use points::PointRowConfig;
+pub use points::PointsConfig;
+pub use pressure::PressurePlan;
 pub use pressure::PressureProbe;
 pub use probe_row::ProbeRow;
 pub(crate) use probe_row::column_at_place; //NARROW
-pub(crate) use runup::RunupPlan; //NARROW
+pub use runup::RunupPlan;
 pub use runup::RunupProbe;
-pub(crate) use velocity::VelocityPlan; //NARROW
+pub use velocity::VelocityPlan;
 pub use velocity::VelocityProbe;
 
 use schemars::JsonSchema;

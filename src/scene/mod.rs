@@ -50,46 +50,83 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
-pub(crate) use crate::plan::Plan; //NARROW
-pub(crate) use crate::math::BoxConfig; //NARROW
+pub use crate::plan::Plan;
+pub use crate::math::BoxConfig;
 pub use crate::probe::ProbeConfig;
 pub use build::BuiltScene;
 pub(crate) use build::SceneLayout; //NARROW
-pub(crate) use build::SizeEstimate; //NARROW
+pub use build::SizeEstimate;
 pub use bundled::BundledScene;
 pub use bundled::bundled_scenes;
-pub(crate) use resolve::ResolvedValue; //NARROW
+pub use resolve::ResolvedValue;
 pub use schema::schema;
 pub(crate) use section::shape::world_bounds;
-pub(crate) use section::analysis::CheckConfig; //NARROW
-pub(crate) use section::analysis::StatisticConfig; //NARROW
-pub(crate) use section::contact::ContactConfig; //NARROW
-pub(crate) use section::domain::GuardConfig; //NARROW
-pub(crate) use section::domain::PeriodicConfig; //NARROW
-pub(crate) use section::force_element::ForceConfig; //NARROW
-pub(crate) use section::force_element::RopeConfig; //NARROW
+pub use section::analysis::CheckConfig;
+pub use section::analysis::StatisticConfig;
+pub use section::contact::ContactConfig;
+pub use section::domain::GuardConfig;
+pub use section::domain::PeriodicConfig;
+pub use section::force_element::ForceConfig;
+pub use section::force_element::RopeConfig;
 pub use section::force_element::SpringConfig;
 pub use section::joint::JointConfig;
 pub use section::joint::JointKindConfig;
 pub use section::joint::MotorConfig;
-pub(crate) use section::model::ModelConfig; //NARROW
-pub(crate) use section::model::TimeSteppingConfig; //NARROW
+pub use section::model::ModelConfig;
+pub use section::model::TimeSteppingConfig;
 pub use section::motion::DrivenConfig;
-pub(crate) use section::output::CheckpointConfig; //NARROW
+pub use section::output::CheckpointConfig;
 pub use section::output::FramesChoice;
-pub(crate) use section::output::FramesConfig; //NARROW
+pub use section::output::FramesConfig;
 pub use section::shape::CompoundPartConfig;
 pub use section::shape::PlacementConfig;
 pub use section::shape::ShapeConfig;
 pub use section::solid::SolidConfig;
 pub use section::sponge_layer::SpongeLayerConfig;
-pub(crate) use section::water::FillConfig; //NARROW
-pub(crate) use section::water::StillWaterLevel; //NARROW
-pub(crate) use section::water::WaterConfig; //NARROW
+pub use section::water::FillConfig;
+pub use section::water::StillWaterLevel;
+pub use section::water::WaterConfig;
 pub use section::wave::WaveConfig;
-pub(crate) use toml_source::RenamedName; //NARROW
+pub use toml_source::RenamedName;
 pub(crate) use toml_source::current_key; //NARROW
 pub use untagged::TimeValueConfig;
+pub use crate::plan::Align;
+pub use crate::plan::CheckPlan;
+pub use crate::plan::FramesPlan;
+pub use crate::plan::Reference;
+pub use crate::plan::Score;
+pub use crate::plan::StatisticKind;
+pub use crate::plan::StatisticPlan;
+pub use crate::math::NumberOrArray;
+pub use crate::probe::GaugeConfig;
+pub use crate::probe::GaugeSurface;
+pub use crate::probe::PatchConfig;
+pub use crate::probe::PointRowConfig;
+pub use crate::probe::PointsConfig;
+pub use crate::probe::ProbePlan;
+pub use crate::probe::SectionConfig;
+pub use section::analysis::RaoConfig;
+pub use section::force_element::ForceFrame;
+pub use section::joint::LimitsConfig;
+pub use section::shape::AxisName;
+pub use section::shape::MeshConfig;
+pub use section::solid::FreeBodyConfig;
+pub use section::solid::MotionMode;
+pub use section::wave::AbsorbChoice;
+pub use section::wave::AbsorptionConfig;
+pub use section::wave::FocusedWaveConfig;
+pub use section::wave::IrregularWaveConfig;
+pub use section::wave::MeasuredElevationConfig;
+pub use section::wave::RegularWaveConfig;
+pub use section::wave::SolitaryWaveConfig;
+pub use section::wave::WaveComponentsConfig;
+pub use toml_source::ValueSource;
+pub use untagged::DraftChoice;
+pub use untagged::FieldFormulaConfig;
+pub use untagged::LengthUnit;
+pub use untagged::PolylineConfig;
+pub use untagged::TimeFunctionConfig;
+pub use untagged::TimeVectorConfig;
 
 /// Most bytes of a scene's text; the longest bundled one has 3,000.
 const MOST_TEXT: u64 = 1 << 20;

@@ -15,20 +15,20 @@ mod tests;
 
 pub use constraint::Constraints;
 pub use constraint::ContactSpec;
-pub(crate) use constraint::FreeMode; //NARROW
-pub(crate) use constraint::InitialHold; //NARROW
-pub(crate) use constraint::JointKind; //NARROW
-pub(crate) use constraint::JointReading; //NARROW
-pub(crate) use constraint::JointSpec; //NARROW
-pub(crate) use constraint::LineEnd; //NARROW
-pub(crate) use constraint::LineReading; //NARROW
-pub(crate) use constraint::Mobility; //NARROW
+pub use constraint::FreeMode;
+pub use constraint::InitialHold;
+pub use constraint::JointKind;
+pub use constraint::JointReading;
+pub use constraint::JointSpec;
+pub use constraint::LineEnd;
+pub use constraint::LineReading;
+pub use constraint::Mobility;
 pub use constraint::Motor;
-pub(crate) use constraint::MotorCommand; //NARROW
-pub(crate) use constraint::RopeSpec; //NARROW
-pub(crate) use constraint::SpringParameters; //NARROW
-pub(crate) use constraint::SpringSpec; //NARROW
-pub(crate) use force::ForceSpec; //NARROW
+pub use constraint::MotorCommand;
+pub use constraint::RopeSpec;
+pub use constraint::SpringParameters;
+pub use constraint::SpringSpec;
+pub use force::ForceSpec;
 pub use load::Load;
 pub(crate) use load::LoadContext;
 pub use prescribed_motion::PrescribedMotion;
@@ -37,10 +37,10 @@ pub use prescribed_motion::TimeFunction;
 pub use rapier::rapier2d;
 #[cfg(feature = "dim3")]
 pub use rapier::rapier3d;
-pub(crate) use rapier::ContactForce; //NARROW
+pub use rapier::ContactForce;
 pub use rapier::Dim;
 pub use rapier::Engine;
-pub(crate) use rapier::EngineFault; //NARROW
+pub use rapier::EngineFault;
 pub use rapier::HasEngine;
 
 use std::ops::Range;
@@ -48,6 +48,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use crate::wavemaker::AbsorptionState;
+pub use constraint::ContactPairs;
 use crate::{
     geometry::Shape,
     math::{Bivector, Matrix, Pose, Vector},

@@ -24,13 +24,14 @@ pub use sponge_layer::SpongeLayer;
 pub(crate) use step_check::StepCheck;
 pub use step_check::Escape;
 pub use step_check::ParticleLimits;
-pub(crate) use step_check::RemovedParticle; //NARROW
+pub use step_check::RemovedParticle;
 
 pub use crate::interaction::StepLimits;
 
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
+pub use step_check::ExitPath;
 
 use crate::{
     error::{Error, Result},

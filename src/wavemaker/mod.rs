@@ -23,10 +23,10 @@ pub(crate) use absorption::AbsorptionSettings; //NARROW
 pub(crate) use absorption::AbsorptionState; //NARROW
 pub(crate) use extent::LINEAR_SPEED_RATIO_MAX; //NARROW
 pub(crate) use paddle::Paddle; //NARROW
-pub(crate) use solitary::SolitaryTheory; //NARROW
+pub use solitary::SolitaryTheory;
 pub(crate) use solitary::SolitaryWave; //NARROW
 pub(crate) use spectrum::WaveSpectrum; //NARROW
-pub(crate) use train::DepthRegime; //NARROW
+pub use train::DepthRegime;
 pub(crate) use train::LinearWave; //NARROW
 pub use train::TheoryRegion;
 pub use train::wave_number;

@@ -8,18 +8,19 @@ pub(crate) mod links; //NARROW
 mod motor;
 mod reactions;
 
-pub(crate) use assembly::JointReading; //NARROW
-pub(crate) use assembly::LineReading; //NARROW
-pub(crate) use jacobian::Mobility; //NARROW
-pub(crate) use joint::FreeMode; //NARROW
-pub(crate) use joint::JointKind; //NARROW
-pub(crate) use joint::JointSpec; //NARROW
-pub(crate) use lines::LineEnd; //NARROW
-pub(crate) use lines::RopeSpec; //NARROW
-pub(crate) use lines::SpringParameters; //NARROW
-pub(crate) use lines::SpringSpec; //NARROW
+pub use assembly::JointReading;
+pub use assembly::LineReading;
+pub use jacobian::Mobility;
+pub use joint::FreeMode;
+pub use joint::JointKind;
+pub use joint::JointSpec;
+pub use lines::LineEnd;
+pub use lines::RopeSpec;
+pub use lines::SpringParameters;
+pub use lines::SpringSpec;
 pub use links::Constraints;
 pub use links::ContactSpec;
-pub(crate) use links::InitialHold; //NARROW
+pub use links::InitialHold;
 pub use motor::Motor;
-pub(crate) use motor::MotorCommand; //NARROW
+pub use motor::MotorCommand;
+pub use links::ContactPairs;

@@ -6,8 +6,8 @@ pub mod rapier2d;
 #[cfg(feature = "dim3")]
 pub mod rapier3d;
 
-pub(crate) use engine::ContactForce; //NARROW
+pub use engine::ContactForce;
 pub use engine::Dim;
 pub use engine::Engine;
-pub(crate) use engine::EngineFault; //NARROW
+pub use engine::EngineFault;
 pub use engine::HasEngine;

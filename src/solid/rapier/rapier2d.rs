@@ -31,6 +31,7 @@ pub use external::solid_from_body;
 pub(super) use world::RapierWorld;
 
 use nalgebra::SMatrix;
+pub use external::set_kinematic;
 use rapier::{
     dynamics::{IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
     geometry::{ContactData, SharedShape, TriMesh, TypedShape},

@@ -28,6 +28,7 @@ mod world;
 pub use external::apply_load;
 pub use external::kinematics;
 pub use external::solid_from_body;
+pub use external::set_kinematic;
 pub(super) use world::RapierWorld;
 
 use std::{

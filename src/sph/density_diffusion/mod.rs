@@ -4,7 +4,7 @@ mod fourtakas;
 mod molteni;
 
 pub use fourtakas::Fourtakas;
-pub(crate) use fourtakas::FourtakasTerm; //NARROW
+pub use fourtakas::FourtakasTerm;
 pub use molteni::Molteni;
 
 use schemars::JsonSchema;

@@ -7,7 +7,7 @@ mod sps;
 
 pub use artificial::Artificial;
 pub use laminar::Laminar;
-pub(crate) use laminar::LaminarTerm; //NARROW
+pub use laminar::LaminarTerm;
 pub use sps::Sps;
 pub use sps::SpsTerm;
 
@@ -15,6 +15,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{FluidProperties, Term, Units};
+pub use artificial::ArtificialTerm;
 
 /// The viscosity. Scene key `model.viscosity`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
