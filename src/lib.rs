@@ -68,19 +68,23 @@
 pub mod error;
 pub mod math;
 pub mod sph;
+#[doc(hidden)]
 pub mod particles;
 pub mod geometry;
 #[doc(hidden)]
 pub mod neighbours;
 pub mod wavemaker;
 pub mod solid;
+#[doc(hidden)]
 pub mod interaction;
 pub mod model;
 pub mod system;
+#[doc(hidden)]
 pub mod coupling;
 #[doc(hidden)]
 pub mod time_integration;
 pub mod simulation;
+#[doc(hidden)]
 pub mod plan;
 pub mod probe;
 pub mod analysis;

@@ -71,7 +71,7 @@ pub enum Shifting {
 
 impl Shifting {
     /// Whether water is not shifted beside a solid, which is `fixed` or not.
-    pub(crate) fn suppressed_beside(self, fixed: bool) -> bool { //NARROW
+    pub(crate) fn suppressed_beside(self, fixed: bool) -> bool {
         match self {
             Self::AwayFromSolids(_) => true,
             Self::AwayFromFixed(_) => fixed,
@@ -173,7 +173,7 @@ pub struct Model {
 }
 
 /// Default of c₀ over √(g·depth), –.
-pub(crate) const C0_FACTOR: f64 = 10.0; //NARROW
+pub(crate) const C0_FACTOR: f64 = 10.0;
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
@@ -212,7 +212,7 @@ impl Model {
     }
 
     /// Layers of boundary particles, dp apart, that fill the kernel's support.
-    pub(crate) fn boundary_layers(&self) -> usize { //NARROW
+    pub(crate) fn boundary_layers(&self) -> usize {
         // A support of 3.0 dp needs three layers, also where rounding makes it 3 + 1e-16.
         (self.support_radius() / self.dp - 1e-9).ceil().max(1.0) as usize
     }
@@ -230,7 +230,7 @@ impl Model {
     }
 
     /// Kernel value W (1/mᴰ) at squared distance `r2` (m²) in `dimension` 2 or 3.
-    pub(crate) fn kernel_value(&self, r2: f64, dimension: usize) -> f64 { //NARROW
+    pub(crate) fn kernel_value(&self, r2: f64, dimension: usize) -> f64 {
         match self.kernel {
             KernelKind::Cubic { .. } => kernel::Cubic::new(self.h, dimension).w(r2),
             KernelKind::Wendland => kernel::Wendland::new(self.h, dimension).w(r2),
@@ -238,7 +238,7 @@ impl Model {
     }
 
     /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::lattice_stiffness`].
-    pub(crate) fn lattice_stiffness<const D: usize>(&self) -> f64 { //NARROW
+    pub(crate) fn lattice_stiffness<const D: usize>(&self) -> f64 {
         match self.kernel {
             KernelKind::Cubic { .. } => {
                 kernel::lattice::lattice_stiffness(kernel::Cubic::new(self.h, D), &self.fluid_properties::<D>())
@@ -257,7 +257,7 @@ impl Model {
     }
 
     /// The shifting parameters, if any.
-    pub(crate) fn shift(&self) -> Option<Shift> { //NARROW
+    pub(crate) fn shift(&self) -> Option<Shift> {
         match self.shifting {
             Shifting::None => None,
             Shifting::AwayFromSolids(s) | Shifting::AwayFromFixed(s) | Shifting::Everywhere(s) => Some(s),

@@ -27,12 +27,12 @@ impl<const D: usize> Particles<D> {
     }
 
     /// Whether there is none.
-    pub(crate) fn is_empty(&self) -> bool { //NARROW
+    pub fn is_empty(&self) -> bool {
         self.r.is_empty()
     }
 
     /// The first `n` of them.
-    pub(crate) fn first_n(&self, n: usize) -> ParticlesView<'_, D> { //NARROW
+    pub(crate) fn first_n(&self, n: usize) -> ParticlesView<'_, D> {
         ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
     }
 
@@ -65,12 +65,12 @@ impl<const D: usize> ParticlesView<'_, D> {
     }
 
     /// Whether there is none.
-    pub(crate) fn is_empty(&self) -> bool { //NARROW
+    pub fn is_empty(&self) -> bool {
         self.r.is_empty()
     }
 
     /// Those of these numbers, in this order.
-    pub(crate) fn select(&self, numbers: impl IntoIterator<Item = usize>) -> Particles<D> { //NARROW
+    pub(crate) fn select(&self, numbers: impl IntoIterator<Item = usize>) -> Particles<D> {
         let mut chosen = Particles::default();
         for i in numbers {
             chosen.r.push(self.r[i]);

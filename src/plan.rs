@@ -89,7 +89,7 @@ pub enum StatisticKind {
 
 impl StatisticKind {
     /// The series that it is about.
-    pub(crate) fn series(&self) -> Vec<&str> { //NARROW
+    pub(crate) fn series(&self) -> Vec<&str> {
         match self {
             Self::Waves { series } => series.iter().map(String::as_str).collect(),
             Self::Reflection { gauges, .. } => gauges.iter().map(|(series, _)| series.as_str()).collect(),
@@ -123,7 +123,7 @@ pub struct CheckPlan {
 
 impl CheckPlan {
     /// The series in words, with when it was set to zero.
-    pub(crate) fn label(&self) -> String { //NARROW
+    pub(crate) fn label(&self) -> String {
         self.zero.map_or(self.series.clone(), |at| format!("{}, 0 at {at} s", self.series))
     }
 }

@@ -22,26 +22,16 @@ pub(crate) mod outputs;
 pub(crate) mod statistics;
 
 pub use energy_drift::EnergyDrift;
-pub use inspect::InspectOptions;
-pub use inspect::InspectReport;
-pub use inspect::inspect;
+pub use inspect::{InspectOptions, InspectReport, inspect};
+#[doc(hidden)]
+pub use inspect::{MeshSummary, SeriesColumns, SolidSummary, StepTiming};
 pub(crate) use lock::Lock;
 pub use lock::lock_owner;
-pub use statistics::RAO_FILE;
-pub use statistics::RaoResult;
-pub use statistics::RunStatistics;
-pub use statistics::SPECTRA_FILE;
-pub use statistics::Statistic;
-pub use statistics::StatisticsFilter;
-pub use statistics::statistics;
+pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
 use std::path::{Path, PathBuf};
 
 use resume_point::ResumePoint;
-pub use inspect::MeshSummary;
-pub use inspect::SeriesColumns;
-pub use inspect::SolidSummary;
-pub use inspect::StepTiming;
 
 use crate::{
     error::{Error, ErrorKind, Result},

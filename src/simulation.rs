@@ -8,19 +8,16 @@ mod constraints;
 
 use std::time::{Duration, Instant};
 
-pub use crate::coupling::BodyStep;
-pub use crate::system::Escape;
-pub use crate::system::ParticleLimits;
-pub use crate::system::RemovedParticle;
-pub use crate::system::Setup;
+pub use crate::coupling::{BodyStep, EnergyBudget, LoadBreakdown};
+pub use crate::system::{Escape, ParticleLimits, RemovedParticle, Setup};
 pub(crate) use constraints::find_by_name;
 pub use rollback::Rollback;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use rollback::RollbackControl;
 pub use add_remove::AddedSolid;
+use rollback::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
@@ -193,7 +190,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Whether a state of `time` (s) is stored.
-    pub(crate) fn has_rollback_state(&self, time: f64) -> bool { //NARROW
+    pub(crate) fn has_rollback_state(&self, time: f64) -> bool {
         self.rollback.has_state_at(time)
     }
 
@@ -298,7 +295,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Force passes so far.
-    pub(crate) fn force_passes(&self) -> u64 { //NARROW
+    pub(crate) fn force_passes(&self) -> u64 {
         self.system.force_passes()
     }
 

@@ -4,12 +4,12 @@ use super::Verdict;
 use crate::{math::format, plan::Score};
 
 /// A figure with three decimals, or a dash.
-pub(crate) fn format_metric(x: Option<f64>) -> String { //NARROW
+pub(crate) fn format_metric(x: Option<f64>) -> String {
     x.map_or("–".into(), |x| format!("{x:.3}"))
 }
 
 /// A figure in the unit of its series: three digits that count.
-pub(crate) fn format_value(x: Option<f64>) -> String { //NARROW
+pub(crate) fn format_value(x: Option<f64>) -> String {
     match x {
         None => "–".into(),
         Some(0.0) => "0".into(),
@@ -21,12 +21,12 @@ pub(crate) fn format_value(x: Option<f64>) -> String { //NARROW
 }
 
 /// A delay in ms, with its sign.
-pub(crate) fn format_delay(seconds: f64) -> String { //NARROW
+pub(crate) fn format_delay(seconds: f64) -> String {
     format!("{:+.0} ms", seconds * 1e3)
 }
 
 /// The bound in words.
-pub(crate) fn format_bound(bound: Option<Score>) -> String { //NARROW
+pub(crate) fn format_bound(bound: Option<Score>) -> String {
     let Some(b) = bound else { return String::new() };
     let said = [
         ("N", b.relative_l2),
@@ -41,7 +41,7 @@ pub(crate) fn format_bound(bound: Option<Score>) -> String { //NARROW
 }
 
 /// Whether the bound is kept, or why nobody knows.
-pub(crate) fn format_outcome(verdict: &Verdict) -> String { //NARROW
+pub(crate) fn format_outcome(verdict: &Verdict) -> String {
     match (verdict.passed, &verdict.note) {
         (Some(true), _) => "kept".into(),
         (Some(false), _) => "MISSED".into(),

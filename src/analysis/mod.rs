@@ -13,30 +13,15 @@ mod spectrum;
 mod verdict;
 mod zero_crossings;
 
-pub use crate::plan::Align;
-pub use crate::plan::CheckPlan;
-pub use crate::plan::Reference;
-pub use crate::plan::Score;
-pub use error_metrics::amplitude_ratio;
-pub use error_metrics::first_peak_error;
-pub use error_metrics::max_abs;
-pub use error_metrics::relative_l2;
-pub use harmonic::Harmonic;
-pub use harmonic::harmonic;
-pub(crate) use moments::moments; //NARROW
-pub(crate) use rao::MIN_WAVES_FOR_RAO; //NARROW
+pub use crate::plan::{Align, CheckPlan, Reference, Score};
+pub use alignment::{AlignedMetrics, ArrivalTimes};
+pub use error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2};
+pub use harmonic::{Harmonic, harmonic};
+pub(crate) use moments::moments;
 pub use rao::RaoPoint;
-pub(crate) use rao::rao; //NARROW
-pub(crate) use rao::rao_over_frequency; //NARROW
-pub(crate) use reflection::reflection; //NARROW
-pub(crate) use spectrum::complex_amplitudes; //NARROW
-pub(crate) use spectrum::displayed_spectrum; //NARROW
-pub(crate) use spectrum::spectrum; //NARROW
-pub(crate) use verdict::CheckCurves; //NARROW
-pub use verdict::ErrorMetrics;
-pub use verdict::ReferenceCheck;
-pub use verdict::Verdict;
-pub(crate) use zero_crossings::zero_crossing_waves; //NARROW
-pub use alignment::AlignedMetrics;
-pub use alignment::ArrivalTimes;
-pub use verdict::RunningMeanMetrics;
+pub(crate) use rao::{MIN_WAVES_FOR_RAO, rao, rao_over_frequency};
+pub(crate) use reflection::reflection;
+pub(crate) use spectrum::{complex_amplitudes, displayed_spectrum, spectrum};
+pub use verdict::CheckCurves;
+pub use verdict::{ErrorMetrics, ReferenceCheck, RunningMeanMetrics, Verdict};
+pub(crate) use zero_crossings::zero_crossing_waves;

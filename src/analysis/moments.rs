@@ -4,7 +4,7 @@ use crate::math::time_series::TimeSeries;
 
 /// Figures of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Moments { //NARROW
+pub(crate) struct Moments {
     /// Least value and its time, s.
     pub min: (f64, f64),
     /// Largest value and its time, s.
@@ -22,7 +22,7 @@ pub(crate) struct Moments { //NARROW
 ///   x̄ = 1/T ∫ x dt,   σ² = 1/T ∫ (x − x̄)² dt
 ///
 /// by the trapezoid over the samples, in the unit of the series.
-pub(crate) fn moments(series: &TimeSeries) -> Moments { //NARROW
+pub(crate) fn moments(series: &TimeSeries) -> Moments {
     let (t, x) = (series.times(), series.values());
     let (first, last) = series.span();
     let mean_of = |f: &dyn Fn(f64) -> f64| {

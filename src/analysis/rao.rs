@@ -15,14 +15,14 @@ use crate::math::time_series::TimeSeries;
 const PEAK_HALF_WIDTH: f64 = 0.1;
 
 /// Waves of a record at least of which the answer is told over frequency: eight in each quarter.
-pub(crate) const MIN_WAVES_FOR_RAO: usize = 8 * SEGMENTS; //NARROW
+pub(crate) const MIN_WAVES_FOR_RAO: usize = 8 * SEGMENTS;
 
 /// Least density of the waves at a frequency at which they are answered, over that at their peak, –.
 const MIN_WAVE_DENSITY: f64 = 0.02;
 
 /// An answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rao { //NARROW
+pub(crate) struct Rao {
     /// Amplitude of the motion over that of the wave, in the units of both.
     pub ratio: f64,
     /// Phase of the motion less that of the wave, rad, −π to π: positive if the motion is ahead.
@@ -33,7 +33,7 @@ pub(crate) struct Rao { //NARROW
 
 /// How `motion` answers `wave`: by a fit of both harmonics of this `period` (s), or else within a tenth about the peak of the
 /// waves, as the cross spectrum over that of the waves. None if there is no such wave, or the series are too short.
-pub(crate) fn rao(motion: &TimeSeries, wave: &TimeSeries, period: Option<f64>) -> Option<Rao> { //NARROW
+pub(crate) fn rao(motion: &TimeSeries, wave: &TimeSeries, period: Option<f64>) -> Option<Rao> {
     let (ratio, period) = match period {
         Some(period) => {
             let of = |series| harmonic(series, TAU / period).map(|h| Complex::from_polar(h.amplitude, h.phase));
@@ -72,7 +72,7 @@ pub struct RaoPoint {
 ///
 /// by means over seven parts, quarters of the record and those that lie half over two (@bendat2010, @welch1967). Only where
 /// the waves have a fiftieth of the density at their peak or more. None of fewer than 32 waves, or where nothing moves.
-pub(crate) fn rao_over_frequency(motion: &TimeSeries, wave: &TimeSeries) -> Vec<RaoPoint> { //NARROW
+pub(crate) fn rao_over_frequency(motion: &TimeSeries, wave: &TimeSeries) -> Vec<RaoPoint> {
     let swings = zero_crossing_waves(motion).is_some()
         && zero_crossing_waves(wave).is_some_and(|waves| waves.count >= MIN_WAVES_FOR_RAO);
     let Some((step, parts)) = swings.then(|| segment_transforms(&[motion, wave], SEGMENTS)).flatten() else {

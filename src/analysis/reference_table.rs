@@ -15,7 +15,7 @@ use crate::{
 /// # Errors
 /// `File` if it cannot be read; `Scene` if a column is missing (names the nearest), a field is no number, or
 /// fewer than two rows have both.
-pub(crate) fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<TimeSeries> { //NARROW
+pub(crate) fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<TimeSeries> {
     let mut rows = read_pairs(path, time, column)?;
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let groups = rows.chunk_by(|a, b| a.0 == b.0);

@@ -21,7 +21,7 @@ const BAND: [f64; 2] = [0.5, 2.0];
 
 /// Waves to and fro.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reflection { //NARROW
+pub(crate) struct Reflection {
     /// Height of the waves that come, in the unit of the series: H of regular waves, H_m0 of irregular ones.
     pub incident: f64,
     /// Height of those that go back.
@@ -30,7 +30,7 @@ pub(crate) struct Reflection { //NARROW
 
 impl Reflection {
     /// Reflection coefficient, –.
-    pub(crate) fn coefficient(&self) -> f64 { //NARROW
+    pub(crate) fn coefficient(&self) -> f64 {
         self.reflected / self.incident
     }
 }
@@ -42,7 +42,7 @@ impl Reflection {
 /// peak frequency, line by line of the spectra, but for lines to which the gauges are blind.
 ///
 /// None if there are fewer than two gauges, they cannot tell the two apart, or the series are too short.
-pub(crate) fn reflection(gauges: &[(f64, &TimeSeries)], depth: f64, g: f64, period: Option<f64>) -> Option<Reflection> { //NARROW
+pub(crate) fn reflection(gauges: &[(f64, &TimeSeries)], depth: f64, g: f64, period: Option<f64>) -> Option<Reflection> {
     let places: Vec<f64> = gauges.iter().map(|(x, _)| *x).collect();
     if places.len() < 2 {
         return None;

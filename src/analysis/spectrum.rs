@@ -21,11 +21,11 @@ const SHOWN_WAVES: usize = 8;
 const DISPLAYED_VARIANCE: f64 = 0.999;
 
 /// Complex amplitudes, from frequency 0 up.
-pub(crate) type ComplexAmplitudes = Vec<Complex<f64>>; //NARROW
+pub(crate) type ComplexAmplitudes = Vec<Complex<f64>>;
 
 /// A one-sided spectrum, its integral the variance of the record.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct WelchSpectrum { //NARROW
+pub(crate) struct WelchSpectrum {
     /// From one frequency to the next, Hz; the first is 0.
     pub frequency_step: f64,
     /// Density, in the squared unit of the series a Hz.
@@ -34,24 +34,24 @@ pub(crate) struct WelchSpectrum { //NARROW
 
 impl WelchSpectrum {
     /// Frequencies, Hz.
-    pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> + '_ { //NARROW
+    pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.density.len()).map(|i| i as f64 * self.frequency_step)
     }
 
     /// ∫ fⁿ S df from `from` to `until` (Hz).
-    pub(crate) fn moment(&self, n: i32, from: f64, until: f64) -> f64 { //NARROW
+    pub(crate) fn moment(&self, n: i32, from: f64, until: f64) -> f64 {
         let inside = self.frequencies().zip(&self.density).filter(|(f, _)| (from..=until).contains(f));
         inside.map(|(f, s)| f.powi(n) * s).sum::<f64>() * self.frequency_step
     }
 
     /// Significant height H_m0 = 4 √m₀, in the unit of the series.
-    pub(crate) fn significant_height(&self) -> f64 { //NARROW
+    pub(crate) fn significant_height(&self) -> f64 {
         4.0 * self.moment(0, 0.0, f64::INFINITY).sqrt()
     }
 
     /// Peak frequency, Hz: the centroid of the highest line and two on either side, over which a Hann window spreads what
     /// swings with one period.
-    pub(crate) fn peak_frequency(&self) -> f64 { //NARROW
+    pub(crate) fn peak_frequency(&self) -> f64 {
         let lines = 0..self.density.len();
         let top = lines.max_by(|a, b| self.density[*a].total_cmp(&self.density[*b])).unwrap_or(0);
         let near = || self.frequencies().zip(&self.density).take(top + 3).skip(top.saturating_sub(2));
@@ -59,12 +59,12 @@ impl WelchSpectrum {
     }
 
     /// Peak period T_p, s.
-    pub(crate) fn peak_period(&self) -> f64 { //NARROW
+    pub(crate) fn peak_period(&self) -> f64 {
         1.0 / self.peak_frequency()
     }
 
     /// Mean period T_m02 = √(m₀/m₂), s.
-    pub(crate) fn mean_period(&self) -> f64 { //NARROW
+    pub(crate) fn mean_period(&self) -> f64 {
         (self.moment(0, 0.0, f64::INFINITY) / self.moment(2, 0.0, f64::INFINITY)).sqrt()
     }
 }
@@ -73,7 +73,7 @@ impl WelchSpectrum {
 ///
 /// Samples are taken evenly from the smooth curve through the series, less their mean. A record of 64 waves or more is cut
 /// into quarters that overlap by half; a shorter one is taken whole.
-pub(crate) fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> { //NARROW
+pub(crate) fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     let of = moments(series);
     if of.min.0 == of.max.0 {
         return None;
@@ -95,7 +95,7 @@ pub(crate) fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> { //NARROW
 }
 
 /// The spectrum of `series` as it is shown: of eight waves or more, up to the frequency below which 99.9 % of the variance lies.
-pub(crate) fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> { //NARROW
+pub(crate) fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     zero_crossing_waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
     let mut all = spectrum(series)?;
     let whole: f64 = all.density.iter().sum();
@@ -111,7 +111,7 @@ pub(crate) fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
 
 /// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
 /// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
-pub(crate) fn complex_amplitudes(series: &[&TimeSeries]) -> Option<(f64, Vec<ComplexAmplitudes>)> { //NARROW
+pub(crate) fn complex_amplitudes(series: &[&TimeSeries]) -> Option<(f64, Vec<ComplexAmplitudes>)> {
     let (step, parts) = segment_transforms(series, 1)?;
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }

@@ -34,7 +34,7 @@ enum KnownReference {
 
 /// A run and what it is held against, as lines.
 #[derive(Clone, Debug)]
-pub(crate) struct CheckCurves { //NARROW
+pub struct CheckCurves {
     /// The run, from its start to its end.
     pub sim: TimeSeries,
     /// The same as the check's instrument shows it, if it has one.
@@ -43,8 +43,6 @@ pub(crate) struct CheckCurves { //NARROW
     pub reference: TimeSeries,
     /// Whether the reference is a formula.
     pub exact: bool,
-    /// Share of the reference in the window that the run covers, –.
-    pub covered: f64,
 }
 
 /// Figures of a comparison; one is none where it cannot be formed.
@@ -120,7 +118,7 @@ impl ReferenceCheck {
     }
 
     /// What it looks at and what for.
-    pub(crate) fn plan(&self) -> &CheckPlan { //NARROW
+    pub fn plan(&self) -> &CheckPlan {
         &self.plan
     }
 
@@ -129,11 +127,11 @@ impl ReferenceCheck {
     /// # Errors
     /// `File` if the run's table cannot be read; `Scene` if it has no such column, or the run and the
     /// reference have no time in common.
-    pub(crate) fn curves(&self, folder: &Path) -> Result<CheckCurves> { //NARROW
+    pub fn curves(&self, folder: &Path) -> Result<CheckCurves> {
         let (sim, meaned) = self.run_series(folder)?;
-        let (reference, covered, _) = self.overlap(&sim)?;
+        let (reference, ..) = self.overlap(&sim)?;
         let exact = matches!(self.reference, KnownReference::Formula(_));
-        Ok(CheckCurves { sim, running_mean: meaned, reference, exact, covered })
+        Ok(CheckCurves { sim, running_mean: meaned, reference, exact })
     }
 
     /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
@@ -268,7 +266,7 @@ impl ReferenceCheck {
 
 impl Verdict {
     /// Whether every figure that `bound` names is there and within it.
-    pub(crate) fn meets(&self, bound: &Score) -> bool { //NARROW
+    pub(crate) fn meets(&self, bound: &Score) -> bool {
         let within =
             |limit: Option<f64>, figure: Option<f64>| limit.is_none_or(|most| figure.is_some_and(|x| x <= most));
         within(bound.relative_l2, self.metrics.relative_l2)

@@ -12,7 +12,7 @@ const ROUND_OFF: [f64; 2] = [1e-9, 1e-12];
 
 /// Waves of a series. Heights are from trough to crest, in the unit of the series.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ZeroCrossingWaves { //NARROW
+pub(crate) struct ZeroCrossingWaves {
     /// How many.
     pub count: usize,
     /// Mean height.
@@ -30,7 +30,7 @@ pub(crate) struct ZeroCrossingWaves { //NARROW
 /// The waves of `series`; none if there are fewer than two. Crossings are linear between samples; a wave goes a tenth of
 /// the standard deviation to both sides of the mean. Round-off has none: a range below 1e-9 of the largest magnitude, or below
 /// 1e-12 in the unit of the series.
-pub(crate) fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWaves> { //NARROW
+pub(crate) fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWaves> {
     let of = moments(series);
     let (least, largest) = (of.min.0, of.max.0);
     if largest - least < (ROUND_OFF[0] * largest.abs().max(least.abs())).max(ROUND_OFF[1]) {

@@ -43,7 +43,7 @@ type Six = SVector<f64, 6>;
 type Square = SMatrix<f64, 6, 6>;
 
 /// The acoustic added mass of a free body.
-pub(crate) struct AcousticAddedMass<const D: usize> { //NARROW
+pub(crate) struct AcousticAddedMass<const D: usize> {
     /// Its number among the solids.
     pub(super) solid: usize,
     /// Its outer boundary particles, in order, and their normals in its frame.
@@ -55,7 +55,7 @@ pub(crate) struct AcousticAddedMass<const D: usize> { //NARROW
 
 /// Its state in a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct AddedMassState { //NARROW
+pub(crate) struct AddedMassState {
     /// Pending impulse, S (N s, N m s).
     pending: Six,
     /// Load of contacts and joints, C (N, N m).

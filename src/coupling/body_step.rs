@@ -218,7 +218,7 @@ impl<const D: usize> BodyStep<'_, D> {
     }
 
     /// Contact forces, pair by pair: of this step after [`BodyStep::advance_bodies`], of the last step before it.
-    pub(crate) fn contacts(&self) -> Vec<ContactForce<D>> { //NARROW
+    pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|engine| engine.contacts()).unwrap_or_default()
     }
 

@@ -42,7 +42,7 @@ pub struct LoadBreakdown<const D: usize> {
 
 impl<const D: usize> LoadBreakdown<D> {
     /// No load.
-    pub(crate) fn zero() -> Self { //NARROW
+    pub(crate) fn zero() -> Self {
         let none = Load::zero();
         Self {
             pressure: none,
@@ -80,7 +80,7 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// The sum of all loads.
-    pub(crate) fn sum(&self) -> Load<D> { //NARROW
+    pub(crate) fn sum(&self) -> Load<D> {
         self.kinds().into_iter().map(|(_, load)| load).sum()
     }
 

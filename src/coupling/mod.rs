@@ -22,7 +22,7 @@ use crate::{
 
 /// A time interval, s.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Interval { //NARROW
+pub(crate) struct Interval {
     /// Time at its start, s.
     pub t: f64,
     /// Its length, s.

@@ -23,7 +23,7 @@ pub(super) struct PointCells<const D: usize> {
 
 impl<const D: usize> PointCells<D> {
     /// A grid over `points` of cells `size` (m) wide, or wider.
-    pub(crate) fn new(points: &[Vector<D>], size: f64) -> Self { //NARROW
+    pub(crate) fn new(points: &[Vector<D>], size: f64) -> Self {
         let bounds = Bounds::around(points);
         let along = std::array::from_fn(|_| Vec::new());
         let mut grid = Self { min: bounds.min, size, count: [0; D], start: vec![0], order: Vec::new(), along };
@@ -67,7 +67,7 @@ impl<const D: usize> PointCells<D> {
     }
 
     /// Visits every point within `distance` (m) of `x`, and some farther ones, in an order fixed by the points.
-    pub(crate) fn visit_near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(usize, &Vector<D>)) { //NARROW
+    pub(crate) fn visit_near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(usize, &Vector<D>)) {
         self.rows_near(x, distance, |places| {
             let at = |k| Vector::from_fn(|axis, _| self.along[axis][k]);
             places.for_each(|k| visit(self.order[k] as usize, &at(k)));
@@ -76,7 +76,7 @@ impl<const D: usize> PointCells<D> {
 
     /// Appends to `found` every point nearer than `distance` (m) to `x`, in an order fixed by the points; `r2` is
     /// scratch memory.
-    pub(crate) fn append_within(&self, x: &Vector<D>, distance: f64, r2: &mut Vec<f64>, found: &mut Vec<u32>) { //NARROW
+    pub(crate) fn append_within(&self, x: &Vector<D>, distance: f64, r2: &mut Vec<f64>, found: &mut Vec<u32>) {
         let mut n = found.len();
         self.rows_near(x, distance, |places| {
             r2.clear();

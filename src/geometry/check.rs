@@ -15,7 +15,7 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     /// A scene error for a size that is not a positive number, an axis that does not exist, a shape of the
     /// other dimension, an outline that crosses itself, repeats a point or runs clockwise, an empty compound.
-    pub(crate) fn check(&self) -> Result<()> { //NARROW
+    pub(crate) fn check(&self) -> Result<()> {
         match self {
             Shape::Box { size } => sizes("the size of a box", size),
             Shape::Ball { radius } => positive("the radius of a ball", *radius),

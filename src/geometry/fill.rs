@@ -133,7 +133,7 @@ impl<'a, const D: usize> Lattice<'a, D> {
     }
 
     /// Visits the lattice points of the region's box, and of `margin` cells around it.
-    pub(crate) fn for_each_point(&self, margin: i64, mut visit: impl FnMut(&Vector<D>)) { //NARROW
+    pub(crate) fn for_each_point(&self, margin: i64, mut visit: impl FnMut(&Vector<D>)) {
         let (low, high) = (self.low.map(|i| i - margin), self.high.map(|i| i + margin));
         for_each_index(&low, &high, |at| {
             visit(&(self.origin + Vector::from_fn(|i, _| (at[i] as f64 + 0.5) * self.dp)));
@@ -141,14 +141,14 @@ impl<'a, const D: usize> Lattice<'a, D> {
     }
 
     /// The cells of the lattice and of `margin` cells around it.
-    pub(crate) fn bounds_with_margin(&self, margin: i64) -> Bounds<D> { //NARROW
+    pub(crate) fn bounds_with_margin(&self, margin: i64) -> Bounds<D> {
         let corner =
             |at: &[i64; D], more: i64| Vector::from_fn(|i, _| self.origin[i] + (at[i] + more) as f64 * self.dp);
         Bounds { min: corner(&self.low, -margin), max: corner(&self.high, 1 + margin) }
     }
 
     /// Whether the region holds the place `x`.
-    pub(crate) fn contains(&self, x: &Vector<D>) -> bool { //NARROW
+    pub(crate) fn contains(&self, x: &Vector<D>) -> bool {
         if self.is_box {
             return self.bounds_with_margin(0).grown(-1e-9 * self.dp).contains(x);
         }
@@ -157,7 +157,7 @@ impl<'a, const D: usize> Lattice<'a, D> {
 
     /// Keeps `x` half a dp inside the sides of a box; its top is free and its bottom a solid's business.
     /// Returns how far (m) it may then go without leaving them.
-    pub(crate) fn clamp_to_sides(&self, x: &mut Vector<D>) -> f64 { //NARROW
+    pub(crate) fn clamp_to_sides(&self, x: &mut Vector<D>) -> f64 {
         let mut room = f64::INFINITY;
         if let (true, Shape::Box { size }) = (self.is_box, &self.region.shape) {
             for i in 0..D - 1 {

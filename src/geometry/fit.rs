@@ -36,7 +36,7 @@ pub(super) struct Obstacle<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Obstacle<'a, D> {
-    pub(crate) fn new(shape: &'a Shape<D>, pose: &'a Pose<D>, dp: f64) -> Self { //NARROW
+    pub(crate) fn new(shape: &'a Shape<D>, pose: &'a Pose<D>, dp: f64) -> Self {
         let bounds = shape.bounds_at(pose);
         let mut lines = Vec::new();
         collect_lines(shape, pose, &mut lines);
@@ -54,7 +54,7 @@ impl<'a, const D: usize> Obstacle<'a, D> {
 
     /// Whether the cell at `x` goes to the solid, or lies in the ground below a bed. Cells that a face cuts are
     /// shared out so that, along each side, the solid gets its volume and not half a row more or less.
-    pub(crate) fn claims_cell(&mut self, x: &Vector<D>) -> bool { //NARROW
+    pub(crate) fn claims_cell(&mut self, x: &Vector<D>) -> bool {
         // A line over one dp has a cubic cell's second moment along any normal: before a curved face, too, the
         // shares add up to the volume.
         let share = if self.close.contains(x) { 0.5 - self.distance(x) / self.dp } else { 0.0 };
@@ -85,7 +85,7 @@ impl<'a, const D: usize> Obstacle<'a, D> {
 
     /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
     /// belongs to the water (`in_water`) or is not above it.
-    pub(crate) fn check_fit(&mut self, x: &Vector<D>, in_water: impl Fn(&Vector<D>) -> bool) { //NARROW
+    pub(crate) fn check_fit(&mut self, x: &Vector<D>, in_water: impl Fn(&Vector<D>) -> bool) {
         if self.needs_packing || !self.close.contains(x) {
             return;
         }
@@ -100,12 +100,12 @@ impl<'a, const D: usize> Obstacle<'a, D> {
     }
 
     /// Whether water on the lattice does not fit it.
-    pub(crate) fn needs_packing(&self) -> bool { //NARROW
+    pub(crate) fn needs_packing(&self) -> bool {
         self.needs_packing
     }
 
     /// Whether the water point `x` lies so near to the face that it can only be in a gap too narrow for a row of particles.
-    pub(crate) fn is_in_narrow_gap(&self, x: &Vector<D>) -> bool { //NARROW
+    pub(crate) fn is_in_narrow_gap(&self, x: &Vector<D>) -> bool {
         self.close.contains(x) && self.distance(x) < NARROW * self.dp
     }
 

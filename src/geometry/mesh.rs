@@ -19,7 +19,7 @@ use crate::{
 use tree::FacetTree;
 
 /// Most facets of a mesh: far more than particles can feel.
-pub(crate) const MAX_FACETS: usize = 500_000; //NARROW
+pub(crate) const MAX_FACETS: usize = 500_000;
 
 /// The longest mesh, m: what is longer is in another unit.
 const LARGEST: f64 = 1e6;
@@ -110,7 +110,7 @@ impl Mesh {
     }
 
     /// The smallest axis-aligned box around it, m.
-    pub(crate) fn bounds(&self) -> Bounds<3> { //NARROW
+    pub(crate) fn bounds(&self) -> Bounds<3> {
         self.bounds
     }
 
@@ -120,7 +120,7 @@ impl Mesh {
     }
 
     /// Area of the surface, m².
-    pub(crate) fn surface_area(&self) -> f64 { //NARROW
+    pub(crate) fn surface_area(&self) -> f64 {
         (0..self.facets.len())
             .map(|i| self.facet_corners(i))
             .map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm())
@@ -131,7 +131,7 @@ impl Mesh {
     /// length.
     ///
     /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. @baerentzen2005
-    pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) { //NARROW
+    pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
         self.tree.distance_and_normal(x)
     }
 

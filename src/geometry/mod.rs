@@ -9,7 +9,7 @@ mod check;
 mod distance;
 pub mod fill;
 mod fit;
-pub(crate) mod mesh; //NARROW
+pub(crate) mod mesh;
 mod moments;
 mod offset;
 pub(crate) mod overlap;
@@ -21,11 +21,8 @@ use std::sync::Arc;
 
 use crate::math::{Matrix, Pose, Vector};
 
-pub use fill::WaterRegion;
-pub use fill::fill;
-pub use mesh::ContactGeometry;
-pub use mesh::Mesh;
-pub use fill::FilledWater;
+pub use fill::{FilledWater, WaterRegion, fill};
+pub use mesh::{ContactGeometry, Mesh};
 
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]

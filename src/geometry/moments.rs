@@ -81,7 +81,7 @@ impl<const D: usize> Shape<D> {
 
     /// Area of the whole surface, m² (length of the outline, m, in 2-D). Of a compound the sum of its
     /// parts', so that faces in touch count.
-    pub(crate) fn surface_area(&self) -> f64 { //NARROW
+    pub(crate) fn surface_area(&self) -> f64 {
         match self {
             Shape::Box { size } => (0..D).map(|i| 2.0 * size.product() / size[i]).sum(),
             Shape::Ball { radius } => ball_surface(D, *radius),

@@ -4,7 +4,7 @@ use crate::sph::{AuxiliarySums, Num, Term};
 
 /// Inputs and sums that a set of terms needs beside acceleration and density rate.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RequiredSums { //NARROW
+pub(crate) struct RequiredSums {
     /// The sums of shifting.
     pub shift: bool,
     /// Tensile repulsions.
@@ -26,7 +26,7 @@ const fn entries(dimension: usize) -> usize {
 
 impl RequiredSums {
     /// The needs of the terms `Y`.
-    pub(crate) const fn of_terms<Y: Term<D>, const D: usize>() -> Self { //NARROW
+    pub(crate) const fn of_terms<Y: Term<D>, const D: usize>() -> Self {
         Self {
             shift: Y::SHIFT,
             repulsion: Y::REPULSION,
@@ -38,7 +38,7 @@ impl RequiredSums {
     }
 
     /// Whether there are sums.
-    pub(crate) const fn any_auxiliary(self) -> bool { //NARROW
+    pub(crate) const fn any_auxiliary(self) -> bool {
         self.shift || self.suppression || self.stress || self.renormalization
     }
 

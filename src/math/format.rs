@@ -32,7 +32,7 @@ pub fn unit(column: &str) -> &'static str {
 
 /// The name of a column without its unit, in words: `water_kinetic_J` is "water kinetic", `vx_at_1_0.2_mps` of a row of
 /// gauges "vx at 1, 0.2 m".
-pub(crate) fn column_label(column: &str) -> String { //NARROW
+pub fn column_label(column: &str) -> String {
     let end = UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("", |(end, _)| end);
     let name = &column[..column.len() - end.len()];
     match name.split_once("_at_") {

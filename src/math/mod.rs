@@ -2,15 +2,12 @@
 
 mod config;
 pub mod expression;
+#[doc(hidden)]
 pub mod format;
+#[doc(hidden)]
 pub mod simd;
 pub mod time_series;
 mod vector;
 
-pub use config::BoxConfig;
-pub use config::NumberOrArray;
-pub use vector::Bivector;
-pub use vector::Bounds;
-pub use vector::Matrix;
-pub use vector::Pose;
-pub use vector::Vector;
+pub use config::{BoxConfig, NumberOrArray};
+pub use vector::{Bivector, Bounds, Matrix, Pose, Vector};

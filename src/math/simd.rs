@@ -4,19 +4,17 @@
 //! depends on the instruction set.
 
 pub use fearless_simd::Level;
-pub(crate) use fearless_simd::Simd; //NARROW
-pub(crate) use fearless_simd::f32x8; //NARROW
-pub(crate) use fearless_simd::i32x8; //NARROW
+pub(crate) use fearless_simd::{Simd, f32x8, i32x8};
 
 use fearless_simd::{SimdBase, SimdFrom};
 
 /// Lanes in a number.
-pub(crate) const LANES: usize = 8; //NARROW
+pub(crate) const LANES: usize = 8;
 
 /// Eight numbers in a row, aligned so that none is split between cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
-pub(crate) struct LaneRow(pub [f32; LANES]); //NARROW
+pub(crate) struct LaneRow(pub [f32; LANES]);
 
 /// The instructions for lanes that this processor has, the fastest first: AVX-512 and AVX2 on x86-64, whatever there
 /// is elsewhere. A processor of 2012 has none.
@@ -33,17 +31,17 @@ pub fn instruction_sets() -> Vec<Level> {
 }
 
 /// The first of [`instruction_sets`].
-pub(crate) fn best_instruction_set() -> Option<Level> { //NARROW
+pub(crate) fn best_instruction_set() -> Option<Level> {
     instruction_sets().first().copied()
 }
 
 /// The name of an instruction set.
-pub(crate) fn instruction_set_name(level: Level) -> String { //NARROW
+pub(crate) fn instruction_set_name(level: Level) -> String {
     format!("{level:?}").split('(').next().unwrap_or_default().to_lowercase()
 }
 
 /// A task that runs with a given instruction set; everything that `run` calls must be `#[inline(always)]`.
-pub(crate) trait SimdTask { //NARROW
+pub(crate) trait SimdTask {
     /// Its result.
     type Output;
     /// Runs it.
@@ -51,7 +49,7 @@ pub(crate) trait SimdTask { //NARROW
 }
 
 /// Does `work` with the instructions of `level`, one that [`instruction_sets`] gave.
-pub(crate) fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output { //NARROW
+pub(crate) fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
         // Two instruction sets are compiled and not four: the sweeps are most of the program's compile time.
@@ -75,25 +73,25 @@ pub(crate) fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output { //NARR
 
 /// The numbers of a row.
 #[inline(always)]
-pub(crate) fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> { //NARROW
+pub(crate) fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> {
     f32x8::simd_from(simd, *from)
 }
 
 /// The whole numbers of a row.
 #[inline(always)]
-pub(crate) fn load_integers<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> { //NARROW
+pub(crate) fn load_integers<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> {
     i32x8::simd_from(simd, *from)
 }
 
 /// The sum of all lanes, always in the same order.
 #[inline(always)]
-pub(crate) fn sum_lanes<S: Simd>(x: f32x8<S>) -> f32 { //NARROW
+pub(crate) fn sum_lanes<S: Simd>(x: f32x8<S>) -> f32 {
     let x = x.as_slice();
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }
 
 /// The largest of all lanes.
 #[inline(always)]
-pub(crate) fn max_lane<S: Simd>(x: f32x8<S>) -> f32 { //NARROW
+pub(crate) fn max_lane<S: Simd>(x: f32x8<S>) -> f32 {
     x.as_slice().iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
 }

@@ -49,7 +49,7 @@ impl TimeSeries {
     }
 
     /// First and last time, s.
-    pub(crate) fn span(&self) -> (f64, f64) { //NARROW
+    pub(crate) fn span(&self) -> (f64, f64) {
         (self.t[0], self.t[self.t.len() - 1])
     }
 
@@ -62,7 +62,7 @@ impl TimeSeries {
     /// Value and rate at time `t` (s) of the smooth curve through the samples: a cubic Hermite spline
     /// with the slopes of the parabola through each sample and its neighbours, so both are continuous.
     /// Outside the span the end value, at rest.
-    pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) { //NARROW
+    pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) {
         let (first, last) = self.span();
         if t <= first || t >= last {
             return (self.value_at(t), 0.0);
@@ -81,7 +81,7 @@ impl TimeSeries {
     ///
     /// # Errors
     /// `Scene` if fewer than two samples lie there.
-    pub(crate) fn window(&self, from: f64, until: f64) -> Result<Self> { //NARROW
+    pub(crate) fn window(&self, from: f64, until: f64) -> Result<Self> {
         let range = self.t.partition_point(|&t| t < from)..self.t.partition_point(|&t| t <= until);
         if range.len() < 2 {
             let (first, last) = self.span();
@@ -93,12 +93,12 @@ impl TimeSeries {
     }
 
     /// The same `by` seconds later.
-    pub(crate) fn shifted(&self, by: f64) -> Self { //NARROW
+    pub(crate) fn shifted(&self, by: f64) -> Self {
         Self { t: self.t.iter().map(|t| t + by).collect(), x: self.x.clone() }
     }
 
     /// The same with `offset` taken off every value.
-    pub(crate) fn minus(&self, offset: f64) -> Self { //NARROW
+    pub(crate) fn minus(&self, offset: f64) -> Self {
         Self { t: self.t.clone(), x: self.x.iter().map(|x| x - offset).collect() }
     }
 
@@ -126,7 +126,7 @@ impl TimeSeries {
     }
 
     /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does.
-    pub(crate) fn first_crossing(&self, threshold: f64) -> Option<f64> { //NARROW
+    pub(crate) fn first_crossing(&self, threshold: f64) -> Option<f64> {
         let i = self.x.iter().position(|x| x.abs() >= threshold)?;
         let Some(before) = i.checked_sub(1) else { return Some(self.t[0]) };
         let (x0, x1) = (self.x[before], self.x[i]);

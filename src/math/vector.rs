@@ -35,7 +35,7 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The velocity that this spin gives at the arm `r` (m): Ω r.
-    pub(crate) fn velocity_at(&self, r: &Vector<D>) -> Vector<D> { //NARROW
+    pub(crate) fn velocity_at(&self, r: &Vector<D>) -> Vector<D> {
         self.0 * r
     }
 
@@ -59,12 +59,12 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The power of this torque on a body of spin `spin` (W): ½ T:Ω.
-    pub(crate) fn power(&self, spin: &Self) -> f64 { //NARROW
+    pub(crate) fn power(&self, spin: &Self) -> f64 {
         0.5 * self.0.component_mul(&spin.0).sum()
     }
 
     /// The same turning, carried along by `rotation`: R Ω Rᵀ.
-    pub(crate) fn rotated(&self, rotation: &Matrix<D>) -> Self { //NARROW
+    pub(crate) fn rotated(&self, rotation: &Matrix<D>) -> Self {
         match D {
             2 => *self,
             _ => Self::from_axial((rotation * Vector::<D>::from_iterator(self.axial())).as_slice()),
@@ -165,32 +165,32 @@ pub struct Bounds<const D: usize> {
 
 impl<const D: usize> Bounds<D> {
     /// The box that holds nothing: every union with it gives the other box.
-    pub(crate) fn empty() -> Self { //NARROW
+    pub(crate) fn empty() -> Self {
         Self { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) }
     }
 
     /// The smallest box around `points` (m).
-    pub(crate) fn around<'a>(points: impl IntoIterator<Item = &'a Vector<D>>) -> Self { //NARROW
+    pub(crate) fn around<'a>(points: impl IntoIterator<Item = &'a Vector<D>>) -> Self {
         points.into_iter().fold(Self::empty(), |b, x| Self { min: b.min.inf(x), max: b.max.sup(x) })
     }
 
     /// The smallest box around both.
-    pub(crate) fn union(&self, other: &Self) -> Self { //NARROW
+    pub(crate) fn union(&self, other: &Self) -> Self {
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
     /// The box grown by `margin` (m) on every side.
-    pub(crate) fn grown(&self, margin: f64) -> Self { //NARROW
+    pub(crate) fn grown(&self, margin: f64) -> Self {
         Self { min: self.min.add_scalar(-margin), max: self.max.add_scalar(margin) }
     }
 
     /// Whether `x` lies inside (faces included). False for a non-finite point.
-    pub(crate) fn contains(&self, x: &Vector<D>) -> bool { //NARROW
+    pub(crate) fn contains(&self, x: &Vector<D>) -> bool {
         (0..D).all(|i| x[i] >= self.min[i] && x[i] <= self.max[i])
     }
 
     /// The corners.
-    pub(crate) fn corners(&self) -> impl Iterator<Item = Vector<D>> + use<D> { //NARROW
+    pub(crate) fn corners(&self) -> impl Iterator<Item = Vector<D>> + use<D> {
         let Self { min, max } = *self;
         (0..1usize << D).map(move |c| Vector::from_fn(|i, _| if c >> i & 1 == 1 { max[i] } else { min[i] }))
     }

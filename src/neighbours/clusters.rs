@@ -22,7 +22,7 @@ pub const PAD: u32 = u32::MAX;
 
 /// Position of a pad: half the integer range from its cluster, so far that no kernel support reaches it and
 /// so near that no difference overflows.
-pub(crate) const FAR_POSITION: i32 = 1 << 30; //NARROW
+pub(crate) const FAR_POSITION: i32 = 1 << 30;
 
 /// Widths of a column that a cluster may span.
 const SPAN: f64 = 2.0;
@@ -71,13 +71,8 @@ pub(super) type Ranges = Vec<std::ops::Range<u32>>;
 
 impl Clusters {
     /// Number of clusters.
-    pub(crate) fn len(&self) -> usize { //NARROW
+    pub(crate) fn len(&self) -> usize {
         self.source.len() / LANES
-    }
-
-    /// Whether there is none.
-    pub(crate) fn is_empty(&self) -> bool { //NARROW
-        self.source.is_empty()
     }
 
     /// Memory of the clusters and their lists, B.
@@ -151,7 +146,7 @@ impl Clusters {
     }
 
     /// `items`, of which each cluster has `each`, slab by slab.
-    pub(crate) fn split_by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> { //NARROW
+    pub(crate) fn split_by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> {
         let mut rest = items;
         let mut parts = Vec::with_capacity(self.slabs.len());
         for slab in &self.slabs {
@@ -187,7 +182,12 @@ impl Clusters {
 
 /// The positions of a cluster in integer units, pads far away.
 #[inline(always)]
-pub(crate) fn fill_positions<const D: usize>(x: &mut [[i32; LANES]; D], source: &[u32], r: &[Vector<D>], inv_unit: f64) { //NARROW
+pub(crate) fn fill_positions<const D: usize>(
+    x: &mut [[i32; LANES]; D],
+    source: &[u32],
+    r: &[Vector<D>],
+    inv_unit: f64,
+) {
     let n = occupied_lanes(source);
     for (l, &i) in source[..n].iter().enumerate() {
         for (x, r) in x.iter_mut().zip(r[i as usize].iter()) {
@@ -202,7 +202,7 @@ pub(crate) fn fill_positions<const D: usize>(x: &mut [[i32; LANES]; D], source: 
 
 /// How many lanes of a cluster hold a particle: the first ones.
 #[inline(always)]
-pub(crate) fn occupied_lanes(source: &[u32]) -> usize { //NARROW
+pub(crate) fn occupied_lanes(source: &[u32]) -> usize {
     if source[LANES - 1] == PAD { source.iter().take_while(|&&i| i != PAD).count() } else { LANES }
 }
 

@@ -7,7 +7,7 @@ const CELLS_PER_PARTICLE: f64 = 64.0;
 
 /// Indices of particles by cell; the cells of a row along axis 0 follow one another.
 #[derive(Clone, Debug)]
-pub(crate) struct CellGrid<const D: usize> { //NARROW
+pub(crate) struct CellGrid<const D: usize> {
     min: Vector<D>,
     inv_cell: f64,
     cells: [usize; D],
@@ -24,7 +24,7 @@ impl<const D: usize> Default for CellGrid<D> {
 
 impl<const D: usize> CellGrid<D> {
     /// Sorts the finite positions `r` (m) into cells at least `cell` (m) wide; within a cell the order of `r` stays.
-    pub(crate) fn new(r: &[Vector<D>], cell: f64) -> Self { //NARROW
+    pub(crate) fn new(r: &[Vector<D>], cell: f64) -> Self {
         if r.is_empty() {
             return Self::default();
         }
@@ -55,14 +55,9 @@ impl<const D: usize> CellGrid<D> {
         grid
     }
 
-    /// All indices, cell by cell.
-    pub(crate) fn into_order(self) -> Vec<u32> { //NARROW
-        self.order
-    }
-
     /// Calls `visit` with the particles of each row of cells that meets `bounds`.
     #[inline]
-    pub(crate) fn visit_rows<'a>(&'a self, bounds: &Bounds<D>, mut visit: impl FnMut(&'a [u32])) { //NARROW
+    pub(crate) fn visit_rows<'a>(&'a self, bounds: &Bounds<D>, mut visit: impl FnMut(&'a [u32])) {
         if self.order.is_empty() {
             return;
         }

@@ -2,7 +2,7 @@
 //!
 //! The lists reach beyond the kernel support by a margin, and hold while no particle has moved by half the margin.
 //! Most steps therefore search nothing. The SIMD pair loop has lists of clusters ([`Clusters`]), the reference of particles
-//! ([`ParticleLists`]). Both record the boundary particles near water; the others cost nothing until the next rebuild.
+//! (`ParticleLists`). Both record the boundary particles near water; the others cost nothing until the next rebuild.
 
 mod clusters;
 mod columns;
@@ -10,15 +10,11 @@ mod grid;
 mod lists;
 mod search;
 
-pub use clusters::Clusters;
-pub use clusters::PAD;
-pub(crate) use clusters::Slab; //NARROW
-pub(crate) use clusters::fill_positions; //NARROW
-pub(crate) use clusters::occupied_lanes; //NARROW
-pub(crate) use grid::CellGrid; //NARROW
+pub use clusters::{Clusters, PAD};
+pub(crate) use clusters::{Slab, fill_positions, occupied_lanes};
+pub(crate) use grid::CellGrid;
 pub use lists::CHUNK;
-pub(crate) use lists::ParticleListChunk; //NARROW
-pub(crate) use lists::ParticleLists; //NARROW
+pub(crate) use lists::{ParticleListChunk, ParticleLists};
 
 use std::sync::OnceLock;
 
@@ -98,7 +94,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The order in which water at `r` lies along the columns: `order[new] = old`.
-    pub(crate) fn column_order(&self, r: &[Vector<D>]) -> Vec<u32> { //NARROW
+    pub(crate) fn column_order(&self, r: &[Vector<D>]) -> Vec<u32> {
         let columns = Columns::new(r, WIDTH * self.dp, self.list_radius());
         columns.sort(r, &all_indices(r.len())).order
     }
@@ -137,7 +133,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The positions of the water for which the lists were made, m.
-    pub(crate) fn positions_at_build(&self) -> &[Vector<D>] { //NARROW
+    pub(crate) fn positions_at_build(&self) -> &[Vector<D>] {
         &self.positions_at_build.0
     }
 
@@ -152,7 +148,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Memory of the lists and of the packed particles, B.
-    pub(crate) fn memory_bytes(&self) -> usize { //NARROW
+    pub(crate) fn memory_bytes(&self) -> usize {
         match &self.pair_lists {
             PairLists::Lists(lists) => {
                 lists.memory_bytes()
@@ -166,12 +162,12 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
-    pub(crate) fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) { //NARROW
+    pub(crate) fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
         self.visit_around(&self.grids().0, x, visit);
     }
 
     /// The indices of every water particle that may be within `bounds` (m), in order.
-    pub(crate) fn fluid_within(&self, bounds: &Bounds<D>) -> Vec<usize> { //NARROW
+    pub(crate) fn fluid_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
         let mut these = Vec::new();
         let bounds = bounds.grown(self.margin());
         self.grids().0.visit_rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
@@ -180,7 +176,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// Calls `visit` with the index of every boundary particle that may be within the support of `x`.
-    pub(crate) fn visit_boundary_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) { //NARROW
+    pub(crate) fn visit_boundary_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
         self.visit_around(&self.grids().1, x, visit);
     }
 
@@ -206,7 +202,7 @@ fn all_indices(n: usize) -> Vec<u32> {
 /// `x` (m) in integer units of which `inv_unit` are a metre, modulo 2³²: differences of near positions are
 /// exact up to 2⁵¹ units from the origin.
 #[inline(always)]
-pub(crate) fn to_integer(x: f64, inv_unit: f64) -> i32 { //NARROW
+pub(crate) fn to_integer(x: f64, inv_unit: f64) -> i32 {
     // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.
     (x * inv_unit + 6_755_399_441_055_744.0).to_bits() as i32
 }

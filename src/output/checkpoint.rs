@@ -18,13 +18,13 @@ use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folde
 use crate::error::{Error, ErrorKind, Result};
 
 /// The last checkpoint, in the run's folder.
-pub(crate) const LAST: &str = "checkpoint.bin"; //NARROW
+pub(crate) const LAST: &str = "checkpoint.bin";
 
 /// The one before.
-pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin"; //NARROW
+pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin";
 
 /// What a run that was killed while it wrote one leaves behind.
-pub(crate) const PART: &str = "checkpoint.bin.part"; //NARROW
+pub(crate) const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
 const FORMAT: u32 = 5;
@@ -51,7 +51,7 @@ pub struct OutputPositions {
 pub struct Checkpoint {
     /// Version of this crate that wrote it.
     pub version: String,
-    /// [`fnv1a`] of the scene with every default filled in.
+    /// FNV-1a hash of the scene with every default filled in.
     pub scene_hash: u64,
     /// Scene keys changed for this run, and their values.
     pub overrides: Vec<(String, String)>,
@@ -74,7 +74,7 @@ pub struct Checkpoint {
 
 impl Checkpoint {
     /// What there is to say before the first step of the `scene`, with `sets` changed.
-    pub(crate) fn initial(scene: &str, sets: &[(String, String)]) -> Self { //NARROW
+    pub(crate) fn initial(scene: &str, sets: &[(String, String)]) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             scene_hash: fnv1a(scene.as_bytes()),
@@ -94,7 +94,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// `File` if it cannot be written; those before stay.
-    pub(crate) fn write(&self, folder: &Path, good: bool) -> Result<()> { //NARROW
+    pub(crate) fn write(&self, folder: &Path, good: bool) -> Result<()> {
         let (last, previous) = (folder.join(LAST), folder.join(PREVIOUS));
         let bytes = self.to_bytes()?;
         // On the disk under its passing name before the others move: from here on there are two whole ones.
@@ -117,7 +117,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// `Restart` if it cannot be packed.
-    pub(crate) fn to_bytes(&self) -> Result<Vec<u8>> { //NARROW
+    pub(crate) fn to_bytes(&self) -> Result<Vec<u8>> {
         let cannot = |why: &dyn std::fmt::Display| {
             Error::new(ErrorKind::Restart, format!("the checkpoint cannot be packed: {why}"))
         };
@@ -213,7 +213,7 @@ fn restart_error(what: &str, help: &str) -> Error {
 }
 
 /// FNV-1a hash of `bytes`.
-pub(crate) fn fnv1a(bytes: &[u8]) -> u64 { //NARROW
+pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
     fnv1a_continue(0xcbf2_9ce4_8422_2325, bytes)
 }
 

@@ -17,7 +17,7 @@ use crate::{
 /// Every row reaches the system at once, so a run that dies loses none; a row that fails half-way, as on a
 /// full disk, is taken back. Numbers are written so that reading them gives the same bits; a number that
 /// does not exist (NaN) is an empty field.
-pub(crate) struct CsvTable { //NARROW
+pub(crate) struct CsvTable {
     path: PathBuf,
     file: File,
     bytes: u64,
@@ -31,7 +31,7 @@ impl CsvTable {
     ///
     /// # Errors
     /// `File` if it exists or cannot be written.
-    pub(crate) fn create(path: &Path, columns: &[String]) -> Result<Self> { //NARROW
+    pub(crate) fn create(path: &Path, columns: &[String]) -> Result<Self> {
         let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(|e| cannot_write(path, &e))?;
         let mut table = Self { path: path.to_owned(), file, bytes: 0, columns: columns.len(), first: None, last: None };
         table.append(&format!("t_s,{}\n", columns.join(",")))?;
@@ -43,7 +43,7 @@ impl CsvTable {
     /// # Errors
     /// `Restart` if it is shorter than that, has no whole row there or its header names other columns; `File` if it cannot be
     /// opened.
-    pub(crate) fn resume(path: &Path, columns: &[String], bytes: u64) -> Result<Self> { //NARROW
+    pub(crate) fn resume(path: &Path, columns: &[String], bytes: u64) -> Result<Self> {
         let text = std::fs::read(path).map_err(|e| Error::file(path, e))?;
         let header = format!("t_s,{}\n", columns.join(","));
         let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
@@ -61,7 +61,7 @@ impl CsvTable {
     ///
     /// # Errors
     /// `File` if it cannot be read or cut.
-    pub(crate) fn truncate(&mut self, bytes: u64) -> Result<()> { //NARROW
+    pub(crate) fn truncate(&mut self, bytes: u64) -> Result<()> {
         let text = std::fs::read(&self.path).map_err(|e| Error::file(&self.path, e))?;
         let kept = usize::try_from(bytes).map_or(&text[..], |n| &text[..n.min(text.len())]);
         let kept = String::from_utf8_lossy(kept);
@@ -78,7 +78,7 @@ impl CsvTable {
     ///
     /// # Errors
     /// `File` if it cannot be written; the rows before stay whole.
-    pub(crate) fn append_row(&mut self, t: f64, values: &[f64]) -> Result<()> { //NARROW
+    pub(crate) fn append_row(&mut self, t: f64, values: &[f64]) -> Result<()> {
         assert_eq!(values.len(), self.columns, "a value for each column");
         let mut line = number(t);
         for &x in values {
@@ -96,7 +96,7 @@ impl CsvTable {
     ///
     /// # Errors
     /// `File` if they cannot be written; the rows before stay whole.
-    pub(crate) fn append_rows(&mut self, t: f64, rows: &[([&str; 2], Vec<f64>)]) -> Result<()> { //NARROW
+    pub(crate) fn append_rows(&mut self, t: f64, rows: &[([&str; 2], Vec<f64>)]) -> Result<()> {
         let mut lines = String::new();
         for (words, values) in rows {
             assert_eq!(words.len() + values.len(), self.columns, "a word or a value for each column");
@@ -112,22 +112,22 @@ impl CsvTable {
     }
 
     /// Values of the first row.
-    pub(crate) fn first_row(&self) -> Option<&[f64]> { //NARROW
+    pub(crate) fn first_row(&self) -> Option<&[f64]> {
         self.first.as_deref()
     }
 
     /// Time (s) and values of the last row.
-    pub(crate) fn last_row(&self) -> Option<(f64, &[f64])> { //NARROW
+    pub(crate) fn last_row(&self) -> Option<(f64, &[f64])> {
         self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
     }
 
     /// Length of the file, bytes.
-    pub(crate) fn bytes(&self) -> u64 { //NARROW
+    pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 
     /// Where it is.
-    pub(crate) fn path(&self) -> &Path { //NARROW
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
@@ -135,7 +135,7 @@ impl CsvTable {
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub(crate) fn sync(&self) -> Result<()> { //NARROW
+    pub(crate) fn sync(&self) -> Result<()> {
         self.file.sync_data().map_err(|e| cannot_write(&self.path, &e))
     }
 
@@ -183,7 +183,7 @@ impl SeriesTable {
     }
 
     /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.
-    pub(crate) fn series(&self, name: &str, from: f64, until: f64) -> Option<TimeSeries> { //NARROW
+    pub(crate) fn series(&self, name: &str, from: f64, until: f64) -> Option<TimeSeries> {
         let column = &self.values[self.columns.iter().position(|column| column == name)?];
         let known = self.times.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
         let (t, x): (Vec<f64>, Vec<f64>) = known.unzip();

@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// Fields that a frame may hold.
-pub(crate) const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"]; //NARROW
+pub(crate) const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
 
 /// Part of a frame that remains after compression, where water moves, –; where it rests, a third remains.
 const COMPRESSED: f64 = 0.6;
@@ -41,7 +41,7 @@ const VERTEX: u8 = 1;
 const PARTS: [&str; 2] = ["water", "solids"];
 
 /// The frames of a run. Solids carry the number of their solid besides the chosen fields.
-pub(crate) struct FrameWriter { //NARROW
+pub(crate) struct FrameWriter {
     folder: PathBuf,
     fields: Vec<String>,
     /// Lowest and highest corner (m) of the box whose water is written; `None` for all water.
@@ -58,7 +58,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
-    pub(crate) fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> { //NARROW
+    pub(crate) fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> {
         let FramesPlan { fields, crop, .. } = words.clone();
         if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
             let help = match nearest_name(word, FIELDS) {
@@ -78,7 +78,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub(crate) fn truncate(&mut self, kept: usize) -> Result<()> { //NARROW
+    pub(crate) fn truncate(&mut self, kept: usize) -> Result<()> {
         if kept >= self.times.len() {
             return Ok(());
         }
@@ -109,12 +109,12 @@ impl FrameWriter {
     }
 
     /// Times of the frames so far, s.
-    pub(crate) fn times(&self) -> &[f64] { //NARROW
+    pub(crate) fn times(&self) -> &[f64] {
         &self.times
     }
 
     /// Their size on the disk, B.
-    pub(crate) fn bytes(&self) -> u64 { //NARROW
+    pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 
@@ -122,7 +122,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `File` if it cannot be written; the frames before stay as they are.
-    pub(crate) fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> { //NARROW
+    pub(crate) fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> {
         let number = self.times.len();
         let water = system.fluid();
         let kept = self.crop.as_ref().map(|[min, max]| {
@@ -146,7 +146,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// `File` if one cannot be opened or the disk refuses.
-    pub(crate) fn sync(&mut self) -> Result<()> { //NARROW
+    pub(crate) fn sync(&mut self) -> Result<()> {
         let files = self.folder.join("frames");
         for number in self.synced..self.times.len() {
             for name in piece_names(number).map(|name| files.join(name)) {

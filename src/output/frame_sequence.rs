@@ -7,14 +7,14 @@ use crate::error::{Error, Result};
 
 /// The frames of a run.
 #[derive(Clone, Debug)]
-pub(crate) struct FrameSequence { //NARROW
+pub struct FrameSequence {
     folder: PathBuf,
     times: Vec<f64>,
 }
 
 /// The points of one part of a frame. A field that was not written is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct FramePoints { //NARROW
+pub struct FramePoints {
     /// Positions, m; in 2-D the third coordinate is zero.
     pub position: Vec<[f32; 3]>,
     /// Velocities, m/s.
@@ -34,7 +34,7 @@ impl FrameSequence {
     ///
     /// # Errors
     /// `File` if `frames.pvd` cannot be read.
-    pub(crate) fn open(folder: &Path) -> Result<Option<Self>> { //NARROW
+    pub fn open(folder: &Path) -> Result<Option<Self>> {
         let path = folder.join("frames.pvd");
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
@@ -51,18 +51,18 @@ impl FrameSequence {
     }
 
     /// Times of the frames, s.
-    pub(crate) fn times(&self) -> &[f64] { //NARROW
+    pub fn times(&self) -> &[f64] {
         &self.times
     }
 
     /// The number of the frame nearest to time `t` (s).
-    pub(crate) fn nearest_index(&self, t: f64) -> usize { //NARROW
+    pub fn nearest_index(&self, t: f64) -> usize {
         let off = |i: &usize| (self.times[*i] - t).abs();
         (0..self.times.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
     }
 
     /// Bytes of frame `number` on the disk.
-    pub(crate) fn bytes(&self, number: usize) -> u64 { //NARROW
+    pub fn bytes(&self, number: usize) -> u64 {
         let size = |part: &str| std::fs::metadata(self.path(part, number)).map_or(0, |file| file.len());
         size("water") + size("solids")
     }
@@ -71,7 +71,7 @@ impl FrameSequence {
     ///
     /// # Errors
     /// `File` if it cannot be read.
-    pub(crate) fn water(&self, number: usize) -> Result<FramePoints> { //NARROW
+    pub fn water(&self, number: usize) -> Result<FramePoints> {
         read_points(&self.path("water", number))
     }
 
@@ -79,7 +79,7 @@ impl FrameSequence {
     ///
     /// # Errors
     /// `File` if they cannot be read.
-    pub(crate) fn solids(&self, number: usize) -> Result<FramePoints> { //NARROW
+    pub fn solids(&self, number: usize) -> Result<FramePoints> {
         read_points(&self.path("solids", number))
     }
 

@@ -13,12 +13,12 @@ pub struct IntervalMean {
 
 impl IntervalMean {
     /// Time (s) and values of the last reading.
-    pub(crate) fn last(&self) -> Option<(f64, &[f64])> { //NARROW
+    pub(crate) fn last(&self) -> Option<(f64, &[f64])> {
         self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
     }
 
     /// Adds the reading `row` of time `t` (s), later than the last.
-    pub(crate) fn add(&mut self, t: f64, row: Vec<f64>) { //NARROW
+    pub(crate) fn add(&mut self, t: f64, row: Vec<f64>) {
         self.sums.resize(row.len(), (0.0, 0.0));
         if let Some((before, old)) = &self.last {
             for ((sum, known), (a, b)) in self.sums.iter_mut().zip(old.iter().zip(&row)) {
@@ -33,7 +33,7 @@ impl IntervalMean {
 
     /// The mean since the last row, of the last `totals` columns the reading itself; a mean of nothing is the reading, too.
     /// The next begins here.
-    pub(crate) fn take(&mut self, totals: usize) -> Vec<f64> { //NARROW
+    pub(crate) fn take(&mut self, totals: usize) -> Vec<f64> {
         let row = self.last.as_ref().map_or(&[][..], |(_, row)| row);
         let means = row.len().saturating_sub(totals);
         let of = |(i, (x, (sum, known))): (usize, (&f64, &(f64, f64)))| {

@@ -150,7 +150,7 @@ impl Machine {
 
 impl Manifest {
     /// A number in force, by its key in the scene.
-    pub(crate) fn numeric_value(&self, key: &str) -> Option<f64> { //NARROW
+    pub fn numeric_value(&self, key: &str) -> Option<f64> {
         self.values.iter().find(|value| value.key == key)?.value.parse().ok()
     }
 

@@ -1,26 +1,27 @@
 //! The files of a run: tables (CSV), frames (VTK), checkpoints, the manifest.
 
-pub(crate) mod checkpoint; //NARROW
-pub(crate) mod csv; //NARROW
+pub(crate) mod checkpoint;
+pub(crate) mod csv;
+#[doc(hidden)]
 pub mod frame;
-pub(crate) mod frame_sequence; //NARROW
+pub(crate) mod frame_sequence;
 pub mod manifest;
-pub(crate) mod interval_mean; //NARROW
+pub(crate) mod interval_mean;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod npz;
-pub(crate) mod removed_particles; //NARROW
+pub(crate) mod removed_particles;
 mod base64;
 mod vtu;
 #[cfg(feature = "surface")]
-pub(crate) mod free_surface_mesh; //NARROW
+pub(crate) mod free_surface_mesh;
 
-pub use checkpoint::Checkpoint;
-pub use checkpoint::OutputPositions;
-pub(crate) use csv::CsvTable; //NARROW
+pub use checkpoint::{Checkpoint, OutputPositions};
+pub(crate) use csv::CsvTable;
 pub use csv::SeriesTable;
-pub(crate) use frame::FrameWriter; //NARROW
-pub(crate) use frame_sequence::FramePoints; //NARROW
-pub(crate) use frame_sequence::FrameSequence; //NARROW
+pub(crate) use frame::FrameWriter;
+pub use frame_sequence::{FramePoints, FrameSequence};
+#[doc(hidden)]
 pub use interval_mean::IntervalMean;
 pub use manifest::Manifest;
 
@@ -36,7 +37,7 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// `File`, naming the file, if the disk is full or the folder cannot be written; the old file stays.
-pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> { //NARROW
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     write_partial(path, |file| file.write_all(bytes))?;
     commit_partial(path)
 }
@@ -45,6 +46,7 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> { //NARR
 ///
 /// # Errors
 /// `File` if there is none.
+#[doc(hidden)]
 pub fn require_parent_folder(path: &Path) -> Result<()> {
     match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
         Some(folder) => Err(Error::file(path, format!("there is no folder {}", folder.display()))

@@ -10,14 +10,14 @@ use crate::{
 };
 
 /// Name of the list in the run's folder.
-pub(crate) const REMOVED: &str = "removed.csv"; //NARROW
+pub(crate) const REMOVED: &str = "removed.csv";
 
 /// Writes the list in `folder`, all of it: `lost` in the order in which they were taken out, with the times (s) at which they
 /// were seen outside.
 ///
 /// # Errors
 /// `File` if it cannot be written.
-pub(crate) fn write<const D: usize>(folder: &Path, lost: &[(f64, RemovedParticle<D>)]) -> Result<()> { //NARROW
+pub(crate) fn write<const D: usize>(folder: &Path, lost: &[(f64, RemovedParticle<D>)]) -> Result<()> {
     let axes = &["x", "y", "z"][..D];
     let columns = |prefix: &str, unit: &str| axes.iter().map(|a| format!("{prefix}{a}_{unit}")).collect::<Vec<_>>();
     let header = [vec!["t_s".into(), "id".into()], columns("", "m"), columns("v", "mps"), vec!["rho_kgpm3".into()]];

@@ -18,7 +18,7 @@ const APPENDED: &[u8] = b"<AppendedData";
 
 /// The numbers of an array.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Values { //NARROW
+pub(crate) enum Values {
     /// Single precision.
     F32(Vec<f32>),
     /// Whole numbers from 0.
@@ -31,7 +31,7 @@ pub(crate) enum Values { //NARROW
 
 /// An array with its name.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct DataArray { //NARROW
+pub(crate) struct DataArray {
     /// Its name, without characters that XML reserves.
     pub name: String,
     /// Numbers per point or cell.
@@ -42,7 +42,7 @@ pub(crate) struct DataArray { //NARROW
 
 /// Cells of one type.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Cells { //NARROW
+pub(crate) struct Cells {
     /// Numbers of the points of each cell, cell by cell.
     pub connectivity: Vec<i64>,
     /// Points per cell.
@@ -53,7 +53,7 @@ pub(crate) struct Cells { //NARROW
 
 impl DataArray {
     /// An array of single precision.
-    pub(crate) fn new(name: &str, components: usize, values: Vec<f32>) -> Self { //NARROW
+    pub(crate) fn new(name: &str, components: usize, values: Vec<f32>) -> Self {
         Self { name: name.into(), components, values: Values::F32(values) }
     }
 }
@@ -131,7 +131,7 @@ fn append_blocks<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N],
 ///
 /// # Errors
 /// None but those of the compression, which writes to memory.
-pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> io::Result<Vec<u8>> { //NARROW
+pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> io::Result<Vec<u8>> {
     let (point_count, cell_count) = (points.len() / 3, cells.connectivity.len() / cells.points_per_cell);
     let name_of =
         |components: usize| fields.iter().find(|field| field.components == components).map(|field| &field.name);
@@ -187,7 +187,7 @@ fn append_arrays(arrays: Vec<DataArray>, data: &mut Vec<u8>) -> io::Result<Strin
 ///
 /// # Errors
 /// The reason, if this is not a whole file of this program.
-pub(crate) fn read_points(file: &[u8]) -> Result<(Vec<f32>, Vec<DataArray>), String> { //NARROW
+pub(crate) fn read_points(file: &[u8]) -> Result<(Vec<f32>, Vec<DataArray>), String> {
     let (mut points, mut fields) = (None, Vec::new());
     for (parent, array) in read_arrays(file, &["Points", "PointData"])? {
         match (parent.as_str(), array) {

@@ -15,7 +15,7 @@ const TOUCH: f64 = 0.1;
 const FACING: [f64; 2] = [-0.8, -0.99];
 
 /// What was found between solids.
-pub(crate) struct Gaps { //NARROW
+pub(crate) struct Gaps {
     /// Which solids touch another, by their skins too.
     pub touching: Vec<bool>,
 }

@@ -28,9 +28,8 @@ pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
 pub use rounding::three_digits;
 pub use run_size::DiskUse;
-pub(crate) use run_size::RunSize; //NARROW
-pub(crate) use sound_speed::SoundSpeed; //NARROW
-pub(crate) use sound_speed::StepSizeLimits; //NARROW
+pub(crate) use run_size::RunSize;
+pub(crate) use sound_speed::{SoundSpeed, StepSizeLimits};
 
 use crate::{
     error::Error,
@@ -78,18 +77,18 @@ impl Finding {
     }
 
     /// That the scene writes a key or a value with an old name.
-    pub(crate) fn renamed_name(name: &RenamedName) -> Self { //NARROW
+    pub(crate) fn renamed_name(name: &RenamedName) -> Self {
         Self::note("old_name", name.to_string(), format!("write  {}", name.new))
     }
 
     /// That the timing stopped with `error` after so many `steps`.
-    pub(crate) fn timing_stopped(error: &Error, steps: usize) -> Self { //NARROW
+    pub(crate) fn timing_stopped(error: &Error, steps: usize) -> Self {
         let mend = error.help.clone().unwrap_or_else(|| "see the other findings".into());
         Self::warning("breaks_down", format!("after {steps} steps: {}", error.message), mend)
     }
 
     /// The finding in one line, for a record.
-    pub(crate) fn one_line(&self) -> String { //NARROW
+    pub(crate) fn one_line(&self) -> String {
         format!("{}: {}", self.what, self.mend)
     }
 }
@@ -201,7 +200,7 @@ impl<const D: usize> PreflightContext<'_, D> {
 }
 
 /// What moves a solid, in a word of the scene.
-pub(crate) fn role_name<const D: usize>(role: &Role<D>) -> &'static str { //NARROW
+pub(crate) fn role_name<const D: usize>(role: &Role<D>) -> &'static str {
     match role {
         Role::Fixed => "fixed",
         Role::Driven(_) => "driven",

@@ -18,18 +18,18 @@ pub fn three_digits(x: f64) -> String {
 }
 
 /// A place (m) as a scene writes it: `[0.42, 0.1]`.
-pub(crate) fn place<'a>(x: impl IntoIterator<Item = &'a f64>) -> String { //NARROW
+pub(crate) fn place<'a>(x: impl IntoIterator<Item = &'a f64>) -> String {
     let numbers: Vec<String> = x.into_iter().map(|x| three_digits(1e-6 * (x * 1e6).round())).collect();
     format!("[{}]", numbers.join(", "))
 }
 
 /// The largest number of two digits that is not above `x` > 0.
-pub(crate) fn two_digits_down(x: f64) -> String { //NARROW
+pub(crate) fn two_digits_down(x: f64) -> String {
     two_digits(x, f64::floor)
 }
 
 /// The smallest number of two digits that is not below `x` > 0.
-pub(crate) fn two_digits_up(x: f64) -> String { //NARROW
+pub(crate) fn two_digits_up(x: f64) -> String {
     two_digits(x, f64::ceil)
 }
 

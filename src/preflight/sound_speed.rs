@@ -44,7 +44,7 @@ pub struct ExpectedSpeed {
 
 impl SoundSpeed {
     /// The largest speed expected, m/s; 0 if none is known.
-    pub(crate) fn fastest(&self) -> f64 { //NARROW
+    pub(crate) fn fastest(&self) -> f64 {
         self.expected.first().map_or(0.0, |e| e.speed_mps)
     }
 }

@@ -8,7 +8,7 @@ use crate::{
 
 /// A place on the true face of a solid, in its own frame.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SurfaceSample<const D: usize> { //NARROW
+pub(crate) struct SurfaceSample<const D: usize> {
     /// The place, m.
     pub x: Vector<D>,
     /// Outward normal, unit length.
@@ -16,7 +16,7 @@ pub(crate) struct SurfaceSample<const D: usize> { //NARROW
 }
 
 /// The faces of `solid`, dp (m) apart; none of a fixed tank or polyline, whose skin is as thick as is needed.
-pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<SurfaceSample<D>> { //NARROW
+pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     match (&solid.spec.role, &solid.spec.shape) {
         (Role::Fixed, Shape::Tank { .. } | Shape::Polyline { .. }) => Vec::new(),
         (_, shape) => of_shape(shape, dp),
@@ -24,7 +24,7 @@ pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<Surface
 }
 
 /// The faces of `shape`, dp (m) apart, but for those at which the parts of a compound join.
-pub(crate) fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> { //NARROW
+pub(crate) fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     let free =
         |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
     shape
@@ -56,6 +56,9 @@ fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> 
 }
 
 /// Every so many-th of `faces`, `most` of them or fewer.
-pub(crate) fn thinned<const D: usize>(faces: &[SurfaceSample<D>], most: usize) -> impl Iterator<Item = &SurfaceSample<D>> { //NARROW
+pub(crate) fn thinned<const D: usize>(
+    faces: &[SurfaceSample<D>],
+    most: usize,
+) -> impl Iterator<Item = &SurfaceSample<D>> {
     faces.iter().step_by(faces.len().div_ceil(most).max(1))
 }

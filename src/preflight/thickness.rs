@@ -34,7 +34,7 @@ fn chord<const D: usize>(face: &SurfaceSample<D>, dp: f64, most: f64, distance: 
 
 /// The thinnest part of a shape (m), but for the thinnest tenth of its face, and a place (m, own frame) there; `None`
 /// without a face.
-pub(crate) fn thinnest_part<const D: usize>(shape: &Shape<D>, faces: &[SurfaceSample<D>], dp: f64) -> Option<f64> { //NARROW
+pub(crate) fn thinnest_part<const D: usize>(shape: &Shape<D>, faces: &[SurfaceSample<D>], dp: f64) -> Option<f64> {
     let most = shape.bounds().size().norm();
     let distance = |x: &Vector<D>| shape.signed_distance(x);
     shortest_chord(
@@ -50,7 +50,7 @@ fn shortest_chord<const D: usize>(mut ways: Vec<(f64, Vector<D>)>) -> Option<(f6
 }
 
 /// Whether all of the shape has as many layers as are asked for.
-pub(crate) fn has_full_layers<const D: usize>(shape: &Shape<D>) -> bool { //NARROW
+pub(crate) fn has_full_layers<const D: usize>(shape: &Shape<D>) -> bool {
     match shape {
         Shape::Tank { .. } | Shape::Polyline { .. } => true,
         Shape::Compound(parts) => parts.iter().all(|(_, part)| has_full_layers(part)),

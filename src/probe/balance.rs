@@ -57,7 +57,7 @@ impl ProbeDefinition for LoadBalancePlan {
 /// Measures the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity, weight, contacts
 /// and constraints, as far as the scene has them. Then follow their sum, the change of momentum and angular momentum, and the residual
 /// of the two. All are NaN unless loads are recorded ([`Simulation::enable_load_breakdown`]).
-pub(crate) struct LoadBalanceProbe { //NARROW
+pub(crate) struct LoadBalanceProbe {
     solid: usize,
     kinds: Vec<&'static str>,
 }
@@ -67,7 +67,7 @@ impl LoadBalanceProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such solid or if it is not free.
-    pub(crate) fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> { //NARROW
+    pub(crate) fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> {
         let index = find_solid(system, solid)?;
         let Role::Free(body) = &system.solids()[index].spec.role else {
             return Err(Error::scene(format!("\"{solid}\" is not free: what it weighs and carries is not known"))

@@ -49,7 +49,7 @@ pub struct EnergyBudgetProbe {
 }
 
 /// The residual of a row of an [`EnergyBudgetProbe`] over the sum of |entries|, –; `None` while that sum is 0.
-pub(crate) fn relative_residual(row: &[f64]) -> Option<f64> { //NARROW
+pub(crate) fn relative_residual(row: &[f64]) -> Option<f64> {
     let (residual, rest) = row.split_last()?;
     let turnover: f64 = rest.get(1..)?.iter().map(|energy| energy.abs()).sum();
     (turnover > 0.0).then(|| residual.abs() / turnover)

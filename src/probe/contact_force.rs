@@ -61,7 +61,7 @@ pub(super) fn verify_list(config: &ProbeConfig, key: &str, scene: &dyn ProbeScop
 
 /// Measures the contact of two solids in the last step: the sum of the normal forces (N), the force on the second with friction (N),
 /// and its point of action (m). The point is NaN while they do not touch.
-pub(crate) struct ContactForceProbe { //NARROW
+pub(crate) struct ContactForceProbe {
     solids: [usize; 2],
 }
 
@@ -70,7 +70,7 @@ impl ContactForceProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
-    pub(crate) fn new<const D: usize>(system: &System<D>, [first, second]: [&str; 2]) -> Result<Self> { //NARROW
+    pub(crate) fn new<const D: usize>(system: &System<D>, [first, second]: [&str; 2]) -> Result<Self> {
         Ok(Self { solids: [find_solid(system, first)?, find_solid(system, second)?] })
     }
 }
@@ -92,16 +92,16 @@ impl<const D: usize> Probe<D> for ContactForceProbe {
 
 /// Lists all contacts in the last step: a row for each pair that touches, with the two names and then the columns of
 /// [`ContactForceProbe`]. The force is that on the second.
-pub(crate) struct ContactList; //NARROW
+pub(crate) struct ContactList;
 
 impl ContactList {
     /// Names of the columns.
-    pub(crate) fn columns<const D: usize>() -> Vec<String> { //NARROW
+    pub(crate) fn columns<const D: usize>() -> Vec<String> {
         ["first", "second"].map(String::from).into_iter().chain(columns::<D>()).collect()
     }
 
     /// The names of the two solids of each pair and its numbers, in the order of the scene.
-    pub(crate) fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> { //NARROW
+    pub(crate) fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> {
         let solids = sim.system().solids();
         let row = |contact: ContactForce<D>| {
             let names = contact.between.map(|i| solids[i].spec.name.as_str());

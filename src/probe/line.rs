@@ -87,7 +87,7 @@ impl LineProbe {
     ///
     /// # Errors
     /// `Scene` if there is no such rope.
-    pub(crate) fn rope<const D: usize>(system: &System<D>, name: &str) -> Result<Self> { //NARROW
+    pub(crate) fn rope<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
         let ropes = system.constraints().ropes.iter();
         Ok(Self { line: find_by_name("rope", name, ropes.map(|rope| rope.name.as_str()))?, rope: true })
     }

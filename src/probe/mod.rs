@@ -24,46 +24,31 @@ mod probe_row;
 mod runup;
 mod velocity;
 
-pub use balance::LoadBalancePlan;
-pub use budget::EnergyBudgetPlan;
 pub use budget::EnergyBudgetProbe;
-pub(crate) use budget::relative_residual; //NARROW
-pub use contact_force::ContactForcePlan;
-pub(crate) use contact_force::ContactList; //NARROW
-pub use contact_force::ContactListPlan;
-pub use elevation::ElevationPlan;
-pub use elevation::ElevationProbe;
-pub use elevation::GaugeConfig;
-pub use elevation::GaugeSurface;
-pub use energy::EnergyPlan;
+pub(crate) use budget::relative_residual;
+pub(crate) use contact_force::ContactList;
+pub use elevation::{ElevationProbe, GaugeSurface};
 pub use energy::EnergyProbe;
-pub use flow::FlowPlan;
 pub use flow::FlowProbe;
-pub use flow::SectionConfig;
-pub use force::ForcePlan;
 pub use force::ForceProbe;
-pub use front::FrontPlan;
 pub use front::FrontProbe;
-pub use joint::JointPlan;
 pub use joint::JointProbe;
 pub use line::LineProbe;
-pub use line::RopePlan;
-pub use line::SpringPlan;
-pub use motion::MotionPlan;
 pub use motion::MotionProbe;
-pub use patch::PatchConfig;
-pub use patch::PatchPlan;
 pub use patch::PatchProbe;
-pub use points::PointRowConfig;
-pub use points::PointsConfig;
-pub use pressure::PressurePlan;
 pub use pressure::PressureProbe;
 pub use probe_row::ProbeRow;
-pub(crate) use probe_row::column_at_place; //NARROW
-pub use runup::RunupPlan;
+pub(crate) use probe_row::column_at_place;
 pub use runup::RunupProbe;
-pub use velocity::VelocityPlan;
 pub use velocity::VelocityProbe;
+#[doc(hidden)]
+pub use {
+    balance::LoadBalancePlan, budget::EnergyBudgetPlan, contact_force::ContactForcePlan,
+    contact_force::ContactListPlan, elevation::ElevationPlan, elevation::GaugeConfig, energy::EnergyPlan,
+    flow::FlowPlan, flow::SectionConfig, force::ForcePlan, front::FrontPlan, joint::JointPlan, line::RopePlan,
+    line::SpringPlan, motion::MotionPlan, patch::PatchConfig, patch::PatchPlan, points::PointRowConfig,
+    points::PointsConfig, pressure::PressurePlan, runup::RunupPlan, velocity::VelocityPlan,
+};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -98,7 +83,7 @@ pub trait Probe<const D: usize>: Send {
 }
 
 /// A kind of probe, implemented by its resolved plan.
-pub(crate) trait ProbeDefinition: Sized { //NARROW
+pub(crate) trait ProbeDefinition: Sized {
     /// The value of its key in a `[[probe]]` section.
     type Config;
 
@@ -152,7 +137,7 @@ pub(crate) trait ProbeDefinition: Sized { //NARROW
 }
 
 /// A scene, as the validation of a probe sees it. Keys are as in `probe.0.flow.from`.
-pub(crate) trait ProbeScope { //NARROW
+pub(crate) trait ProbeScope {
     /// 2 or 3.
     fn dimension(&self) -> usize;
 
@@ -204,7 +189,7 @@ pub(crate) trait ProbeScope { //NARROW
 
 /// Where a probe measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum ProbeLocation<'a> { //NARROW
+pub(crate) enum ProbeLocation<'a> {
     /// At points, m.
     Points(&'a [Vec<f64>]),
     /// On vertical lines at horizontal places, m.
@@ -215,7 +200,7 @@ pub(crate) enum ProbeLocation<'a> { //NARROW
 
 /// The energy that the rows of a probe end with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum EnergyReading { //NARROW
+pub(crate) enum EnergyReading {
     /// The residual of the energy budget.
     Budget,
     /// The total energy.
@@ -273,7 +258,7 @@ macro_rules! probe_kinds {
         const KEYS: &[&str] = &[$(stringify!($key)),*];
 
         /// A valid line of a scene file for the kind of probe with this key.
-        pub(crate) fn example(key: &str) -> Option<&'static str> { //NARROW
+        pub(crate) fn example(key: &str) -> Option<&'static str> {
             $($(
                 if key == stringify!($key) {
                     return Some(<$plan as ProbeDefinition>::EXAMPLE);
@@ -284,7 +269,7 @@ macro_rules! probe_kinds {
 
         impl ProbeConfig {
             /// The keys of the kinds that it names: one, if it is valid.
-            pub(crate) fn keys(&self) -> Vec<&'static str> { //NARROW
+            pub(crate) fn keys(&self) -> Vec<&'static str> {
                 let given = [$((stringify!($key), self.$key.is_some())),*];
                 given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
             }
@@ -322,32 +307,32 @@ macro_rules! probe_kinds {
 
         impl ProbeKind {
             /// Its key in a scene file.
-            pub(crate) fn key(&self) -> &'static str { //NARROW
+            pub fn key(&self) -> &'static str {
                 match self { $($(Self::$variant(_) => stringify!($key),)?)* }
             }
 
             /// Name of its table in a report.
-            pub(crate) fn label(&self) -> &'static str { //NARROW
+            pub fn label(&self) -> &'static str {
                 match self { $($(Self::$variant(_) => $plan::LABEL,)?)* }
             }
 
             /// As [`ProbeDefinition::location`].
-            pub(crate) fn location(&self) -> Option<ProbeLocation<'_>> { //NARROW
+            pub(crate) fn location(&self) -> Option<ProbeLocation<'_>> {
                 match self { $($(Self::$variant(plan) => plan.location(),)?)* }
             }
 
             /// As [`ProbeDefinition::series`].
-            pub(crate) fn series(&self, dimension: usize) -> Vec<(String, Option<Vec<f64>>)> { //NARROW
+            pub(crate) fn series(&self, dimension: usize) -> Vec<(String, Option<Vec<f64>>)> {
                 match self { $($(Self::$variant(plan) => plan.series(dimension),)?)* }
             }
 
             /// As [`ProbeDefinition::energy_reading`].
-            pub(crate) fn energy_reading(&self) -> Option<EnergyReading> { //NARROW
+            pub(crate) fn energy_reading(&self) -> Option<EnergyReading> {
                 match self { $($(Self::$variant(plan) => plan.energy_reading(),)?)* }
             }
 
             /// As [`ProbeDefinition::enable_records`].
-            pub(crate) fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>) //NARROW
+            pub(crate) fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
             where
                 Dim<D>: Dimension<D>,
             {
@@ -358,7 +343,7 @@ macro_rules! probe_kinds {
             ///
             /// # Errors
             /// `Scene` or `Usage` if what it names is not in the system.
-            pub(crate) fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> { //NARROW
+            pub(crate) fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
                 match self { $($(Self::$variant(plan) => plan.build(system),)?)* }
             }
         }
@@ -428,13 +413,13 @@ impl ProbeConfig {
     }
 
     /// The plan of the probe in a run that ends at `until` (s); `None` for a list.
-    pub(crate) fn to_plan(&self, until: f64) -> Option<ProbePlan> { //NARROW
+    pub(crate) fn to_plan(&self, until: f64) -> Option<ProbePlan> {
         let (name, every) = (self.name.clone().unwrap_or_default(), self.every.unwrap_or(until));
         self.kind().map(|kind| ProbePlan { name, kind, every, average: self.average.unwrap_or_default() })
     }
 
     /// The plan of the list of contacts; `None` for a probe that writes a series.
-    pub(crate) fn to_contact_list(&self, until: f64) -> Option<ContactListPlan> { //NARROW
+    pub(crate) fn to_contact_list(&self, until: f64) -> Option<ContactListPlan> {
         let (name, every) = (self.name.clone().unwrap_or_default(), self.every.unwrap_or(until));
         self.contacts.map(|_| ContactListPlan { name, every })
     }
@@ -443,7 +428,7 @@ impl ProbeConfig {
     ///
     /// # Errors
     /// `Scene` if it names no kind, several, or what its scene does not have.
-    pub(crate) fn verify(&self, key: &str, scene: &dyn ProbeScope) -> Result<()> { //NARROW
+    pub(crate) fn verify(&self, key: &str, scene: &dyn ProbeScope) -> Result<()> {
         scene.require_positive(&format!("{key}.every"), self.every)?;
         let named = self.keys();
         if named.len() != 1 {
@@ -457,7 +442,7 @@ impl ProbeConfig {
     }
 
     /// Stems of the files of `probes`: the name, the default name, or the key with a number from the second on.
-    pub(crate) fn names(probes: &[Self]) -> Vec<String> { //NARROW
+    pub(crate) fn names(probes: &[Self]) -> Vec<String> {
         let nameless = |probe: &&Self| probe.name.is_none();
         let name = |(i, probe): (usize, &Self)| {
             let key = probe.keys().first().copied().unwrap_or("probe");

@@ -13,7 +13,7 @@ impl<const D: usize> ProbeRow<D> {
     ///
     /// # Errors
     /// As `make`.
-    pub(crate) fn at_places( //NARROW
+    pub(crate) fn at_places(
         places: &[Vec<f64>],
         make: impl Fn(&[f64]) -> Result<Box<dyn Probe<D>>>,
     ) -> Result<Box<dyn Probe<D>>> {
@@ -33,7 +33,7 @@ impl<const D: usize> ProbeRow<D> {
 }
 
 /// The name of the column `column` at the place `at` (m), to a micrometre.
-pub(crate) fn column_at_place(column: &str, at: &[f64]) -> String { //NARROW
+pub(crate) fn column_at_place(column: &str, at: &[f64]) -> String {
     let rounded = at.iter().map(|x| format!("{}", (x * 1e6).round() / 1e6 + 0.0));
     let place = rounded.collect::<Vec<_>>().join("_");
     match column.rsplit_once('_') {

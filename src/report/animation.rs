@@ -29,7 +29,7 @@ const MOST_READ: u64 = 1 << 30;
 
 /// What the page says of a film; numbers are places in the blob.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Animation { //NARROW
+pub(crate) struct Animation {
     /// Times of the kept frames, s.
     pub times: Vec<f64>,
     /// Particles in each.
@@ -54,7 +54,7 @@ pub(crate) struct Animation { //NARROW
 
 /// A number that every particle has: value = min + step × whole number.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct QuantisedChannel { //NARROW
+pub(crate) struct QuantisedChannel {
     /// Its name.
     pub name: &'static str,
     /// Value of 0.
@@ -65,7 +65,7 @@ pub(crate) struct QuantisedChannel { //NARROW
 
 /// The boundary particles, and the way of their solids.
 #[derive(Clone, Debug, Default, Serialize)]
-pub(crate) struct BoundaryAnimation { //NARROW
+pub(crate) struct BoundaryAnimation {
     /// The local coordinates of all.
     pub channels: Vec<QuantisedChannel>,
     /// Where each coordinate begins.
@@ -88,7 +88,7 @@ struct FrameSamples {
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
-pub(crate) fn encode_animation( //NARROW
+pub(crate) fn encode_animation(
     run: &RunData,
     film: &FrameSequence,
     samples: usize,
@@ -307,12 +307,12 @@ fn encode_boundaries(
 }
 
 /// The boundary particles of solid `number` among those of all.
-pub(crate) fn points_of_solid(all: &FramePoints, number: usize) -> Vec<usize> { //NARROW
+pub(crate) fn points_of_solid(all: &FramePoints, number: usize) -> Vec<usize> {
     (0..all.solid_index.len()).filter(|&k| all.solid_index[k] as usize == number).collect()
 }
 
 /// Where a solid with the boundary particles `own` is `now`.
-pub(crate) fn solid_placement( //NARROW
+pub(crate) fn solid_placement(
     fixed: bool,
     start: &Placement,
     own: &[usize],

@@ -10,14 +10,14 @@ use super::{
 };
 
 /// Ink of titles.
-pub(crate) const TITLE_COLOUR: [u8; 3] = [40, 46, 52]; //NARROW
+pub(crate) const TITLE_COLOUR: [u8; 3] = [40, 46, 52];
 const QUIET: [u8; 3] = [110, 118, 126];
 const BODY: [u8; 3] = [203, 196, 186];
 const WALL: [u8; 3] = [226, 228, 230];
 const EDGE: [u8; 3] = [70, 66, 60];
 
 /// A panel's place on the picture.
-pub(crate) struct PanelView { //NARROW
+pub(crate) struct PanelView {
     /// Low corner of what it shows on the sheet, m.
     pub low: [f64; 2],
     /// High corner, m.
@@ -39,7 +39,7 @@ impl PanelView {
     }
 
     /// Draws `panel` on a sheet of its own, which cuts what sticks out, and lays it `on` the picture.
-    pub(crate) fn draw_panel(&self, on: &mut Pixmap, panel: &Panel, map: ColourMap, range: [f64; 2]) { //NARROW
+    pub(crate) fn draw_panel(&self, on: &mut Pixmap, panel: &Panel, map: ColourMap, range: [f64; 2]) {
         let Some(mut own) = Pixmap::new(self.size.0.ceil() as u32, self.size.1.ceil() as u32) else { return };
         let flat = panel.geometry.dimension == 2;
         let here = PanelView { corner: (0.0, 0.0), ..*self };
@@ -94,7 +94,7 @@ impl PanelView {
     }
 
     /// Metres along the lower edge, and along the left one if this is the first panel of its row.
-    pub(crate) fn draw_ticks(&self, on: &mut Pixmap, ink: &TextRenderer, first: bool) { //NARROW
+    pub(crate) fn draw_ticks(&self, on: &mut Pixmap, ink: &TextRenderer, first: bool) {
         let (em, small) = (self.em, 0.8 * self.em);
         let bottom = self.corner.1 + self.size.1;
         for x in tick_values(self.low[0], self.high[0], 6.0) {
@@ -157,7 +157,7 @@ fn draw_particle(on: &mut Pixmap, (x, y): (f32, f32), radius: f32, colour: [u8; 
 }
 
 /// The colours from one end of the range to the other, with marks.
-pub(crate) fn draw_colour_bar( //NARROW
+pub(crate) fn draw_colour_bar(
     on: &mut Pixmap,
     ink: &TextRenderer,
     bar: (f32, f32, f32, f32),

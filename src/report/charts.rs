@@ -15,7 +15,7 @@ const MOST_ROWS: usize = 6000;
 
 /// What the page says of a table; numbers are places in the blob.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct TablePlots { //NARROW
+pub(crate) struct TablePlots {
     /// Name of the probe.
     pub name: String,
     /// What it watches, in a word.
@@ -36,7 +36,7 @@ pub(crate) struct TablePlots { //NARROW
 
 /// A column.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct PlotColumn { //NARROW
+pub(crate) struct PlotColumn {
     /// Its name as in the table.
     pub name: String,
     /// Its name in words.
@@ -49,7 +49,7 @@ pub(crate) struct PlotColumn { //NARROW
 
 /// A chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Chart { //NARROW
+pub(crate) struct Chart {
     /// Numbers of its columns.
     pub columns: Vec<usize>,
     /// Whether it may wait behind a fold.
@@ -60,7 +60,7 @@ pub(crate) struct Chart { //NARROW
 
 /// The spectrum of a column.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct ColumnSpectrum { //NARROW
+pub(crate) struct ColumnSpectrum {
     /// Number of the column.
     pub column: usize,
     /// Number of frequencies.
@@ -73,7 +73,7 @@ pub(crate) struct ColumnSpectrum { //NARROW
 
 /// How a motion answers irregular waves.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct RaoPlot<'a> { //NARROW
+pub(crate) struct RaoPlot<'a> {
     /// Name of the statistic.
     pub name: &'a str,
     /// The motion, in words.
@@ -94,7 +94,7 @@ pub(crate) struct RaoPlot<'a> { //NARROW
 
 /// A check and its curves.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct CheckPlot { //NARROW
+pub(crate) struct CheckPlot {
     /// The series, as `probe.column`, with when it was set to zero.
     pub series: String,
     /// Its name in words.
@@ -115,7 +115,7 @@ pub(crate) struct CheckPlot { //NARROW
 
 /// A curve in the blob.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct CurveData { //NARROW
+pub(crate) struct CurveData {
     /// Number of samples.
     pub rows: usize,
     /// Where the times begin.
@@ -145,7 +145,7 @@ const FAMILIES: [(&[&str], bool); 16] = [
 ];
 
 /// Adds `table` to `blob`.
-pub(crate) fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePlots { //NARROW
+pub(crate) fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePlots {
     let rows = thinned_rows(table);
     let t = blob.push_floats(rows.iter().map(|&i| table.times[i] as f32));
     let columns = table.columns.iter().zip(&table.values).map(|(name, x)| PlotColumn {
@@ -185,7 +185,7 @@ fn encode_spectra(table: &ProbeTable, charts: &[Chart], blob: &mut BinaryData) -
 }
 
 /// The answers of motions over frequency, added to `blob`.
-pub(crate) fn encode_raos<'a>(answers: &'a [RaoResult], blob: &mut BinaryData) -> Vec<RaoPlot<'a>> { //NARROW
+pub(crate) fn encode_raos<'a>(answers: &'a [RaoResult], blob: &mut BinaryData) -> Vec<RaoPlot<'a>> {
     let of = |rows: &'a [RaoResult]| {
         let (probe, column) = rows[0].series.split_once('.').unwrap_or(("", &rows[0].series));
         let mut put = |x: fn(&RaoResult) -> f64| blob.push_floats(rows.iter().map(|row| x(row) as f32));
@@ -289,7 +289,11 @@ fn fold_empty_charts(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
 }
 
 /// The checks of `run` that have curves, added to `blob`; `caption` says the figures of a verdict.
-pub(crate) fn encode_checks(run: &RunData, caption: impl Fn(&Verdict) -> String, blob: &mut BinaryData) -> Vec<CheckPlot> { //NARROW
+pub(crate) fn encode_checks(
+    run: &RunData,
+    caption: impl Fn(&Verdict) -> String,
+    blob: &mut BinaryData,
+) -> Vec<CheckPlot> {
     let verdicts = &run.manifest.checks;
     let mut line = |series: &TimeSeries| CurveData {
         rows: series.times().len(),

@@ -24,7 +24,7 @@ const OUTSIDE: f64 = 0.98;
 
 /// The outer side of a contact skin, in the frame of the solid; nothing if it has none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct ContactSkinOutline { //NARROW
+pub(crate) struct ContactSkinOutline {
     /// In 2-D its lines; in 3-D those of the solid, moved out to it.
     pub lines: Vec<Outline>,
     /// In 3-D places on it, m, about dp apart.
@@ -33,7 +33,7 @@ pub(crate) struct ContactSkinOutline { //NARROW
 
 impl ContactSkinOutline {
     /// That of `shape` with a contact skin so thick (m), in a scene of spacing `dp` (m).
-    pub(crate) fn of_shape<const D: usize>(shape: &Shape<D>, skin: f64, dp: f64) -> Self { //NARROW
+    pub(crate) fn of_shape<const D: usize>(shape: &Shape<D>, skin: f64, dp: f64) -> Self {
         if skin == 0.0 {
             return Self::default();
         }

@@ -9,18 +9,18 @@ const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz
 
 /// Numbers as bytes, little-endian.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct BinaryData(Vec<u8>); //NARROW
+pub(crate) struct BinaryData(Vec<u8>);
 
 impl BinaryData {
     /// Adds single-precision numbers; where they begin, in bytes.
-    pub(crate) fn push_floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> usize { //NARROW
+    pub(crate) fn push_floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> usize {
         let begin = self.0.len();
         self.0.extend(numbers.into_iter().flat_map(f32::to_le_bytes));
         begin
     }
 
     /// Adds whole numbers, first all low bytes, then all high ones, which are alike and pack well; where they begin.
-    pub(crate) fn push_byte_planes(&mut self, numbers: &[u16]) -> usize { //NARROW
+    pub(crate) fn push_byte_planes(&mut self, numbers: &[u16]) -> usize {
         let begin = self.0.len();
         self.0.extend(numbers.iter().map(|n| *n as u8));
         self.0.extend(numbers.iter().map(|n| (n >> 8) as u8));
@@ -28,12 +28,12 @@ impl BinaryData {
     }
 
     /// Bytes so far.
-    pub(crate) fn len(&self) -> usize { //NARROW
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
     /// All of it, deflated (without a header) and in base 64.
-    pub(crate) fn to_base64(&self) -> String { //NARROW
+    pub(crate) fn to_base64(&self) -> String {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());
         // Memory takes every byte.
         let packed = encoder.write_all(&self.0).and_then(|()| encoder.finish()).unwrap_or_default();
@@ -54,7 +54,7 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 /// Differences as whole numbers that are small where the differences are: 0, −1, 1, −2, 2 … become 0, 1, 2, 3, 4 ….
-pub(crate) fn zigzag(now: u16, before: u16) -> u16 { //NARROW
+pub(crate) fn zigzag(now: u16, before: u16) -> u16 {
     let d = now.wrapping_sub(before) as i16;
     ((d << 1) ^ (d >> 15)) as u16
 }

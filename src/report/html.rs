@@ -1,17 +1,14 @@
 //! Words of HTML, and numbers as they are set in print. For all pages of the program.
 
-pub(crate) use crate::math::format::bytes; //NARROW
-pub(crate) use crate::math::format::column_label; //NARROW
-pub(crate) use crate::math::format::duration; //NARROW
-pub(crate) use crate::math::format::unit; //NARROW
+pub(crate) use crate::math::format::{bytes, column_label, duration, unit};
 
 /// `text` with the signs that HTML means otherwise written out.
-pub(crate) fn escape(text: &str) -> String { //NARROW
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// A table; the first row is its head.
-pub(crate) fn table(rows: &[Vec<String>]) -> String { //NARROW
+pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let row = |cells: &Vec<String>, tag: &str| {
         let cells = cells.iter().map(|cell| {
             let class = if cell == "MISSED" || cell == "failed" { " class=\"missed\"" } else { "" };
@@ -25,7 +22,7 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String { //NARROW
 }
 
 /// A number with four digits that count.
-pub(crate) fn four_digits(x: f64) -> String { //NARROW
+pub(crate) fn four_digits(x: f64) -> String {
     match x.abs() {
         _ if !x.is_finite() => "–".into(),
         0.0 => "0".into(),
@@ -38,12 +35,12 @@ pub(crate) fn four_digits(x: f64) -> String { //NARROW
 }
 
 /// A number as it is set in print: with a minus, not a hyphen.
-pub(crate) fn with_minus_sign(number: &str) -> String { //NARROW
+pub(crate) fn with_minus_sign(number: &str) -> String {
     number.replace('-', "−")
 }
 
 /// A whole number with thin spaces between its thousands.
-pub(crate) fn thousands(n: u64) -> String { //NARROW
+pub(crate) fn thousands(n: u64) -> String {
     let digits = n.to_string();
     let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
     groups.join("\u{202f}")

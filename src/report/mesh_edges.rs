@@ -21,7 +21,7 @@ const CUTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 type EdgeCorners = [u32; 2];
 
 /// The lines of a mesh: edges at which its faces turn sharply, and unless all faces are flat, cuts across its sides.
-pub(crate) fn mesh_lines(mesh: &Mesh) -> Vec<Outline> { //NARROW
+pub(crate) fn mesh_lines(mesh: &Mesh) -> Vec<Outline> {
     let turns = dihedral_angles(mesh);
     let sharp: Vec<&EdgeCorners> = turns.iter().filter(|(_, turn)| **turn >= SHARP).map(|(edge, _)| edge).collect();
     let smooth = turns.values().any(|turn| (FLAT..SHARP).contains(turn));

@@ -25,13 +25,8 @@ mod sections;
 mod mesh_edges;
 pub(crate) mod html;
 
-pub use picture::ColourField;
-pub use picture::PictureOptions;
-pub use picture::write_picture;
-pub use plot::LineStyle;
-pub use plot::PlotLine;
-pub use plot::line_plot;
-pub use plot::log_log_plot;
+pub use picture::{ColourField, PictureOptions, write_picture};
+pub use plot::{LineStyle, PlotLine, line_plot, log_log_plot};
 
 use std::{
     path::{Path, PathBuf},

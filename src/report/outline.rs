@@ -15,7 +15,7 @@ const ROUND: usize = 48;
 
 /// A line of a drawing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Outline { //NARROW
+pub(crate) struct Outline {
     /// Whether its end is joined to its start; in 2-D it then has an inside.
     pub closed: bool,
     /// Its points, m, in the frame of the solid; in 2-D the third coordinate is zero.
@@ -24,7 +24,7 @@ pub(crate) struct Outline { //NARROW
 
 /// The lines of `shape`: its outline in 2-D, its edges in 3-D. None of a shape that has no lines of its own: then its
 /// boundary particles show it.
-pub(crate) fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> { //NARROW
+pub(crate) fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
     match shape {
         Shape::Box { size } => box_lines(&(size * -0.5), &(size * 0.5)),
         Shape::Ball { radius } => ball_outlines(&[0.0; 3], *radius, D),
@@ -41,12 +41,12 @@ pub(crate) fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> { //NAR
 }
 
 /// A vector with a third coordinate.
-pub(crate) fn to_3d<const D: usize>(x: &Vector<D>) -> [f64; 3] { //NARROW
+pub(crate) fn to_3d<const D: usize>(x: &Vector<D>) -> [f64; 3] {
     std::array::from_fn(|i| if i < D { x[i] } else { 0.0 })
 }
 
 /// The lines of a part that is placed so in its solid.
-pub(crate) fn transformed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> { //NARROW
+pub(crate) fn transformed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
     for x in lines.iter_mut().flat_map(|line| &mut line.points) {
         *x = to_3d(&pose.point(&Vector::from_fn(|i, _| x[i])));
     }

@@ -93,7 +93,7 @@ impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
-pub(crate) fn page_html(runs: &[RunData]) -> Result<String> { //NARROW
+pub(crate) fn page_html(runs: &[RunData]) -> Result<String> {
     let mut samples = SAMPLES;
     loop {
         let text = page_with_samples(runs, (samples / runs.len() as f64) as usize)?;

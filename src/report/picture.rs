@@ -51,7 +51,7 @@ type DepthPoint = (f64, [f64; 2], Option<f64>);
 type DrawnLine = (Vec<[f64; 2]>, bool, bool);
 
 /// A frame of a run as it is drawn.
-pub(crate) struct Panel<'a> { //NARROW
+pub(crate) struct Panel<'a> {
     /// Its scene.
     pub geometry: &'a SceneGeometry,
     /// Its time, s.
@@ -66,7 +66,7 @@ pub(crate) struct Panel<'a> { //NARROW
 
 impl ColourField {
     /// Its colours.
-    pub(crate) fn colour_map(self) -> ColourMap { //NARROW
+    pub(crate) fn colour_map(self) -> ColourMap {
         match self {
             Self::Pressure => FIELD_COLOUR_MAPS.pressure,
             Self::ExcessPressure => FIELD_COLOUR_MAPS.excess,
@@ -75,7 +75,7 @@ impl ColourField {
     }
 
     /// What stands at the bar of colours.
-    pub(crate) fn title(self) -> &'static str { //NARROW
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Pressure => "pressure, Pa",
             Self::ExcessPressure => "pressure − that of still water, Pa",

@@ -8,7 +8,7 @@ use crate::math::Pose;
 
 /// A pose in three coordinates; in 2-D the third stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Placement { //NARROW
+pub(crate) struct Placement {
     /// Position of the frame's origin, m.
     pub at: [f64; 3],
     /// Rows of the matrix that turns local into world directions, –.
@@ -17,25 +17,25 @@ pub(crate) struct Placement { //NARROW
 
 impl Placement {
     /// The same as `pose`.
-    pub(crate) fn from_pose<const D: usize>(pose: &Pose<D>) -> Self { //NARROW
+    pub(crate) fn from_pose<const D: usize>(pose: &Pose<D>) -> Self {
         let entry = |i: usize, j: usize| if i < D && j < D { pose.rotation[(i, j)] } else { f64::from(i == j) };
         let turn = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
         Self { at: to_3d(&pose.position), turn }
     }
 
     /// World position (m) of the local point `x` (m).
-    pub(crate) fn to_world(self, x: &[f64; 3]) -> [f64; 3] { //NARROW
+    pub(crate) fn to_world(self, x: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|i| self.at[i] + (0..3).map(|j| self.turn[i][j] * x[j]).sum::<f64>())
     }
 
     /// Local coordinates (m) of the world point `x` (m).
-    pub(crate) fn to_local(self, x: &[f32; 3]) -> [f64; 3] { //NARROW
+    pub(crate) fn to_local(self, x: &[f32; 3]) -> [f64; 3] {
         std::array::from_fn(|i| (0..3).map(|j| self.turn[j][i] * (f64::from(x[j]) - self.at[j])).sum())
     }
 
     /// This pose once the solid has moved as its points have `from` → `to`: least squares over all of them
     /// (Kabsch 1976).
-    pub(crate) fn fitted_to(&self, from: &[[f32; 3]], to: &[[f32; 3]]) -> Self { //NARROW
+    pub(crate) fn fitted_to(&self, from: &[[f32; 3]], to: &[[f32; 3]]) -> Self {
         let mean = |x: &[[f32; 3]]| {
             let total = |i: usize| x.iter().map(|x| f64::from(x[i])).sum::<f64>();
             Vector3::from_fn(|i, _| total(i) / x.len().max(1) as f64)

@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// A run's folder.
-pub(crate) struct RunData { //NARROW
+pub(crate) struct RunData {
     /// The folder.
     pub folder: PathBuf,
     /// A short name, told apart from those of the runs beside it.
@@ -49,7 +49,7 @@ pub(crate) struct RunData { //NARROW
 }
 
 /// What stands around the water.
-pub(crate) struct SceneGeometry { //NARROW
+pub(crate) struct SceneGeometry {
     /// 2 or 3.
     pub dimension: usize,
     /// Particle spacing, m.
@@ -67,7 +67,7 @@ pub(crate) struct SceneGeometry { //NARROW
 }
 
 /// A solid as it is drawn.
-pub(crate) struct DrawnSolid { //NARROW
+pub(crate) struct DrawnSolid {
     /// Its name.
     pub name: String,
     /// `fixed`, `driven` or `free`.
@@ -81,7 +81,7 @@ pub(crate) struct DrawnSolid { //NARROW
 }
 
 /// A table of a probe.
-pub(crate) struct ProbeTable { //NARROW
+pub(crate) struct ProbeTable {
     /// Name of the probe.
     pub name: String,
     /// What it watches, in a word.
@@ -99,7 +99,7 @@ impl RunData {
     ///
     /// # Errors
     /// `Restart` if it holds no run. All else that cannot be read is left out with a remark.
-    pub(crate) fn read(folder: &Path) -> Result<Self> { //NARROW
+    pub(crate) fn read(folder: &Path) -> Result<Self> {
         let manifest = Manifest::read(folder)?;
         let file = run_folder::scene_file(&folder.join("scene"));
         let mut remarks = Vec::new();
@@ -154,7 +154,7 @@ impl RunData {
     ///
     /// # Errors
     /// As [`Kept::read`], for the first that is none.
-    pub(crate) fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>> { //NARROW
+    pub(crate) fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>> {
         let mut runs = folders.iter().map(|folder| Self::read(folder)).collect::<Result<Vec<_>>>()?;
         let names: Vec<String> = runs.iter().map(|run| run.name.clone()).collect();
         for run in &mut runs {
@@ -209,7 +209,7 @@ impl SceneGeometry {
     }
 
     /// Where gauges stand: the name of each, what it measures, and its place (m) with as many coordinates as it has.
-    pub(crate) fn gauges(&self) -> impl Iterator<Item = (&str, &'static str, &[f64])> { //NARROW
+    pub(crate) fn gauges(&self) -> impl Iterator<Item = (&str, &'static str, &[f64])> {
         self.plan.probes.iter().flat_map(|probe| {
             let (what, places) = match probe.kind.location() {
                 Some(ProbeLocation::Points(places) | ProbeLocation::Columns(places)) => (probe.kind.key(), places),
@@ -224,12 +224,12 @@ impl SceneGeometry {
 
 impl ProbeTable {
     /// Whether it is a budget or a balance: an entry for each kind, most of which a run does not have.
-    pub(crate) fn is_breakdown(&self) -> bool { //NARROW
+    pub(crate) fn is_breakdown(&self) -> bool {
         matches!(self.what, "energy budget" | "loads by kind")
     }
 
     /// Whether a column was measured and is 0 throughout.
-    pub(crate) fn is_zero(&self, column: usize) -> bool { //NARROW
+    pub(crate) fn is_zero(&self, column: usize) -> bool {
         let mut known = self.values[column].iter().filter(|x| x.is_finite()).peekable();
         known.peek().is_some() && known.all(|x| *x == 0.0)
     }

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// How a run stands, in a word, and the class of its badge.
-pub(crate) fn status_badge(manifest: &Manifest) -> (&'static str, &'static str) { //NARROW
+pub(crate) fn status_badge(manifest: &Manifest) -> (&'static str, &'static str) {
     match manifest.status {
         RunStatus::Finished if manifest.checks.iter().any(|check| check.passed == Some(false)) => {
             ("finished, a check is missed", "bad")
@@ -33,7 +33,7 @@ fn date(time: SystemTime) -> String {
 }
 
 /// The facts under the title: each a word and a value.
-pub(crate) fn facts(run: &RunData) -> Vec<(&'static str, String)> { //NARROW
+pub(crate) fn facts(run: &RunData) -> Vec<(&'static str, String)> {
     let m = &run.manifest;
     let mut facts = Vec::new();
     if let Some(set) = &run.geometry {
@@ -64,7 +64,7 @@ fn program_version(m: &Manifest) -> String {
 }
 
 /// The head of a page of one run.
-pub(crate) fn page_head(run: &RunData) -> String { //NARROW
+pub(crate) fn page_head(run: &RunData) -> String {
     let (word, class) = status_badge(&run.manifest);
     let facts =
         facts(run).iter().map(|(k, x)| format!("<div><dt>{k}</dt><dd>{}</dd></div>", escape(x))).collect::<String>();
@@ -104,7 +104,7 @@ fn failure(m: &Manifest) -> String {
 }
 
 /// Warnings of the run and remarks of the page.
-pub(crate) fn warnings(runs: &[RunData]) -> String { //NARROW
+pub(crate) fn warnings(runs: &[RunData]) -> String {
     let all: Vec<String> = runs
         .iter()
         .flat_map(|run| {
@@ -120,7 +120,7 @@ pub(crate) fn warnings(runs: &[RunData]) -> String { //NARROW
 }
 
 /// The figures of a verdict in words.
-pub(crate) fn caption(verdict: &Verdict) -> String { //NARROW
+pub(crate) fn caption(verdict: &Verdict) -> String {
     let rows = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
     let said: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect();
@@ -128,12 +128,12 @@ pub(crate) fn caption(verdict: &Verdict) -> String { //NARROW
 }
 
 /// A table that scrolls where the page is narrow.
-pub(crate) fn scrolling_table(rows: &[Vec<String>]) -> String { //NARROW
+pub(crate) fn scrolling_table(rows: &[Vec<String>]) -> String {
     format!("<div class=\"wide\" tabindex=\"0\">{}</div>\n", table(rows))
 }
 
 /// The verdicts of all runs.
-pub(crate) fn verdicts(runs: &[RunData]) -> String { //NARROW
+pub(crate) fn verdicts(runs: &[RunData]) -> String {
     let names: Vec<[String; 1]> = runs.iter().map(|run| [run.name.clone()]).collect();
     let several = runs.len() > 1;
     let pairs: Vec<(&[String], &Verdict)> = runs
@@ -167,7 +167,7 @@ pub fn statistics(run: &RunData) -> String {
 }
 
 /// Energies and where they went; empty without a table of them.
-pub(crate) fn energy(run: &RunData) -> String { //NARROW
+pub(crate) fn energy(run: &RunData) -> String {
     let budgets = run
         .tables
         .iter()
@@ -178,7 +178,7 @@ pub(crate) fn energy(run: &RunData) -> String { //NARROW
 }
 
 /// What was run: the scene's words, every value in force, the machine.
-pub(crate) fn scene_and_values(run: &RunData) -> String { //NARROW
+pub(crate) fn scene_and_values(run: &RunData) -> String {
     let m = &run.manifest;
     let machine = &m.machine;
     let rows = [
@@ -212,7 +212,7 @@ pub(crate) fn scene_and_values(run: &RunData) -> String { //NARROW
 }
 
 /// Where the files are.
-pub(crate) fn files(run: &RunData) -> String { //NARROW
+pub(crate) fn files(run: &RunData) -> String {
     let folder = run.folder.canonicalize().unwrap_or_else(|_| run.folder.clone());
     let mut rows = vec![["file", "size"].map(String::from).to_vec()];
     for file in &run.manifest.files {
@@ -231,7 +231,7 @@ pub(crate) fn files(run: &RunData) -> String { //NARROW
 }
 
 /// What of a film the page shows, and what it leaves out.
-pub(crate) fn animation_note(reel: &Animation) -> String { //NARROW
+pub(crate) fn animation_note(reel: &Animation) -> String {
     let [frames, particles] = reel.of;
     let kept = (reel.times.len(), reel.counts.first().copied().unwrap_or(0));
     let mut said = if kept.0 == frames {
@@ -254,7 +254,7 @@ pub(crate) fn animation_note(reel: &Animation) -> String { //NARROW
 }
 
 /// What differs between the values in force of several runs: a row for each key.
-pub(crate) fn differences(runs: &[RunData]) -> String { //NARROW
+pub(crate) fn differences(runs: &[RunData]) -> String {
     let mut keys: Vec<&str> = Vec::new();
     for value in runs.iter().flat_map(|run| &run.manifest.values) {
         if !keys.contains(&value.key.as_str()) {
@@ -286,7 +286,7 @@ fn runs_with_series<'a>(runs: &'a [RunData], table: &str, column: Option<&str>) 
 }
 
 /// Whether several runs have no series in common.
-pub(crate) fn no_common_series(runs: &[RunData]) -> bool { //NARROW
+pub(crate) fn no_common_series(runs: &[RunData]) -> bool {
     let common = |t: &ProbeTable| {
         t.columns.iter().any(|column| runs_with_series(runs, &t.name, Some(column)).len() == runs.len())
     };
@@ -294,7 +294,7 @@ pub(crate) fn no_common_series(runs: &[RunData]) -> bool { //NARROW
 }
 
 /// Which series not all of several runs have, and who has them; empty if all have all.
-pub(crate) fn missing_series(runs: &[RunData]) -> String { //NARROW
+pub(crate) fn missing_series(runs: &[RunData]) -> String {
     let mut groups: Vec<(Vec<&str>, Vec<String>)> = Vec::new();
     for table in runs.iter().flat_map(|run| &run.tables) {
         let whole = (table.name.clone(), runs_with_series(runs, &table.name, None));
@@ -319,7 +319,7 @@ pub(crate) fn missing_series(runs: &[RunData]) -> String { //NARROW
 }
 
 /// The facts of several runs side by side.
-pub(crate) fn facts_table(runs: &[RunData]) -> String { //NARROW
+pub(crate) fn facts_table(runs: &[RunData]) -> String {
     let all: Vec<Vec<(&str, String)>> = runs
         .iter()
         .map(|run| {

@@ -15,7 +15,7 @@ pub(super) fn column_series(t: &[f64], x: &[f64]) -> Option<TimeSeries> {
 
 /// The figures of all columns of `tables`, a row for each, but for entries of a budget or a balance that are 0 throughout; the first
 /// row is the head.
-pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> { //NARROW
+pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
     let head = ["series", "unit", "least", "at, s", "largest", "at, s", "mean", "std", "last", "waves", "period, s"];
     let mut rows =
         vec![head.into_iter().chain(["mean height", "highest third", "highest"]).map(String::from).collect::<Vec<_>>()];
@@ -51,7 +51,7 @@ pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> { //NARROW
 
 /// The budget of an energy table: what each part was at the start and the end, and its extremes; and what it comes to
 /// in words. None of any other table.
-pub(crate) fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> { //NARROW
+pub(crate) fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy" {
         return None;
     }
@@ -82,7 +82,7 @@ pub(crate) fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, St
 
 /// What a budget table comes to at the end: each entry, and its share of all that was turned over; and how well it closes, in
 /// words. None of any other table.
-pub(crate) fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> { //NARROW
+pub(crate) fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy budget" {
         return None;
     }

@@ -9,13 +9,13 @@ use crate::error::{Error, ErrorKind, Result};
 const FONT: &[u8] = include_bytes!("assets/inter.otf");
 
 /// A pen.
-pub(crate) struct TextRenderer { //NARROW
+pub(crate) struct TextRenderer {
     face: Face<'static>,
 }
 
 /// Where a text stands by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Anchor { //NARROW
+pub(crate) enum Anchor {
     /// It begins there.
     Start,
     /// Its middle is there.
@@ -29,20 +29,28 @@ impl TextRenderer {
     ///
     /// # Errors
     /// `File` if the font is damaged, which a test rules out.
-    pub(crate) fn new() -> Result<Self> { //NARROW
+    pub(crate) fn new() -> Result<Self> {
         let face =
             Face::parse(FONT, 0).map_err(|why| Error::new(ErrorKind::File, format!("the embedded font: {why}")))?;
         Ok(Self { face })
     }
 
     /// Width of `text` of `size`, both in pixels.
-    pub(crate) fn width(&self, text: &str, size: f32) -> f32 { //NARROW
+    pub(crate) fn width(&self, text: &str, size: f32) -> f32 {
         let advance = |c: char| self.face.glyph_index(c).and_then(|g| self.face.glyph_hor_advance(g)).unwrap_or(0);
         text.chars().map(|c| f32::from(advance(c))).sum::<f32>() * self.scale(size)
     }
 
     /// Writes `text` of `size` with its baseline at (`x`, `y`), in pixels.
-    pub(crate) fn write(&self, on: &mut Pixmap, text: &str, (x, y): (f32, f32), size: f32, anchor: Anchor, colour: [u8; 3]) { //NARROW
+    pub(crate) fn write(
+        &self,
+        on: &mut Pixmap,
+        text: &str,
+        (x, y): (f32, f32),
+        size: f32,
+        anchor: Anchor,
+        colour: [u8; 3],
+    ) {
         let share = match anchor {
             Anchor::Start => 0.0,
             Anchor::Middle => 0.5,
@@ -65,12 +73,12 @@ impl TextRenderer {
 }
 
 /// Fills `path` with `colour` of `cover` (0 … 255).
-pub(crate) fn fill_path(on: &mut Pixmap, path: &Path, colour: [u8; 3], cover: u8) { //NARROW
+pub(crate) fn fill_path(on: &mut Pixmap, path: &Path, colour: [u8; 3], cover: u8) {
     on.fill_path(path, &solid_paint(colour, cover), FillRule::Winding, Transform::identity(), None);
 }
 
 /// A paint of `colour` and `cover` (0 … 255).
-pub(crate) fn solid_paint(colour: [u8; 3], cover: u8) -> Paint<'static> { //NARROW
+pub(crate) fn solid_paint(colour: [u8; 3], cover: u8) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color(Color::from_rgba8(colour[0], colour[1], colour[2], cover));
     paint

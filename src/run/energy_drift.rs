@@ -52,7 +52,7 @@ pub(super) struct DriftMonitor {
 
 impl DriftMonitor {
     /// The first budget of `plan`, else the first probe of the energy, of a run in so many dimensions.
-    pub(crate) fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> { //NARROW
+    pub(crate) fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> {
         let find = |reading| plan.probes.iter().position(|probe| probe.kind.energy_reading() == Some(reading));
         let unit = if dimension == 2 { "J/m" } else { "J" };
         let of = |probe, budget| Self { probe, budget, unit };
@@ -61,7 +61,7 @@ impl DriftMonitor {
     }
 
     /// The drift by the rows of the probe's `table` so far.
-    pub(crate) fn drift(self, table: &CsvTable) -> Option<EnergyDrift> { //NARROW
+    pub(crate) fn drift(self, table: &CsvTable) -> Option<EnergyDrift> {
         let (first, (_, last)) = (table.first_row()?, table.last_row()?);
         if self.budget { EnergyDrift::from_budget(last) } else { EnergyDrift::from_energy(first, last, self.unit) }
     }

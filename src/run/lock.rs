@@ -18,7 +18,7 @@ pub fn lock_owner(folder: &Path) -> Option<u32> {
 }
 
 /// The right to write in a run's folder; the file goes when this is dropped.
-pub(crate) struct Lock { //NARROW
+pub(crate) struct Lock {
     path: PathBuf,
     _file: File,
 }
@@ -28,7 +28,7 @@ impl Lock {
     ///
     /// # Errors
     /// `Restart` if a run goes on there: names its process; `File` if the lock cannot be made.
-    pub(crate) fn acquire(folder: &Path) -> Result<Self> { //NARROW
+    pub(crate) fn acquire(folder: &Path) -> Result<Self> {
         let path = folder.join(LOCK);
         let refused = |why: std::io::Error| Error::file(&path, format!("cannot be written: {why}"));
         let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(refused)?;

@@ -97,7 +97,7 @@ impl ContactListOutput {
 
 /// What a look wrote besides rows, or asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct StepOutput { //NARROW
+pub(crate) struct StepOutput {
     /// A frame was written.
     pub frame: bool,
     /// A checkpoint is due.
@@ -105,7 +105,7 @@ pub(crate) struct StepOutput { //NARROW
 }
 
 /// All outputs of a run.
-pub(crate) struct Outputs<const D: usize> { //NARROW
+pub(crate) struct Outputs<const D: usize> {
     probes: Vec<ProbeOutput<D>>,
     contact_lists: Vec<ContactListOutput>,
     frames: Option<(FrameWriter, OutputSchedule)>,
@@ -118,7 +118,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if a file cannot be written; `Restart` if what is there does not fit the checkpoint.
-    pub(crate) fn new( //NARROW
+    pub(crate) fn new(
         plan: &Plan,
         probes: Vec<Box<dyn Probe<D>>>,
         folder: &Path,
@@ -175,7 +175,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if something cannot be written.
-    pub(crate) fn write_due(&mut self, sim: &Simulation<D>) -> Result<StepOutput> { //NARROW
+    pub(crate) fn write_due(&mut self, sim: &Simulation<D>) -> Result<StepOutput> {
         let t = sim.time();
         let mut written = StepOutput::default();
         for watched in &mut self.probes {
@@ -202,7 +202,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if something cannot be written.
-    pub(crate) fn finish(&mut self, sim: &Simulation<D>) -> Result<()> { //NARROW
+    pub(crate) fn finish(&mut self, sim: &Simulation<D>) -> Result<()> {
         for watched in &mut self.probes {
             watched.sample(sim, true)?;
             watched.table.sync()?;
@@ -218,7 +218,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if it cannot be written.
-    pub(crate) fn write_last_frame(&mut self, sim: &Simulation<D>) -> Result<()> { //NARROW
+    pub(crate) fn write_last_frame(&mut self, sim: &Simulation<D>) -> Result<()> {
         match &mut self.frames {
             Some((frames, _)) if frames.times().last().is_none_or(|&t| t < sim.time()) => {
                 frames.write(sim.system(), sim.time())
@@ -228,7 +228,7 @@ impl<const D: usize> Outputs<D> {
     }
 
     /// The frames so far.
-    pub(crate) fn frame_totals(&self) -> FrameTotals { //NARROW
+    pub(crate) fn frame_totals(&self) -> FrameTotals {
         let kept = |(frames, _): &(FrameWriter, OutputSchedule)| FrameTotals {
             count: frames.times().len(),
             bytes: frames.bytes(),
@@ -237,12 +237,12 @@ impl<const D: usize> Outputs<D> {
     }
 
     /// The table of the plan's probe number `probe`.
-    pub(crate) fn table(&self, probe: usize) -> &CsvTable { //NARROW
+    pub(crate) fn table(&self, probe: usize) -> &CsvTable {
         &self.probes[probe].table
     }
 
     /// Paths of the tables, from the run's folder.
-    pub(crate) fn table_paths(&self) -> impl Iterator<Item = String> + '_ { //NARROW
+    pub(crate) fn table_paths(&self) -> impl Iterator<Item = String> + '_ {
         let series = self.probes.iter().map(|watched| ("series", &watched.table));
         let lists = self.contact_lists.iter().map(|list| (LISTS, &list.table));
         let name = |(folder, table): (&str, &CsvTable)| {
@@ -252,7 +252,7 @@ impl<const D: usize> Outputs<D> {
     }
 
     /// How far the outputs are.
-    pub(crate) fn positions(&self) -> OutputPositions { //NARROW
+    pub(crate) fn positions(&self) -> OutputPositions {
         let mut due: Vec<u64> = self.probes.iter().map(|w| w.due.next).collect();
         due.push(self.frames.as_ref().map_or(0, |(_, due)| due.next));
         due.push(self.checkpoint.map_or(0, |due| due.next));
@@ -270,7 +270,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub(crate) fn roll_back_to(&mut self, extent: &OutputPositions) -> Result<()> { //NARROW
+    pub(crate) fn roll_back_to(&mut self, extent: &OutputPositions) -> Result<()> {
         let count = self.probes.len();
         for (i, watched) in self.probes.iter_mut().enumerate() {
             watched.table.truncate(extent.table_bytes[i])?;
@@ -292,7 +292,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if the disk refuses.
-    pub(crate) fn sync(&mut self) -> Result<()> { //NARROW
+    pub(crate) fn sync(&mut self) -> Result<()> {
         self.tables().try_for_each(CsvTable::sync)?;
         self.frames.as_mut().map_or(Ok(()), |(frames, _)| frames.sync())
     }
@@ -304,7 +304,7 @@ impl<const D: usize> Outputs<D> {
 }
 
 /// The folder of the tables in the run's `folder`.
-pub(crate) fn series_folder(folder: &Path) -> PathBuf { //NARROW
+pub(crate) fn series_folder(folder: &Path) -> PathBuf {
     folder.join("series")
 }
 
@@ -312,7 +312,7 @@ pub(crate) fn series_folder(folder: &Path) -> PathBuf { //NARROW
 const LISTS: &str = "lists";
 
 /// The file of the list called `name` in the run's `folder`.
-pub(crate) fn contact_list_path(folder: &Path, name: &str) -> PathBuf { //NARROW
+pub(crate) fn contact_list_path(folder: &Path, name: &str) -> PathBuf {
     folder.join(LISTS).join(format!("{name}.csv"))
 }
 

@@ -15,7 +15,7 @@ use crate::{
 ///
 /// # Errors
 /// `Scene` or `Usage` if one names no solid or a place with the wrong number of coordinates.
-pub(crate) fn probes_from_plan<const D: usize>(plan: &Plan, sim: &mut Simulation<D>) -> Result<Vec<Box<dyn Probe<D>>>> //NARROW
+pub(crate) fn probes_from_plan<const D: usize>(plan: &Plan, sim: &mut Simulation<D>) -> Result<Vec<Box<dyn Probe<D>>>>
 where
     Dim<D>: Dimension<D>,
 {
@@ -44,7 +44,10 @@ fn unknown_series(series: &str, known: &[String]) -> Error {
 ///
 /// # Errors
 /// `Scene` if one, or a statistic, names no series of `probes`; else as [`ReferenceCheck::new`].
-pub(crate) fn checks_from_plan<const D: usize>(plan: &Plan, probes: &[Box<dyn Probe<D>>]) -> Result<Vec<ReferenceCheck>> { //NARROW
+pub(crate) fn checks_from_plan<const D: usize>(
+    plan: &Plan,
+    probes: &[Box<dyn Probe<D>>],
+) -> Result<Vec<ReferenceCheck>> {
     let columns = plan.probes.iter().zip(probes);
     let known: Vec<String> =
         columns.flat_map(|(words, p)| p.columns().into_iter().map(move |c| format!("{}.{c}", words.name))).collect();

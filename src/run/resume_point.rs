@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// What a run goes on from.
-pub(crate) struct ResumePoint { //NARROW
+pub(crate) struct ResumePoint {
     /// The checkpoint.
     pub checkpoint: Checkpoint,
     /// The scene, as it was at the start; its guards may have been set since.
@@ -28,7 +28,7 @@ impl ResumePoint {
     ///
     /// # Errors
     /// `Usage` for a key of anything else; `Scene` for guards that no scene may have.
-    pub(crate) fn with_guard_overrides(mut self, folder: &Path, sets: &[(String, String)]) -> Result<Self> { //NARROW
+    pub(crate) fn with_guard_overrides(mut self, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
         if sets.is_empty() {
             return Ok(self);
         }
@@ -51,7 +51,7 @@ impl ResumePoint {
 ///
 /// # Errors
 /// What is wrong with the last one, if the one before is of no use either.
-pub(crate) fn latest_resume_point(folder: &Path) -> Result<ResumePoint> { //NARROW
+pub(crate) fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
     let last = match load_matching(folder, checkpoint::LAST) {
         Ok((checkpoint, scene)) => return Ok(ResumePoint { checkpoint, scene, warning: None }),
         Err(why) => why,
@@ -76,7 +76,7 @@ pub(crate) fn latest_resume_point(folder: &Path) -> Result<ResumePoint> { //NARR
 }
 
 /// Whether `folder` holds a checkpoint, be it of use or not.
-pub(crate) fn has_checkpoint(folder: &Path) -> bool { //NARROW
+pub(crate) fn has_checkpoint(folder: &Path) -> bool {
     [checkpoint::LAST, checkpoint::PREVIOUS].iter().any(|name| folder.join(name).exists())
 }
 

@@ -12,13 +12,13 @@ use crate::{
 };
 
 /// The kept scene, in the run's folder.
-pub(crate) const SCENE: &str = "scene/scene.toml"; //NARROW
+pub(crate) const SCENE: &str = "scene/scene.toml";
 
 /// The report of a run that could not go on, in its folder.
-pub(crate) const FAILURE: &str = "failure.json"; //NARROW
+pub(crate) const FAILURE: &str = "failure.json";
 
 /// The scene file that `path` means: itself, or the `scene.toml` in it.
-pub(crate) fn scene_file(path: &Path) -> PathBuf { //NARROW
+pub(crate) fn scene_file(path: &Path) -> PathBuf {
     if path.is_dir() { path.join("scene.toml") } else { path.to_owned() }
 }
 
@@ -34,7 +34,7 @@ fn scene_name(file: &Path) -> String {
 ///
 /// # Errors
 /// `Usage` if `out` holds something; `File` if the folder cannot be made.
-pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathBuf> { //NARROW
+pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
     let refused = |path: &Path, why: std::io::Error| {
         Error::file(path, format!("cannot be made: {why}")).help("choose another folder with --out")
     };
@@ -68,7 +68,7 @@ pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathB
 ///
 /// # Errors
 /// `File` if one cannot be removed.
-pub(crate) fn remove_failure_report(folder: &Path) -> Result<()> { //NARROW
+pub(crate) fn remove_failure_report(folder: &Path) -> Result<()> {
     [FAILURE, checkpoint::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
         Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
             Err(Error::file(&path, format!("cannot be removed: {why}")))
@@ -82,7 +82,7 @@ pub(crate) fn remove_failure_report(folder: &Path) -> Result<()> { //NARROW
 ///
 /// # Errors
 /// `File` if something cannot be read or written.
-pub(crate) fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> { //NARROW
+pub(crate) fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
     let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let copy = |source: &Path, target: &Path| -> Result<()> {
         let parent = target.parent().unwrap_or(&to);
@@ -97,7 +97,7 @@ pub(crate) fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> 
 }
 
 /// All strings in the TOML `words` that could name a file beside it.
-pub(crate) fn referenced_files(words: &str) -> Vec<String> { //NARROW
+pub(crate) fn referenced_files(words: &str) -> Vec<String> {
     let mut names = Vec::new();
     if let Ok(table) = words.parse::<toml::Table>() {
         table.values().for_each(|value| collect_strings(value, &mut names));

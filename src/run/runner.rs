@@ -27,7 +27,7 @@ use crate::{
 };
 
 /// A run in progress.
-pub(crate) struct Runner<const D: usize> { //NARROW
+pub(crate) struct Runner<const D: usize> {
     sim: Simulation<D>,
     outputs: Outputs<D>,
     drift_monitor: Option<DriftMonitor>,
@@ -57,7 +57,7 @@ where
     Dim<D>: Dimension<D>,
 {
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
-    pub(crate) fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> { //NARROW
+    pub(crate) fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
         let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
@@ -118,7 +118,7 @@ where
 
 impl<const D: usize> Runner<D> {
     /// Runs to the end, or until `watch` says stop; `renamed` are the old names in the scene.
-    pub(crate) fn run(mut self, renamed: &[RenamedName], watch: &mut dyn RunObserver) -> Result<RunOutcome> { //NARROW
+    pub(crate) fn run(mut self, renamed: &[RenamedName], watch: &mut dyn RunObserver) -> Result<RunOutcome> {
         self.update_manifest();
         self.manifest.write(&self.folder)?;
         watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest, renamed });

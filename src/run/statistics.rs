@@ -18,12 +18,11 @@ use crate::{
     scene::Scene,
 };
 
-pub use rao_table::RAO_FILE;
-pub use rao_table::RaoResult;
+pub use rao_table::{RAO_FILE, RaoResult};
 pub use spectra_table::SPECTRA_FILE;
 
 /// The file, in the run's folder.
-pub(crate) const STATISTICS_FILE: &str = "statistics.csv"; //NARROW
+pub(crate) const STATISTICS_FILE: &str = "statistics.csv";
 
 /// A figure of a series, or of several.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -46,7 +46,7 @@ pub struct BuiltScene<const D: usize> {
 }
 
 /// The solids around the water: enough to draw a scene.
-pub(crate) struct SceneLayout<const D: usize> { //NARROW
+pub struct SceneLayout<const D: usize> {
     /// The solids, where they start.
     pub solids: Vec<SolidSpec<D>>,
     /// The laws and constants.
@@ -74,7 +74,7 @@ pub struct SizeEstimate {
 
 impl SizeEstimate {
     /// Water particles × force evaluations: about proportional to the time of a run.
-    pub(crate) fn particle_passes(&self) -> f64 { //NARROW
+    pub fn particle_passes(&self) -> f64 {
         self.fluid * self.steps * self.passes
     }
 }
@@ -158,7 +158,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::build`].
-    pub(crate) fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> { //NARROW
+    pub fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
         let (scene, _) = self.with_defaults()?;
         let water = scene.water_bodies::<D>()?;
         let still = StillWaterLevel::of(&water);

@@ -25,7 +25,7 @@ type Facets = (Vec<Vector<3>>, Vec<[u32; 3]>);
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is neither STL nor OBJ, too large, damaged, or no solid.
-pub(crate) fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> { //NARROW
+pub(crate) fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> {
     let kind = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let load = match kind.as_str() {
         "stl" => stl,
@@ -48,7 +48,7 @@ pub(crate) fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> { //NARRO
 ///
 /// # Errors
 /// `File` if it cannot be read, `Scene` if it is too large.
-pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> { //NARROW
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let opened = File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes));
     opened.map_err(|why| Error::file(path, why))?;

@@ -23,20 +23,20 @@ mod verify_probes;
 
 /// The sections of a scene.
 mod section {
-    pub(crate) mod analysis; //NARROW
-    pub(crate) mod contact; //NARROW
-    pub(crate) mod domain; //NARROW
-    pub(crate) mod force_element; //NARROW
-    pub(crate) mod joint; //NARROW
-    pub(crate) mod model; //NARROW
-    pub(crate) mod motion; //NARROW
-    pub(crate) mod output; //NARROW
-    pub(crate) mod shape; //NARROW
-    pub(crate) mod solid; //NARROW
-    pub(crate) mod sponge_layer; //NARROW
-    pub(crate) mod water; //NARROW
-    pub(crate) mod wave; //NARROW
-    pub(crate) mod wavemaker; //NARROW
+    pub(crate) mod analysis;
+    pub(crate) mod contact;
+    pub(crate) mod domain;
+    pub(crate) mod force_element;
+    pub(crate) mod joint;
+    pub(crate) mod model;
+    pub(crate) mod motion;
+    pub(crate) mod output;
+    pub(crate) mod shape;
+    pub(crate) mod solid;
+    pub(crate) mod sponge_layer;
+    pub(crate) mod water;
+    pub(crate) mod wave;
+    pub(crate) mod wavemaker;
 }
 
 use std::{
@@ -50,83 +50,51 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
-pub use crate::plan::Plan;
-pub use crate::math::BoxConfig;
-pub use crate::probe::ProbeConfig;
-pub use build::BuiltScene;
-pub(crate) use build::SceneLayout; //NARROW
-pub use build::SizeEstimate;
-pub use bundled::BundledScene;
-pub use bundled::bundled_scenes;
-pub use resolve::ResolvedValue;
-pub use schema::schema;
 pub(crate) use section::shape::world_bounds;
-pub use section::analysis::CheckConfig;
-pub use section::analysis::StatisticConfig;
-pub use section::contact::ContactConfig;
-pub use section::domain::GuardConfig;
-pub use section::domain::PeriodicConfig;
-pub use section::force_element::ForceConfig;
-pub use section::force_element::RopeConfig;
-pub use section::force_element::SpringConfig;
-pub use section::joint::JointConfig;
-pub use section::joint::JointKindConfig;
-pub use section::joint::MotorConfig;
-pub use section::model::ModelConfig;
-pub use section::model::TimeSteppingConfig;
-pub use section::motion::DrivenConfig;
-pub use section::output::CheckpointConfig;
-pub use section::output::FramesChoice;
-pub use section::output::FramesConfig;
-pub use section::shape::CompoundPartConfig;
-pub use section::shape::PlacementConfig;
-pub use section::shape::ShapeConfig;
-pub use section::solid::SolidConfig;
-pub use section::sponge_layer::SpongeLayerConfig;
-pub use section::water::FillConfig;
-pub use section::water::StillWaterLevel;
-pub use section::water::WaterConfig;
-pub use section::wave::WaveConfig;
-pub use toml_source::RenamedName;
-pub(crate) use toml_source::current_key; //NARROW
-pub use untagged::TimeValueConfig;
-pub use crate::plan::Align;
-pub use crate::plan::CheckPlan;
-pub use crate::plan::FramesPlan;
-pub use crate::plan::Reference;
-pub use crate::plan::Score;
-pub use crate::plan::StatisticKind;
-pub use crate::plan::StatisticPlan;
-pub use crate::math::NumberOrArray;
-pub use crate::probe::GaugeConfig;
-pub use crate::probe::GaugeSurface;
-pub use crate::probe::PatchConfig;
-pub use crate::probe::PointRowConfig;
-pub use crate::probe::PointsConfig;
-pub use crate::probe::ProbePlan;
-pub use crate::probe::SectionConfig;
-pub use section::analysis::RaoConfig;
-pub use section::force_element::ForceFrame;
-pub use section::joint::LimitsConfig;
-pub use section::shape::AxisName;
-pub use section::shape::MeshConfig;
-pub use section::solid::FreeBodyConfig;
-pub use section::solid::MotionMode;
-pub use section::wave::AbsorbChoice;
-pub use section::wave::AbsorptionConfig;
-pub use section::wave::FocusedWaveConfig;
-pub use section::wave::IrregularWaveConfig;
-pub use section::wave::MeasuredElevationConfig;
-pub use section::wave::RegularWaveConfig;
-pub use section::wave::SolitaryWaveConfig;
-pub use section::wave::WaveComponentsConfig;
-pub use toml_source::ValueSource;
-pub use untagged::DraftChoice;
-pub use untagged::FieldFormulaConfig;
-pub use untagged::LengthUnit;
-pub use untagged::PolylineConfig;
-pub use untagged::TimeFunctionConfig;
-pub use untagged::TimeVectorConfig;
+pub use {
+    crate::probe::ProbeConfig,
+    build::BuiltScene,
+    bundled::{BundledScene, bundled_scenes},
+    schema::schema,
+    section::contact::ContactConfig,
+    section::force_element::{ForceConfig, RopeConfig, SpringConfig},
+    section::joint::{JointConfig, JointKindConfig, MotorConfig},
+    section::model::ModelConfig,
+    section::motion::DrivenConfig,
+    section::output::FramesChoice,
+    section::shape::{CompoundPartConfig, PlacementConfig, ShapeConfig},
+    section::solid::{FreeBodyConfig, SolidConfig},
+    section::sponge_layer::SpongeLayerConfig,
+    section::water::WaterConfig,
+    section::wave::WaveConfig,
+    untagged::TimeValueConfig,
+};
+// Parts of the configuration that the constructors above fill.
+#[doc(hidden)]
+pub use {
+    crate::math::{BoxConfig, NumberOrArray},
+    crate::plan::{Align, CheckPlan, FramesPlan, Plan, Reference, Score, StatisticKind, StatisticPlan},
+    crate::probe::{GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbePlan, SectionConfig},
+    build::SceneLayout,
+    build::SizeEstimate,
+    resolve::ResolvedValue,
+    section::analysis::{CheckConfig, RaoConfig, StatisticConfig},
+    section::domain::{GuardConfig, PeriodicConfig},
+    section::force_element::ForceFrame,
+    section::joint::LimitsConfig,
+    section::model::TimeSteppingConfig,
+    section::output::{CheckpointConfig, FramesConfig},
+    section::shape::{AxisName, MeshConfig},
+    section::solid::MotionMode,
+    section::water::{FillConfig, StillWaterLevel},
+    section::wave::{
+        AbsorbChoice, AbsorptionConfig, FocusedWaveConfig, IrregularWaveConfig, MeasuredElevationConfig,
+        RegularWaveConfig, SolitaryWaveConfig, WaveComponentsConfig,
+    },
+    toml_source::current_key,
+    toml_source::{RenamedName, ValueSource},
+    untagged::{DraftChoice, FieldFormulaConfig, LengthUnit, PolylineConfig, TimeFunctionConfig, TimeVectorConfig},
+};
 
 /// Most bytes of a scene's text; the longest bundled one has 3,000.
 const MOST_TEXT: u64 = 1 << 20;
@@ -228,7 +196,7 @@ impl Scene {
     }
 
     /// The same scene with these laws.
-    pub(crate) fn model(mut self, model: ModelConfig) -> Self { //NARROW
+    pub fn model(mut self, model: ModelConfig) -> Self {
         self.model = model;
         self
     }

@@ -37,19 +37,19 @@ pub(super) struct OverrideLocations {
 
 impl OverrideLocations {
     /// None yet, for an override of `text`.
-    pub(crate) fn after(text: &str) -> Self { //NARROW
+    pub(crate) fn after(text: &str) -> Self {
         Self { first: text.len() + 1, keys: Vec::new() }
     }
 
     /// A new location for `key`.
-    pub(crate) fn place(&mut self, key: &str) -> Range<usize> { //NARROW
+    pub(crate) fn place(&mut self, key: &str) -> Range<usize> {
         let place = self.first + self.keys.len();
         self.keys.push(key.into());
         place..place
     }
 
     /// The key at a location; `None` if that is in the text.
-    pub(crate) fn key(&self, place: usize) -> Option<String> { //NARROW
+    pub(crate) fn key(&self, place: usize) -> Option<String> {
         self.keys.get(place.checked_sub(self.first)?).cloned()
     }
 }

@@ -19,7 +19,7 @@ const LARGEST: f64 = 1e9;
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is no SVG, or has not one such outline.
-pub(crate) fn outline(path: &Path, id: Option<&str>, unit: f64, tolerance: f64) -> Result<Vec<[f64; 2]>> { //NARROW
+pub(crate) fn outline(path: &Path, id: Option<&str>, unit: f64, tolerance: f64) -> Result<Vec<[f64; 2]>> {
     let refuse = |what: String, help: &str| Error::scene(format!("{}: {what}", path.display())).help(help);
     let text =
         String::from_utf8(mesh::bytes(path)?).map_err(|_| refuse("this is no text".into(), "give an SVG file"))?;

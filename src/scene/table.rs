@@ -14,7 +14,7 @@ const MOST_BYTES: u64 = 256 << 20;
 ///
 /// # Errors
 /// `Scene` if the name, or a link, leads out of the folder, or no file is there.
-pub(crate) fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> { //NARROW
+pub(crate) fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     let path = Path::new(name);
     if name.is_empty() || name.contains('\\') || !path.components().all(inside) {
@@ -40,7 +40,7 @@ pub(crate) fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> { //NARR
 }
 
 /// Whether the file at `full`, links followed, lies in `folder`; true if there is no such file.
-pub(crate) fn is_within(folder: &Path, full: &Path) -> bool { //NARROW
+pub(crate) fn is_within(folder: &Path, full: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     match (folder.canonicalize(), full.canonicalize()) {
         (Ok(folder), Ok(full)) => full.starts_with(folder),
@@ -62,7 +62,7 @@ fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is too large.
-pub(crate) fn read_header(path: &Path) -> Result<Vec<String>> { //NARROW
+pub(crate) fn read_header(path: &Path) -> Result<Vec<String>> {
     let mut reader = reader(path)?;
     let header = reader.headers().map_err(|e| Error::file(path, e))?;
     Ok(header.iter().map(String::from).collect())
@@ -82,7 +82,7 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
 ///
 /// # Errors
 /// `File` if it cannot be read; `Scene` if it is too large, a column is missing or a cell is not a finite number.
-pub(crate) fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> { //NARROW
+pub(crate) fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let mut reader = reader(path)?;
     let file = path.display().to_string();
     let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();

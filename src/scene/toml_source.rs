@@ -104,7 +104,7 @@ impl fmt::Display for ValueSource {
 impl SceneSource {
     /// The place of `key`, or of the nearest key above it that was written, put on `error`.
     /// A check of the domain may have named a part of `key`.
-    pub(crate) fn with_location(&self, mut error: Error, key: &str) -> Error { //NARROW
+    pub(crate) fn with_location(&self, mut error: Error, key: &str) -> Error {
         let part = error.location.take_if(|location| location.file.is_empty());
         let key = &part.map_or(key.to_string(), |part| subkey(key, &part.key));
         if self.is_set(key) {
@@ -122,7 +122,7 @@ impl SceneSource {
     }
 
     /// The source of `key`; `None` if it is not written.
-    pub(crate) fn source(&self, key: &str) -> Option<ValueSource> { //NARROW
+    pub(crate) fn source(&self, key: &str) -> Option<ValueSource> {
         if self.is_set(key) {
             return Some(ValueSource::Set);
         }
@@ -147,7 +147,7 @@ impl SceneSource {
     }
 
     /// `key` with the names of solids in place of their numbers.
-    pub(crate) fn key_with_names(&self, key: &str) -> String { //NARROW
+    pub(crate) fn key_with_names(&self, key: &str) -> String {
         let mut parts: Vec<&str> = key.split('.').collect();
         if let ["solid", number, ..] = parts[..]
             && let Some(name) = number.parse::<usize>().ok().and_then(|i| self.names.get(i))
@@ -315,7 +315,7 @@ fn renamed_key(key: &str) -> Option<(&'static str, &'static str)> {
 }
 
 /// `key`, an override's, with the current name of its last part.
-pub(crate) fn current_key(key: &str) -> String { //NARROW
+pub fn current_key(key: &str) -> String {
     match renamed_key(key) {
         Some((old, new)) => format!("{}{new}", key.strip_suffix(old).unwrap_or(key)),
         None => key.into(),

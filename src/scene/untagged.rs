@@ -119,7 +119,7 @@ pub enum LengthUnit {
 
 impl LengthUnit {
     /// Its length, m.
-    pub(crate) fn metres(self) -> f64 { //NARROW
+    pub(crate) fn metres(self) -> f64 {
         match self {
             Self::M => 1.0,
             Self::Cm => 0.01,
@@ -150,7 +150,7 @@ pub struct PolylineConfig {
 
 impl PolylineConfig {
     /// The line through `points` (m).
-    pub(crate) fn through<const N: usize>(points: [[f64; 2]; N]) -> Self { //NARROW
+    pub(crate) fn through<const N: usize>(points: [[f64; 2]; N]) -> Self {
         Self { points: Some(points.iter().map(|p| p.to_vec()).collect()), ..Self::default() }
     }
 
@@ -358,12 +358,12 @@ enum TimeVectorForm {
 
 impl TimeVectorConfig {
     /// These components.
-    pub(crate) fn new(components: impl IntoIterator<Item = TimeValueConfig>) -> Self { //NARROW
+    pub fn new(components: impl IntoIterator<Item = TimeValueConfig>) -> Self {
         Self(TimeVectorForm::Many(components.into_iter().collect()))
     }
 
     /// The components.
-    pub(crate) fn components(&self) -> &[TimeValueConfig] { //NARROW
+    pub(crate) fn components(&self) -> &[TimeValueConfig] {
         match &self.0 {
             TimeVectorForm::One(one) => std::slice::from_ref(one),
             TimeVectorForm::Many(many) => many,

@@ -24,7 +24,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.
-    pub(crate) fn spring_step_limit(&self) -> f64 { //NARROW
+    pub(crate) fn spring_step_limit(&self) -> f64 {
         self.bodies.step_limit(&self.system, self.clock.time)
     }
 
@@ -51,7 +51,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Where generic joint number `joint` is: the coordinates of the modes in its list, m or rad (−π to π) from the start.
-    pub(crate) fn joint_coordinates(&self, joint: usize) -> Vec<f64> { //NARROW
+    pub(crate) fn joint_coordinates(&self, joint: usize) -> Vec<f64> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
         self.bodies.constraints().joint_coordinates(joint, &solids)
     }

@@ -11,7 +11,7 @@ use crate::solid::Kinematics;
 /// the same order; all three have the same length.
 ///
 /// Source: @pirkhalili2023, eq. (25).
-pub(crate) fn place_boundary_particles<const D: usize>( //NARROW
+pub(crate) fn place_boundary_particles<const D: usize>(
     kinematics: &Kinematics<D>,
     local: &[Vector<D>],
     r: &mut [Vector<D>],

@@ -23,12 +23,12 @@ impl<const D: usize> Load<D> {
     }
 
     /// `force` (N) alone, at the arm `r` (m) from the centre.
-    pub(crate) fn from_force_at(r: &Vector<D>, force: Vector<D>) -> Self { //NARROW
+    pub(crate) fn from_force_at(r: &Vector<D>, force: Vector<D>) -> Self {
         Self { force, torque: Bivector::torque(r, &force) }
     }
 
     /// Power (W) on a solid that moves so: F·V + T·Ω.
-    pub(crate) fn power(&self, motion: &Kinematics<D>) -> f64 { //NARROW
+    pub(crate) fn power(&self, motion: &Kinematics<D>) -> f64 {
         self.force.dot(&motion.velocity) + self.torque.power(&motion.spin)
     }
 }

@@ -1,54 +1,39 @@
 //! Solids: fixed, driven and free, with their kinematics, loads, constraints and the rigid-body engine. No sums over pairs.
 
 mod body;
-pub(crate) mod boundary_motion; //NARROW
-pub(crate) mod constraint; //NARROW
+pub(crate) mod boundary_motion;
+pub(crate) mod constraint;
 pub(crate) mod containment;
-pub(crate) mod force; //NARROW
+pub(crate) mod force;
 pub mod hydrostatics;
 mod load;
-pub(crate) mod prescribed_motion; //NARROW
-pub(crate) mod rapier; //NARROW
+pub(crate) mod prescribed_motion;
+pub(crate) mod rapier;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../tests/unit/solid/bodies.rs"]
 mod tests;
 
-pub use constraint::Constraints;
-pub use constraint::ContactSpec;
-pub use constraint::FreeMode;
-pub use constraint::InitialHold;
-pub use constraint::JointKind;
-pub use constraint::JointReading;
-pub use constraint::JointSpec;
-pub use constraint::LineEnd;
-pub use constraint::LineReading;
-pub use constraint::Mobility;
-pub use constraint::Motor;
-pub use constraint::MotorCommand;
-pub use constraint::RopeSpec;
-pub use constraint::SpringParameters;
-pub use constraint::SpringSpec;
+pub use constraint::{
+    Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind, JointReading, JointSpec, LineEnd,
+    LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters, SpringSpec,
+};
 pub use force::ForceSpec;
 pub use load::Load;
 pub(crate) use load::LoadContext;
-pub use prescribed_motion::PrescribedMotion;
-pub use prescribed_motion::TimeFunction;
+pub use prescribed_motion::{PrescribedMotion, TimeFunction};
+pub use rapier::ContactForce;
 #[cfg(feature = "dim2")]
 pub use rapier::rapier2d;
 #[cfg(feature = "dim3")]
 pub use rapier::rapier3d;
-pub use rapier::ContactForce;
-pub use rapier::Dim;
-pub use rapier::Engine;
-pub use rapier::EngineFault;
-pub use rapier::HasEngine;
+#[doc(hidden)]
+pub use rapier::{Dim, Engine, EngineFault, HasEngine};
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
 use crate::wavemaker::AbsorptionState;
-pub use constraint::ContactPairs;
 use crate::{
     geometry::Shape,
     math::{Bivector, Matrix, Pose, Vector},
@@ -158,7 +143,7 @@ impl<const D: usize> Solid<D> {
     }
 
     /// Energy of its motion, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 of a solid that is not free.
-    pub(crate) fn kinetic_energy(&self) -> f64 { //NARROW
+    pub(crate) fn kinetic_energy(&self) -> f64 {
         let Role::Free(body) = &self.spec.role else { return 0.0 };
         let now = &self.kinematics;
         let turning = rotational_energy_twice(&body.inertia, &now.pose.rotation, &now.spin.axial());
@@ -166,18 +151,18 @@ impl<const D: usize> Solid<D> {
     }
 
     /// Energy of its height under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 of a solid that is not free.
-    pub(crate) fn potential_energy(&self, gravity: &Vector<D>) -> f64 { //NARROW
+    pub(crate) fn potential_energy(&self, gravity: &Vector<D>) -> f64 {
         let Role::Free(body) = &self.spec.role else { return 0.0 };
         -body.mass * gravity.dot(&self.kinematics.centre)
     }
 
     /// Both energies, J (J/m in 2-D).
-    pub(crate) fn energy(&self, gravity: &Vector<D>) -> f64 { //NARROW
+    pub(crate) fn energy(&self, gravity: &Vector<D>) -> f64 {
         self.kinetic_energy() + self.potential_energy(gravity)
     }
 
     /// Acceleration (m/s²) of its point at the world position `x` (m).
-    pub(crate) fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> { //NARROW
+    pub(crate) fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> {
         let (arm, spin) = (x - self.kinematics.centre, &self.kinematics.spin);
         self.acceleration + self.angular_acceleration.velocity_at(&arm) + spin.velocity_at(&spin.velocity_at(&arm))
     }

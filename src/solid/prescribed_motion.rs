@@ -83,7 +83,7 @@ impl<const D: usize> PrescribedMotion<D> {
     ///
     /// `axis`: axial components of any length but zero: `[1.0]` in 2-D, where positive angles turn
     /// counter-clockwise (`[-1.0]`: clockwise); the three of the axis in 3-D, right-handed.
-    pub(crate) fn hinge(centre: Vector<D>, axis: &[f64], law: TimeFunction) -> Self { //NARROW
+    pub(crate) fn hinge(centre: Vector<D>, axis: &[f64], law: TimeFunction) -> Self {
         let axis = Bivector::<D>::from_axial(axis);
         let length = (0.5 * axis.0.norm_squared()).sqrt();
         Self::of(Path::Hinge { centre, axis: axis * (1.0 / length) }, law)
@@ -101,17 +101,17 @@ impl<const D: usize> PrescribedMotion<D> {
 
     /// The same motion, of a paddle that absorbs: its gauge is above `gauge` (m) when it is at rest, and goes with it along
     /// `way`, a unit vector. Without effect on a law that is no wave's.
-    pub(crate) fn with_absorber(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self { //NARROW
+    pub(crate) fn with_absorber(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
         Self { absorbing: Some(Box::new(Absorbing { absorber, gauge, way })), ..self }
     }
 
     /// The absorber, if there is one.
-    pub fn absorber(&self) -> Option<&Absorber> {
+    pub(crate) fn absorber(&self) -> Option<&Absorber> {
         self.absorbing.as_ref().map(|own| &own.absorber)
     }
 
     /// The wave that it generates, if it is a paddle with a wave by name.
-    pub(crate) fn wave(&self) -> Option<&PaddleMotion> { //NARROW
+    pub(crate) fn wave(&self) -> Option<&PaddleMotion> {
         match &self.stages[..] {
             [Stage { law: TimeFunction::Wave(wave), .. }] => Some(wave),
             _ => None,
@@ -141,13 +141,13 @@ impl<const D: usize> PrescribedMotion<D> {
     }
 
     /// Height (m) of the world point about which it turns; none of a slide, or of several motions.
-    pub(crate) fn hinge_height(&self) -> Option<f64> { //NARROW
+    pub(crate) fn hinge_height(&self) -> Option<f64> {
         self.hinged().map(|centre| centre[D - 1])
     }
 
     /// Which way its point that is at `x` (m) at the start goes as the value of each of its laws grows: unit vectors, from the ground
     /// up; zero on the axis of a hinge.
-    pub(crate) fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> { //NARROW
+    pub(crate) fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> {
         let way = |k: usize| {
             let alone = |i: usize, law: &TimeFunction| (law.value_and_rate(0.0).0, if i == k { 1.0 } else { 0.0 });
             let now = self.moved(&Pose::identity(), alone);

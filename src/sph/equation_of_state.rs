@@ -16,7 +16,7 @@ impl EquationOfState {
 
     /// P/ρ₀ (m²/s²) at excess density `x` (–). For γ = 7 the binomial in x, which loses no digit near x = 0.
     #[inline(always)]
-    pub(crate) fn pressure(&self, x: f64) -> f64 { //NARROW
+    pub(crate) fn pressure(&self, x: f64) -> f64 {
         if self.gamma == 7.0 {
             self.stiffness * x * (7.0 + x * (21.0 + x * (35.0 + x * (35.0 + x * (21.0 + x * (7.0 + x))))))
         } else {
@@ -25,7 +25,7 @@ impl EquationOfState {
     }
 
     /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`EquationOfState::pressure`].
-    pub(crate) fn compression(&self, p: f64) -> f64 { //NARROW
+    pub(crate) fn compression(&self, p: f64) -> f64 {
         ((p / self.stiffness).ln_1p() / self.gamma).exp_m1()
     }
 
@@ -33,17 +33,17 @@ impl EquationOfState {
     ///
     /// Deep water is denser, but as many particles fill a metre of it: the volumes m/ρ that the pressure force takes are by x too
     /// small. It acts as P/(1 + x)², so that at rest P = ρ₀ g·depth (1 + 2x) to second order.
-    pub(crate) fn hydrostatic_compression(&self, head: f64) -> f64 { //NARROW
+    pub(crate) fn hydrostatic_compression(&self, head: f64) -> f64 {
         self.compression(head * (1.0 + 2.0 * head / (self.stiffness * self.gamma)))
     }
 
     /// The part of the pressure (P/ρ₀, m²/s²) at excess density `x` (–) that acts where particles lie dp apart.
-    pub(crate) fn lattice_pressure(&self, x: f64) -> f64 { //NARROW
+    pub(crate) fn lattice_pressure(&self, x: f64) -> f64 {
         self.pressure(x) / ((1.0 + x) * (1.0 + x))
     }
 
     /// Energy of compression per unit of mass (J/kg) from ρ₀ to x: ∫ P/ρ² dρ.
-    pub(crate) fn compression_energy(&self, x: f64) -> f64 { //NARROW
+    pub(crate) fn compression_energy(&self, x: f64) -> f64 {
         let (g, s) = (self.gamma, 1.0 / (1.0 + x));
         if x.abs() < 1e-3 {
             // P ≈ c₀² x ρ₀ (1 + (γ−1) x/2): the series to third order, free of cancellation.

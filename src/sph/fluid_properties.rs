@@ -47,7 +47,7 @@ impl<const D: usize> FluidProperties<D> {
     }
 
     /// Volume of a particle at ρ₀, dpᴰ (m³; m² in 2-D): every particle's mass divided by ρ₀.
-    pub(crate) fn particle_volume(&self) -> f64 { //NARROW
+    pub(crate) fn particle_volume(&self) -> f64 {
         self.dp.powi(D as i32)
     }
 

@@ -6,6 +6,7 @@
 
 pub mod continuity;
 pub mod density_diffusion;
+#[doc(hidden)]
 pub mod gradient_correction;
 pub mod kernel;
 mod simd;
@@ -17,10 +18,5 @@ pub mod equation_of_state;
 pub mod viscosity;
 pub mod boundary;
 
-pub use fluid_properties::FluidProperties;
-pub use fluid_properties::Units;
-pub use pair::AuxiliarySums;
-pub use pair::Num;
-pub use pair::Pair;
-pub use pair::PairSide;
-pub use pair::Term;
+pub use fluid_properties::{FluidProperties, Units};
+pub use pair::{AuxiliarySums, Num, Pair, PairSide, Term};

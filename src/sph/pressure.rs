@@ -14,7 +14,7 @@ impl<const D: usize> Term<D> for Pressure {
 }
 
 /// Tensile correction, which keeps particles under the cubic spline from pairing:
-/// adds (R_a + R_b)(W_ab/W(dp))⁴ to the pressure bracket, with R the particles' [`repulsion`] @monaghan2000.
+/// adds (R_a + R_b)(W_ab/W(dp))⁴ to the pressure bracket, with R the particles' `repulsion` @monaghan2000.
 #[derive(Clone, Copy, Debug)]
 pub struct Tensile {
     /// 1/(V₀ W(dp)), –.
@@ -24,7 +24,7 @@ pub struct Tensile {
 /// R = 0.01 P/ρ² where P > 0 and 0.2 |P|/ρ² where P < 0, of a particle of pressure `p` (P/ρ₀) and specific volume `s`,
 /// as ρ₀ R, m²/s² @monaghan2000.
 #[inline(always)]
-pub(crate) fn repulsion<N: Num>(p: N, s: N) -> N { //NARROW
+pub(crate) fn repulsion<N: Num>(p: N, s: N) -> N {
     p.select_below(p.constant(0.0), p.constant(-0.2), p.constant(0.01)) * p * (s * s)
 }
 

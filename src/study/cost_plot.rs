@@ -13,7 +13,7 @@ const LAW: &str = "model.viscosity";
 
 /// For every scene of which two or more of `jobs` have finished, and every check with N: N, and N with the
 /// delay taken out, over processor time.
-pub(crate) fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> String { //NARROW
+pub(crate) fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> String {
     let mut text = String::new();
     for scene in unique(jobs.iter().map(|job| job.group.as_str())) {
         let own: Vec<&Job> = jobs.iter().filter(|job| job.group == scene).collect();

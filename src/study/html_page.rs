@@ -4,9 +4,7 @@ use std::time::SystemTime;
 
 use super::{REPEATS_NOTE, ResultRow, spread_table};
 use crate::output::manifest::Machine;
-pub(crate) use crate::report::html::escape; //NARROW
-pub(crate) use crate::report::html::table; //NARROW
-pub(crate) use crate::report::html::unit; //NARROW
+pub(crate) use crate::report::html::{escape, table, unit};
 
 const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\
@@ -17,7 +15,7 @@ code{font-size:.92em}\
 .missed{color:#b00020;font-weight:bold}figure{margin:.5em 0}figcaption{font-size:.9em;color:#444}";
 
 /// The page called `title` with what `body` says.
-pub(crate) fn html_page(title: &str, body: &str) -> Vec<u8> { //NARROW
+pub(crate) fn html_page(title: &str, body: &str) -> Vec<u8> {
     let title = escape(title);
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\
@@ -27,12 +25,12 @@ pub(crate) fn html_page(title: &str, body: &str) -> Vec<u8> { //NARROW
 }
 
 /// A plot with its caption.
-pub(crate) fn plot_figure(svg: &str, caption: &str) -> String { //NARROW
+pub(crate) fn plot_figure(svg: &str, caption: &str) -> String {
     format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escape(caption))
 }
 
 /// How far repeats lie apart, as a part of a page; nothing if no run is repeated.
-pub(crate) fn repeats_section(rows: &[ResultRow]) -> String { //NARROW
+pub(crate) fn repeats_section(rows: &[ResultRow]) -> String {
     let told = spread_table(rows);
     match told.is_empty() {
         true => String::new(),
@@ -41,7 +39,7 @@ pub(crate) fn repeats_section(rows: &[ResultRow]) -> String { //NARROW
 }
 
 /// What ran when and where, as a table.
-pub(crate) fn provenance_table(command: &str, machine: &Machine, threads: Option<usize>) -> String { //NARROW
+pub(crate) fn provenance_table(command: &str, machine: &Machine, threads: Option<usize>) -> String {
     let Machine { processor, cpus, instructions, os, .. } = machine;
     let instructions = instructions.as_deref().unwrap_or("no lanes");
     let threads = threads.map_or("–".into(), |n| n.to_string());
@@ -58,7 +56,7 @@ pub(crate) fn provenance_table(command: &str, machine: &Machine, threads: Option
 }
 
 /// Date and time, UTC.
-pub(crate) fn timestamp() -> String { //NARROW
+pub(crate) fn timestamp() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
 }
 

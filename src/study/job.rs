@@ -79,7 +79,7 @@ impl Job {
     ///
     /// # Errors
     /// `Usage` for no time, or if the job varies `jitter` itself; those of the scene's words.
-    pub(crate) fn repeated(self, times: usize) -> Result<Vec<Self>> { //NARROW
+    pub(crate) fn repeated(self, times: usize) -> Result<Vec<Self>> {
         if times == 0 {
             return Err(Error::new(ErrorKind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
         }
@@ -111,7 +111,7 @@ impl Job {
     ///
     /// # Errors
     /// As [`Scene::read`].
-    pub(crate) fn read_scene(&self) -> Result<Scene> { //NARROW
+    pub(crate) fn read_scene(&self) -> Result<Scene> {
         Scene::read(&self.scene, &self.overrides)
     }
 
@@ -119,7 +119,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words.
-    pub(crate) fn estimated_size(&self) -> Result<SizeEstimate> { //NARROW
+    pub(crate) fn estimated_size(&self) -> Result<SizeEstimate> {
         let scene = self.read_scene()?;
         scene.plan()?;
         scene.estimate_size()
@@ -129,7 +129,7 @@ impl Job {
     ///
     /// # Errors
     /// Those of the scene's words and tables.
-    pub(crate) fn checks(&self) -> Result<Vec<ReferenceCheck>> { //NARROW
+    pub(crate) fn checks(&self) -> Result<Vec<ReferenceCheck>> {
         let plan = self.read_scene()?.plan()?;
         plan.checks.iter().map(|words| ReferenceCheck::new(words, &plan.folder)).collect()
     }
@@ -138,7 +138,7 @@ impl Job {
     ///
     /// # Errors
     /// As [`Job::checks`].
-    pub(crate) fn curves(&self) -> Result<Vec<Option<CheckCurves>>> { //NARROW
+    pub(crate) fn curves(&self) -> Result<Vec<Option<CheckCurves>>> {
         let series = outputs::series_folder(&self.folder);
         Ok(self.checks()?.iter().map(|check| check.curves(&series).ok()).collect())
     }

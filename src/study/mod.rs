@@ -17,25 +17,13 @@ mod repeat_spread;
 pub mod stress;
 mod validation;
 
-pub(crate) use convergence::convergence; //NARROW
-pub(crate) use convergence::least_squares; //NARROW
-pub use job::Job;
-pub use job::JobResult;
-pub use job::JobState;
-pub use parameter_grid::ParameterGrid;
-pub use parameter_grid::VariedKey;
-pub use parameter_grid::distinguishing_labels;
-pub use parameter_grid::frame_interval;
-pub use parameter_grid::split_values;
-pub use repeat_spread::REPEATS_NOTE;
-pub use repeat_spread::spread_table;
+pub(crate) use convergence::{convergence, least_squares};
+pub use job::{Job, JobResult, JobState};
+pub use parameter_grid::{ParameterGrid, VariedKey, distinguishing_labels, frame_interval, split_values};
+pub use repeat_spread::{REPEATS_NOTE, spread_table};
 pub use result_rows::ResultRow;
-pub(crate) use result_rows::rows_to_csv; //NARROW
+pub(crate) use result_rows::rows_to_csv;
 pub use results::StudyResults;
-pub use time_estimate::DEFAULT_SPEED;
-pub use time_estimate::TimeEstimate;
-pub use time_estimate::estimate_times;
+pub use time_estimate::{DEFAULT_SPEED, TimeEstimate, estimate_times};
 pub use validation::Validation;
-pub use validation_cases::ValidationCase;
-pub use validation_cases::select_cases;
-pub use validation_cases::validation_cases;
+pub use validation_cases::{ValidationCase, select_cases, validation_cases};

@@ -38,7 +38,7 @@ pub struct ParameterGrid {
     pub overrides: Vec<(String, String)>,
     /// Simulated time between the frames that each run keeps for a picture, s; without it none are kept.
     pub frames: Option<f64>,
-    /// How often each run is made, each time from a start that is a hair's breadth another ([`Job::repeated`]).
+    /// How often each run is made, each time from a start that is a hair's breadth another (`Job::repeated`).
     pub repeat: usize,
 }
 
@@ -47,8 +47,8 @@ impl ParameterGrid {
     /// early.
     ///
     /// # Errors
-    /// `Usage` if a spacing or a list of values is empty or given twice; those of [`Job::repeated`].
-    pub(crate) fn jobs(&self, out: &Path) -> Result<Vec<Job>> { //NARROW
+    /// `Usage` if a spacing or a list of values is empty or given twice; those of `Job::repeated`.
+    pub(crate) fn jobs(&self, out: &Path) -> Result<Vec<Job>> {
         let mut dp = self.dp.clone();
         dp.sort_by(|a, b| b.total_cmp(a));
         if dp.is_empty() || self.vary.iter().any(|vary| vary.values.iter().any(String::is_empty)) {
@@ -82,7 +82,7 @@ impl ParameterGrid {
     }
 
     /// Every combination of the varied values; one that is empty if nothing is varied.
-    pub(crate) fn combinations(&self) -> Vec<Vec<(String, String)>> { //NARROW
+    pub(crate) fn combinations(&self) -> Vec<Vec<(String, String)>> {
         self.vary.iter().fold(vec![vec![]], |all, vary| {
             let with = |before: &Vec<(String, String)>, value: &String| {
                 before.iter().cloned().chain([(vary.key.clone(), value.clone())]).collect()
@@ -127,7 +127,7 @@ pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> {
 }
 
 /// A combination in words.
-pub(crate) fn combination_label(varied: &[(String, String)]) -> String { //NARROW
+pub(crate) fn combination_label(varied: &[(String, String)]) -> String {
     varied.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
 }
 

@@ -49,24 +49,18 @@ pub struct ResultRow {
 }
 
 /// An error that is plotted: its name, and how a row tells it.
-pub(crate) type Metric = (&'static str, fn(&ResultRow) -> Option<f64>); //NARROW
+pub(crate) type Metric = (&'static str, fn(&ResultRow) -> Option<f64>);
 
 /// The errors relative to the reference: N, and N with the delay taken out.
-pub(crate) const RELATIVE_METRICS: [Metric; 2] = [("N", |r| r.metrics.relative_l2), ("aligned N", |r| r.aligned_relative_l2)]; //NARROW
+pub(crate) const RELATIVE_METRICS: [Metric; 2] =
+    [("N", |r| r.metrics.relative_l2), ("aligned N", |r| r.aligned_relative_l2)];
 
 /// The largest distance from the reference, in the unit of its series.
-pub(crate) const MAX_ABS_METRIC: Metric = ("largest distance", |r| r.metrics.off); //NARROW
-
-impl ResultRow {
-    /// The error that is plotted: N, or else the largest distance.
-    pub(crate) fn plotted_error(&self) -> Option<f64> { //NARROW
-        self.metrics.relative_l2.or(self.metrics.off)
-    }
-}
+pub(crate) const MAX_ABS_METRIC: Metric = ("largest distance", |r| r.metrics.off);
 
 /// The rows of `jobs`, of which the first have `ran`. A run that has not finished has a row for each of
 /// `checks` too.
-pub(crate) fn result_rows(jobs: &[Job], ran: &[JobResult], checks: &[String]) -> Vec<ResultRow> { //NARROW
+pub(crate) fn result_rows(jobs: &[Job], ran: &[JobResult], checks: &[String]) -> Vec<ResultRow> {
     let of = |(i, job): (usize, &Job)| {
         let first = ResultRow {
             run: job.name.clone(),
@@ -93,7 +87,7 @@ pub(crate) fn result_rows(jobs: &[Job], ran: &[JobResult], checks: &[String]) ->
 }
 
 /// Names of checks: their series, with a number from the second of a series on.
-pub(crate) fn check_labels(series: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> { //NARROW
+pub(crate) fn check_labels(series: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
     let all: Vec<String> = series.into_iter().map(Into::into).collect();
     let label = |i: usize| match all[..i].iter().filter(|other| **other == all[i]).count() {
         0 => all[i].clone(),
@@ -136,7 +130,7 @@ fn with_verdict(row: ResultRow, verdict: &Verdict) -> ResultRow {
 ///
 /// # Errors
 /// `File` if the text cannot be made.
-pub(crate) fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> { //NARROW
+pub(crate) fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
     let broken = |why: csv::Error| Error::new(ErrorKind::File, format!("the table cannot be made: {why}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head = ["run", "repeat", "dp_m"].map(String::from).to_vec();

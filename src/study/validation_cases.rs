@@ -119,7 +119,7 @@ impl ValidationCase {
     ///
     /// # Errors
     /// Those of the scene's words; `Scene` if the case names a check that the scene has not.
-    pub(crate) fn job(&self, full: bool, scene: &Path, out: &Path) -> Result<Job> { //NARROW
+    pub(crate) fn job(&self, full: bool, scene: &Path, out: &Path) -> Result<Job> {
         let extent = if full { &self.full } else { &self.quick };
         let words = Scene::read(scene, &[])?;
         let mut sets = vec![("frames".to_string(), "off".to_string())];

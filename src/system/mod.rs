@@ -8,7 +8,7 @@ mod change;
 mod checkpoint;
 mod fluid;
 mod free_surface;
-pub(crate) mod periodic; //NARROW
+pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
 mod step_check;
@@ -18,13 +18,11 @@ pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
 pub(crate) use fluid::{Fluid, permute};
 use periodic::Images;
-pub(crate) use periodic::Periodic; //NARROW
+pub(crate) use periodic::Periodic;
 pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
 pub(crate) use step_check::StepCheck;
-pub use step_check::Escape;
-pub use step_check::ParticleLimits;
-pub use step_check::RemovedParticle;
+pub use step_check::{Escape, ParticleLimits, RemovedParticle};
 
 pub use crate::interaction::StepLimits;
 

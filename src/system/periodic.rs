@@ -18,7 +18,7 @@ use crate::{
 const WIDTH: f64 = 2.5;
 
 /// For each axis where a period begins and ends (m), if it has one.
-pub(crate) type Periodic<const D: usize> = [Option<[f64; 2]>; D]; //NARROW
+pub(crate) type Periodic<const D: usize> = [Option<[f64; 2]>; D];
 
 /// The images of the water.
 pub(super) struct Images<const D: usize> {
@@ -137,7 +137,7 @@ impl<const D: usize> System<D> {
 ///
 /// # Errors
 /// `Scene` if a period is too short or no whole number of dp, or a solid is free or ends at a side.
-pub(crate) fn check<const D: usize>(periodic: &Periodic<D>, model: &Model, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
+pub(crate) fn check<const D: usize>(periodic: &Periodic<D>, model: &Model, solids: &[SolidSpec<D>]) -> Result<()> {
     let (dp, width) = (model.dp, WIDTH * model.support_radius());
     for (axis, side) in periodic.iter().enumerate() {
         let Some([from, to]) = *side else { continue };

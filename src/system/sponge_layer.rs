@@ -25,7 +25,7 @@ pub struct SpongeLayer<const D: usize> {
 
 impl<const D: usize> SpongeLayer<D> {
     /// Distance from the beginning to the full strength, m.
-    pub(crate) fn length(&self) -> f64 { //NARROW
+    pub(crate) fn length(&self) -> f64 {
         (self.to - self.from).norm()
     }
 
@@ -41,7 +41,7 @@ impl<const D: usize> SpongeLayer<D> {
     ///
     /// # Errors
     /// `Scene` if it has no length, no strength or no power.
-    pub(crate) fn check(&self) -> Result<()> { //NARROW
+    pub(crate) fn check(&self) -> Result<()> {
         let good = |x: f64| x > 0.0 && x.is_finite();
         match good(self.length()) && good(self.strength) && good(self.power) {
             true => Ok(()),
@@ -53,7 +53,7 @@ impl<const D: usize> SpongeLayer<D> {
 
 impl<const D: usize> System<D> {
     /// The sponge layers.
-    pub(crate) fn sponge_layers(&self) -> &[SpongeLayer<D>] { //NARROW
+    pub(crate) fn sponge_layers(&self) -> &[SpongeLayer<D>] {
         &self.fluid_domain.sponge_layers
     }
 }

@@ -38,7 +38,7 @@ impl<const D: usize> System<D> {
     }
 
     /// What ties the solids, as it was made.
-    pub(crate) fn constraints(&self) -> &Constraints<D> { //NARROW
+    pub(crate) fn constraints(&self) -> &Constraints<D> {
         &self.constraints
     }
 
@@ -48,12 +48,12 @@ impl<const D: usize> System<D> {
     }
 
     /// Where particles may be.
-    pub(crate) fn domain(&self) -> &Bounds<D> { //NARROW
+    pub(crate) fn domain(&self) -> &Bounds<D> {
         &self.fluid_domain.domain
     }
 
     /// Which sides are periodic.
-    pub(crate) fn periodic(&self) -> &Periodic<D> { //NARROW
+    pub(crate) fn periodic(&self) -> &Periodic<D> {
         &self.fluid.images.periodic
     }
 
@@ -69,7 +69,7 @@ impl<const D: usize> System<D> {
 
     /// Pressure (Pa) with which water of density `rho` (kg/m³) acts where its particles lie dp apart: a little less than
     /// [`System::pressure`].
-    pub(crate) fn lattice_pressure(&self, rho: f64) -> f64 { //NARROW
+    pub(crate) fn lattice_pressure(&self, rho: f64) -> f64 {
         self.properties.rho0 * self.equation_of_state.lattice_pressure(rho / self.properties.rho0 - 1.0)
     }
 
@@ -96,22 +96,22 @@ impl<const D: usize> System<D> {
     }
 
     /// Number of boundary particles that have water near them; the others cost nothing.
-    pub(crate) fn boundary_near_fluid_count(&self) -> usize { //NARROW
+    pub(crate) fn boundary_near_fluid_count(&self) -> usize {
         self.neighbours.boundary_near_fluid().len()
     }
 
     /// Memory of the neighbour lists, B.
-    pub(crate) fn neighbour_list_bytes(&self) -> usize { //NARROW
+    pub(crate) fn neighbour_list_bytes(&self) -> usize {
         self.neighbours.memory_bytes()
     }
 
     /// Time spent so far on lists and sorting, and on pairs.
-    pub(crate) fn time_spent(&self) -> (Duration, Duration) { //NARROW
+    pub(crate) fn time_spent(&self) -> (Duration, Duration) {
         (self.status.neighbour_time, self.pair_loop.time_spent())
     }
 
     /// Force passes so far.
-    pub(crate) fn force_passes(&self) -> u64 { //NARROW
+    pub(crate) fn force_passes(&self) -> u64 {
         self.status.passes
     }
 
@@ -137,12 +137,12 @@ impl<const D: usize> System<D> {
     }
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
-    pub(crate) fn non_periodic_gravity(&self) -> Vector<D> { //NARROW
+    pub(crate) fn non_periodic_gravity(&self) -> Vector<D> {
         Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { self.properties.gravity[i] })
     }
 
     /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).
-    pub(crate) fn periodic_gravity_power(&self) -> f64 { //NARROW
+    pub(crate) fn periodic_gravity_power(&self) -> f64 {
         let along = self.properties.gravity - self.non_periodic_gravity();
         if along.norm_squared() == 0.0 {
             return 0.0;
@@ -168,7 +168,7 @@ impl<const D: usize> System<D> {
 
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
-    pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) { //NARROW
+    pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
         let (mass, skin) = (self.particle_mass(), &self.solids[solid].boundary);
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
             if skin.contains(&(i as usize)) && self.fluid.images.is_inside(&self.boundary.particles.r[i as usize]) {

@@ -5,8 +5,8 @@ pub mod step_size;
 mod symplectic;
 mod verlet;
 
-pub(crate) use symplectic::Symplectic; //NARROW
-pub(crate) use verlet::Verlet; //NARROW
+pub(crate) use symplectic::Symplectic;
+pub(crate) use verlet::Verlet;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ use crate::{
 
 /// The chosen scheme with its state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) enum Stepper<const D: usize> { //NARROW
+pub(crate) enum Stepper<const D: usize> {
     /// Verlet.
     Verlet(Verlet<D>),
     /// Symplectic.
@@ -31,7 +31,7 @@ pub(crate) enum Stepper<const D: usize> { //NARROW
 
 impl<const D: usize> Stepper<D> {
     /// The stepper of a model's scheme, at the start of a run.
-    pub(crate) fn new(model: &Model) -> Self { //NARROW
+    pub(crate) fn new(model: &Model) -> Self {
         match model.scheme {
             TimeScheme::Verlet { euler_every } => Self::Verlet(Verlet::new(euler_every, model)),
             TimeScheme::Symplectic => Self::Symplectic,

@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// The scheme @dominguez2022; it keeps no state between steps.
-pub(crate) struct Symplectic; //NARROW
+pub(crate) struct Symplectic;
 
 impl Symplectic {
     /// Advances the water, whose rates at the start are known, over an interval; returns the factor of the loads on bodies.

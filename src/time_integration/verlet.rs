@@ -30,7 +30,7 @@ const FOLDINGS: f64 = 3.5;
 
 /// The scheme @verlet1967, eqs. (12), (13) of @pirkhalili2023, and the step before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Verlet<const D: usize> { //NARROW
+pub(crate) struct Verlet<const D: usize> {
     euler_every: u32,
     /// λ, 1/s.
     growth: f64,
@@ -45,7 +45,7 @@ pub(crate) struct Verlet<const D: usize> { //NARROW
 
 impl<const D: usize> Verlet<D> {
     /// At the start of a run with this model; the first step is Euler's.
-    pub(crate) fn new(euler_every: u32, model: &Model) -> Self { //NARROW
+    pub(crate) fn new(euler_every: u32, model: &Model) -> Self {
         Self {
             euler_every: euler_every.max(1),
             growth: (model.diffusion.damping() + model.viscosity.damping()) * model.c0 / model.h,

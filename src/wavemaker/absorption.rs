@@ -43,7 +43,7 @@ const I: Complex<f64> = Complex::new(0.0, 1.0);
 
 /// How a paddle absorbs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct AbsorptionSettings { //NARROW
+pub(crate) struct AbsorptionSettings {
     /// The period (s) whose waves it takes whole; none: that of its own wave.
     pub period: Option<f64>,
     /// From the face at rest to the gauge at least, m. A flap's stands as much further off as makes T as long as a wave takes to
@@ -59,7 +59,7 @@ pub(crate) struct AbsorptionSettings { //NARROW
 
 /// What makes a paddle absorb.
 #[derive(Clone, Debug)]
-pub(crate) struct Absorber { //NARROW
+pub(crate) struct Absorber {
     maker: Wavemaker,
     train: LinearWave,
     gauge_distance: f64,
@@ -87,7 +87,7 @@ struct Own {
 
 /// How far a paddle has yielded, from one step to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct AbsorptionState { //NARROW
+pub(crate) struct AbsorptionState {
     /// When this held, s.
     since: f64,
     /// x, m, and its first and second rate.
@@ -98,7 +98,7 @@ pub(crate) struct AbsorptionState { //NARROW
 
 impl AbsorptionState {
     /// x (m) and x′ (m/s) at time `t` (s).
-    pub(crate) fn offset_and_rate(&self, t: f64) -> (f64, f64) { //NARROW
+    pub(crate) fn offset_and_rate(&self, t: f64) -> (f64, f64) {
         let s = t - self.since;
         (self.x + s * (self.rate + 0.5 * s * self.change), self.rate + s * self.change)
     }
@@ -114,7 +114,7 @@ impl Absorber {
     ///
     /// # Errors
     /// `Scene` if the gauge is too far off for so short a wave, or the stroke is less than the paddle's own wave takes.
-    pub(crate) fn new(maker: &Wavemaker, wave: &PaddleMotion, tuning: &AbsorptionSettings) -> Result<Self> { //NARROW
+    pub(crate) fn new(maker: &Wavemaker, wave: &PaddleMotion, tuning: &AbsorptionSettings) -> Result<Self> {
         let AbsorptionSettings { gauge_distance, water_level, .. } = *tuning;
         let train = match tuning.period {
             Some(period) => maker.train(period)?,
@@ -192,22 +192,22 @@ impl Absorber {
     }
 
     /// Period (s) whose waves it takes whole.
-    pub(crate) fn period(&self) -> f64 { //NARROW
+    pub(crate) fn period(&self) -> f64 {
         self.train.period()
     }
 
     /// From the face at rest to the gauge, m.
-    pub(crate) fn gauge_distance(&self) -> f64 { //NARROW
+    pub(crate) fn gauge_distance(&self) -> f64 {
         self.gauge_distance
     }
 
     /// How far (m) the face may go from end to end, and how fast, m/s.
-    pub(crate) fn motion_limits(&self) -> (f64, f64) { //NARROW
+    pub(crate) fn motion_limits(&self) -> (f64, f64) {
         (2.0 * self.reach, self.speed)
     }
 
     /// The share of the amplitude of a wave of `period` (s) that goes out again, by linear theory, –.
-    pub(crate) fn reflection_coefficient(&self, period: f64) -> f64 { //NARROW
+    pub(crate) fn reflection_coefficient(&self, period: f64) -> f64 {
         let omega = std::f64::consts::TAU / period;
         let train = LinearWave { omega, k: wave_number(omega, self.maker.depth, self.maker.g), ..self.train };
         let (c, s) = self.answer(&train);

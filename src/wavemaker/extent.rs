@@ -12,12 +12,12 @@ const MOST: f64 = 10_000.0;
 const PERIODS: f64 = 20.0;
 
 /// Speed of a paddle over that of its crests beyond which small motions are no good theory.
-pub(crate) const LINEAR_SPEED_RATIO_MAX: f64 = 0.5; //NARROW
+pub(crate) const LINEAR_SPEED_RATIO_MAX: f64 = 0.5;
 
 impl PaddleMotion {
     /// Displacement (m) and rate (m/s) of the face at the still level, one after the other: of a regular wave in full
     /// motion, of a solitary one all the way, of another to `until` (s), or for twenty periods if that is longer.
-    pub(crate) fn sample_motion(&self, until: f64) -> Vec<(f64, f64)> { //NARROW
+    pub(crate) fn sample_motion(&self, until: f64) -> Vec<(f64, f64)> {
         let period = self.facts.linear_wave.map_or(f64::INFINITY, |train| train.period());
         let many = until.max(self.ramp + PERIODS * period);
         let (from, to) = match (self.facts.solitary, self.facts.focus) {

@@ -1,6 +1,6 @@
 //! Waves by name: how a paddle has to move so that the waves of a theory leave it.
 //!
-//! A [`Wavemaker`] knows the paddle and the water before it, and makes a [`PaddleMotion`]: the displacement of the paddle's face
+//! A `Wavemaker` knows the paddle and the water before it, and makes a [`PaddleMotion`]: the displacement of the paddle's face
 //! at the still level, positive where the waves go, with its exact rate. There is no state: a wave is rebuilt from the
 //! same words, and has the same bits at any time of any run. What a paddle yields to other waves is in `absorption`.
 //!
@@ -18,18 +18,14 @@ mod solitary;
 mod spectrum;
 mod train;
 
-pub(crate) use absorption::Absorber; //NARROW
-pub(crate) use absorption::AbsorptionSettings; //NARROW
-pub(crate) use absorption::AbsorptionState; //NARROW
-pub(crate) use extent::LINEAR_SPEED_RATIO_MAX; //NARROW
-pub(crate) use paddle::Paddle; //NARROW
+pub(crate) use absorption::{Absorber, AbsorptionSettings, AbsorptionState};
+pub(crate) use extent::LINEAR_SPEED_RATIO_MAX;
+pub(crate) use paddle::Paddle;
 pub use solitary::SolitaryTheory;
-pub(crate) use solitary::SolitaryWave; //NARROW
-pub(crate) use spectrum::WaveSpectrum; //NARROW
-pub use train::DepthRegime;
-pub(crate) use train::LinearWave; //NARROW
-pub use train::TheoryRegion;
-pub use train::wave_number;
+pub(crate) use solitary::SolitaryWave;
+pub(crate) use spectrum::WaveSpectrum;
+pub(crate) use train::LinearWave;
+pub use train::{DepthRegime, TheoryRegion, wave_number};
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -39,17 +35,17 @@ use crate::{
 };
 
 /// Most components of one wave: their sum is formed at every step.
-pub(crate) const COMPONENTS_MAX: usize = 2000; //NARROW
+pub(crate) const COMPONENTS_MAX: usize = 2000;
 
 /// Components of a sea or a group where nobody says how many.
-pub(crate) const COMPONENTS_DEFAULT: usize = 100; //NARROW
+pub(crate) const COMPONENTS_DEFAULT: usize = 100;
 
 /// The largest displacement of a flap over its arm: 60°.
 const STEEPEST: f64 = 1.7321;
 
 /// A component of the surface: η(x, t) = a cos(ω t − k x + φ), x (m) from the paddle's face at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WaveComponent { //NARROW
+pub(crate) struct WaveComponent {
     /// a, m.
     pub amplitude: f64,
     /// ω, rad/s.
@@ -60,7 +56,7 @@ pub(crate) struct WaveComponent { //NARROW
 
 /// A paddle and the water before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Wavemaker { //NARROW
+pub(crate) struct Wavemaker {
     /// Depth of the still water at the paddle, m.
     pub depth: f64,
     /// Acceleration of gravity, m/s².
@@ -71,7 +67,7 @@ pub(crate) struct Wavemaker { //NARROW
 
 /// What a wave is, for those who want to say it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WaveProperties { //NARROW
+pub(crate) struct WaveProperties {
     /// Its kind, in the words of a scene.
     pub kind: &'static str,
     /// Height, m: significant (4 √m₀) of a sea or a record, twice the crest of a focused group.
@@ -107,23 +103,23 @@ enum Course {
 
 impl PaddleMotion {
     /// The same wave with another ramp (s).
-    pub(crate) fn with_ramp(mut self, ramp: f64) -> Self { //NARROW
+    pub(crate) fn with_ramp(mut self, ramp: f64) -> Self {
         self.ramp = ramp;
         self
     }
 
     /// How long (s) it takes to its full size.
-    pub(crate) fn ramp_time(&self) -> f64 { //NARROW
+    pub(crate) fn ramp_time(&self) -> f64 {
         self.ramp
     }
 
     /// The paddle that it is for.
-    pub(crate) fn paddle(&self) -> Paddle { //NARROW
+    pub(crate) fn paddle(&self) -> Paddle {
         self.paddle
     }
 
     /// Depth of the still water that it is for, m.
-    pub(crate) fn depth(&self) -> f64 { //NARROW
+    pub(crate) fn depth(&self) -> f64 {
         self.facts
             .linear_wave
             .map(|train| train.depth)
@@ -132,7 +128,7 @@ impl PaddleMotion {
     }
 
     /// About how far (m) the face goes from end to end.
-    pub(crate) fn stroke(&self) -> f64 { //NARROW
+    pub(crate) fn stroke(&self) -> f64 {
         match &self.course {
             Course::Tones(tones) => 2.0 * size(tones),
             Course::Solitary(wave) => wave.stroke(),
@@ -140,7 +136,7 @@ impl PaddleMotion {
     }
 
     /// What it is.
-    pub(crate) fn properties(&self) -> &WaveProperties { //NARROW
+    pub(crate) fn properties(&self) -> &WaveProperties {
         &self.facts
     }
 
@@ -153,7 +149,7 @@ impl PaddleMotion {
     }
 
     /// Displacement (m) of the face at the still level and its rate (m/s) at time `t` (s).
-    pub(crate) fn displacement(&self, t: f64) -> (f64, f64) { //NARROW
+    pub(crate) fn displacement(&self, t: f64) -> (f64, f64) {
         if t <= 0.0 || t >= self.end {
             return (0.0, 0.0);
         }
@@ -171,7 +167,7 @@ impl PaddleMotion {
 
     /// What drives the paddle: displacement (m) and rate (m/s) of a piston, angle (rad) and rate (rad/s) of a flap,
     /// positive where the waves go.
-    pub(crate) fn coordinate_and_rate(&self, t: f64) -> (f64, f64) { //NARROW
+    pub(crate) fn coordinate_and_rate(&self, t: f64) -> (f64, f64) {
         self.turned(self.displacement(t))
     }
 
@@ -216,7 +212,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if the wave would break, the paddle outrun it, or the order is neither 1 nor 2.
-    pub(crate) fn regular(&self, height: f64, period: f64, phase: f64, order: usize) -> Result<PaddleMotion> { //NARROW
+    pub(crate) fn regular(&self, height: f64, period: f64, phase: f64, order: usize) -> Result<PaddleMotion> {
         let train = self.train(period)?;
         self.unbroken("a regular wave", height, &train)?;
         let component = WaveComponent { amplitude: 0.5 * height, omega: train.omega, phase };
@@ -239,7 +235,13 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if even a regular wave of this height would break, or the components are none or too many.
-    pub(crate) fn irregular(&self, height: f64, spectrum: &WaveSpectrum, seed: u64, count: usize) -> Result<PaddleMotion> { //NARROW
+    pub(crate) fn irregular(
+        &self,
+        height: f64,
+        spectrum: &WaveSpectrum,
+        seed: u64,
+        count: usize,
+    ) -> Result<PaddleMotion> {
         let train = self.train(spectrum.peak_period)?;
         self.unbroken("a wave of the significant height and the peak period", height, &train)?;
         let omegas = counted(count).map(|()| spectrum.equal_energy_frequencies(count))?;
@@ -281,7 +283,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if there are none or too many, or one of them would break by itself.
-    pub(crate) fn components(&self, components: &[WaveComponent]) -> Result<PaddleMotion> { //NARROW
+    pub(crate) fn components(&self, components: &[WaveComponent]) -> Result<PaddleMotion> {
         counted(components.len())?;
         for component in components {
             let own = LinearWave::new(component.omega, self.depth, self.g);
@@ -299,7 +301,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if it is too short or still, or as [`Wavemaker::components`].
-    pub(crate) fn measured(&self, elevation: &TimeSeries, distance: f64, delay: f64) -> Result<PaddleMotion> { //NARROW
+    pub(crate) fn measured(&self, elevation: &TimeSeries, distance: f64, delay: f64) -> Result<PaddleMotion> {
         let found = record::fourier_components(elevation)?;
         let early = |c: &WaveComponent| WaveComponent {
             phase: c.phase + wave_number(c.omega, self.depth, self.g) * distance - c.omega * delay,
@@ -337,7 +339,7 @@ impl Wavemaker {
     ///
     /// # Errors
     /// `Scene` if the period is none.
-    pub(crate) fn at_rest(&self, period: f64) -> Result<PaddleMotion> { //NARROW
+    pub(crate) fn at_rest(&self, period: f64) -> Result<PaddleMotion> {
         Ok(self.wave("none", 0.0, 1, self.train(period)?, Vec::new()))
     }
 

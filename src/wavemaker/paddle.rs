@@ -13,7 +13,7 @@ use super::LinearWave;
 
 /// How a paddle moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Paddle { //NARROW
+pub(crate) enum Paddle {
     /// All of it alike.
     Piston,
     /// It turns about a hinge.
@@ -28,7 +28,7 @@ const DEEPEST: f64 = 300.0;
 
 impl Paddle {
     /// Amplitude of the wave over that of the paddle at the still level, –.
-    pub(crate) fn transfer_function(&self, train: &LinearWave) -> f64 { //NARROW
+    pub(crate) fn transfer_function(&self, train: &LinearWave) -> f64 {
         let kd = train.kd();
         if kd > DEEPEST {
             return 2.0 * (1.0 - self.inverse_arm() / train.k);

@@ -25,7 +25,7 @@ pub enum SolitaryTheory {
 
 /// A solitary wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SolitaryWave { //NARROW
+pub(crate) struct SolitaryWave {
     /// H, m.
     pub height: f64,
     /// d, m.
@@ -38,7 +38,7 @@ pub(crate) struct SolitaryWave { //NARROW
 
 impl SolitaryWave {
     /// The wave of `height` (m) in water `depth` (m) deep.
-    pub(crate) fn new(height: f64, depth: f64, g: f64, theory: SolitaryTheory) -> Self { //NARROW
+    pub(crate) fn new(height: f64, depth: f64, g: f64, theory: SolitaryTheory) -> Self {
         let total = match theory {
             SolitaryTheory::Boussinesq => depth,
             SolitaryTheory::Rayleigh => depth + height,
@@ -48,12 +48,12 @@ impl SolitaryWave {
     }
 
     /// How far (m) the piston goes: 2H/κd.
-    pub(crate) fn stroke(&self) -> f64 { //NARROW
+    pub(crate) fn stroke(&self) -> f64 {
         2.0 * self.height / (self.kappa * self.depth)
     }
 
     /// How long (s) it is on its way, to 2e-4 of its speed.
-    pub(crate) fn duration(&self) -> f64 { //NARROW
+    pub(crate) fn duration(&self) -> f64 {
         2.0 * (START + self.height / self.depth) / (self.kappa * self.celerity)
     }
 
@@ -63,12 +63,12 @@ impl SolitaryWave {
     }
 
     /// Length (m) between the points at which it is a hundredth of its height.
-    pub(crate) fn length(&self) -> f64 { //NARROW
+    pub(crate) fn length(&self) -> f64 {
         2.0 * 10f64.acosh() / self.kappa
     }
 
     /// When (s) the crest is at `x` (m) before the piston's place at the start.
-    pub(crate) fn crest_time(&self, x: f64) -> f64 { //NARROW
+    pub(crate) fn crest_time(&self, x: f64) -> f64 {
         let (d, tanh) = (self.depth, START.tanh());
         // θ = 0 at the piston's middle place, which the crest leaves at this time.
         let time = (START + self.height / d * tanh) / (self.kappa * self.celerity);

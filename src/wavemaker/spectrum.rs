@@ -21,7 +21,7 @@ const ALPHA: f64 = 0.0081;
 
 /// The form of a spectrum; its height is said elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WaveSpectrum { //NARROW
+pub(crate) struct WaveSpectrum {
     /// 1/f_p, s.
     pub peak_period: f64,
     /// γ, –.
@@ -30,23 +30,23 @@ pub(crate) struct WaveSpectrum { //NARROW
 
 impl WaveSpectrum {
     /// JONSWAP's.
-    pub(crate) fn jonswap(peak_period: f64, gamma: f64) -> Self { //NARROW
+    pub(crate) fn jonswap(peak_period: f64, gamma: f64) -> Self {
         Self { peak_period, gamma }
     }
 
     /// Bretschneider's.
-    pub(crate) fn bretschneider(peak_period: f64) -> Self { //NARROW
+    pub(crate) fn bretschneider(peak_period: f64) -> Self {
         Self { peak_period, gamma: 1.0 }
     }
 
     /// Pierson and Moskowitz': the fully grown sea of significant `height` (m). α g²/5ω_p⁴ = (H/4)².
-    pub(crate) fn pierson_moskowitz(height: f64, g: f64) -> Self { //NARROW
+    pub(crate) fn pierson_moskowitz(height: f64, g: f64) -> Self {
         let omega = (16.0 * ALPHA * g * g / (5.0 * height * height)).powf(0.25);
         Self::bretschneider(TAU / omega)
     }
 
     /// S at f = `x` f_p, in a unit of its own.
-    pub(crate) fn density(&self, x: f64) -> f64 { //NARROW
+    pub(crate) fn density(&self, x: f64) -> f64 {
         let sigma = if x < 1.0 { 0.07 } else { 0.09 };
         let peak = (-0.5 * ((x - 1.0) / sigma).powi(2)).exp();
         x.powi(-5) * (-1.25 * x.powi(-4)).exp() * self.gamma.powf(peak)

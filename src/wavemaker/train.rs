@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use serde::Serialize;
 
 /// Largest height of a wave over the depth @mccowan1894.
-pub(crate) const MCCOWAN_LIMIT: f64 = 0.78; //NARROW
+pub(crate) const MCCOWAN_LIMIT: f64 = 0.78;
 
 /// Largest height of a wave over its length in deep water @miche1944.
 const MICHE: f64 = 0.142;
@@ -15,7 +15,7 @@ const URSELL: f64 = 26.0;
 
 /// A wave of small height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LinearWave { //NARROW
+pub(crate) struct LinearWave {
     /// Depth, m.
     pub depth: f64,
     /// Acceleration of gravity, m/s².
@@ -87,38 +87,38 @@ impl TheoryRegion {
 
 impl LinearWave {
     /// The wave of angular frequency `omega` (rad/s) in water `depth` (m) deep.
-    pub(crate) fn new(omega: f64, depth: f64, g: f64) -> Self { //NARROW
+    pub(crate) fn new(omega: f64, depth: f64, g: f64) -> Self {
         Self { depth, g, omega, k: wave_number(omega, depth, g) }
     }
 
     /// Period, s.
-    pub(crate) fn period(&self) -> f64 { //NARROW
+    pub(crate) fn period(&self) -> f64 {
         TAU / self.omega
     }
 
     /// Length, m.
-    pub(crate) fn wavelength(&self) -> f64 { //NARROW
+    pub(crate) fn wavelength(&self) -> f64 {
         TAU / self.k
     }
 
     /// kd, –.
-    pub(crate) fn kd(&self) -> f64 { //NARROW
+    pub(crate) fn kd(&self) -> f64 {
         self.k * self.depth
     }
 
     /// Speed of its crests, m/s.
-    pub(crate) fn celerity(&self) -> f64 { //NARROW
+    pub(crate) fn celerity(&self) -> f64 {
         self.omega / self.k
     }
 
     /// Speed of its energy, m/s: ½ (1 + 2kd/sinh 2kd) ω/k.
-    pub(crate) fn group_velocity(&self) -> f64 { //NARROW
+    pub(crate) fn group_velocity(&self) -> f64 {
         let x = 2.0 * self.kd();
         0.5 * (1.0 + if x > 600.0 { 0.0 } else { x / x.sinh() }) * self.celerity()
     }
 
     /// How deep the water is for it.
-    pub(crate) fn depth_regime(&self) -> DepthRegime { //NARROW
+    pub(crate) fn depth_regime(&self) -> DepthRegime {
         match self.kd() {
             kd if kd > PI => DepthRegime::Deep,
             kd if kd < 0.1 * PI => DepthRegime::Shallow,
@@ -127,30 +127,30 @@ impl LinearWave {
     }
 
     /// Height (m) of the highest of its length: the lesser of 0.142 L tanh kd and 0.78 d.
-    pub(crate) fn breaking_height(&self) -> f64 { //NARROW
+    pub(crate) fn breaking_height(&self) -> f64 {
         (MICHE * self.wavelength() * self.kd().tanh()).min(MCCOWAN_LIMIT * self.depth)
     }
 
     /// H L²/d³ of a wave of `height` (m), –.
-    pub(crate) fn ursell(&self, height: f64) -> f64 { //NARROW
+    pub(crate) fn ursell(&self, height: f64) -> f64 {
         height * self.wavelength().powi(2) / self.depth.powi(3)
     }
 
     /// The greatest height (m) for which two terms of Stokes are enough: H L²/d³ = 26.
-    pub(crate) fn stokes_height_max(&self) -> f64 { //NARROW
+    pub(crate) fn stokes_height_max(&self) -> f64 {
         URSELL / self.ursell(1.0)
     }
 
     /// The longest period (s) at which two terms of Stokes are enough for a wave of `height` (m) in this depth; none if
     /// it would break.
-    pub(crate) fn stokes_period_max(&self, height: f64) -> Option<f64> { //NARROW
+    pub(crate) fn stokes_period_max(&self, height: f64) -> Option<f64> {
         let k = TAU / (URSELL * self.depth.powi(3) / height).sqrt();
         let own = Self { k, omega: (self.g * k * (k * self.depth).tanh()).sqrt(), ..*self };
         (height < own.breaking_height()).then(|| own.period())
     }
 
     /// Which theory holds for a wave of `height` (m).
-    pub(crate) fn theory_region(&self, height: f64) -> TheoryRegion { //NARROW
+    pub(crate) fn theory_region(&self, height: f64) -> TheoryRegion {
         match height {
             h if h >= self.breaking_height() => TheoryRegion::Breaking,
             h if self.second_order_ratio(h) < 0.01 => TheoryRegion::Airy,
@@ -161,7 +161,7 @@ impl LinearWave {
     }
 
     /// Stokes' second term over the first: (πH/4L) cosh kd (2 + cosh 2kd)/sinh³ kd.
-    pub(crate) fn second_order_ratio(&self, height: f64) -> f64 { //NARROW
+    pub(crate) fn second_order_ratio(&self, height: f64) -> f64 {
         let kd = self.kd().min(100.0);
         0.25 * PI * height / self.wavelength() * kd.cosh() * (2.0 + (2.0 * kd).cosh()) / kd.sinh().powi(3)
     }

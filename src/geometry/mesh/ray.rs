@@ -7,7 +7,7 @@ use crate::math::Vector;
 const THROUGH: f64 = 1e-5;
 
 /// Whether an edge of one facet goes through the other.
-pub(crate) fn facets_cross(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> bool { //NARROW
+pub(crate) fn facets_cross(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> bool {
     pierces(a, b) || pierces(b, a)
 }
 

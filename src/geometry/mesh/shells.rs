@@ -29,7 +29,7 @@ struct Shell {
 
 /// Refuses a shell whose inside counts twice, or is taken off where nothing is. The surface is closed and nowhere crosses
 /// itself.
-pub(crate) fn check_orientation(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> { //NARROW
+pub(crate) fn check_orientation(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
     let shells = shells(points, facets);
     let whole: f64 = shells.iter().map(|shell| shell.volume).sum();
     let judged = |i: usize| {

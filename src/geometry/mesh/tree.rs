@@ -1,9 +1,9 @@
 //! The nearest place of a mesh, by parry's tree of boxes; without `dim3` there is none, and no mesh.
 
 #[cfg(feature = "dim3")]
-pub(crate) use with_parry::FacetTree; //NARROW
+pub(crate) use with_parry::FacetTree;
 #[cfg(not(feature = "dim3"))]
-pub(crate) use without::FacetTree; //NARROW
+pub(crate) use without::FacetTree;
 
 #[cfg(feature = "dim3")]
 mod with_parry {
@@ -26,10 +26,10 @@ mod with_parry {
 
     /// The facets in a tree of boxes, with the normals of facets, edges and corners.
     #[derive(Clone)]
-    pub(crate) struct FacetTree(TriMesh); //NARROW
+    pub(crate) struct FacetTree(TriMesh);
 
     impl FacetTree {
-        pub(crate) fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> { //NARROW
+        pub(crate) fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
             let points = points.iter().map(|p| Point::from_array((*p).into())).collect();
             TriMesh::with_flags(points, facets.to_vec(), TriMeshFlags::ORIENTED)
                 .map(Self)
@@ -37,7 +37,7 @@ mod with_parry {
         }
 
         /// See [`Mesh::distance_and_normal`].
-        pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) { //NARROW
+        pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
             let at = Point::from_array((*x).into());
             let (foot, (facet, location)) = self.0.project_local_point_and_get_location(at, false);
             let way = x - Vector::from(foot.point.to_array());
@@ -63,7 +63,7 @@ mod with_parry {
         }
 
         /// Two facets without a common corner that pass through each other.
-        pub(crate) fn find_crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> { //NARROW
+        pub(crate) fn find_crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> {
             let apart = |a: usize, b: usize| mesh.facets[a].iter().all(|p| !mesh.facets[b].contains(p));
             (0..mesh.facets.len()).into_par_iter().find_map_first(|a| {
                 let around = self.0.triangle(a as u32).local_aabb();
@@ -85,19 +85,19 @@ mod without {
 
     /// There is none.
     #[derive(Clone)]
-    pub(crate) enum FacetTree {} //NARROW
+    pub(crate) enum FacetTree {}
 
     impl FacetTree {
-        pub(crate) fn new(_: &[Vector<3>], _: &[[u32; 3]]) -> Result<Self> { //NARROW
+        pub(crate) fn new(_: &[Vector<3>], _: &[[u32; 3]]) -> Result<Self> {
             Err(Error::scene("a mesh needs three dimensions, which this program was built without")
                 .help("build it with the feature dim3"))
         }
 
-        pub(crate) fn distance_and_normal(&self, _: &Vector<3>) -> (f64, Vector<3>) { //NARROW
+        pub(crate) fn distance_and_normal(&self, _: &Vector<3>) -> (f64, Vector<3>) {
             match *self {}
         }
 
-        pub(crate) fn find_crossing(&self, _: &Mesh) -> Option<(usize, usize)> { //NARROW
+        pub(crate) fn find_crossing(&self, _: &Mesh) -> Option<(usize, usize)> {
             match *self {}
         }
     }

@@ -66,7 +66,7 @@ struct RaoRow<'a> {
 ///
 /// # Errors
 /// `File` if it cannot be written.
-pub(crate) fn write(folder: &Path, answers: &[RaoResult]) -> Result<()> { //NARROW
+pub(crate) fn write(folder: &Path, answers: &[RaoResult]) -> Result<()> {
     if answers.is_empty() {
         return Ok(());
     }

@@ -12,7 +12,7 @@ pub const SPECTRA_FILE: &str = "spectra.csv";
 ///
 /// # Errors
 /// `File` if it cannot be written.
-pub(crate) fn write(folder: &Path, tables: &ProbeTables) -> Result<()> { //NARROW
+pub(crate) fn write(folder: &Path, tables: &ProbeTables) -> Result<()> {
     let mut text = String::new();
     for (probe, table) in tables {
         for column in &table.columns {

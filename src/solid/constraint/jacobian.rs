@@ -21,7 +21,7 @@ pub struct Mobility<const D: usize> {
 
 impl<const D: usize> Mobility<D> {
     /// The mobility of a solid that is not free.
-    pub(crate) fn none() -> Self { //NARROW
+    pub(crate) fn none() -> Self {
         Self { linear: Vector::zeros(), angular: SMatrix::zeros() }
     }
 

@@ -68,7 +68,7 @@ impl ContactPairs {
     }
 
     /// Whether there is none.
-    pub(crate) fn is_empty(&self) -> bool { //NARROW
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
@@ -98,7 +98,7 @@ impl FromIterator<ContactSpec> for ContactPairs {
 
 impl<const D: usize> Constraints<D> {
     /// Whether there is nothing.
-    pub(crate) fn is_empty(&self) -> bool { //NARROW
+    pub(crate) fn is_empty(&self) -> bool {
         self.joints.is_empty()
             && self.springs.is_empty()
             && self.ropes.is_empty()
@@ -129,7 +129,7 @@ impl<const D: usize> Constraints<D> {
     ///
     /// # Errors
     /// `Scene`: names the tie, what is wrong with it, and what would be right.
-    pub(crate) fn check(&self, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
+    pub(crate) fn check(&self, solids: &[SolidSpec<D>]) -> Result<()> {
         (0..self.joints.len()).try_for_each(|i| self.check_joint(i, solids))?;
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
@@ -142,7 +142,7 @@ impl<const D: usize> Constraints<D> {
     ///
     /// # Errors
     /// `Scene`, as [`Constraints::check`].
-    pub(crate) fn check_joint(&self, i: usize, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
+    pub(crate) fn check_joint(&self, i: usize, solids: &[SolidSpec<D>]) -> Result<()> {
         let joint = &self.joints[i];
         let who = format!("joint \"{}\"", joint.name);
         check_ends(&who, joint.between, solids)?;
@@ -196,7 +196,7 @@ fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
-pub(crate) fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
+pub(crate) fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("spring \"{}\"", spring.name);
     check_line(&who, &spring.ends, solids)?;
     let numbers = [("stiffness", spring.stiffness, 0.0), ("damping", spring.damping, 0.0)];
@@ -217,7 +217,7 @@ pub(crate) fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[Sol
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
-pub(crate) fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
+pub(crate) fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("rope \"{}\"", rope.name);
     check_line(&who, &rope.ends, solids)?;
     let start = start_length(&rope.ends);
@@ -237,7 +237,7 @@ pub(crate) fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec
 ///
 /// # Errors
 /// `Scene`, as [`Constraints::check`].
-pub(crate) fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> { //NARROW
+pub(crate) fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("force \"{}\"", force.name);
     check_ends(&who, [Some(force.solid), None], solids)?;
     let finite = |laws: &[crate::solid::TimeFunction]| laws.iter().all(|law| law.value_and_rate(0.0).0.is_finite());

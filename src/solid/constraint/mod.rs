@@ -2,25 +2,15 @@
 
 pub(crate) mod assembly;
 mod jacobian;
-pub(crate) mod joint; //NARROW
-pub(crate) mod lines; //NARROW
-pub(crate) mod links; //NARROW
+pub(crate) mod joint;
+pub(crate) mod lines;
+pub(crate) mod links;
 mod motor;
 mod reactions;
 
-pub use assembly::JointReading;
-pub use assembly::LineReading;
+pub use assembly::{JointReading, LineReading};
 pub use jacobian::Mobility;
-pub use joint::FreeMode;
-pub use joint::JointKind;
-pub use joint::JointSpec;
-pub use lines::LineEnd;
-pub use lines::RopeSpec;
-pub use lines::SpringParameters;
-pub use lines::SpringSpec;
-pub use links::Constraints;
-pub use links::ContactSpec;
-pub use links::InitialHold;
-pub use motor::Motor;
-pub use motor::MotorCommand;
-pub use links::ContactPairs;
+pub use joint::{FreeMode, JointKind, JointSpec};
+pub use lines::{LineEnd, RopeSpec, SpringParameters, SpringSpec};
+pub use links::{Constraints, ContactPairs, ContactSpec, InitialHold};
+pub use motor::{Motor, MotorCommand};

@@ -134,7 +134,7 @@ pub trait HasEngine<const D: usize> {
     /// Makes the engine of `solids`, each starting as `start` says and tied by `links`, under `gravity` (m/s²).
     ///
     /// `dp`: particle spacing (m), the measure of what overlap is too deep. Shapes are not checked here but by
-    /// [`SolidSpec::check`]; ties, mass, inertia, friction, restitution and motion are.
+    /// `SolidSpec::check`; ties, mass, inertia, friction, restitution and motion are.
     ///
     /// # Errors
     /// `Scene` for a solid that cannot be meant, and if a free solid starts deeper than 0.05 dp inside another:

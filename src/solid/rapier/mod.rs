@@ -6,8 +6,4 @@ pub mod rapier2d;
 #[cfg(feature = "dim3")]
 pub mod rapier3d;
 
-pub use engine::ContactForce;
-pub use engine::Dim;
-pub use engine::Engine;
-pub use engine::EngineFault;
-pub use engine::HasEngine;
+pub use engine::{ContactForce, Dim, Engine, EngineFault, HasEngine};

@@ -25,13 +25,11 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::apply_load;
-pub use external::kinematics;
-pub use external::solid_from_body;
+pub use external::{apply_load, kinematics, solid_from_body};
 pub(super) use world::RapierWorld;
 
-use nalgebra::SMatrix;
 pub use external::set_kinematic;
+use nalgebra::SMatrix;
 use rapier::{
     dynamics::{IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
     geometry::{ContactData, SharedShape, TriMesh, TypedShape},

@@ -25,10 +25,7 @@ mod external;
 #[path = "world.rs"]
 mod world;
 
-pub use external::apply_load;
-pub use external::kinematics;
-pub use external::solid_from_body;
-pub use external::set_kinematic;
+pub use external::{apply_load, kinematics, set_kinematic, solid_from_body};
 pub(super) use world::RapierWorld;
 
 use std::{

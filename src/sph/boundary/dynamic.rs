@@ -3,12 +3,12 @@
 
 /// Dynamic boundary condition @crespo2007.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct DynamicBoundary; //NARROW
+pub(crate) struct DynamicBoundary;
 
 impl DynamicBoundary {
     /// The density `rho` (kg/m³) of a boundary particle, limited from below by `least`, the density of a face without load.
     #[inline(always)]
-    pub(crate) fn limited_density(&self, rho: f64, least: f64) -> f64 { //NARROW
+    pub(crate) fn limited_density(&self, rho: f64, least: f64) -> f64 {
         rho.max(least)
     }
 }

@@ -5,10 +5,10 @@ mod relaxed_adami;
 mod repulsion;
 mod slip;
 
-pub(crate) use dynamic::DynamicBoundary; //NARROW
-pub use relaxed_adami::SupportCoverage;
-pub use relaxed_adami::WallExtrapolation;
-pub use relaxed_adami::relaxation;
+pub(crate) use dynamic::DynamicBoundary;
+#[doc(hidden)]
+pub use relaxed_adami::{SupportCoverage, WallExtrapolation, relaxation};
 pub use repulsion::Repulsion;
 pub use slip::Slip;
+#[doc(hidden)]
 pub use slip::no_slip_velocity;

@@ -27,7 +27,7 @@ pub enum Slip {
 
 impl Slip {
     /// Share of the viscosity that acts between water and solids, –.
-    pub(crate) fn wall_viscosity_factor(self) -> f64 { //NARROW
+    pub(crate) fn wall_viscosity_factor(self) -> f64 {
         if self == Self::Free { 0.0 } else { 1.0 }
     }
 }

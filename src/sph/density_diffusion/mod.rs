@@ -3,8 +3,7 @@
 mod fourtakas;
 mod molteni;
 
-pub use fourtakas::Fourtakas;
-pub use fourtakas::FourtakasTerm;
+pub use fourtakas::{Fourtakas, FourtakasTerm};
 pub use molteni::Molteni;
 
 use schemars::JsonSchema;
@@ -26,7 +25,7 @@ pub enum Diffusion {
 
 impl Diffusion {
     /// The term in the pair loop.
-    pub(crate) fn term<const D: usize>(&self, properties: &FluidProperties<D>) -> Option<FourtakasTerm<D>> { //NARROW
+    pub(crate) fn term<const D: usize>(&self, properties: &FluidProperties<D>) -> Option<FourtakasTerm<D>> {
         match self {
             Self::None => None,
             Self::Molteni(law) => Some(law.term(properties)),
@@ -35,7 +34,7 @@ impl Diffusion {
     }
 
     /// λ h/c₀ (–) of the shortest waves, λ the rate at which the diffusion damps them: 7 δ.
-    pub(crate) fn damping(&self) -> f64 { //NARROW
+    pub(crate) fn damping(&self) -> f64 {
         7.0 * match self {
             Self::None => 0.0,
             Self::Molteni(law) => law.delta,

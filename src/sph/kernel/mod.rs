@@ -1,6 +1,7 @@
 //! Kernels W(r, h), normalised to ∫ W dV = 1, zero from r = 2h on.
 
 mod cubic;
+#[doc(hidden)]
 pub mod lattice;
 mod wendland;
 
@@ -52,4 +53,4 @@ fn moment<K: Kernel, const D: usize>(kernel: &K, medium: &FluidProperties<D>, f:
 }
 
 /// Support radius over smoothing length, the same for every kernel here.
-pub(crate) const SUPPORT_RATIO: f64 = 2.0; //NARROW
+pub(crate) const SUPPORT_RATIO: f64 = 2.0;

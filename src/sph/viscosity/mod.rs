@@ -6,10 +6,8 @@ mod laminar;
 mod sps;
 
 pub use artificial::Artificial;
-pub use laminar::Laminar;
-pub use laminar::LaminarTerm;
-pub use sps::Sps;
-pub use sps::SpsTerm;
+pub use laminar::{Laminar, LaminarTerm};
+pub use sps::{Sps, SpsTerm};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,7 +30,7 @@ pub enum Viscosity {
 }
 
 /// Continues with the terms of a viscosity: `fluid` between water particles, `wall` between water and solids.
-pub(crate) trait TermConsumer<const D: usize> { //NARROW
+pub(crate) trait TermConsumer<const D: usize> {
     /// The result.
     type Output;
     /// Continues.
@@ -42,7 +40,7 @@ pub(crate) trait TermConsumer<const D: usize> { //NARROW
 impl Viscosity {
     /// Calls `next` with the terms in the given units. `wall_share` (–) is the part of the viscosity that acts between water and
     /// solids, `viscous_sum` that of a viscous force that η² leaves on the lattice.
-    pub(crate) fn terms<const D: usize, N: TermConsumer<D>>( //NARROW
+    pub(crate) fn terms<const D: usize, N: TermConsumer<D>>(
         self,
         properties: &FluidProperties<D>,
         units: &Units,
@@ -78,12 +76,12 @@ impl Viscosity {
     }
 
     /// The stress law, if the viscosity keeps a stress tensor for each particle.
-    pub(crate) fn stress(&self) -> Option<Sps> { //NARROW
+    pub(crate) fn stress(&self) -> Option<Sps> {
         if let Self::Sps(law) = self { Some(*law) } else { None }
     }
 
     /// λ h/c₀ (–) of the shortest waves, λ the rate at which the viscosity damps them: 3.5 α.
-    pub(crate) fn damping(&self) -> f64 { //NARROW
+    pub(crate) fn damping(&self) -> f64 {
         if let Self::Artificial(law) = self { 3.5 * law.alpha } else { 0.0 }
     }
 }

@@ -29,7 +29,7 @@ impl Default for Sps {
 
 impl Sps {
     /// The laws, in those units: laminar part, as [`Laminar::term`], and stress.
-    pub(crate) fn terms(&self, units: &Units, damped: f64) -> (LaminarTerm, SpsTerm) { //NARROW
+    pub(crate) fn terms(&self, units: &Units, damped: f64) -> (LaminarTerm, SpsTerm) {
         (Laminar { nu0: self.nu0 }.term(units, damped), SpsTerm)
     }
 

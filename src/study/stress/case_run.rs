@@ -20,7 +20,7 @@ use crate::{
 
 /// Water and wet boundary particles × force passes that a case may take: about half a minute of a slow processor in 2-D, two
 /// in 3-D. In particles, not seconds, so that every machine cuts the same cases.
-pub(crate) const BUDGET: f64 = 1.5e8; //NARROW
+pub(crate) const BUDGET: f64 = 1.5e8;
 
 /// What came out of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,7 +66,7 @@ impl CaseRun {
     ///
     /// # Errors
     /// `Usage` if its thread cannot be started. That the run fails is no error: the trial says so.
-    pub(crate) fn execute(case: &StressCase) -> Result<Self> { //NARROW
+    pub(crate) fn execute(case: &StressCase) -> Result<Self> {
         let mut trial = Self {
             map: case.map.clone(),
             values: case.values.clone(),
@@ -102,7 +102,7 @@ impl CaseRun {
     }
 
     /// How it is to be taken: `missed` is what of its figures misses a bound.
-    pub(crate) fn outcome(&self, missed: &[String]) -> CaseOutcome { //NARROW
+    pub(crate) fn outcome(&self, missed: &[String]) -> CaseOutcome {
         match &self.end {
             CaseEnd::Panicked(_) => CaseOutcome::Wrong,
             CaseEnd::Stopped(_) | CaseEnd::Refused(_) => CaseOutcome::Stopped,

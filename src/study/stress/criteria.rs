@@ -72,7 +72,7 @@ pub struct Criteria {
 }
 
 /// What was measured of a run, by name.
-pub(crate) type MeasuredFigures = BTreeMap<String, f64>; //NARROW
+pub(crate) type MeasuredFigures = BTreeMap<String, f64>;
 
 /// How a case came out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -90,7 +90,7 @@ pub enum CaseOutcome {
 
 impl Criteria {
     /// Names and bounds of all that is asked.
-    pub(crate) fn bounds(&self) -> Vec<(String, f64)> { //NARROW
+    pub(crate) fn bounds(&self) -> Vec<(String, f64)> {
         let plain =
             [("energy", &self.energy), ("walls", &self.walls), ("quiet", &self.quiet), ("momentum", &self.momentum)];
         let mut all: Vec<(String, f64)> =
@@ -102,14 +102,14 @@ impl Criteria {
     }
 
     /// What must be measured, whatever the bounds are: a run need not be made again for another bound.
-    pub(crate) fn required_figures(&self) -> String { //NARROW
+    pub(crate) fn required_figures(&self) -> String {
         let names: Vec<String> = self.bounds().into_iter().map(|(name, _)| name).collect();
         let formulae: Vec<&str> = self.motion.iter().map(|course| course.formula.as_str()).collect();
         format!("{}; {}", names.join(", "), formulae.join(", "))
     }
 
     /// What of `figures` misses its bound, in words; a figure that is not there misses it.
-    pub(crate) fn missed_bounds(&self, figures: &MeasuredFigures) -> Vec<String> { //NARROW
+    pub(crate) fn missed_bounds(&self, figures: &MeasuredFigures) -> Vec<String> {
         let said = |(name, within): (String, f64)| match figures.get(&name) {
             Some(figure) if *figure <= within => None,
             Some(figure) => Some(format!("{name} {} > {within}", format_figure(*figure))),
@@ -125,23 +125,23 @@ fn format_figure(x: f64) -> String {
 }
 
 /// The name of the figure of a draft.
-pub(crate) fn draft_figure(solid: &str) -> String { //NARROW
+pub(crate) fn draft_figure(solid: &str) -> String {
     format!("draft of {solid}")
 }
 
 /// The name of the figure of a motion.
-pub(crate) fn motion_figure(course: &MotionBound) -> String { //NARROW
+pub(crate) fn motion_figure(course: &MotionBound) -> String {
     format!("{} of {}", course.column, course.solid)
 }
 
 /// The larger of two figures; one that is not a number is larger than any, and still can be written down.
-pub(crate) fn max_or_invalid(a: f64, b: f64) -> f64 { //NARROW
+pub(crate) fn max_or_invalid(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::MAX } else { a.max(b.min(f64::MAX)) }
 }
 
 /// Energies (J; J/m in 2-D) at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Energies { //NARROW
+pub(crate) struct Energies {
     /// Of motion.
     pub kinetic: f64,
     /// Of height, since the start.
@@ -152,7 +152,7 @@ pub(crate) struct Energies { //NARROW
 
 /// The books of a run's energy.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EnergyBalance { //NARROW
+pub(crate) struct EnergyBalance {
     start: f64,
     scale_floor: f64,
     potential_drop: f64,
@@ -166,27 +166,27 @@ impl EnergyBalance {
     ///
     /// The scale is the largest of the motion and compression at the start, the fall of the potential, the work done, and a
     /// tenth of `lift`: bodies and levels are not known better than to a tenth of dp, so less energy than that means nothing.
-    pub(crate) fn new(first: Energies, lift: f64) -> Self { //NARROW
+    pub(crate) fn new(first: Energies, lift: f64) -> Self {
         let start = first.kinetic + first.potential + first.compression;
         let floor = (0.1 * lift).max(first.kinetic + first.compression);
         Self { start, scale_floor: floor, potential_drop: 0.0, work: 0.0, largest_work: 0.0, excess: 0.0 }
     }
 
     /// Enters the work (J) of driven solids, springs, motors and forces over a step.
-    pub(crate) fn add_work(&mut self, joules: f64) { //NARROW
+    pub(crate) fn add_work(&mut self, joules: f64) {
         self.work += joules;
         self.largest_work = self.largest_work.max(self.work.abs());
     }
 
     /// Enters the energies now.
-    pub(crate) fn update(&mut self, now: Energies) { //NARROW
+    pub(crate) fn update(&mut self, now: Energies) {
         self.potential_drop = self.potential_drop.max(-now.potential);
         self.excess =
             max_or_invalid(self.excess, now.kinetic + now.potential + now.compression - self.start - self.work);
     }
 
     /// The largest excess over the scale (–).
-    pub(crate) fn relative_excess(&self) -> f64 { //NARROW
+    pub(crate) fn relative_excess(&self) -> f64 {
         let scale = self.scale_floor.max(self.potential_drop).max(self.largest_work);
         if self.excess <= 0.0 { 0.0 } else { max_or_invalid(0.0, self.excess / scale) }
     }

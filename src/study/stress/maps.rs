@@ -136,7 +136,7 @@ pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result
 
 impl MapAxis {
     /// Its values, in words.
-    pub(crate) fn value_labels(&self) -> Vec<String> { //NARROW
+    pub(crate) fn value_labels(&self) -> Vec<String> {
         self.values.iter().map(word).collect()
     }
 }
@@ -151,7 +151,7 @@ impl StressMap {
     ///
     /// # Errors
     /// `Scene` if a hole cannot be filled or the scene is none: names map and values.
-    pub(crate) fn cases(&self, quick: bool) -> Result<Vec<StressCase>> { //NARROW
+    pub(crate) fn cases(&self, quick: bool) -> Result<Vec<StressCase>> {
         let ends = |n: usize| (0..n).filter(|&i| !quick || i == 0 || i + 1 == n).collect::<Vec<_>>();
         let rows = self.y.as_ref().map_or(1, |y| y.values.len());
         let places = ends(rows).into_iter().flat_map(|j| ends(self.x.values.len()).into_iter().map(move |i| [i, j]));

@@ -1,6 +1,6 @@
 //! `pontoon stress`: many short runs over maps of hard cases, each judged by physics.
 //!
-//! `maps` are scenes with holes that axes fill; [`CaseRun`] runs a case in memory and measures it; [`Criteria`] holds the
+//! `maps` are scenes with holes that axes fill; `CaseRun` runs a case in memory and measures it; `Criteria` holds the
 //! figures against bounds; [`StressResults`] works the list off and keeps what came out. A case is right, stopped with a
 //! reason, wrong, or cut by its budget: unfinished.
 
@@ -11,15 +11,11 @@ mod maps;
 mod measurements;
 mod case_run;
 
-pub(crate) use case_run::CaseEnd; //NARROW
-pub(crate) use case_run::CaseRun; //NARROW
+pub(crate) use case_run::{CaseEnd, CaseRun};
 pub use criteria::CaseOutcome;
-pub(crate) use maps::StressCase; //NARROW
-pub use maps::StressMap;
-pub use maps::maps;
-pub use maps::select_maps;
-pub use result_store::CaseResult;
-pub use result_store::StressResults;
+pub(crate) use maps::StressCase;
+pub use maps::{StressMap, maps, select_maps};
+pub use result_store::{CaseResult, StressResults};
 
 /// What came out of a case, in a line.
 pub fn summary_line(entry: &CaseResult) -> String {

@@ -128,7 +128,7 @@ impl StressResults {
     }
 
     /// How many cases came out how; those that have not been run are not counted.
-    pub(crate) fn counts(&self, map: Option<&str>) -> BTreeMap<CaseOutcome, usize> { //NARROW
+    pub(crate) fn counts(&self, map: Option<&str>) -> BTreeMap<CaseOutcome, usize> {
         let mut counts = BTreeMap::new();
         for entry in self.entries.iter().filter(|entry| map.is_none_or(|map| entry.case.map == map)) {
             if let Some((outcome, _)) = entry.verdict() {
