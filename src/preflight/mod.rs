@@ -7,7 +7,7 @@
 mod absorption_limits;
 mod misplaced_bodies;
 mod floating_bodies;
-pub(crate) mod surface_samples;
+mod surface_samples;
 mod gaps;
 mod wavemaker_checks;
 mod probe_positions;

@@ -1,6 +1,6 @@
 //! The drawing of pictures: panels with particles and solids, metres along their edges, the bar of colours.
 
-use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash, Transform};
+use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, Transform};
 
 use super::{
     colour::{self, ColourMap},
@@ -54,9 +54,6 @@ impl PanelView {
         for (points, closed, _) in panel.lines.iter().filter(|(_, _, moves)| *moves && flat) {
             here.draw_line(&mut own, points, *closed, Some(BODY), 0.12);
         }
-        for (points, closed, _) in &panel.contact_skins {
-            here.draw_dashed(&mut own, points, *closed);
-        }
         let (x, y) = (self.corner.0 as i32, self.corner.1 as i32);
         on.draw_pixmap(x, y, own.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
     }
@@ -72,14 +69,6 @@ impl PanelView {
             path.close();
         }
         path.finish()
-    }
-
-    /// A thin dashed line.
-    fn draw_dashed(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool) {
-        let Some(path) = self.path(points, closed) else { return };
-        let dash = StrokeDash::new(vec![0.4 * self.em, 0.3 * self.em], 0.0);
-        let stroke = Stroke { width: (0.06 * self.em).max(1.0), dash, ..Stroke::default() };
-        on.stroke_path(&path, &solid_paint(EDGE, 255), &stroke, Transform::identity(), None);
     }
 
     /// A line `thick` em thick.
