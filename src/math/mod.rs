@@ -1,9 +1,10 @@
-//! Mathematics without physics: vectors and rotations, time series, formulas, SIMD numbers, number formats.
+//! Mathematics without physics: vectors and rotations, time series, tables, formulas, SIMD numbers, number formats.
 
 mod config;
 pub mod expression;
 pub mod format;
 pub mod simd;
+pub mod table;
 pub mod time_series;
 mod vector;
 
