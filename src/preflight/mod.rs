@@ -17,7 +17,6 @@ mod wavemaker_site;
 mod driven_motion;
 mod thickness;
 mod generated_waves;
-mod rounding;
 
 use std::collections::BTreeMap;
 
@@ -26,7 +25,6 @@ use serde::Serialize;
 pub use absorption_limits::AbsorberSummary;
 pub use floating_bodies::{BodySummary, Equilibrium, Tilt};
 pub use generated_waves::GeneratedWave;
-pub use rounding::three_digits;
 pub use run_size::{DiskUse, RunSize};
 pub use sound_speed::{ExpectedSpeed, SoundSpeed, StepSizeLimits};
 
