@@ -41,7 +41,7 @@ impl TableReader {
     ///
     /// # Errors
     /// `File` if the table cannot be read. `Scene` if a column is missing, a row is longer or shorter than the header, or
-    /// a cell is not a finite number.
+    /// a cell is not a finite number; the location of the last two is their line.
     pub fn columns<const N: usize>(mut self, names: [&str; N]) -> Result<[Vec<f64>; N]> {
         let mut indices = [0; N];
         for (index, name) in indices.iter_mut().zip(names) {
@@ -51,19 +51,19 @@ impl TableReader {
         let (file, count) = (&self.file, self.header.len());
         for record in self.reader.records() {
             let record = record.map_err(|why| Error::file(file.as_ref(), why))?;
-            let line = record.position().map_or(0, csv::Position::line);
+            let line = record.position().map_or(0, |place| place.line() as usize);
+            let at = |error: Error, name: &str| error.at(file.as_str(), Some((line, 1)), name);
             if record.len() != count {
-                let what = format!("line {line} of {file} has {} cells, its header {count}", record.len());
-                return Err(Error::scene(what).help("leave a cell blank where a value is missing"));
+                let error = Error::scene(format!("a row has {} cells, its header {count}", record.len()));
+                return Err(at(error.help("leave a cell blank where a value is missing"), ""));
             }
             let cells = indices.map(|i| &record[i]);
             if cells.contains(&"") {
                 continue;
             }
             for ((column, cell), name) in columns.iter_mut().zip(cells).zip(names) {
-                column.push(number(cell).filter(|x| x.is_finite()).ok_or_else(|| {
-                    Error::scene(format!("\"{cell}\" in line {line} of {file}, column \"{name}\", is not a number"))
-                })?);
+                let x = number(cell).filter(|x| x.is_finite());
+                column.push(x.ok_or_else(|| at(Error::scene(format!("\"{cell}\" is not a number")), name))?);
             }
         }
         Ok(columns)

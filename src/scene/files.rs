@@ -52,6 +52,17 @@ pub fn open_table(folder: &Path, name: &str) -> Result<TableReader> {
     TableReader::open(&path)
 }
 
+/// The error of a table with its line in the message, because the location of the error is that of a key in the scene.
+pub fn with_line_in_message(mut error: Error) -> Error {
+    if let Some(place) = error.location.take()
+        && let Some((line, _)) = place.line_column
+    {
+        let column = if place.key.is_empty() { String::new() } else { format!(", column \"{}\"", place.key) };
+        error.message += &format!(" (line {line} of {}{column})", place.file);
+    }
+    error
+}
+
 /// Whether the file at `full`, links followed, lies in `folder`; true if there is no such file.
 pub fn is_within(folder: &Path, full: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

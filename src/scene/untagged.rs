@@ -274,7 +274,7 @@ impl TimeFunctionConfig {
         let table = files::open_table(ctx.folder(), file).map_err(|e| place("file", e))?;
         let column = self.column.as_deref().unwrap_or("");
         let time = self.time.as_deref().unwrap_or("");
-        let series = table.series(time, column).map_err(|e| place("column", e))?;
+        let series = table.series(time, column).map_err(|e| place("column", files::with_line_in_message(e)))?;
         let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
         let factor = self.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
         let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();

@@ -224,7 +224,7 @@ impl CheckConfig {
 
     /// The check of the run; opens its table to see that the columns are there.
     pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
-        let place = |e: Error| ctx.with_location(e, &format!("{key}.reference"));
+        let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
         let reference = match &self.formula {
             Some(text) => Reference::Formula(text.clone()),
             None => {

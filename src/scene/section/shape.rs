@@ -349,7 +349,7 @@ fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<
         let points = svg::outline(&path, config.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let [x, y] = files::open_table(ctx.folder(), file)?.columns(["x_m", "y_m"])?;
+    let [x, y] = files::open_table(ctx.folder(), file)?.columns(["x_m", "y_m"]).map_err(files::with_line_in_message)?;
     Ok(x.into_iter().zip(y).map(|(x, y)| vector(&[x, y])).collect())
 }
 

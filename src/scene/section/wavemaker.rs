@@ -244,7 +244,8 @@ fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<W
     };
     let (time, is_period) = either("period_s", "frequency_hz")?;
     let (phase, in_degrees) = either("phase_deg", "phase_rad")?;
-    let [amplitudes, times, phases] = table.columns(["amplitude_m", time, phase])?;
+    let [amplitudes, times, phases] =
+        table.columns(["amplitude_m", time, phase]).map_err(files::with_line_in_message)?;
     let component = |i: usize| {
         let (x, phase) = (times[i], phases[i]);
         if x <= 0.0 {
@@ -261,7 +262,8 @@ fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<W
 /// The elevation of a table.
 fn read_elevation(ctx: &Context, config: &MeasuredElevationConfig) -> Result<TimeSeries> {
     let table = files::open_table(ctx.folder(), &config.file)?;
-    let series = table.series(config.time.as_deref().unwrap_or("t_s"), &config.column)?;
+    let series =
+        table.series(config.time.as_deref().unwrap_or("t_s"), &config.column).map_err(files::with_line_in_message)?;
     let scale = config.scale.unwrap_or(1.0);
     TimeSeries::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
 }

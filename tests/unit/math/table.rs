@@ -26,13 +26,13 @@ fn errors_name_the_file_the_line_and_the_column() -> Result<()> {
     let refused =
         |names: [&str; 2]| TableReader::open(&path).and_then(|table| table.columns(names)).unwrap_err().to_string();
     let name = path.display();
-    assert_eq!(refused(["t_s", "x_m"]), format!("\"o.1\" in line 2 of {name}, column \"x_m\", is not a number"));
+    assert_eq!(refused(["t_s", "x_m"]), format!("\"o.1\" is not a number\n  in {name}:2:1, x_m"));
     let missing = format!("{name} has no column \"x_mm\"; did you mean \"x_m\"?\n  its columns: t_s, x_m");
     assert_eq!(refused(["t_s", "x_mm"]), missing);
     std::fs::write(&path, "t_s,x_m\n0.0,inf\n").unwrap();
-    assert!(refused(["t_s", "x_m"]).contains("\"inf\" in line 2"));
+    assert!(refused(["t_s", "x_m"]).contains("\"inf\" is not a number"));
     std::fs::write(&path, "t_s,x_m\n0.0,1.0\n0.1\n").unwrap();
-    assert!(refused(["t_s", "x_m"]).contains(&format!("line 3 of {name} has 1 cells, its header 2")));
+    assert!(refused(["t_s", "x_m"]).contains(&format!("a row has 1 cells, its header 2\n  in {name}:3:1")));
     std::fs::write(&path, "t_s,x_m\n0.1,1.0\n0.1,2.0\n").unwrap();
     let error = TableReader::open(&path)?.series("t_s", "x_m").unwrap_err().message;
     assert!(error.starts_with(&format!("{name}, x_m: times must increase")), "{error}");
