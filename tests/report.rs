@@ -279,28 +279,6 @@ fn a_deep_tank_turns_and_is_cut() {
 }
 
 #[test]
-fn a_contact_skin_in_space_is_dashed_in_the_whole_and_dotted_in_a_cut() {
-    let desk = desk("skin");
-    let run = ran(&desk, "tub", &DEEP.replace("free  = {", "contact_skin = 0.03\nfree  = {"), &[]);
-    if chromium().is_none() {
-        return;
-    }
-    let said = asked(
-        &run.join(report::REPORT_FILE),
-        "const view = deck.views[0], on = view.context, stroke = on.stroke.bind(on), { lines, dots } = films[0].solids[1].rim;
-         let dashed = 0; on.stroke = (...what) => { if (on.getLineDash().length) dashed++; stroke(...what); };
-         const drawn = mode => { dashed = 0; deck.look.mode = mode; deck.draw(); return dashed; };
-         said.dashed = ['turn', 'y'].map(drawn); said.dots = dots.length; said.lines = lines.length;
-         said.far = lines.flatMap(line => line.points.map(x => Math.hypot(...x)));",
-    );
-    assert_eq!(said["dashed"], serde_json::json!([1, 0]), "the ball's alone: {said}");
-    assert!(said["lines"] == 3 && said["dots"].as_u64() > Some(10), "three circles: {said}");
-    // Rounded to a thousandth of dp in each coordinate.
-    let off = |x: &Value| (x.as_f64().unwrap() - 0.13).abs();
-    assert!(said["far"].as_array().unwrap().iter().all(|x| off(x) < 1e-4), "0.03 m outside its face: {said}");
-}
-
-#[test]
 fn runs_are_laid_over_one_another_locked_in_time() {
     let desk = desk("compare");
     ran(&desk, "a", BAY, &["--no-report"]);

@@ -10,14 +10,7 @@ pub(crate) fn format_metric(x: Option<f64>) -> String {
 
 /// A figure in the unit of its series: three digits that count.
 pub(crate) fn format_value(x: Option<f64>) -> String {
-    match x {
-        None => "–".into(),
-        Some(0.0) => "0".into(),
-        Some(x) => {
-            let places = (2 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
-            format!("{x:.places$}")
-        }
-    }
+    x.map_or("–".into(), |x| format::significant_digits(x, 3, 0.0..f64::INFINITY))
 }
 
 /// A delay in ms, with its sign.

@@ -7,7 +7,6 @@ pub mod format_verdicts;
 mod harmonic;
 mod moments;
 mod rao;
-mod reference_table;
 mod reflection;
 mod spectrum;
 mod verdict;

@@ -7,12 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::{
     alignment::{AlignedMetrics, ArrivalTimes, align},
     error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2},
-    reference_table,
 };
 use crate::{
     error::{Error, Result},
-    math::expression::Formula,
-    math::time_series::TimeSeries,
+    math::{expression::Formula, table::TableReader, time_series::TimeSeries},
     plan::{Align, CheckPlan, Reference, Score},
 };
 
@@ -108,7 +106,7 @@ impl ReferenceCheck {
             Reference::Table { file, time, column, delay } => {
                 let path = folder.join(file);
                 let (from, until) = window(words, 0.0);
-                let whole = reference_table::read_series(&path, time, column, *delay)?;
+                let whole = read_series(&path, time, column, *delay)?;
                 KnownReference::Table(
                     whole.window(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
                 )
@@ -200,7 +198,7 @@ impl ReferenceCheck {
     fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>)> {
         let (probe, column) = self.plan.series.split_once('.').unwrap_or((&self.plan.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
-        let mut sim = reference_table::read_series(&path, "t_s", column, 0.0)?;
+        let mut sim = read_series(&path, "t_s", column, 0.0)?;
         if let Some(at) = self.plan.zero {
             sim = sim.minus(sim.value_at(at));
         }
@@ -285,4 +283,16 @@ fn window(words: &CheckPlan, start: f64) -> (f64, f64) {
         _ => f64::NEG_INFINITY,
     };
     (words.from.unwrap_or(from) + start, words.until.unwrap_or(f64::INFINITY) + start)
+}
+
+/// The series of `column` over `time` of the table at `path`, its times moved by `delay` (s), in any order. Several values at one
+/// time, as digitised figures have them, count as their mean.
+fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<TimeSeries> {
+    let [t, x] = TableReader::open(path)?.columns([time, column])?;
+    let mut rows: Vec<(f64, f64)> = t.into_iter().zip(x).collect();
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let groups = rows.chunk_by(|a, b| a.0 == b.0);
+    let (t, x): (Vec<f64>, Vec<f64>) =
+        groups.map(|g| (g[0].0 + delay, g.iter().map(|row| row.1).sum::<f64>() / g.len() as f64)).unzip();
+    TimeSeries::new(t, x).map_err(|e| e.at(path.display().to_string(), None, column))
 }

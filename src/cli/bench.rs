@@ -5,11 +5,12 @@ use pontoon::{
     Result,
     bench::{self, BenchCase, BenchTiming},
     error::{Error, ErrorKind},
+    math::format::metric_prefix,
     output::manifest::Machine,
 };
 use serde::Serialize;
 
-use super::console_text::{short_number, table};
+use super::console_text::table;
 
 /// Water particles up to which the oracle is timed beside the fast sweep.
 const MAX_REFERENCE_PARTICLES: usize = 200_000;
@@ -172,8 +173,8 @@ fn rows(timings: &[BenchTiming]) -> Vec<Vec<String>> {
             t.work.clone(),
             format!("{}-D", t.dimension),
             t.threads.to_string(),
-            short_number(t.water as f64),
-            short_number(t.wet as f64),
+            metric_prefix(t.water as f64),
+            metric_prefix(t.wet as f64),
             format!("{:.2}", t.particle_steps_per_s * 1e-6),
             format!("{:.2}", t.step_s * 1e3),
             format!("{:.0}", t.cpu_ns),

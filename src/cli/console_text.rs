@@ -4,11 +4,10 @@ use std::fmt::Write;
 
 use pontoon::{
     analysis::{Verdict, format_verdicts},
+    math::format::{bytes, duration, metric_prefix},
     output::manifest::{FrameTotals, RunStatus},
     run::{FinalBodyState, RunOutcome, RunStart},
 };
-
-pub use pontoon::math::format::{bytes, duration};
 
 use super::scene_lookup::BundledSceneInfo;
 
@@ -25,17 +24,6 @@ pub fn table(rows: &[Vec<String>]) -> String {
         text.push('\n');
     }
     text
-}
-
-/// `n` with a metric prefix: 1.23 M.
-pub fn short_number(n: f64) -> String {
-    match n {
-        n if n >= 1e9 => format!("{:.2} G", n / 1e9),
-        n if n >= 1e6 => format!("{:.2} M", n / 1e6),
-        n if n >= 1e4 => format!("{:.1} k", n / 1e3),
-        n if n >= 100.0 => format!("{n:.0}"),
-        n => format!("{n:.2}"),
-    }
 }
 
 /// A number of threads as a user says it.
@@ -96,7 +84,7 @@ pub fn end_text(outcome: &RunOutcome) -> String {
                 duration(manifest.cpu_s)
             ),
         ],
-        vec!["speed".into(), format!("{} particle-steps/s", short_number(manifest.particle_steps_per_second))],
+        vec!["speed".into(), format!("{} particle-steps/s", metric_prefix(manifest.particle_steps_per_second))],
     ]);
     if manifest.removed > 0 {
         let what = if manifest.removed == 1 { "particle" } else { "particles" };
@@ -162,11 +150,6 @@ pub fn scene_list(scenes: &[BundledSceneInfo]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_said_briefly() {
-        assert_eq!([short_number(1.234e6), short_number(5.0), short_number(123.4)], ["1.23 M", "5.00", "123"]);
-    }
 
     #[test]
     fn a_table_is_aligned() {

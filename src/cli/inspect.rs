@@ -5,13 +5,14 @@ use std::fmt::Write;
 use clap::Args;
 use pontoon::{
     error::{Error, ErrorKind, Result},
-    preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, GeneratedWave, Severity, three_digits},
+    math::format::{bytes, duration, metric_prefix, three_digits},
+    preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, GeneratedWave, Severity},
     run::{self, InspectOptions, InspectReport},
 };
 
 use super::{
     SceneArgs,
-    console_text::{bytes, duration, short_number, table, threads},
+    console_text::{table, threads},
     scene_lookup,
 };
 
@@ -128,7 +129,7 @@ fn facts(report: &InspectReport) -> Vec<Vec<String>> {
     }
     row("time step", format!("at most {:.3e} s, by {}", step.dt_s, step.bound_by));
     let passes = if step.passes == 1 { "one force pass" } else { "two force passes" };
-    row("steps", format!("{} or more to {} s, {passes} each", short_number(step.steps), report.until_s));
+    row("steps", format!("{} or more to {} s, {passes} each", metric_prefix(step.steps), report.until_s));
     if let Some(timing) = &report.timing {
         row(
             "run time",

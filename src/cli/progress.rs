@@ -12,7 +12,7 @@ use std::{
 use crossterm::terminal::size;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon::{
-    preflight::three_digits,
+    math::format::{duration, metric_prefix, three_digits},
     run::{Progress, RunObserver, RunStart},
     simulation::Rollback,
 };
@@ -73,8 +73,8 @@ impl ProgressDisplay {
         let (begun, first, steps) = self.begun.unwrap_or((Instant::now(), now.time, now.steps));
         let (wall, done) = (begun.elapsed().as_secs_f64(), now.time - first);
         let going = now.steps > steps && wall > 0.0;
-        let left = || format!("{} left", console_text::duration(wall * (now.until - now.time) / done));
-        let speed = || format!("{} steps/s", console_text::short_number((now.steps - steps) as f64 / wall));
+        let left = || format!("{} left", duration(wall * (now.until - now.time) / done));
+        let speed = || format!("{} steps/s", metric_prefix((now.steps - steps) as f64 / wall));
         let words = [
             (done > 0.0).then(left),
             (now.dt > 0.0).then(|| format!("dt {} s", three_digits(now.dt))),
@@ -82,7 +82,7 @@ impl ProgressDisplay {
             now.energy.map(|drift| drift.to_string()),
             Some(format!("step {}", now.steps)),
             going.then(speed),
-            going.then(|| format!("{} particle-steps/s", console_text::short_number(now.rate))),
+            going.then(|| format!("{} particle-steps/s", metric_prefix(now.rate))),
         ];
         fit_to_width(format!("t = {:.3} of {} s", now.time, now.until), words.into_iter().flatten(), room)
     }

@@ -5,13 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use pontoon::{
     error::{Error, ErrorKind, Result},
+    math::format::{bytes, duration},
     report::{self, ColourField, Page, PictureOptions},
 };
 
-use super::{
-    console_text::{bytes, duration},
-    print_error, print_output,
-};
+use super::{print_error, print_output};
 
 /// A page of one run.
 #[derive(Args)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use pontoon::{
     error::{Error, ErrorKind, Result},
-    preflight::three_digits,
+    math::format::three_digits,
     run::{RaoResult, RunStatistics, Statistic, StatisticsFilter, statistics},
 };
 use serde::Serialize;

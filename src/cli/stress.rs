@@ -5,13 +5,11 @@ use std::{path::PathBuf, sync::atomic::Ordering};
 use clap::Args;
 use pontoon::{
     error::{Error, ErrorKind, Result},
+    math::format::duration,
     study::stress::{CaseOutcome, CaseResult, StressMap, StressResults, maps, select_maps, summary_line},
 };
 
-use super::{
-    console_text::{duration, table},
-    interrupt_flag_with_message, print_error, print_output,
-};
+use super::{console_text::table, interrupt_flag_with_message, print_error, print_output};
 
 /// Maps and how they are run.
 #[derive(Args)]

@@ -8,6 +8,7 @@ use std::{
 use clap::Args;
 use pontoon::{
     error::{Error, ErrorKind, Result},
+    math::format::{duration, metric_prefix},
     output::require_parent_folder,
     report::PictureOptions,
     scene::Scene,
@@ -18,7 +19,7 @@ use pontoon::{
 };
 
 use super::{
-    console_text::{duration, short_number, table},
+    console_text::table,
     interrupt_flag, key_value, print_error, print_output,
     progress::{CliObserver, ProgressDisplay},
     report_page::{PictureStyleArgs, draw_picture},
@@ -147,9 +148,9 @@ fn planned_table(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> S
         };
         rows.push(vec![
             job.display_name(),
-            short_number(planned.size.fluid),
-            short_number(planned.size.boundary),
-            short_number(planned.size.steps),
+            metric_prefix(planned.size.fluid),
+            metric_prefix(planned.size.boundary),
+            metric_prefix(planned.size.steps),
             if ran.state == JobState::Finished {
                 String::new()
             } else {
@@ -161,7 +162,7 @@ fn planned_table(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> S
     let total: f64 = planned.iter().map(|p| p.seconds).sum();
     let mut text = format!("{}in all about {}\n", table(&rows), duration(total));
     if planned.iter().any(|p| !p.measured && p.seconds > 0.0) {
-        let [plane, space] = DEFAULT_SPEED.map(short_number);
+        let [plane, space] = DEFAULT_SPEED.map(metric_prefix);
         text += &format!(
             "the usual speed: {plane} water particles × force passes a second and thread in 2-D, {space} in 3-D\n"
         );

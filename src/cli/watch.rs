@@ -15,15 +15,14 @@ use crossterm::{
 };
 use pontoon::{
     error::{Error, ErrorKind, Result, nearest_name},
-    math::format::unit,
+    math::format::{duration, three_digits, unit},
     output::{Manifest, SeriesTable, manifest::RunStatus},
-    preflight::three_digits,
     run::{self, EnergyDrift},
 };
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
 use super::{
-    console_text::{duration, table, warnings},
+    console_text::{table, warnings},
     print_output,
 };
 

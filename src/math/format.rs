@@ -1,4 +1,6 @@
-//! How numbers and columns are said: units by the ends of names, sizes, times. For pages, tables and terminals alike.
+//! Numbers as text, and the units and labels of columns. For pages, tables, messages and terminals alike.
+
+use std::ops::Range;
 
 /// Ends of the names of columns, and the units that they mean.
 const UNITS: [(&str, &str); 20] = [
@@ -41,7 +43,92 @@ pub fn column_label(column: &str) -> String {
     }
 }
 
-/// A number of bytes as a user says it.
+/// `x` to `digits` significant digits: with at most nine decimals if its size is in `range`, else with an exponent.
+pub fn significant_digits(x: f64, digits: usize, range: Range<f64>) -> String {
+    match x.abs() {
+        0.0 => "0".into(),
+        size if range.contains(&size) => {
+            let places = digits as i32 - 1 - size.log10().floor() as i32;
+            format!("{x:.*}", places.clamp(0, 9) as usize)
+        }
+        _ => format!("{x:.*e}", digits - 1),
+    }
+}
+
+/// `x` to three digits, without trailing zeros.
+pub fn three_digits(x: f64) -> String {
+    without_trailing_zeros(significant_digits(x, 3, 1e-4..1e6))
+}
+
+/// `x` to four digits as in print; a dash if it is not finite.
+pub fn four_digits(x: f64) -> String {
+    if x.is_finite() { with_minus_sign(&significant_digits(x, 4, 1e-3..1e5)) } else { "–".into() }
+}
+
+/// The largest number of two digits that is not above `x` > 0.
+pub fn two_digits_down(x: f64) -> String {
+    two_digits(x, f64::floor)
+}
+
+/// The smallest number of two digits that is not below `x` > 0.
+pub fn two_digits_up(x: f64) -> String {
+    two_digits(x, f64::ceil)
+}
+
+fn two_digits(x: f64, round: fn(f64) -> f64) -> String {
+    let places = 1 - x.log10().floor() as i32;
+    let unit = 10f64.powi(-places);
+    // A number of two digits may differ from itself by round-off.
+    let near = (x / unit).round();
+    let whole = if (x / unit - near).abs() < 1e-9 * near { near } else { round(x / unit) };
+    without_trailing_zeros(format!("{:.*}", places.max(0) as usize, whole * unit))
+}
+
+/// `x` rounded to `places` decimals, without trailing zeros.
+pub fn decimals(x: f64, places: i32) -> String {
+    let unit = 10f64.powi(places);
+    // The sum turns −0 into 0.
+    format!("{}", (x * unit).round() / unit + 0.0)
+}
+
+/// Coordinates (m) as a scene writes them: `[0.42, 0.1]`.
+pub fn coordinates<'a>(x: impl IntoIterator<Item = &'a f64>) -> String {
+    let numbers: Vec<String> = x.into_iter().map(|x| three_digits(1e-6 * (x * 1e6).round())).collect();
+    format!("[{}]", numbers.join(", "))
+}
+
+/// `n` with a metric prefix: 1.23 M.
+pub fn metric_prefix(n: f64) -> String {
+    match n {
+        n if n >= 1e9 => format!("{:.2} G", n / 1e9),
+        n if n >= 1e6 => format!("{:.2} M", n / 1e6),
+        n if n >= 1e4 => format!("{:.1} k", n / 1e3),
+        n if n >= 100.0 => format!("{n:.0}"),
+        n => format!("{n:.2}"),
+    }
+}
+
+/// A whole number with thin spaces between its thousands.
+pub fn thousands(n: u64) -> String {
+    let digits = n.to_string();
+    let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
+    groups.join("\u{202f}")
+}
+
+/// A number as in print: with a minus, not a hyphen.
+pub fn with_minus_sign(number: &str) -> String {
+    number.replace('-', "−")
+}
+
+/// The text of a number without the zeros at the end of its decimals.
+fn without_trailing_zeros(text: String) -> String {
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').into(),
+        false => text,
+    }
+}
+
+/// A number of bytes, in kB, MB or GB.
 pub fn bytes(count: f64) -> String {
     match count {
         n if n >= 1e9 => format!("{:.1} GB", n / 1e9),
@@ -51,7 +138,7 @@ pub fn bytes(count: f64) -> String {
     }
 }
 
-/// A wall time (s) as a user says it.
+/// A wall time (s), in minutes and hours where it is long.
 pub fn duration(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {

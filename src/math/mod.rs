@@ -1,4 +1,4 @@
-//! Mathematics without physics: vectors and rotations, time series, formulas, SIMD numbers, number formats.
+//! Mathematics without physics: vectors and rotations, time series, tables, formulas, SIMD numbers, number formats.
 
 mod config;
 pub mod expression;
@@ -6,6 +6,7 @@ pub mod expression;
 pub mod format;
 #[doc(hidden)]
 pub mod simd;
+pub mod table;
 pub mod time_series;
 mod vector;
 

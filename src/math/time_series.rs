@@ -1,4 +1,4 @@
-//! Values over time: interpolation and differentiation. No files.
+//! Values over time: interpolation and differentiation.
 
 use crate::error::{Error, Result};
 

@@ -9,7 +9,7 @@ use std::{
 use super::cannot_write;
 use crate::{
     error::{Error, ErrorKind, Result},
-    math::time_series::TimeSeries,
+    math::{table::TableReader, time_series::TimeSeries},
 };
 
 /// A CSV file that grows by whole rows.
@@ -167,19 +167,10 @@ impl SeriesTable {
     /// # Errors
     /// `File` if it cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
-        let broken = |why: csv::Error| Error::file(path, why);
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path).map_err(broken)?;
-        let columns: Vec<String> = reader.headers().map_err(broken)?.iter().skip(1).map(String::from).collect();
-        let (mut t, mut x) = (Vec::new(), vec![Vec::new(); columns.len()]);
-        for record in reader.records() {
-            let record = record.map_err(broken)?;
-            let field = |i: usize| record.get(i).and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
-            if record.len() == columns.len() + 1 && field(0).is_finite() {
-                t.push(field(0));
-                x.iter_mut().enumerate().for_each(|(i, column)| column.push(field(i + 1)));
-            }
-        }
-        Ok(Self { columns, times: t, values: x })
+        let table = TableReader::open(path)?;
+        let columns = table.header().iter().skip(1).cloned().collect();
+        let mut values = table.all_columns()?.into_iter();
+        Ok(Self { columns, times: values.next().unwrap_or_default(), values: values.collect() })
     }
 
     /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.

@@ -13,14 +13,12 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
-use super::{
-    Finding, PreflightContext,
-    rounding::{three_digits, two_digits_down, two_digits_up},
-    surface_samples::SurfaceSample,
-    thickness::thinnest_part,
-};
+use super::{Finding, PreflightContext, surface_samples::SurfaceSample, thickness::thinnest_part};
 use crate::{
-    math::{Bivector, Pose, Vector},
+    math::{
+        Bivector, Pose, Vector,
+        format::{three_digits, two_digits_down, two_digits_up},
+    },
     scene::world_bounds,
     solid::{
         FreeBody, Role, Solid,

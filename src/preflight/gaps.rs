@@ -1,11 +1,14 @@
 //! Gaps between solids, narrower than the kernel reaches.
 
-use super::{
-    Finding, PreflightContext,
-    rounding::{place, three_digits, two_digits_down},
-    surface_samples::SurfaceSample,
+use super::{Finding, PreflightContext, surface_samples::SurfaceSample};
+use crate::{
+    math::{
+        Vector,
+        format::{coordinates, three_digits, two_digits_down},
+    },
+    scene::world_bounds,
+    solid::Role,
 };
-use crate::{math::Vector, scene::world_bounds, solid::Role};
 
 /// Solids nearer than this (dp) are in touch: contact is the engine's.
 const TOUCH: f64 = 0.1;
@@ -89,7 +92,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             name(a),
             name(b),
             three_digits(gap.width),
-            place(&gap.middle),
+            coordinates(&gap.middle),
             three_digits(gap.width / dp),
             three_digits(self.support_radius_dp())
         );

@@ -3,13 +3,9 @@
 
 use serde::Serialize;
 
-use super::{
-    Finding, PreflightContext,
-    rounding::{three_digits, two_digits_down},
-    thickness::has_full_layers,
-    wavemaker_site::WavemakerSite,
-};
+use super::{Finding, PreflightContext, thickness::has_full_layers, wavemaker_site::WavemakerSite};
 use crate::{
+    math::format::{three_digits, two_digits_down},
     scene::world_bounds,
     solid::{PrescribedMotion, Role, Solid},
     wavemaker::{DepthRegime, LinearWave, Paddle, TheoryRegion},

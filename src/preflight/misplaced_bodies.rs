@@ -1,12 +1,12 @@
 //! What can hardly be meant of bodies and their ties: beside the water or longer than it, harder to turn than its size explains, made
 //! fast far away.
 
-use super::{
-    Finding, PreflightContext,
-    rounding::{three_digits, two_digits_up},
-};
+use super::{Finding, PreflightContext};
 use crate::{
-    math::{Bounds, Vector},
+    math::{
+        Bounds, Vector,
+        format::{three_digits, two_digits_up},
+    },
     scene::world_bounds,
     solid::{Role, Solid},
 };

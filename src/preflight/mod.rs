@@ -7,7 +7,7 @@
 mod absorption_limits;
 mod misplaced_bodies;
 mod floating_bodies;
-pub(crate) mod surface_samples;
+mod surface_samples;
 mod gaps;
 mod wavemaker_checks;
 mod probe_positions;
@@ -17,7 +17,6 @@ mod wavemaker_site;
 mod driven_motion;
 mod thickness;
 mod generated_waves;
-mod rounding;
 
 use std::collections::BTreeMap;
 
@@ -26,7 +25,6 @@ use serde::Serialize;
 pub use absorption_limits::AbsorberSummary;
 pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
-pub use rounding::three_digits;
 pub use run_size::DiskUse;
 pub(crate) use run_size::RunSize;
 pub(crate) use sound_speed::{SoundSpeed, StepSizeLimits};

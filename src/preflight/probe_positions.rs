@@ -1,11 +1,11 @@
 //! Checks that water can reach the place of each probe.
 
-use super::{
-    Finding, PreflightContext, SoundSpeed,
-    rounding::{place, three_digits},
-};
+use super::{Finding, PreflightContext, SoundSpeed};
 use crate::{
-    math::{Bounds, Vector},
+    math::{
+        Bounds, Vector,
+        format::{coordinates, three_digits},
+    },
     probe::ProbeLocation,
     scene::world_bounds,
     solid::Solid,
@@ -49,8 +49,11 @@ impl<const D: usize> PreflightContext<'_, D> {
             return None;
         }
         let why = if outside { "is outside of everything" } else { "lies inside a solid" };
-        let what =
-            format!("section \"{name}\" from {} to {} m {why}: no water goes through it", place(&from), place(&to));
+        let what = format!(
+            "section \"{name}\" from {} to {} m {why}: no water goes through it",
+            coordinates(&from),
+            coordinates(&to)
+        );
         let topic = if outside { "probe_outside" } else { "probe_inside_solid" };
         Some(Finding::warning(topic, what, self.nearest_water(&((from + to) * 0.5))))
     }
@@ -64,7 +67,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     fn point(&self, name: &str, x: Vector<D>, all: &Bounds<D>, sound: &SoundSpeed) -> Option<Finding> {
-        let at = place(&x);
+        let at = coordinates(&x);
         let inside = |solid: &&Solid<D>| {
             // A probe may lie on a face.
             solid.spec.shape.signed_distance(&solid.kinematics.pose.local(&x)) < -1e-9
@@ -103,7 +106,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             return None;
         }
         let why = if outside { "is outside of everything" } else { "stands inside a solid" };
-        let what = format!("gauge \"{name}\" at {} m {why}: no water comes there", place(at));
+        let what = format!("gauge \"{name}\" at {} m {why}: no water comes there", coordinates(at));
         let topic = if outside { "probe_outside" } else { "probe_inside_solid" };
         Some(Finding::warning(topic, what, self.nearest_water(&column(self.still_water.level))))
     }
@@ -112,6 +115,6 @@ impl<const D: usize> PreflightContext<'_, D> {
     fn nearest_water(&self, x: &Vector<D>) -> String {
         let distance = |r: &&Vector<D>| (**r - x).norm_squared();
         let nearest = self.system.fluid().r.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map_or_else(String::new, |r| format!("the nearest water is at {}", place(r)))
+        nearest.map_or_else(String::new, |r| format!("the nearest water is at {}", coordinates(r)))
     }
 }

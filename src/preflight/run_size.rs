@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 
-use super::{
-    Finding, PreflightContext, StepSizeLimits,
-    rounding::{three_digits, two_digits_up},
+use super::{Finding, PreflightContext, StepSizeLimits};
+use crate::{
+    math::format::{bytes, three_digits, two_digits_up},
+    model::PressureGradient,
+    output::frame::particle_bytes,
 };
-use crate::{math::format::bytes, model::PressureGradient, output::frame::particle_bytes};
 
 /// Disk that frames may take without a word, B.
 const BUDGET: f64 = 10e9;

@@ -2,12 +2,9 @@
 
 use serde::Serialize;
 
-use super::{
-    Finding, PreflightContext,
-    rounding::{three_digits, two_digits_down, two_digits_up},
-    surface_samples,
-};
+use super::{Finding, PreflightContext, surface_samples};
 use crate::{
+    math::format::{three_digits, two_digits_down, two_digits_up},
     model::TimeScheme,
     solid::{Role, Solid},
     sph::boundary::Slip,

@@ -2,12 +2,14 @@
 
 use super::{
     Finding, PreflightContext,
-    rounding::{place, three_digits, two_digits_down, two_digits_up},
     surface_samples::{self, SurfaceSample},
 };
 use crate::{
     geometry::Shape,
-    math::{Pose, Vector},
+    math::{
+        Pose, Vector,
+        format::{coordinates, three_digits, two_digits_down, two_digits_up},
+    },
     solid::Role,
 };
 
@@ -86,7 +88,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                      little of it",
                     solid.spec.name,
                     three_digits(thick),
-                    place(&at),
+                    coordinates(&at),
                     three_digits(thick / dp),
                     three_digits(self.support_radius_dp()),
                 );

@@ -1,14 +1,11 @@
 //! Paddles that make waves by name: what their waves may not become, and where a paddle is no paddle of theory.
 
 use super::{
-    Finding, GeneratedWave, PreflightContext,
-    driven_motion::wave_direction,
-    generated_waves::LEAST,
-    rounding::{three_digits, two_digits_down, two_digits_up},
-    thickness::has_full_layers,
-    wavemaker_site::WavemakerSite,
+    Finding, GeneratedWave, PreflightContext, driven_motion::wave_direction, generated_waves::LEAST,
+    thickness::has_full_layers, wavemaker_site::WavemakerSite,
 };
 use crate::{
+    math::format::{three_digits, two_digits_down, two_digits_up},
     plan::StatisticKind,
     scene::world_bounds,
     solid::{PrescribedMotion, Solid},

@@ -1,12 +1,11 @@
 //! Where a paddle stands: what lies in the way of its waves, and which zones take them.
 
-use super::{
-    Finding, GeneratedWave, PreflightContext,
-    rounding::{place, three_digits, two_digits_up},
-    thickness::has_full_layers,
-};
+use super::{Finding, GeneratedWave, PreflightContext, thickness::has_full_layers};
 use crate::{
-    math::{Bounds, Vector},
+    math::{
+        Bounds, Vector,
+        format::{coordinates, three_digits, two_digits_up},
+    },
     scene::world_bounds,
     solid::Solid,
     system::SpongeLayer,
@@ -117,7 +116,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         for zone in self.system.sponge_layers().iter().filter(idle) {
             let what = format!("{} lies outside of the water: it takes no waves", zone_extent(zone));
             let all = Bounds::around(water);
-            let mend = format!("the water is between {} and {}", place(&all.min), place(&all.max));
+            let mend = format!("the water is between {} and {}", coordinates(&all.min), coordinates(&all.max));
             findings.push(Finding::warning("idle_damping", what, mend));
         }
     }
@@ -138,13 +137,16 @@ impl<const D: usize> PreflightContext<'_, D> {
         for zone in zones.iter().filter(|zone| zone.rate(&stand.face) >= zone.strength * (1.0 - 1e-9)) {
             let what =
                 format!("{} is at its full strength at \"{}\", which makes waves", zone_extent(zone), wave.solid);
-            let mend =
-                format!("`from` is where waves come from: from = {}, to = {}", place(&zone.to), place(&zone.from));
+            let mend = format!(
+                "`from` is where waves come from: from = {}, to = {}",
+                coordinates(&zone.to),
+                coordinates(&zone.from)
+            );
             findings.push(Finding::warning("reversed_damping", what, mend));
         }
     }
 }
 
 fn zone_extent<const D: usize>(zone: &SpongeLayer<D>) -> String {
-    format!("the damping zone from {} to {}", place(&zone.from), place(&zone.to))
+    format!("the damping zone from {} to {}", coordinates(&zone.from), coordinates(&zone.to))
 }

@@ -1,7 +1,7 @@
 //! Several probes of one kind as one probe. The names of its columns contain the places.
 
 use super::Probe;
-use crate::{error::Result, simulation::Simulation};
+use crate::{error::Result, math::format::decimals, simulation::Simulation};
 
 /// A row of probes. A column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
 pub struct ProbeRow<const D: usize> {
@@ -34,7 +34,7 @@ impl<const D: usize> ProbeRow<D> {
 
 /// The name of the column `column` at the place `at` (m), to a micrometre.
 pub(crate) fn column_at_place(column: &str, at: &[f64]) -> String {
-    let rounded = at.iter().map(|x| format!("{}", (x * 1e6).round() / 1e6 + 0.0));
+    let rounded = at.iter().map(|x| decimals(*x, 6));
     let place = rounded.collect::<Vec<_>>().join("_");
     match column.rsplit_once('_') {
         Some((name, unit)) => format!("{name}_at_{place}_{unit}"),

@@ -1,13 +1,14 @@
 //! The drawing of pictures: panels with particles and solids, metres along their edges, the bar of colours.
 
-use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash, Transform};
+use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, Transform};
 
 use super::{
     colour::{self, ColourMap},
-    html,
     picture::{ColourField, Panel},
+    plot::round_step,
     text::{Anchor, TextRenderer, fill_path, solid_paint},
 };
+use crate::math::format::{decimals, with_minus_sign};
 
 /// Ink of titles.
 pub(crate) const TITLE_COLOUR: [u8; 3] = [40, 46, 52];
@@ -54,9 +55,6 @@ impl PanelView {
         for (points, closed, _) in panel.lines.iter().filter(|(_, _, moves)| *moves && flat) {
             here.draw_line(&mut own, points, *closed, Some(BODY), 0.12);
         }
-        for (points, closed, _) in &panel.contact_skins {
-            here.draw_dashed(&mut own, points, *closed);
-        }
         let (x, y) = (self.corner.0 as i32, self.corner.1 as i32);
         on.draw_pixmap(x, y, own.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
     }
@@ -72,14 +70,6 @@ impl PanelView {
             path.close();
         }
         path.finish()
-    }
-
-    /// A thin dashed line.
-    fn draw_dashed(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool) {
-        let Some(path) = self.path(points, closed) else { return };
-        let dash = StrokeDash::new(vec![0.4 * self.em, 0.3 * self.em], 0.0);
-        let stroke = Stroke { width: (0.06 * self.em).max(1.0), dash, ..Stroke::default() };
-        on.stroke_path(&path, &solid_paint(EDGE, 255), &stroke, Transform::identity(), None);
     }
 
     /// A line `thick` em thick.
@@ -100,14 +90,7 @@ impl PanelView {
         for x in tick_values(self.low[0], self.high[0], 6.0) {
             let (px, _) = self.to_pixel(&[x, self.low[1]]);
             self.draw_tick(on, (px, bottom), (px, bottom + 0.3 * em));
-            ink.write(
-                on,
-                &html::with_minus_sign(&tick_label(x)),
-                (px, bottom + 1.2 * em),
-                small,
-                Anchor::Middle,
-                QUIET,
-            );
+            ink.write(on, &tick_label(x), (px, bottom + 1.2 * em), small, Anchor::Middle, QUIET);
         }
         let count = (6.0 * self.size.1 / self.size.0).max(2.0);
         for y in tick_values(self.low[1], self.high[1], f64::from(count)) {
@@ -115,7 +98,7 @@ impl PanelView {
             self.draw_tick(on, (self.corner.0 - 0.3 * em, py), (self.corner.0, py));
             if first {
                 let at = (self.corner.0 - 0.5 * em, py + 0.3 * em);
-                ink.write(on, &html::with_minus_sign(&tick_label(y)), at, small, Anchor::End, QUIET);
+                ink.write(on, &tick_label(y), at, small, Anchor::End, QUIET);
             }
         }
         if first {
@@ -174,30 +157,21 @@ pub(crate) fn draw_colour_bar(
     }
     for x in tick_values(range[0], range[1], 6.0) {
         let at = bar.0 + wide * ((x - range[0]) / (range[1] - range[0])) as f32;
-        ink.write(
-            on,
-            &html::with_minus_sign(&tick_label(x)),
-            (at, bar.1 + bar.3 + 1.2 * em),
-            0.8 * em,
-            Anchor::Middle,
-            TITLE_COLOUR,
-        );
+        ink.write(on, &tick_label(x), (at, bar.1 + bar.3 + 1.2 * em), 0.8 * em, Anchor::Middle, TITLE_COLOUR);
     }
     ink.write(on, field.title(), (bar.0, bar.1 + bar.3 + 2.7 * em), em, Anchor::Start, TITLE_COLOUR);
 }
 
 /// Round numbers between `low` and `high`, about `count` of them.
 fn tick_values(low: f64, high: f64, count: f64) -> Vec<f64> {
-    let wished = ((high - low) / count).max(1e-300);
-    let ten = 10f64.powf(wished.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|x| x * ten).find(|x| *x >= 0.999 * wished).unwrap_or(10.0 * ten);
+    let step = round_step(((high - low) / count).max(1e-300));
     let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-/// A round number without the round-off of its multiple.
+/// A number at a tick, without the round-off of a multiple of the step.
 fn tick_label(x: f64) -> String {
-    format!("{}", (x * 1e9).round() / 1e9)
+    with_minus_sign(&decimals(x, 9))
 }
 
 #[cfg(test)]

@@ -4,11 +4,18 @@ use serde::Serialize;
 
 use super::{
     encoding::BinaryData,
-    html::{column_label, unit},
     run_data::{ProbeTable, RunData},
     summary_tables::column_series,
 };
-use crate::{analysis, analysis::Verdict, math::time_series::TimeSeries, run::RaoResult};
+use crate::{
+    analysis,
+    analysis::Verdict,
+    math::{
+        format::{column_label, unit},
+        time_series::TimeSeries,
+    },
+    run::RaoResult,
+};
 
 /// Rows of a table above which it is thinned.
 const MOST_ROWS: usize = 6000;

@@ -20,7 +20,6 @@ mod page;
 mod picture;
 mod placement;
 pub(crate) mod plot;
-mod contact_skin;
 mod sections;
 mod mesh_edges;
 pub(crate) mod html;

@@ -46,7 +46,7 @@ pub(crate) fn to_3d<const D: usize>(x: &Vector<D>) -> [f64; 3] {
 }
 
 /// The lines of a part that is placed so in its solid.
-pub(crate) fn transformed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
+fn transformed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
     for x in lines.iter_mut().flat_map(|line| &mut line.points) {
         *x = to_3d(&pose.point(&Vector::from_fn(|i, _| x[i])));
     }

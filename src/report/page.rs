@@ -7,7 +7,6 @@ use super::{
     animation::{Animation, encode_animation},
     charts::{self, CheckPlot, RaoPlot, TablePlots},
     colour::{FIELD_COLOUR_MAPS, FieldColourMaps},
-    contact_skin::ContactSkinOutline,
     encoding::BinaryData,
     html::escape,
     outline::Outline,
@@ -67,7 +66,6 @@ struct PageSolid<'a> {
     name: &'a str,
     role: &'a str,
     lines: &'a [Outline],
-    rim: &'a ContactSkinOutline,
 }
 
 #[derive(Serialize)]
@@ -79,11 +77,7 @@ struct PageGauge<'a> {
 
 impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
     fn from(set: &'a SceneGeometry) -> Self {
-        let solids = set
-            .solids
-            .iter()
-            .map(|s| PageSolid { name: &s.name, role: s.role, lines: &s.lines, rim: &s.contact_skin })
-            .collect();
+        let solids = set.solids.iter().map(|s| PageSolid { name: &s.name, role: s.role, lines: &s.lines }).collect();
         let gauges = set.gauges().map(|(name, what, at)| PageGauge { name, what, at }).collect();
         Self { dimension: set.dimension, dp: set.dp, level: set.level, rho0: set.rho0, g: set.g, solids, gauges }
     }

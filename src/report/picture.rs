@@ -8,8 +8,7 @@ use super::{
     animation::{points_of_solid, solid_placement},
     canvas::{PanelView, TITLE_COLOUR, draw_colour_bar},
     colour::{ColourMap, FIELD_COLOUR_MAPS},
-    outline::Outline,
-    run_data::{DrawnSolid, RunData, SceneGeometry},
+    run_data::{RunData, SceneGeometry},
     text::{Anchor, TextRenderer},
 };
 use crate::{
@@ -60,8 +59,6 @@ pub(crate) struct Panel<'a> {
     pub points: Vec<([f64; 2], Option<f64>)>,
     /// Lines of solids on the sheet: whether they are closed, and whether their solid moves.
     pub lines: Vec<DrawnLine>,
-    /// Those of contact skins.
-    pub contact_skins: Vec<DrawnLine>,
 }
 
 impl ColourField {
@@ -155,9 +152,8 @@ fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let points = points.into_iter().map(|(_, on, value)| (on, value)).collect();
-    let drawn = |which: fn(&DrawnSolid) -> &[Outline]| solid_lines(film, number, set, flat, which);
-    let (lines, rims) = (drawn(|solid| &solid.lines)?, drawn(|solid| &solid.contact_skin.lines)?);
-    Ok(Panel { geometry: set, t: film.times()[number], points, lines, contact_skins: rims })
+    let lines = solid_lines(film, number, set, flat)?;
+    Ok(Panel { geometry: set, t: film.times()[number], points, lines })
 }
 
 /// The boundary particles of moving solids in frame `number` of a 3-D film: depth and place on the sheet.
@@ -169,21 +165,15 @@ fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Res
     Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
-/// The lines of all solids in frame `number`, of each `which` ones.
-fn solid_lines(
-    film: &FrameSequence,
-    number: usize,
-    set: &SceneGeometry,
-    flat: bool,
-    which: fn(&DrawnSolid) -> &[Outline],
-) -> Result<Vec<DrawnLine>> {
+/// The lines of all solids in frame `number`.
+fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: bool) -> Result<Vec<DrawnLine>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let mut lines = Vec::new();
     for (i, solid) in set.solids.iter().enumerate() {
         let own = points_of_solid(&first, i);
         let fixed = solid.role == "fixed";
         let pose = solid_placement(fixed, &solid.start, &own, &first, &now);
-        for line in which(solid) {
+        for line in &solid.lines {
             lines.push((line.points.iter().map(|x| project(&pose.to_world(x), flat).0).collect(), line.closed, !fixed));
         }
     }

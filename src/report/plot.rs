@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::html::{escape, with_minus_sign};
+use super::html::escape;
+use crate::math::format::{decimals, with_minus_sign};
 
 /// Colours that remain distinct to colour-blind readers (Okabe & Ito), the dark ones first.
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
@@ -160,7 +161,7 @@ impl PlotAxis {
 }
 
 /// The least of 1, 2, 5 times a power of ten that is not below `step`.
-fn round_step(step: f64) -> f64 {
+pub(super) fn round_step(step: f64) -> f64 {
     let ten = 10_f64.powf(step.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|x| x * ten).find(|x| *x >= step * 0.999).unwrap_or(10.0 * ten)
 }
@@ -170,7 +171,7 @@ fn tick_label(value: f64) -> String {
     with_minus_sign(&match value.abs() {
         x if x != 0.0 && !(1e-4..1e6).contains(&x) => format!("{value:.0e}"),
         // Multiples of a step carry round-off in their last digits.
-        _ => format!("{}", (value * 1e7).round() / 1e7 + 0.0),
+        _ => decimals(value, 7),
     })
 }
 

@@ -7,7 +7,6 @@ use std::{
 };
 
 use super::{
-    contact_skin::ContactSkinOutline,
     outline::{Outline, outlines},
     placement::Placement,
 };
@@ -74,8 +73,6 @@ pub(crate) struct DrawnSolid {
     pub role: &'static str,
     /// Its lines, in its own frame.
     pub lines: Vec<Outline>,
-    /// Where others touch it, if that is not at its faces, in its own frame.
-    pub contact_skin: ContactSkinOutline,
     /// Pose of that frame at the start.
     pub start: Placement,
 }
@@ -198,7 +195,6 @@ impl SceneGeometry {
                 Role::Free(_) => "free",
             },
             lines: outlines(&spec.shape),
-            contact_skin: ContactSkinOutline::of_shape(&spec.shape, spec.contact_skin, scene.dp),
             start: Placement::from_pose(&spec.initial_kinematics().pose),
         });
         let solids = solids.collect();

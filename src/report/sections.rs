@@ -4,12 +4,13 @@ use std::{fs, time::SystemTime};
 
 use super::{
     animation::Animation,
-    html::{self, bytes, duration, escape, four_digits, table, thousands},
+    html::{escape, table},
     run_data::{ProbeTable, RunData},
     summary_tables,
 };
 use crate::{
     analysis::{Verdict, format_verdicts},
+    math::format::{bytes, duration, four_digits, thousands, with_minus_sign},
     output::{Manifest, manifest::RunStatus},
 };
 
@@ -124,7 +125,7 @@ pub(crate) fn caption(verdict: &Verdict) -> String {
     let rows = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
     let said: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}").trim().to_string()).collect();
-    html::with_minus_sign(&said.join("; "))
+    with_minus_sign(&said.join("; "))
 }
 
 /// A table that scrolls where the page is narrow.

@@ -1,9 +1,12 @@
 //! Figures of series in tables: extremes, means, waves; the budget of energies.
 
-use super::{html, run_data::ProbeTable};
+use super::run_data::ProbeTable;
 use crate::{
     analysis::{moments, zero_crossing_waves},
-    math::time_series::TimeSeries,
+    math::{
+        format::{self, four_digits},
+        time_series::TimeSeries,
+    },
     probe::relative_residual,
 };
 
@@ -19,7 +22,7 @@ pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
     let head = ["series", "unit", "least", "at, s", "largest", "at, s", "mean", "std", "last", "waves", "period, s"];
     let mut rows =
         vec![head.into_iter().chain(["mean height", "highest third", "highest"]).map(String::from).collect::<Vec<_>>()];
-    let digits = html::four_digits;
+    let digits = four_digits;
     let time = |t: f64| format!("{t:.3}");
     for table in tables {
         for (i, (name, x)) in table.columns.iter().zip(&table.values).enumerate() {
@@ -28,7 +31,7 @@ pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
             }
             let Some(series) = column_series(&table.times, x) else { continue };
             let f = moments(&series);
-            let mut row = vec![format!("{} · {}", table.name, html::column_label(name)), html::unit(name).into()];
+            let mut row = vec![format!("{} · {}", table.name, format::column_label(name)), format::unit(name).into()];
             row.extend([digits(f.min.0), time(f.min.1), digits(f.max.0), time(f.max.1)]);
             row.extend([digits(f.mean), digits(f.standard_deviation), digits(f.last)]);
             row.extend(zero_crossing_waves(&series).map_or_else(
@@ -55,16 +58,16 @@ pub(crate) fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, St
     if table.what != "energy" {
         return None;
     }
-    let unit = html::unit(table.columns.first()?);
+    let unit = format::unit(table.columns.first()?);
     let head = ["part", "start", "end", "change", "least", "largest"];
     let heads = head.iter().map(|h| if *h == "part" { h.to_string() } else { format!("{h}, {unit}") });
     let mut rows = vec![heads.collect::<Vec<String>>()];
-    let digits = html::four_digits;
-    let find = |part: &str| table.columns.iter().position(|name| html::column_label(name) == part);
+    let digits = four_digits;
+    let find = |part: &str| table.columns.iter().position(|name| format::column_label(name) == part);
     for (name, x) in table.columns.iter().zip(&table.values) {
         let (first, f) = (*x.first()?, moments(&column_series(&table.times, x)?));
         let cells = [first, f.last, f.last - first, f.min.0, f.max.0];
-        rows.push(std::iter::once(html::column_label(name)).chain(cells.map(digits)).collect());
+        rows.push(std::iter::once(format::column_label(name)).chain(cells.map(digits)).collect());
     }
     let total = &table.values[find("total")?];
     let change = total.last()? - total.first()?;
@@ -86,23 +89,23 @@ pub(crate) fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, St
     if table.what != "energy budget" {
         return None;
     }
-    let unit = html::unit(table.columns.first()?);
+    let unit = format::unit(table.columns.first()?);
     let last = table.values.iter().map(|x| x.last().copied()).collect::<Option<Vec<f64>>>()?;
     let entries = last.get(1..last.len().checked_sub(1)?)?;
     let turned: f64 = entries.iter().map(|energy| energy.abs()).sum();
     let share = |energy: f64| if turned > 0.0 { 100.0 * energy / turned } else { 0.0 };
     let row = |(name, energy): (&String, &f64)| {
         vec![
-            html::column_label(name),
-            html::four_digits(*energy),
-            html::with_minus_sign(&format!("{:.2}", share(*energy))),
+            format::column_label(name),
+            four_digits(*energy),
+            format::with_minus_sign(&format!("{:.2}", share(*energy))),
         ]
     };
     let head = vec!["gained by".to_string(), format!("energy, {unit}"), "of all turned over, %".into()];
     let rows = std::iter::once(head).chain(table.columns.iter().zip(&last).map(row)).collect();
     let said = format!(
         "The entries add up to what water and bodies have stored, but for {} % of all that was turned over.",
-        html::four_digits(100.0 * relative_residual(&last).unwrap_or_default())
+        four_digits(100.0 * relative_residual(&last).unwrap_or_default())
     );
     Some((rows, said))
 }

@@ -3,9 +3,9 @@
 use std::fmt;
 
 use crate::{
+    math::format::three_digits,
     output::CsvTable,
     plan::Plan,
-    preflight::three_digits,
     probe::{EnergyReading, relative_residual},
 };
 

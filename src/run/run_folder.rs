@@ -8,7 +8,7 @@ use std::{
 use crate::{
     error::{Error, ErrorKind, Result},
     output::checkpoint,
-    scene::table,
+    scene::files,
 };
 
 /// The kept scene, in the run's folder.
@@ -92,7 +92,7 @@ pub(crate) fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> 
     copy(file, &folder.join(SCENE))?;
     referenced_files(words)
         .iter()
-        .filter(|name| from.join(name).is_file() && table::is_within(from, &from.join(name)))
+        .filter(|name| from.join(name).is_file() && files::is_within(from, &from.join(name)))
         .try_for_each(|name| copy(&from.join(name), &to.join(name)))
 }
 

@@ -10,7 +10,7 @@ use serde::{
 
 use super::{
     context::{Context, Defaults},
-    table,
+    files,
 };
 use crate::{
     error,
@@ -271,10 +271,10 @@ impl TimeFunctionConfig {
             }));
         }
         let file = self.file.as_deref().unwrap_or("");
-        let path = table::path_beside(ctx.folder(), file).map_err(|e| place("file", e))?;
+        let table = files::open_table(ctx.folder(), file).map_err(|e| place("file", e))?;
         let column = self.column.as_deref().unwrap_or("");
         let time = self.time.as_deref().unwrap_or("");
-        let series = table::read_series(&path, time, column).map_err(|e| place("column", e))?;
+        let series = table.series(time, column).map_err(|e| place("column", files::with_line_in_message(e)))?;
         let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
         let factor = self.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
         let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();

@@ -4,7 +4,7 @@ use std::time::SystemTime;
 
 use super::{REPEATS_NOTE, ResultRow, spread_table};
 use crate::output::manifest::Machine;
-pub(crate) use crate::report::html::{escape, table, unit};
+pub(crate) use crate::report::html::{escape, table};
 
 const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}svg{width:54em;max-width:100%;height:auto}\

@@ -5,9 +5,7 @@ use std::{fs, path::PathBuf};
 use serde::Serialize;
 
 use super::{
-    Job, JobResult, ParameterGrid, ResultRow, convergence,
-    html_page::{self, unit},
-    least_squares,
+    Job, JobResult, ParameterGrid, ResultRow, convergence, html_page, least_squares,
     repeat_spread::{self, CostPoint, RepeatSpread, group_repeats, spread_of},
     result_rows::{MAX_ABS_METRIC, Metric, RELATIVE_METRICS, check_labels, result_rows},
     rows_to_csv,
@@ -15,6 +13,7 @@ use super::{
 use crate::{
     analysis::format_verdicts,
     error::{Error, Result},
+    math::format::{decimals, unit},
     output::{manifest::Machine, write_atomically},
     report::{LineStyle, PlotLine, log_log_plot},
 };
@@ -258,5 +257,5 @@ impl StudyResults {
 
 /// A length (m) in millimetres, without the round-off of its last digits.
 fn millimetres(x: f64) -> String {
-    format!("{}", (x * 1e9).round() / 1e6)
+    decimals(1e3 * x, 6)
 }

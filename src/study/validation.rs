@@ -6,15 +6,14 @@ use std::{
 };
 
 use super::{
-    Job, JobResult, JobState, ResultRow, ValidationCase, cost_plot,
-    html_page::{self, unit},
+    Job, JobResult, JobState, ResultRow, ValidationCase, cost_plot, html_page,
     result_rows::{check_labels, result_rows},
     rows_to_csv,
 };
 use crate::{
     analysis::{CheckCurves, Verdict, format_verdicts},
     error::{Error, Result},
-    math::time_series::TimeSeries,
+    math::{format::unit, time_series::TimeSeries},
     output::{manifest::Machine, write_atomically},
     report::{LineStyle, PlotLine, line_plot},
 };

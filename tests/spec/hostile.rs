@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     Error,
+    math::table::TableReader,
     scene::{Scene, bundled_scenes},
 };
 use proptest::prelude::*;
@@ -259,7 +260,7 @@ proptest! {
         let folder = desk("table");
         let path = folder.join("table.csv");
         std::fs::write(&path, format!("t_s,x_m\n{text}")).unwrap();
-        if let Ok(series) = pontoon::scene::table::read_series(&path, "t_s", "x_m") {
+        if let Ok(series) = TableReader::open(&path).and_then(|table| table.series("t_s", "x_m")) {
             prop_assert!(series.values().iter().all(|x| x.is_finite()));
         }
     }

@@ -143,7 +143,6 @@ class View {
       if (look.show.surface) this.surface(on);
       this.solids(on, solid => solid.role !== "fixed");
     }
-    this.rims(on);
     if (look.show.gauges) this.gauges(on);
     if (look.show.names) this.names(on);
     on.restore();
@@ -189,10 +188,10 @@ class View {
     on.drawImage(raster.show(), this.margin[0], 0, width / ratio, height / ratio);
   }
 
-  /** The lines of solid `s`, or `others` of it, on the sheet, as a path. */
-  outline(s, others) {
+  /** The lines of solid `s` on the sheet, as a path. */
+  outline(s) {
     const path = new Path2D(), pose = this.film.pose(s), [u, v] = this.axes();
-    for (const line of others ?? this.film.solids[s].lines) {
+    for (const line of this.film.solids[s].lines) {
       line.points.forEach((x, k) => {
         const p = moved(pose, x), at = this.pixel([u, v].map(a => a[0] * p[0] + a[1] * p[1] + a[2] * p[2]));
         if (k) path.lineTo(...at); else path.moveTo(...at);
@@ -214,28 +213,6 @@ class View {
       on.fill(path);
       on.stroke(path);
     });
-  }
-
-  /** Contact skins: dashed, but dots where one is cut in 3-D. */
-  rims(on) {
-    const [u, v] = this.axes(), { film, cut } = this, axis = "xyz".indexOf(this.look.mode);
-    on.strokeStyle = on.fillStyle = this.css.line;
-    on.lineWidth = 1;
-    on.setLineDash([4, 3]);
-    film.solids.forEach((solid, s) => {
-      const { lines, dots } = solid.rim, pose = film.pose(s);
-      if (cut === null) {
-        if (lines.length) on.stroke(this.outline(s, lines));
-        return;
-      }
-      for (const x of dots) {
-        const p = moved(pose, x);
-        if (Math.abs(p[axis] - cut) > 0.5 * film.dp) continue;
-        const [px, py] = this.pixel([u, v].map(a => a[0] * p[0] + a[1] * p[1] + a[2] * p[2]));
-        on.fillRect(px - 1, py - 1, 2, 2);
-      }
-    });
-    on.setLineDash([]);
   }
 
   edges(on) {

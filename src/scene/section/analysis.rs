@@ -13,7 +13,7 @@ use crate::{
     probe::ProbeConfig,
     scene::{
         context::{Context, Defaults, quoted_list, set_keys, suggestion},
-        table,
+        files,
     },
 };
 
@@ -224,14 +224,13 @@ impl CheckConfig {
 
     /// The check of the run; opens its table to see that the columns are there.
     pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
-        let place = |e: Error| ctx.with_location(e, &format!("{key}.reference"));
+        let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
         let reference = match &self.formula {
             Some(text) => Reference::Formula(text.clone()),
             None => {
                 let file = self.reference.clone().unwrap_or_default();
                 let (time, column) = (self.time.clone().unwrap_or_default(), self.column.clone().unwrap_or_default());
-                let path = table::path_beside(ctx.folder(), &file).map_err(place)?;
-                table::read_series(&path, &time, &column).map_err(place)?;
+                files::open_table(ctx.folder(), &file).and_then(|table| table.series(&time, &column)).map_err(place)?;
                 let delay = self.delay.unwrap_or_default();
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, delay }
             }

@@ -11,7 +11,7 @@ use crate::{
     math::{Bounds, Pose, Vector},
     scene::{
         context::{Context, Defaults, last_part, quoted_list, set_keys},
-        mesh, svg, table,
+        files, mesh, svg,
         untagged::{DraftChoice, LengthUnit, PolylineConfig},
     },
 };
@@ -332,7 +332,7 @@ fn verify_drawing(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<(
 }
 
 fn mesh_shape<const D: usize>(ctx: &Context, config: &MeshConfig) -> Result<Shape<D>> {
-    let path = table::path_beside(ctx.folder(), &config.file)?;
+    let path = files::path_beside(ctx.folder(), &config.file)?;
     let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
     let mesh = mesh::read(&path, unit, config.flip.unwrap_or(false))?;
     Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: config.contact.unwrap_or_default() })
@@ -342,14 +342,15 @@ fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<
     if let Some(points) = &config.points {
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let path = table::path_beside(ctx.folder(), config.file.as_deref().unwrap_or(""))?;
+    let file = config.file.as_deref().unwrap_or("");
     if config.is_drawing() {
+        let path = files::path_beside(ctx.folder(), file)?;
         let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
         let points = svg::outline(&path, config.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let columns = table::read_columns(&path, &["x_m", "y_m"])?;
-    Ok(columns[0].iter().zip(&columns[1]).map(|(&x, &y)| vector(&[x, y])).collect())
+    let [x, y] = files::open_table(ctx.folder(), file)?.columns(["x_m", "y_m"]).map_err(files::with_line_in_message)?;
+    Ok(x.into_iter().zip(y).map(|(x, y)| vector(&[x, y])).collect())
 }
 
 impl PlacementConfig {

@@ -14,7 +14,7 @@ use crate::{
     error::{Error, Result},
     geometry::Shape,
     math::{Bivector, Bounds, Pose, Vector, time_series::TimeSeries},
-    scene::{context::Context, table},
+    scene::{context::Context, files},
     solid::{PrescribedMotion, TimeFunction},
     wavemaker::{Absorber, AbsorptionSettings, Paddle, PaddleMotion, WaveComponent, WaveSpectrum, Wavemaker},
 };
@@ -233,35 +233,37 @@ fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavem
 
 /// The components of a table.
 fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
-    let path = table::path_beside(ctx.folder(), &config.file)?;
-    let names = table::read_header(&path)?;
+    let table = files::open_table(ctx.folder(), &config.file)?;
+    let (file, names) = (table.file().to_string(), table.header());
     let either = |one: &'static str, other: &'static str| {
         let given = [(one, true), (other, false)].into_iter().find(|(column, _)| names.iter().any(|n| n == column));
         given.ok_or_else(|| {
-            let what = format!("{} has neither a column \"{one}\" nor \"{other}\"", path.display());
+            let what = format!("{file} has neither a column \"{one}\" nor \"{other}\"");
             Error::scene(what).help(format!("components need one of the two; its columns: {}", names.join(", ")))
         })
     };
     let (time, is_period) = either("period_s", "frequency_hz")?;
     let (phase, in_degrees) = either("phase_deg", "phase_rad")?;
-    let columns = table::read_columns(&path, &["amplitude_m", time, phase])?;
+    let [amplitudes, times, phases] =
+        table.columns(["amplitude_m", time, phase]).map_err(files::with_line_in_message)?;
     let component = |i: usize| {
-        let (x, phase) = (columns[1][i], columns[2][i]);
+        let (x, phase) = (times[i], phases[i]);
         if x <= 0.0 {
-            let what = format!("{}: component {} has {time} = {x}", path.display(), i + 1);
+            let what = format!("{file}: component {} has {time} = {x}", i + 1);
             return Err(Error::scene(what).help("periods and frequencies are positive"));
         }
         let omega = if is_period { TAU / x } else { TAU * x };
         let phase = if in_degrees { phase.to_radians() } else { phase };
-        Ok(WaveComponent { amplitude: columns[0][i], omega, phase })
+        Ok(WaveComponent { amplitude: amplitudes[i], omega, phase })
     };
-    (0..columns[0].len()).map(component).collect()
+    (0..times.len()).map(component).collect()
 }
 
 /// The elevation of a table.
 fn read_elevation(ctx: &Context, config: &MeasuredElevationConfig) -> Result<TimeSeries> {
-    let path = table::path_beside(ctx.folder(), &config.file)?;
-    let series = table::read_series(&path, config.time.as_deref().unwrap_or("t_s"), &config.column)?;
+    let table = files::open_table(ctx.folder(), &config.file)?;
+    let series =
+        table.series(config.time.as_deref().unwrap_or("t_s"), &config.column).map_err(files::with_line_in_message)?;
     let scale = config.scale.unwrap_or(1.0);
     TimeSeries::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
 }
