@@ -1,11 +1,17 @@
-//! What the tests share: models, lattices, tanks, and folders.
+//! Shared helpers of the specifications: lattices, solids, simulations, means, random numbers and folders.
 
-use std::{fs, path::PathBuf};
+use std::{
+    fs,
+    ops::Deref,
+    path::{Path, PathBuf},
+};
 
 use pontoon::{
+    Result,
     geometry::Shape,
     math::{Pose, Vector},
     model::{Dimension, Model},
+    scene::Scene,
     simulation::{Setup, Simulation},
     solid::{Dim, FreeBody, Role, SolidSpec},
 };
@@ -41,7 +47,7 @@ pub fn solid<const D: usize>(name: &str, shape: Shape<D>, pose: Pose<D>, role: R
     SolidSpec { name: name.into(), shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
 }
 
-/// A simulation of `water`, still below `level`, and `solids`.
+/// A simulation of `water`, hydrostatic below `level`, and `solids`.
 pub fn simulation<const D: usize>(
     model: Model,
     water: Vec<Vector<D>>,
@@ -55,32 +61,84 @@ where
     Simulation::new(Setup::new(model, water, levels, solids)).expect("a sound setup")
 }
 
+/// The simulation of the scene with this TOML text.
+pub fn scene_simulation<const D: usize>(text: &str) -> Result<Simulation<D>>
+where
+    Dim<D>: Dimension<D>,
+{
+    Simulation::new(Scene::parse(text, Path::new(""), &[])?.build::<D>()?.setup)
+}
+
+/// Makes `n` steps.
+pub fn steps<const D: usize>(sim: &mut Simulation<D>, n: usize)
+where
+    Dim<D>: Dimension<D>,
+{
+    for _ in 0..n {
+        sim.step().expect("a sound run");
+    }
+}
+
+/// Runs until time `until` (s) and returns the time means, from `from` (s) on, of the values that `sample` returns.
+pub fn time_mean<const D: usize, const N: usize>(
+    sim: &mut Simulation<D>,
+    from: f64,
+    until: f64,
+    sample: impl Fn(&Simulation<D>) -> [f64; N],
+) -> Result<[f64; N]>
+where
+    Dim<D>: Dimension<D>,
+{
+    let (mut sums, mut weight) = ([0.0; N], 0.0);
+    while sim.time() < until {
+        sim.step_to(until)?;
+        if sim.time() > from {
+            sums.iter_mut().zip(sample(sim)).for_each(|(sum, x)| *sum += x * sim.dt());
+            weight += sim.dt();
+        }
+    }
+    Ok(sums.map(|sum| sum / weight))
+}
+
+/// The result of `f` in a pool of `n` threads.
+pub fn on_threads<T: Send>(n: usize, f: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("a thread pool").install(f)
+}
+
+/// Kinetic, potential and compression energy of the water, J (J/m in 2-D).
+pub fn water_energy<const D: usize>(sim: &Simulation<D>) -> f64 {
+    let (system, fluid) = (sim.system(), sim.system().fluid());
+    let energy =
+        |i: usize| 0.5 * fluid.v[i].norm_squared() + 9.81 * fluid.r[i][D - 1] + system.compression_energy(fluid.rho[i]);
+    (0..fluid.len()).map(energy).sum::<f64>() * system.particle_mass()
+}
+
 /// Momentum of the water, kg m/s.
 pub fn water_momentum<const D: usize>(sim: &Simulation<D>) -> Vector<D> {
     sim.system().fluid().v.iter().fold(Vector::<D>::zeros(), |sum, v| sum + v) * sim.system().particle_mass()
 }
 
-/// A repeatable sequence of numbers in 0…1 (a linear congruence).
-pub struct Dice(pub u64);
+/// A reproducible sequence of numbers in 0…1 (a linear congruential generator).
+pub struct Random(pub u64);
 
-impl Dice {
+impl Random {
     /// The next number.
-    pub fn roll(&mut self) -> f64 {
+    pub fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// A point in the unit box.
     pub fn point<const D: usize>(&mut self) -> Vector<D> {
-        Vector::from_fn(|_, _| self.roll())
+        Vector::from_fn(|_, _| self.number())
     }
 }
 
-/// A folder for the files of one test, empty at first and gone with this.
-pub struct Home(pub PathBuf);
+/// A folder for the files of one test, empty at first and removed with this value.
+pub struct TestFolder(PathBuf);
 
-impl Home {
-    /// The folder of the test `name`, a name that no other test has.
+impl TestFolder {
+    /// The folder of the test `name`, which must be unique.
     pub fn new(name: &str) -> Self {
         let folder = std::env::temp_dir().join(format!("pontoon-{name}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
@@ -88,15 +146,23 @@ impl Home {
         Self(folder)
     }
 
-    /// The same, with a `scene.toml` of that text in it.
-    pub fn with(name: &str, scene: &str) -> Self {
-        let home = Self::new(name);
-        fs::write(home.0.join("scene.toml"), scene).unwrap();
-        home
+    /// The folder of the test `name` with a `scene.toml` of this text.
+    pub fn with_scene(name: &str, scene: &str) -> Self {
+        let folder = Self::new(name);
+        fs::write(folder.join("scene.toml"), scene).unwrap();
+        folder
     }
 }
 
-impl Drop for Home {
+impl Deref for TestFolder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for TestFolder {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }

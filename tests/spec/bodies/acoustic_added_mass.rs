@@ -1,4 +1,4 @@
-//! Bodies lighter than the water that goes with them: foam, shells, plates.
+//! Acoustic added mass: bodies lighter than the water within a kernel, such as foam, shells and plates.
 
 use pontoon::{
     geometry::Shape,
@@ -32,16 +32,16 @@ fn rise(mut sim: Simulation<2>, time: f64) -> f64 {
 }
 
 #[test]
-fn a_body_lighter_than_water_starts_upwards_with_its_added_mass() {
-    // A box B = 16 dp broad drags κ ¼π B² of water, κ = 1.16 if it is an eighth as thick and 1.41 if 0.6 as thick, between
-    // the 1 of a plate and the 1.51 of a square (Brennen 1982): a = (1 − ratio) g A/(κ ¼π B² + ratio A). In 80 ms it goes a
-    // tenth of its depth at most. The surface above, the bed below and a face at half a dp: 15 %. An explicit exchange, at
-    // half the step that just does not blow up, is four times too fast for the box and twenty for the plate at ratio 0.01.
+fn a_body_lighter_than_water_accelerates_with_its_added_mass() {
+    // A box of breadth B = 16 dp has the added mass κ ¼π B². κ is 1.16 for a thickness of B/8 and 1.41 for 0.6 B, between the 1 of a
+    // plate and the 1.51 of a square (Brennen 1982): a = (1 − ratio) g A/(κ ¼π B² + ratio A). In 80 ms it moves by a tenth of its depth at
+    // most. The bound of 15 % covers the surface, the bed and a face at half a dp. An explicit exchange at half of its stable step would
+    // be four times too fast for the box and twenty times for the plate at ratio 0.01.
     let time = 0.08;
-    for (size, of_plate) in [([0.16, 0.02], 1.16), ([0.16, 0.1], 1.41)] {
+    for (size, kappa) in [([0.16, 0.02], 1.16), ([0.16, 0.1], 1.41)] {
         for ratio in [0.01, 0.05, 0.2] {
             let area = size[0] * size[1];
-            let added = of_plate * 0.25 * std::f64::consts::PI * size[0] * size[0];
+            let added = kappa * 0.25 * std::f64::consts::PI * size[0] * size[0];
             let exact = 0.5 * (1.0 - ratio) * G * area / (added + ratio * area) * time * time;
             let found = rise(submerged(Shape::Box { size: Vector::from(size) }, ratio), time);
             assert!((found / exact - 1.0).abs() < 0.15, "{size:?}, ratio {ratio}: {found} m, exact {exact} m");
@@ -50,9 +50,9 @@ fn a_body_lighter_than_water_starts_upwards_with_its_added_mass() {
 }
 
 #[test]
-fn a_body_heavier_than_a_kernel_of_water_is_left_as_it_is() {
-    // A box ten dp high has (ω_b h/c₀)² = 0.52 over its density ratio, wet all around: from 0.41 on nothing is ever withheld, to
-    // the last bit; at half of that something is.
+fn a_body_heavier_than_the_water_within_a_kernel_has_no_acoustic_added_mass() {
+    // A submerged box ten dp high has (ω_b h/c₀)² = 0.52 over its density ratio. From a ratio of 0.41 on the pending impulse is exactly
+    // zero; at about half of that it is not.
     let most = |ratio: f64| {
         let mut sim = submerged(Shape::Box { size: Vector::from([0.1, 0.1]) }, ratio);
         let mut most = 0.0_f64;
@@ -67,9 +67,9 @@ fn a_body_heavier_than_a_kernel_of_water_is_left_as_it_is() {
 }
 
 #[test]
-fn a_sheet_of_foam_comes_to_rest_on_the_water() {
-    // Let fall 1 dp on water it is at rest after a second: 5 mm/s, a third of a per cent of √(g depth). It should not hop at
-    // all, and hops by a dp (docs/explanation/stability.md): 2 dp. A tenth of a dp of draft cannot be seen by particles: within 1.5 dp of it.
+fn a_falling_sheet_of_foam_comes_to_rest_on_the_water() {
+    // The sheet falls by 1 dp and is at rest after a second: 5 mm/s is a third of a per cent of √(g depth). It rebounds by one dp, though
+    // it should not (docs/explanation/stability.md); the bound is 2 dp. Particles do not resolve its draft of a tenth of a dp: 1.5 dp.
     let (dp, thick) = (0.01, 0.02);
     let water = common::lattice([0.0, 0.0], [0.8, 0.3], dp);
     let float = common::float(Shape::Box { size: Vector::from([0.16, thick]) }, [0.4, 0.3 + dp + 0.5 * thick], 10.0);
@@ -84,13 +84,13 @@ fn a_sheet_of_foam_comes_to_rest_on_the_water() {
         }
     }
     let rests = sim.system().solids()[1].kinematics.centre[1] - 0.5 * thick - 0.3;
-    assert!(highest < 0.3 + 3.0 * dp + 0.5 * thick, "it hopped to {highest} m");
+    assert!(highest < 0.3 + 3.0 * dp + 0.5 * thick, "it rebounds to {highest} m");
     assert!(fastest < 5e-3, "{fastest} m/s");
     assert!(rests.abs() < 1.5 * dp, "its lower face rests {rests} m above the water");
 }
 
 #[test]
-fn what_the_water_loses_a_light_body_has_or_will_have() {
+fn water_a_light_body_and_its_pending_impulse_conserve_momentum() {
     for (sweep, rounding) in [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)] {
         let dp = 0.02;
         let mut model = Model::water(2, dp, 0.3);
@@ -111,16 +111,16 @@ fn what_the_water_loses_a_light_body_has_or_will_have() {
             sim.step().unwrap();
             most = most.max(sim.pending_impulse(0).norm());
         }
-        // Rounding, as for heavy bodies; and what is withheld is not nothing.
+        // Rounding, as for heavy bodies; the pending impulse is not zero.
         assert!((whole(&sim) - start).norm() < rounding * scale, "{:e}", (whole(&sim) - start).norm() / scale);
-        assert!(most > 1e-6 * scale, "this body is not light: {most} N s");
+        assert!(most > 1e-6 * scale, "the body has no pending impulse: {most} N s");
     }
 }
 
 #[test]
-fn a_light_body_held_down_weighs_what_archimedes_says() {
-    // A lid holds a foam box under water: what presses on the lid is the buoyancy less the weight, 2 %, though neither is
-    // known to the exchange. Friction is none and the water at rest.
+fn a_light_body_held_under_water_presses_with_its_buoyancy_less_its_weight() {
+    // A lid holds a foam box under water. The contact force is the buoyancy less the weight, to 2 %. The coupling uses neither of them.
+    // There is no friction and the water is at rest.
     let (dp, ratio) = (0.01, 0.02);
     let model = Model::water(2, dp, 0.3);
     let mut water = common::lattice([0.0, 0.0], [0.6, 0.3], dp);
@@ -142,7 +142,7 @@ fn a_light_body_held_down_weighs_what_archimedes_says() {
             count += 1;
         }
     }
-    // Beneath the lid no water presses from above: as much more as the lid is broad and the box's top deep, 0.1 m.
+    // Under the lid no water presses on the box: this adds ρ g times the breadth of the lid and the depth of the top of the box, 0.1 m.
     let exact = 1000.0 * G * ((1.0 - ratio) * 0.16 * 0.1 + 0.04 * 0.1);
     let found = sum / f64::from(count);
     assert!((found / exact - 1.0).abs() < 0.02, "{found} N/m for {exact} N/m");
@@ -151,8 +151,8 @@ fn a_light_body_held_down_weighs_what_archimedes_says() {
 /// Length of the column, m, and speed of sound in it, m/s.
 const COLUMN: (f64, f64) = (0.4, 20.0);
 
-/// A column of water 0.8 m broad between two walls, without gravity, its lower end free; on the upper one lies a piston 4 dp thick and
-/// `ratio` as dense as water.
+/// A column of water 0.8 m broad between two walls, without gravity and with a free lower end. On its upper end is a piston 4 dp thick
+/// and `ratio` times as dense as water.
 fn column(ratio: f64) -> Simulation<2> {
     let (dp, broad, (long, c0)) = (0.01, 0.8, COLUMN);
     let mut model = Model::water(2, dp, long);
@@ -170,8 +170,9 @@ fn column(ratio: f64) -> Simulation<2> {
     common::simulation(model, common::lattice([0.0, 0.0], [broad, long], dp), long, solids)
 }
 
-/// Velocity and way of a piston of `mass` (kg/m²) that `pressure` (Pa) drives into the column, in units of P/ρ₀c₀ and of that times L/c₀,
-/// `n` of them in each L/c₀ up to `last` of them: m v' = P − ρ₀c₀ (v − 2 e), e what comes back from the free end, v − e a while 2L/c₀ ago.
+/// Exact velocity and displacement of a piston of `mass` (kg/m²) that a pressure P drives into the column, in units of P/ρ₀c₀ and
+/// P L/ρ₀c₀². There are `n` values in each L/c₀, up to `last` L/c₀. The equation is m v' = P − ρ₀c₀ (v − 2 e) with the echo e of the free
+/// end, which is the v − e of 2L/c₀ earlier.
 fn exact(mass: f64, n: usize, last: usize) -> Vec<[f64; 2]> {
     let (m, dt) = (mass / (1000.0 * COLUMN.0), 1.0 / n as f64);
     let (mut out, mut all) = (vec![0.0], vec![[0.0, 0.0]]);
@@ -186,11 +187,11 @@ fn exact(mass: f64, n: usize, last: usize) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn a_piston_of_any_weight_drives_a_column_of_water_as_sound_and_then_as_its_mass_says() {
-    // Sound: m v' = P − ρ₀c₀ v until its echo is back, then in steps, one every 2L/c₀, whose mean is (m + ρ₀L) v' = P. The heavier
-    // two need no help; the lighter two are a hundredth and a tenth of 0.3 h of water. Within 7 % of P/ρ₀c₀ in the mean from one
-    // L/c₀ to the echo (beside a side wall water is as soft as if it were half a dp further away: 3 % of this breadth, and
-    // 12 % of a quarter of it); no ringing: a root mean square of a tenth about that; and the way after ten L/c₀ within 5 %.
+fn a_piston_of_any_density_moves_a_water_column_by_the_exact_acoustic_solution() {
+    // Until the echo returns m v' = P − ρ₀c₀ v; then the velocity changes every 2L/c₀, with the mean (m + ρ₀L) v' = P. The two heavier
+    // pistons have no acoustic added mass; the lighter two weigh a hundredth and a tenth of 0.3 h of water. Three bounds: the mean
+    // velocity from one L/c₀ to the echo within 7 % of P/ρ₀c₀ (a side wall softens the water as if it were half a dp further away,
+    // 3 % of this breadth); an rms deviation below a tenth, so no ringing; and the displacement after ten L/c₀ within 5 %.
     let (pressure, n, (long, c0)) = (2000.0, 1000, COLUMN);
     let unit = pressure / (1000.0 * c0);
     for ratio in [0.01, 0.1, 1.0, 5.0] {
@@ -210,8 +211,8 @@ fn a_piston_of_any_weight_drives_a_column_of_water_as_sound_and_then_as_its_mass
             way = (long + 0.02 - now.centre[1]) / (unit * long / c0 * x);
         }
         let (mean, ringing) = (sum / count, (squares / count).sqrt());
-        assert!(mean.abs() < 0.07, "ratio {ratio}: it is off by {mean} of P/ρ₀c₀");
-        assert!(ringing < 0.1, "ratio {ratio}: it rings with {ringing} of P/ρ₀c₀");
-        assert!((way - 1.0).abs() < 0.05, "ratio {ratio}: {way} of the way that m + ρ₀L goes");
+        assert!(mean.abs() < 0.07, "ratio {ratio}: mean velocity error {mean} P/ρ₀c₀");
+        assert!(ringing < 0.1, "ratio {ratio}: rms velocity error {ringing} P/ρ₀c₀");
+        assert!((way - 1.0).abs() < 0.05, "ratio {ratio}: {way} of the exact displacement");
     }
 }

@@ -1,4 +1,4 @@
-//! Solids that are not convex, by their facets: mass and inertia to round-off, and skins that stand for their volume.
+//! Concave solids as meshes: mass and inertia to round-off, and boundary particles that represent their volume.
 
 use std::{f64::consts::PI, sync::Arc};
 
@@ -8,20 +8,20 @@ use pontoon::{
     solid::FreeBody,
 };
 
-/// An upright prism `height` (m) high over an L, `long` × `deep` (m) with both its legs `leg` (m) broad, its inner corner cut out of the
-/// far end of both; its frame's origin is the outer corner at the bottom.
-pub fn angle([long, deep, height]: [f64; 3], leg: f64) -> Shape<3> {
+/// An upright prism `height` (m) high over an L of `long` × `deep` (m) with legs `leg` (m) broad. The origin of its frame is the
+/// outer corner at the bottom.
+pub fn l_prism([long, deep, height]: [f64; 3], leg: f64) -> Shape<3> {
     let outline = [[0.0, 0.0], [long, 0.0], [long, leg], [leg, leg], [leg, deep], [0.0, deep]];
     prism(&outline, &[[1, 2, 3], [0, 1, 3], [0, 3, 5], [3, 4, 5]], height)
 }
 
-/// A cube of 1 m with a sharp notch from its far side three quarters through: two wedges on a sill.
+/// A cube of 1 m with a sharp notch from its far side through three quarters of its depth.
 fn notched() -> Shape<3> {
     let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.25], [0.0, 1.0]];
     prism(&outline, &[[0, 1, 3], [1, 2, 3], [0, 3, 4]], 1.0)
 }
 
-/// An upright prism `height` (m) high over an outline, m, that these triangles fill; all counter-clockwise.
+/// An upright prism `height` (m) high over an outline (m) that these triangles fill; all are counter-clockwise.
 fn prism(outline: &[[f64; 2]], triangles: &[[u32; 3]], height: f64) -> Shape<3> {
     let n = outline.len() as u32;
     let at = |z: f64| outline.iter().map(move |&[x, y]| Vector::from([x, y, z]));
@@ -31,7 +31,7 @@ fn prism(outline: &[[f64; 2]], triangles: &[[u32; 3]], height: f64) -> Shape<3> 
     shape(&points, &ends.chain(sides).collect::<Vec<_>>())
 }
 
-/// A ball of `radius` (m) drawn out to three lobes round its equator, r (1 + ¼ sin³θ cos 3φ), in 30 rings of 60 points.
+/// A ball of `radius` (m) with three lobes around its equator, r (1 + ¼ sin³θ cos 3φ), in 30 rings of 60 points.
 fn lobes(radius: f64) -> Shape<3> {
     let (rings, ring) = (30, 60);
     let at = |i: u32, j: u32| {
@@ -59,10 +59,10 @@ fn shape(points: &[Vector<3>], facets: &[[u32; 3]]) -> Shape<3> {
 }
 
 #[test]
-fn a_concave_polyhedron_has_the_mass_and_the_inertia_of_the_blocks_that_it_is() {
+fn a_concave_polyhedron_has_the_mass_and_inertia_of_its_blocks() {
     let (leg, [long, deep, height]) = (0.3, [1.1, 0.8, 0.5]);
-    let body = FreeBody::from_density(&angle([long, deep, height], leg), 700.0);
-    // Two blocks: size, place of the centre.
+    let body = FreeBody::from_density(&l_prism([long, deep, height], leg), 700.0);
+    // Two blocks: size and position of the centre.
     let rest = deep - leg;
     let blocks = [
         (Vector::from([long, leg, height]), Vector::from([0.5 * long, 0.5 * leg, 0.5 * height])),
@@ -73,7 +73,7 @@ fn a_concave_polyhedron_has_the_mass_and_the_inertia_of_the_blocks_that_it_is() 
     let centre = (blocks[0].1 * masses[0] + blocks[1].1 * masses[1]) / mass;
     let mut inertia = Matrix::<3>::zeros();
     for ((size, at), m) in blocks.iter().zip(masses) {
-        // Its own, and Steiner's share.
+        // The inertia about its own centre, and Steiner's term.
         let (own, aside) = (size.component_mul(size) * (m / 12.0), at - centre);
         inertia += Matrix::from_diagonal(&(Vector::repeat(own.sum()) - own));
         inertia += (Matrix::identity() * aside.norm_squared() - aside * aside.transpose()) * m;
@@ -83,31 +83,31 @@ fn a_concave_polyhedron_has_the_mass_and_the_inertia_of_the_blocks_that_it_is() 
     assert!((body.centre - centre).norm() < 1e-12, "{} for {centre}", body.centre);
     let off = (body.inertia - inertia).norm() / inertia.norm();
     assert!(off < 1e-12, "{off:e}: {} for {inertia}", body.inertia);
-    assert!(inertia[(0, 1)].abs() > 0.05 * inertia.norm(), "its axes are not those of the frame");
+    assert!(inertia[(0, 1)].abs() > 0.05 * inertia.norm(), "the principal axes are not those of the frame");
 }
 
 #[test]
-fn the_skin_of_a_concave_hull_stands_for_its_volume() {
-    // 20 dp across: the project's 0.5 %. Found: 0.04 % too little. Of the L off the lattice the legs are 8.5 dp thick: eight
-    // layers and a half, which alone were 2.6 % too little.
+fn the_boundary_particles_of_a_concave_solid_represent_its_volume() {
+    // The solids are 20 dp wide; the bound of the project is 0.5 %. Measured: 0.04 % too little. The legs of the L off the lattice are
+    // 8.5 dp thick: eight and a half layers, which by themselves would lack 2.6 %.
     let cases = [
-        ("an L", angle([1.0; 3], 0.4), 0.05),
-        ("an L off the lattice", angle([1.0; 3], 0.4), 0.047),
+        ("an L", l_prism([1.0; 3], 0.4), 0.05),
+        ("an L off the lattice", l_prism([1.0; 3], 0.4), 0.047),
         ("a notched cube", notched(), 0.05),
         ("three lobes", lobes(0.5), 0.05),
     ];
     for (what, shape, dp) in cases {
-        let skin = shape.boundary_points(dp, 99);
-        let off = skin.len() as f64 * dp.powi(3) / shape.volume_properties().volume - 1.0;
-        assert!(off.abs() < 0.005, "{what}: {off} of its volume");
-        // They fill it: none lies outside.
-        let highest = skin.iter().map(|point| shape.signed_distance(&point.r)).fold(f64::NEG_INFINITY, f64::max);
-        assert!(highest < -0.49 * dp, "{what}: the outermost lies {highest} m from the face");
-        // And evenly: no nearer than any skin's, none alone. Found: the nearest other 0.70 to 1.14 dp away.
-        for (i, point) in skin.iter().enumerate() {
-            let others = skin.iter().enumerate().filter(|(j, _)| *j != i);
+        let points = shape.boundary_points(dp, 99);
+        let off = points.len() as f64 * dp.powi(3) / shape.volume_properties().volume - 1.0;
+        assert!(off.abs() < 0.005, "{what}: volume error {off}");
+        // All points lie inside the solid.
+        let highest = points.iter().map(|point| shape.signed_distance(&point.r)).fold(f64::NEG_INFINITY, f64::max);
+        assert!(highest < -0.49 * dp, "{what}: signed distance of the outermost point {highest} m");
+        // They are evenly spaced. Measured: the nearest other point is 0.70 to 1.14 dp away.
+        for (i, point) in points.iter().enumerate() {
+            let others = points.iter().enumerate().filter(|(j, _)| *j != i);
             let nearest = others.map(|(_, other)| (other.r - point.r).norm()).fold(f64::INFINITY, f64::min) / dp;
-            assert!((0.7..=1.2).contains(&nearest), "{what}: {nearest} dp to the nearest other");
+            assert!((0.7..=1.2).contains(&nearest), "{what}: {nearest} dp to the nearest other point");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The list of all contacts: who touches whom, how hard and where, without naming a pair beforehand.
+//! The table of all contacts: the solids of each pair, their force and position, without a pair named in the scene.
 
 use std::{
     fs,
@@ -11,9 +11,9 @@ use pontoon::{
     scene::Scene,
 };
 
-use crate::common::Home;
+use crate::common::TestFolder;
 
-/// Two boxes piled on a shelf beside a small pool, and a ball that falls onto the shelf later; 10, 5 and 3.93 kg/m.
+/// Two stacked boxes on a shelf beside a small pool, and a ball that falls onto the shelf later; 10, 5 and 3.93 kg/m.
 const PILE: &str = r#"
 dimension = 2
 dp = 0.05
@@ -64,11 +64,11 @@ every = 0.02
 
 const G: f64 = 9.81;
 
-impl Home {
-    /// Runs the scene until time `until` (s) into the folder `name`.
-    fn ran(&self, name: &str, until: f64) -> Result<PathBuf> {
-        let options = RunOptions { out: Some(self.0.join(name)), threads: Some(1), ..RunOptions::default() };
-        Ok(run::run(&self.0.join("scene.toml"), &options, &mut |now: &Progress| now.time < until)?.folder)
+impl TestFolder {
+    /// Runs the scene until time `until` (s) and writes to the folder `name`.
+    fn run(&self, name: &str, until: f64) -> Result<PathBuf> {
+        let options = RunOptions { out: Some(self.join(name)), threads: Some(1), ..RunOptions::default() };
+        Ok(run::run(&self.join("scene.toml"), &options, &mut |now: &Progress| now.time < until)?.folder)
     }
 }
 
@@ -76,33 +76,37 @@ fn list(run: &Path) -> String {
     fs::read_to_string(run.join("lists/contacts.csv")).unwrap()
 }
 
-/// The rows of a table, cell by cell, without its head.
+/// The cells of each row of a table, without the header.
 fn rows(text: &str) -> Vec<Vec<String>> {
     text.lines().skip(1).map(|line| line.split(',').map(String::from).collect()).collect()
 }
 
 #[test]
-fn each_reading_has_a_row_for_each_pair_with_who_how_hard_and_where() -> Result<()> {
-    let home = Home::with("contacts-rows", PILE);
-    let run = home.ran("run", f64::INFINITY)?;
+fn the_contact_table_has_a_row_for_each_touching_pair_with_names_force_and_position() -> Result<()> {
+    let home = TestFolder::with_scene("contacts-rows", PILE);
+    let run = home.run("run", f64::INFINITY)?;
     let text = list(&run);
     assert_eq!(
         text.lines().next(),
         Some("t_s,first,second,pressing_N_per_m,fx_N_per_m,fy_N_per_m,x_m,y_m"),
-        "as of the pair's own table, behind the names"
+        "two names, then the columns of the table of a pair"
     );
     let all = rows(&text);
     let number = |row: &[String], i: usize| row[i].parse::<f64>().unwrap();
     let times: Vec<f64> = all.iter().map(|row| number(row, 0)).collect();
     assert!(
         times.windows(2).all(|pair| pair[0] <= pair[1]) && times[0] > 0.0,
-        "in time; nothing before the first step"
+        "rows are in order of time; none is before the first step"
     );
     let last: Vec<&Vec<String>> = all.iter().filter(|row| number(row, 0) == 0.4).collect();
     let pairs: Vec<[&str; 2]> = last.iter().map(|row| [row[1].as_str(), row[2].as_str()]).collect();
-    assert_eq!(pairs, [["shelf", "lower"], ["shelf", "ball"], ["lower", "upper"]], "in the order of the scene");
-    // Weights, where the faces meet. The boxes press with 3e-7 of their weight too much at the end, springs that still settle; at
-    // the step of these 40 particles a contact sinks some tenths of a millimetre.
+    assert_eq!(
+        pairs,
+        [["shelf", "lower"], ["shelf", "ball"], ["lower", "upper"]],
+        "pairs are in the order of the scene"
+    );
+    // The forces are the weights, at the touching faces. Contact springs still relax at the end: the boxes press with 3e-7 of their
+    // weight too much. With the step of these 40 particles a contact sinks some tenths of a millimetre.
     let ball = 500.0 * std::f64::consts::PI * 0.05 * 0.05 * G;
     for (row, (weight, x, y)) in last.iter().zip([(15.0 * G, 2.0, 0.1), (ball, 1.75, 0.1), (5.0 * G, 2.0, 0.2)]) {
         let [pressing, across, up] = [3, 4, 5].map(|i| number(row, i));
@@ -110,10 +114,10 @@ fn each_reading_has_a_row_for_each_pair_with_who_how_hard_and_where() -> Result<
         assert!(across.abs() < 1e-3 * weight, "{row:?}");
         assert!((number(row, 6) - x).abs() < 2e-3 && (number(row, 7) - y).abs() < 2e-3, "{row:?}");
     }
-    // The ball falls 0.15 m in 0.175 s: not before.
+    // The ball falls 0.15 m in 0.175 s.
     let first = all.iter().find(|row| row[2] == "ball").map(|row| number(row, 0));
     assert!(first.is_some_and(|t| (0.16..0.22).contains(&t)), "{first:?}");
-    // The table of a pair says the same bits at the same times; it names the two the other way round, so its force is the other's.
+    // The table of a pair has the same bits at the same times. It names the two solids in reverse order, so its force has the other sign.
     let own = fs::read_to_string(run.join("series/upper_lower_contact.csv")).unwrap();
     let own: Vec<Vec<String>> = rows(&own).into_iter().filter(|row| !row[4].is_empty()).collect();
     let listed: Vec<&Vec<String>> = all.iter().filter(|row| row[2] == "upper").collect();
@@ -126,16 +130,16 @@ fn each_reading_has_a_row_for_each_pair_with_who_how_hard_and_where() -> Result<
 }
 
 #[test]
-fn a_resumed_list_is_the_unbroken_one_byte_for_byte() -> Result<()> {
-    let home = Home::with("contacts-resume", PILE);
-    let (whole, broken) = (home.ran("whole", f64::INFINITY)?, home.ran("broken", 0.25)?);
-    // From the checkpoint of 0.2 s: the list is longer, and is cut back first.
+fn the_contact_table_of_a_resumed_run_equals_that_of_an_uninterrupted_run() -> Result<()> {
+    let home = TestFolder::with_scene("contacts-resume", PILE);
+    let (whole, broken) = (home.run("whole", f64::INFINITY)?, home.run("broken", 0.25)?);
+    // The run resumes from the checkpoint at 0.2 s. The table is longer and is truncated first.
     fs::rename(broken.join("checkpoint.previous.bin"), broken.join("checkpoint.bin")).unwrap();
     let before = list(&broken).len();
     run::resume(&broken, &[], Some(1), &mut |_: &Progress| true)?;
     assert!(before < list(&whole).len() && list(&broken) == list(&whole));
-    // A list that lost what the checkpoint counts on is told of by name.
-    let cut = home.ran("cut", 0.25)?;
+    // A table shorter than the checkpoint expects is refused by name.
+    let cut = home.run("cut", 0.25)?;
     fs::write(cut.join("lists/contacts.csv"), "t_s\n").unwrap();
     let error =
         run::resume(&cut, &[], Some(1), &mut |_: &Progress| true).err().map(|e| e.to_string()).unwrap_or_default();
@@ -144,9 +148,9 @@ fn a_resumed_list_is_the_unbroken_one_byte_for_byte() -> Result<()> {
 }
 
 #[test]
-fn a_list_is_no_series_and_the_page_does_without_it() -> Result<()> {
-    let home = Home::with("contacts-page", PILE);
-    let run = home.ran("run", f64::INFINITY)?;
+fn a_contact_table_is_not_a_series_and_is_not_part_of_the_report() -> Result<()> {
+    let home = TestFolder::with_scene("contacts-page", PILE);
+    let run = home.run("run", f64::INFINITY)?;
     let manifest = fs::read_to_string(run.join("manifest.json")).unwrap();
     assert!(manifest.contains("\"lists/contacts.csv\""), "the manifest names it");
     let statistics = fs::read_to_string(run.join("statistics.csv")).unwrap();

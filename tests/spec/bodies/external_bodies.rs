@@ -1,4 +1,4 @@
-//! Programs that have pontoon inside: hooks round the bodies' step, worlds of bodies of their own, solids that come and go.
+//! Host programs: hooks around the body step, bodies in a rapier world of the host, and solids added and removed in a run.
 
 use std::path::Path;
 
@@ -48,7 +48,7 @@ free  = { density = 30.0 }
 "#;
 
 fn pool() -> Result<Simulation<2>> {
-    Simulation::new(Scene::parse(POOL, Path::new(""), &[])?.build::<2>()?.setup)
+    common::scene_simulation::<2>(POOL)
 }
 
 fn block(name: &str, at: [f64; 2], density: f64) -> pontoon::solid::SolidSpec<2> {
@@ -57,12 +57,8 @@ fn block(name: &str, at: [f64; 2], density: f64) -> pontoon::solid::SolidSpec<2>
     block
 }
 
-fn steps(sim: &mut Simulation<2>, n: usize) -> Result<()> {
-    (0..n).try_for_each(|_| sim.step())
-}
-
 #[test]
-fn looking_on_between_water_and_bodies_changes_no_bit() -> Result<()> {
+fn read_access_between_water_and_body_step_changes_no_bit() -> Result<()> {
     let (mut plain, mut watched) = (pool()?, pool()?);
     let mut lift = 0.0;
     for i in 0..60 {
@@ -82,7 +78,7 @@ fn looking_on_between_water_and_bodies_changes_no_bit() -> Result<()> {
 }
 
 #[test]
-fn a_push_at_the_handover_is_a_push() -> Result<()> {
+fn a_push_in_the_hook_equals_a_push_before_the_step() -> Result<()> {
     let (mut early, mut late) = (pool()?, pool()?);
     let force = Vector::from([3.0, 1.0]);
     for _ in 0..40 {
@@ -94,11 +90,11 @@ fn a_push_at_the_handover_is_a_push() -> Result<()> {
             Ok(())
         })?;
     }
-    assert!(early.save()? == late.save()?, "at the centre of a light body too");
+    assert!(early.save()? == late.save()?, "also at the centre of a light body");
     Ok(())
 }
 
-/// The floats of the pool in a world of rapier's, set up as anybody would who reads docs/how-to/use-from-rust.md.
+/// The floats of the pool in a rapier world, set up as docs/how-to/use-from-rust.md describes.
 fn world(sim: &Simulation<2>) -> (rapier::PhysicsWorld, Vec<rapier::RigidBodyHandle>) {
     let mut world =
         rapier::PhysicsWorld { gravity: rapier::Vector::new(0.0, -9.81), ..rapier::PhysicsWorld::default() };
@@ -121,20 +117,27 @@ fn world(sim: &Simulation<2>) -> (rapier::PhysicsWorld, Vec<rapier::RigidBodyHan
 }
 
 #[test]
-fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
+fn floats_in_a_rapier_world_of_the_host_move_as_internal_ones() -> Result<()> {
     let setup = || -> Result<_> { Ok(Scene::parse(POOL, Path::new(""), &[])?.build::<2>()?.setup) };
-    let (mut inside, mut hosted) = (Simulation::new(setup()?)?, Simulation::with_external_bodies(setup()?)?);
-    let (mut world, bodies) = world(&hosted);
+    let (mut internal, mut external) = (Simulation::new(setup()?)?, Simulation::with_external_bodies(setup()?)?);
+    let (mut world, bodies) = world(&external);
     for (body, name) in bodies.iter().zip(["float", "foam"]) {
         let spec = rapier2d::solid_from_body(name, *body, &world.bodies, &world.colliders)?;
-        let known = &hosted.system().solids()[hosted.system().find_solid(name).unwrap_or_default()].spec;
-        let (Role::Free(taken), Role::Free(said)) = (&spec.role, &known.role) else { panic!("both are free") };
-        assert!((taken.mass / said.mass - 1.0).abs() < 1e-12 && spec.shape == known.shape && spec.pose == known.pose);
-        assert!((taken.inertia - said.inertia).norm() < 1e-12 * said.inertia.norm() && taken.spin == said.spin);
+        let known = &external.system().solids()[external.system().find_solid(name).unwrap_or_default()].spec;
+        let (Role::Free(converted), Role::Free(expected)) = (&spec.role, &known.role) else { panic!("both are free") };
+        assert!(
+            (converted.mass / expected.mass - 1.0).abs() < 1e-12
+                && spec.shape == known.shape
+                && spec.pose == known.pose
+        );
+        assert!(
+            (converted.inertia - expected.inertia).norm() < 1e-12 * expected.inertia.norm()
+                && converted.spin == expected.spin
+        );
     }
     for _ in 0..200 {
-        inside.step()?;
-        hosted.step_with(f64::INFINITY, |step| {
+        internal.step()?;
+        external.step_with(f64::INFINITY, |step| {
             for (i, &body) in bodies.iter().enumerate() {
                 rapier2d::apply_load(&mut world.bodies[body], &step.loads()[i + 1]);
             }
@@ -147,27 +150,27 @@ fn floats_of_a_world_of_ones_own_move_as_pontoons_do() -> Result<()> {
         })?;
     }
     for i in 1..3 {
-        let (a, b) = (&inside.system().solids()[i].kinematics, &hosted.system().solids()[i].kinematics);
-        // The same engine with the same forces; single precision in the sweep may make more of a last bit.
+        let (a, b) = (&internal.system().solids()[i].kinematics, &external.system().solids()[i].kinematics);
+        // Engine and forces are the same; single precision in the pair loop may amplify differences of the last bit.
         let off = (a.pose.position - b.pose.position).norm() + (a.pose.rotation - b.pose.rotation).norm();
-        assert!(off < 1e-9, "{i}: {off} apart after 200 steps");
+        assert!(off < 1e-9, "{i}: difference {off} after 200 steps");
         assert!((a.velocity - b.velocity).norm() < 1e-6);
     }
     Ok(())
 }
 
 #[test]
-fn a_hosted_body_that_nobody_places_is_told_by_name() -> Result<()> {
+fn an_external_body_without_a_new_pose_is_named_in_the_error() -> Result<()> {
     let mut sim = Simulation::with_external_bodies(Scene::parse(POOL, Path::new(""), &[])?.build::<2>()?.setup)?;
-    let error = sim.step().expect_err("nobody moved them");
+    let error = sim.step().expect_err("the host moved no body");
     assert!(error.kind == ErrorKind::Usage && error.message.contains("\"float\""), "{error}");
-    let error = sim.step_with(1.0, |step| step.advance_bodies()).expect_err("it has no bodies of its own");
+    let error = sim.step_with(1.0, |step| step.advance_bodies()).expect_err("the simulation has no bodies to advance");
     assert!(error.help.is_some_and(|help| help.contains("step.solids")));
     Ok(())
 }
 
 #[test]
-fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
+fn rapier_bodies_become_solids_with_the_same_shape_and_mass() -> Result<()> {
     use rapier3d::rapier::prelude::{
         ColliderBuilder, ColliderSet, PhysicsWorld, RigidBodyBuilder, SharedShape, Vector as Point,
     };
@@ -191,7 +194,7 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
     let Role::Free(body_) = &spec.role else { panic!("a free body") };
     let volume = spec.shape.volume_properties();
     assert!((body_.mass / (500.0 * volume.volume) - 1.0).abs() < 1e-9, "mass and volume agree");
-    assert!((body_.centre - volume.centroid).norm() < 1e-9, "and where they lie");
+    assert!((body_.centre - volume.centroid).norm() < 1e-9, "centre of mass and centroid agree");
     assert_eq!(body_.locked_rotations, [true; 3]);
     let hull = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point::from_array);
     let mut other = PhysicsWorld::default();
@@ -201,76 +204,76 @@ fn bodies_of_rapiers_become_solids_with_their_shapes() -> Result<()> {
     assert!(matches!(spec.role, Role::Fixed) && (spec.shape.volume_properties().volume - 1.0 / 6.0).abs() < 1e-12);
     other.insert_collider(ColliderBuilder::cone(0.1, 0.1), Some(tetra));
     let error =
-        rapier3d::solid_from_body("rock", tetra, &other.bodies, &other.colliders).expect_err("water feels no cone");
+        rapier3d::solid_from_body("rock", tetra, &other.bodies, &other.colliders).expect_err("a cone is not supported");
     assert!(error.message.contains("Cone") && error.help.is_some(), "{error}");
     assert!(rapier3d::solid_from_body("gone", tetra, &world.bodies, &ColliderSet::new()).is_err());
     Ok(())
 }
 
 #[test]
-fn a_solid_that_comes_takes_the_place_of_water_and_one_that_goes_leaves_it() -> Result<()> {
+fn an_added_solid_displaces_water_and_water_fills_the_space_of_a_removed_one() -> Result<()> {
     let mut sim = pool()?;
-    steps(&mut sim, 20)?;
+    common::steps(&mut sim, 20);
     let water = sim.system().fluid().len();
     let added = sim.add_solid(block("late", [0.5, 0.1], 800.0))?;
-    // 5 × 4 cells of the lattice, which has hardly moved.
+    // 5 × 4 cells of the lattice, whose particles have hardly moved.
     assert!(added.solid == 3 && (16..=24).contains(&added.displaced), "{added:?}");
     assert_eq!(sim.system().fluid().len(), water - added.displaced);
-    steps(&mut sim, 100)?;
-    assert!(sim.system().solids()[3].kinematics.velocity[1] > 0.0, "it rises");
-    let kinetic = |sim: &Simulation<2>| sim.system().fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    common::steps(&mut sim, 100);
+    assert!(sim.system().solids()[3].kinematics.velocity[1] > 0.0, "the light block rises");
+    let fastest = |sim: &Simulation<2>| sim.system().fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
     sim.remove_solid(3)?;
-    let skin = sim.system().boundary().len();
-    assert!(sim.system().solids()[3].boundary.is_empty() && skin == pool()?.system().boundary().len());
+    let boundary = sim.system().boundary().len();
+    assert!(sim.system().solids()[3].boundary.is_empty() && boundary == pool()?.system().boundary().len());
     sim.remove_solid(1)?;
     while sim.time() < 0.6 {
         sim.step_to(0.6)?;
     }
-    let near = sim.system().fluid().r.iter().filter(|r| (*r - Vector::from([0.5, 0.1])).amax() < 0.05).count();
-    assert!(near >= 20, "water is back where the block was: {near} particles of 25");
-    assert!(kinetic(&sim) < 2.0 && sim.rollbacks().is_empty(), "in peace: {} m/s", kinetic(&sim));
-    assert!(sim.system().solids()[2].kinematics.centre[1] > 0.25, "the foam floats on");
+    let refilled = sim.system().fluid().r.iter().filter(|r| (*r - Vector::from([0.5, 0.1])).amax() < 0.05).count();
+    assert!(refilled >= 20, "water fills the space of the block: {refilled} particles of 25");
+    assert!(fastest(&sim) < 2.0 && sim.rollbacks().is_empty(), "no violent flow: {} m/s", fastest(&sim));
+    assert!(sim.system().solids()[2].kinematics.centre[1] > 0.25, "the foam stays afloat");
     Ok(())
 }
 
 #[test]
-fn solids_that_come_and_go_give_the_same_bits_at_any_number_of_threads_and_after_a_restart() -> Result<()> {
-    let course = |sim: &mut Simulation<2>| -> Result<()> {
-        steps(sim, 15)?;
+fn a_run_with_added_and_removed_solids_has_the_same_bits_on_any_number_of_threads_and_after_a_restart() -> Result<()> {
+    let change_solids = |sim: &mut Simulation<2>| -> Result<()> {
+        common::steps(sim, 15);
         sim.add_solid(block("first", [0.5, 0.4], 30.0))?;
-        steps(sim, 15)?;
+        common::steps(sim, 15);
         sim.remove_solid(1)?;
-        // Where the first would stand in the way if it had not moved on.
+        // The first solid would overlap this position if it had not moved.
         sim.add_solid(block("second", [0.3, 0.25], 700.0))?;
-        steps(sim, 15)
+        common::steps(sim, 15);
+        Ok(())
     };
     let run = |threads: usize| -> Result<(Vec<u8>, Vec<u8>)> {
-        let pool_of = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool_of.install(|| {
+        common::on_threads(threads, || {
             let mut sim = pool()?;
-            course(&mut sim)?;
+            change_solids(&mut sim)?;
             let kept = sim.save()?;
-            steps(&mut sim, 40)?;
+            common::steps(&mut sim, 40);
             Ok((kept, sim.save()?))
         })
     };
     let (kept, end) = run(1)?;
     assert!(run(2)? == (kept.clone(), end.clone()), "two threads");
     let mut resumed = pool()?;
-    assert!(resumed.restore(&kept).is_err(), "other solids");
+    assert!(resumed.restore(&kept).is_err(), "the solids of the checkpoint differ");
     let mut resumed = pool()?;
     resumed.restore_with_added_solids(
         &kept,
         vec![block("first", [0.5, 0.4], 30.0), block("second", [0.3, 0.25], 700.0)],
     )?;
-    assert!(resumed.save()? == kept, "what was kept comes back whole");
-    steps(&mut resumed, 40)?;
-    assert!(resumed.save()? == end, "and goes on to the same bits");
+    assert!(resumed.save()? == kept, "a restored state saves to the same bytes");
+    common::steps(&mut resumed, 40);
+    assert!(resumed.save()? == end, "the resumed run reaches the same bits");
     Ok(())
 }
 
 #[test]
-fn what_cannot_come_or_go_is_refused_in_words_and_nothing_changes() -> Result<()> {
+fn an_invalid_addition_or_removal_is_refused_and_changes_nothing() -> Result<()> {
     let mut sim = pool()?;
     let before = sim.save()?;
     let inside = sim.add_solid(block("late", [0.35, 0.3], 500.0)).expect_err("inside the float");
@@ -284,16 +287,16 @@ fn what_cannot_come_or_go_is_refused_in_words_and_nothing_changes() -> Result<()
 }
 
 #[test]
-fn the_first_free_body_may_come_late() -> Result<()> {
+fn the_first_free_body_can_be_added_during_a_run() -> Result<()> {
     let text = POOL.split("[[solid]]\nname  = \"float\"").next().unwrap_or_default();
-    let mut sim = Simulation::new(Scene::parse(text, Path::new(""), &[])?.build::<2>()?.setup)?;
-    steps(&mut sim, 5)?;
+    let mut sim = common::scene_simulation::<2>(text)?;
+    common::steps(&mut sim, 5);
     sim.add_solid(block("late", [0.5, 0.36], 500.0))?;
     while sim.time() < 1.5 {
         sim.step_to(1.5)?;
     }
     let height = sim.system().solids()[1].kinematics.centre[1];
-    // Half of it under water, to a dp while it still bobs.
+    // Half of it is under water, to a dp while it still oscillates.
     assert!((height - 0.3).abs() < DP, "{height} m");
     Ok(())
 }

@@ -1,13 +1,10 @@
-//! Coulomb's law on a slope: what sticks, what slides and how fast. The water lies far off.
-
-use std::path::Path;
+//! Coulomb friction of a block on a slope, far from the water: sticking, sliding, and the acceleration.
 
 use pontoon::{
     Result,
     geometry::Shape,
     math::{Pose, Vector},
     model::Model,
-    scene::Scene,
     simulation::Simulation,
     solid::Role,
 };
@@ -16,8 +13,8 @@ use crate::common;
 
 const G: f64 = 9.81;
 
-/// How fast a block gains speed (m/s², mean over half a second) on a plane of `slope` (rad) under this coefficient of friction.
-fn gains(slope: f64, friction: f64) -> Result<f64> {
+/// Mean acceleration (m/s²) over half a second of a block on a plane of `slope` (rad) with this coefficient of friction.
+fn acceleration(slope: f64, friction: f64) -> Result<f64> {
     let (sin, cos) = slope.sin_cos();
     let fall = sin / cos;
     // The block is 0.1 m high and lies 0.3 m beside the upper end of the plane.
@@ -31,7 +28,7 @@ fn gains(slope: f64, friction: f64) -> Result<f64> {
         2.0 * fall,
         -slope.to_degrees(),
     );
-    let mut sim = Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)?;
+    let mut sim = common::scene_simulation::<2>(&text)?;
     while sim.time() < 0.5 {
         sim.step_to(0.5)?;
     }
@@ -39,15 +36,15 @@ fn gains(slope: f64, friction: f64) -> Result<f64> {
 }
 
 #[test]
-fn a_block_on_a_slope_sticks_below_the_angle_of_friction_and_slides_above_as_coulomb_says() -> Result<()> {
+fn a_block_on_a_slope_sticks_below_the_friction_angle_and_slides_above_it_with_coulomb_friction() -> Result<()> {
     for slope in [10.0_f64, 20.0, 35.0] {
         let slope = slope.to_radians();
-        // A hundredth beyond what holds it, a hundredth less, half, and none.
+        // Friction 1 % above the limit of sticking, 1 % below it, half of it, and none.
         for share in [1.01_f64, 0.99, 0.5, 0.0] {
             let exact = G * slope.sin() * (1.0 - share).max(0.0);
-            let found = gains(slope, share * slope.tan())?;
-            // A thousandth of g sin, a tenth of what tells sticking from sliding here. Found: 3e-5 where the block all but sticks and
-            // its foot settles into the contact for a while, round-off else.
+            let found = acceleration(slope, share * slope.tan())?;
+            // A thousandth of g sin φ, a tenth of the difference between sticking and sliding here. Measured: 3e-5 near the limit, where
+            // the contact needs time to form; otherwise round-off.
             let off = (found - exact).abs() / (G * slope.sin());
             assert!(off < 1e-3, "{} degrees, {share} of tan: {found} m/s², exact {exact}", slope.to_degrees());
         }
@@ -55,9 +52,9 @@ fn a_block_on_a_slope_sticks_below_the_angle_of_friction_and_slides_above_as_cou
     Ok(())
 }
 
-/// The mean gain of speed (m/s²) in half a second down a slab of `slope` (rad) in space and across it, of a block 0.3 × 0.2 × 0.1 m
-/// turned by `yaw` (rad) on it, whose friction is `share` of what would just hold it.
-fn gains_in_space(slope: f64, yaw: f64, share: f64) -> Result<[f64; 2]> {
+/// Mean accelerations (m/s²) over half a second, down and across a slab of `slope` (rad), of a block of 0.3 × 0.2 × 0.1 m. The block is
+/// turned by `yaw` (rad), and its friction is `share` of the limit of sticking.
+fn acceleration_in_3d(slope: f64, yaw: f64, share: f64) -> Result<[f64; 2]> {
     let slab = Pose::<3>::rotated(Vector::zeros(), &[0.0, slope, 0.0]);
     let on = |x: [f64; 3], yaw: f64| slab.then(&Pose::rotated(Vector::from(x), &[0.0, 0.0, yaw]));
     let (dp, depth) = (0.05, 0.2);
@@ -79,14 +76,14 @@ fn gains_in_space(slope: f64, yaw: f64, share: f64) -> Result<[f64; 2]> {
 }
 
 #[test]
-fn a_block_in_space_sticks_and_slides_as_coulomb_says_however_it_is_turned() -> Result<()> {
+fn a_block_in_three_dimensions_sticks_and_slides_with_coulomb_friction_at_any_yaw() -> Result<()> {
     let slope = 20_f64.to_radians();
     for yaw in [0.0, 30.0, 45.0] {
         for share in [1.01_f64, 0.99, 0.5] {
             let exact = G * slope.sin() * (1.0 - share).max(0.0);
-            let [down, across] = gains_in_space(slope, f64::to_radians(yaw), share)?;
-            // As in a plane. Rapier alone, whose solver and settings these are, misses by up to 7e-2 and goes 8e-2 sideways; with the
-            // direction put right 3e-4 is left, from the first steps, in proportion to Δt.
+            let [down, across] = acceleration_in_3d(slope, f64::to_radians(yaw), share)?;
+            // The bound is that of two dimensions. rapier by itself with the same settings has errors of up to 7e-2 down and 8e-2 across
+            // the slope. With the corrected direction 3e-4 remains, from the first steps and in proportion to Δt.
             let off = (down - exact).hypot(across) / (G * slope.sin());
             assert!(off < 1e-3, "turned by {yaw} degrees, {share} of tan: {down}, {across} m/s², exact {exact}");
         }

@@ -97,7 +97,7 @@ fn largest(loads: &[Load<3>]) -> (f64, f64) {
 
 #[test]
 fn the_torques_on_tied_bodies_that_spin_in_space_add_up_in_every_step() -> Result<()> {
-    let mut sim = Simulation::new(Scene::parse(MOBILE, Path::new(""), &[])?.build::<3>()?.setup)?;
+    let mut sim = common::scene_simulation::<3>(MOBILE)?;
     sim.enable_load_breakdown();
     let mut turned = 0.0f64;
     for step in 0..250 {

@@ -14,7 +14,7 @@ fn carried(water: [f64; 2], tank: [f64; 2], words: &str) -> Result<[f64; 3]> {
          [[water]]\nfill = {{ box = {{ min = [0, 0], max = {water:?} }} }}\n\
          [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = {tank:?} }} }}\n{words}"
     );
-    let mut sim = Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)?;
+    let mut sim = common::scene_simulation::<2>(&text)?;
     let (mut sums, mut weight) = ([0.0; 3], 0.0);
     while sim.time() < 2.0 {
         sim.step_to(2.0)?;

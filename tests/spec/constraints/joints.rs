@@ -59,7 +59,7 @@ spring = "line"
 "#;
 
 fn moored() -> Result<Simulation<2>> {
-    Simulation::new(Scene::parse(MOORED, Path::new(""), &[])?.build::<2>()?.setup)
+    common::scene_simulation::<2>(MOORED)
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn a_body_forced_two_ways_at_once_is_held_back_by_the_water_in_both() -> Result<
              [[solid]]\nname = \"body\"\nshape = {{ box = {{ size = [0.2, 0.2] }} }}\nat = {{ x = 0.5, y = 0.3 }}\n\
              driven = {{ motions = [{{ along = [1, 0], {law} }}, {{ along = [0, 1], {law} }}] }}\n"
         );
-        let mut sim = Simulation::new(Scene::parse(&text, Path::new(""), &[])?.build::<2>()?.setup)?;
+        let mut sim = common::scene_simulation::<2>(&text)?;
         let (mut sum, mut time) = (Vector::zeros(), 0.0);
         while sim.time() < 0.1 {
             sim.step_to(0.1)?;

@@ -16,7 +16,7 @@ use pontoon::{
     scene::Scene,
 };
 
-use crate::common::Home;
+use crate::common::TestFolder;
 
 /// A folder with a run's table and a reference.
 fn folder(name: &str, sim: &str, reference: &str) -> std::io::Result<PathBuf> {
@@ -340,8 +340,8 @@ fn a_check_that_is_printed_reads_the_same() -> Result<()> {
 
 #[test]
 fn a_run_that_was_interrupted_tells_the_figures_of_its_part_and_only_its_end_is_judged() -> Result<()> {
-    let home = Home::new("checks-part");
-    let (scene, out) = (home.0.join("scene.toml"), home.0.join("run"));
+    let home = TestFolder::new("checks-part");
+    let (scene, out) = (home.join("scene.toml"), home.join("run"));
     let text = "dimension = 2\ndp = 0.05\nuntil = 0.2\nwater = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]\n\
         solid = [{ name = \"tank\", fixed = true, shape = { tank = { size = [1.0, 1.0] } } }]\n\
         probe = [{ name = \"tank\", force = \"tank\", every = 0.001 }]\n[[check]]\nseries = \"tank.fy_N_per_m\"\n\

@@ -1,4 +1,4 @@
-//! The same bits at any number of threads, and after a restart.
+//! Determinism: the same bits on any number of threads and after a restart, and refusal of damaged checkpoints.
 
 use pontoon::{
     geometry::Shape,
@@ -11,7 +11,7 @@ use pontoon::{
 
 use crate::common;
 
-/// Both steppers, walls and gradients.
+/// Both time schemes, wall models and pressure gradients.
 const KINDS: [(TimeScheme, Walls, PressureGradient); 4] = [
     (TimeScheme::Symplectic, Walls::Dynamic, PressureGradient::Plain),
     (TimeScheme::Verlet { euler_every: 50 }, Walls::Dynamic, PressureGradient::Plain),
@@ -19,7 +19,7 @@ const KINDS: [(TimeScheme, Walls, PressureGradient); 4] = [
     (TimeScheme::Symplectic, Walls::RelaxedAdami, PressureGradient::Corrected),
 ];
 
-/// A dam break onto two floats that collide, one as light as foam, beside a paddle, with every term that remembers something.
+/// A dam break onto two colliding floats, one as light as foam, beside a paddle, with every term that keeps state between steps.
 fn scene((scheme, walls, gradient): (TimeScheme, Walls, PressureGradient)) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
@@ -46,22 +46,15 @@ fn scene((scheme, walls, gradient): (TimeScheme, Walls, PressureGradient)) -> Si
     common::simulation(model, water, 0.3, solids)
 }
 
-fn steps(sim: &mut Simulation<2>, n: u32) {
-    for _ in 0..n {
-        sim.step().expect("a sound run");
-    }
-}
-
 #[test]
-fn one_two_three_and_eight_threads_give_the_same_bits() {
+fn one_two_three_and_eight_threads_compute_the_same_bits() {
     for kind in KINDS {
         let runs: Vec<Vec<u8>> = [1, 2, 3, 8]
             .into_iter()
             .map(|n| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-                pool.install(|| {
+                common::on_threads(n, || {
                     let mut sim = scene(kind);
-                    steps(&mut sim, 150);
+                    common::steps(&mut sim, 150);
                     sim.save().unwrap()
                 })
             })
@@ -71,28 +64,28 @@ fn one_two_three_and_eight_threads_give_the_same_bits() {
 }
 
 #[test]
-fn a_resumed_run_goes_on_to_the_same_bits() {
+fn a_resumed_run_reaches_the_same_bits() {
     for kind in KINDS {
         let mut whole = scene(kind);
-        steps(&mut whole, 73);
+        common::steps(&mut whole, 73);
         let kept = whole.save().unwrap();
-        steps(&mut whole, 120);
+        common::steps(&mut whole, 120);
         let mut resumed = scene(kind);
         resumed.restore(&kept).unwrap();
-        assert_eq!(resumed.save().unwrap(), kept, "what was kept comes back whole");
-        steps(&mut resumed, 120);
+        assert_eq!(resumed.save().unwrap(), kept, "a restored state saves to the same bytes");
+        common::steps(&mut resumed, 120);
         assert!(resumed.save().unwrap() == whole.save().unwrap(), "{kind:?}");
     }
 }
 
 #[test]
-fn damaged_bytes_are_refused() {
+fn a_damaged_checkpoint_is_refused() {
     let sim = scene(KINDS[0]);
     let kept = sim.save().unwrap();
     let mut other = scene(KINDS[0]);
     assert!(other.restore(&kept[..kept.len() / 2]).is_err());
     assert!(other.restore(&[]).is_err());
-    // Eight bytes after eight are made a number that is none, or far too large: told, or of no consequence.
+    // Eight bytes at a time become a number that is not finite or far too large. The result is an error or a valid state, no panic.
     for wrong in [f64::NAN, f64::INFINITY, 1e99, -1e15] {
         for at in (0..kept.len() - 8).step_by(kept.len() / 300) {
             let mut bytes = kept.clone();
@@ -100,7 +93,7 @@ fn damaged_bytes_are_refused() {
             let _ = other.restore(&bytes);
         }
     }
-    // The first place of all, behind the number of particles.
+    // The first position, after the number of particles.
     let places = kept.windows(8).position(|b| b == sim.system().fluid().r[0][0].to_le_bytes()).unwrap();
     let far = [&kept[..places], &1e15f64.to_le_bytes(), &kept[places + 8..]].concat();
     assert!(other.restore(&far).is_err_and(|e| e.message.contains("nowhere")));

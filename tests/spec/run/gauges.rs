@@ -13,7 +13,7 @@ use pontoon::{
     simulation::Simulation,
 };
 
-use crate::common::{self, Home};
+use crate::common::{self, TestFolder};
 
 const DP: f64 = 0.02;
 
@@ -28,22 +28,22 @@ fn pool() -> Simulation<2> {
     tank(&[([0.0, 0.0], [0.4, 0.2])])
 }
 
-impl Home {
+impl TestFolder {
     fn scene(&self, probes: &str) -> PathBuf {
         let words = "dimension = 2\ndp = 0.02\nuntil = 0.06\nframes = \"off\"\n\
                      [[water]]\nfill = { box = { min = [0.0, 0.0], max = [0.2, 0.2] } }\n\
                      [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [0.6, 0.3] } }\n";
-        let file = self.0.join("scene.toml");
+        let file = self.join("scene.toml");
         std::fs::write(&file, format!("{words}{probes}")).unwrap();
         file
     }
 
     fn readings(&self, run: &str, probe: &str) -> Result<SeriesTable> {
-        SeriesTable::read(&self.0.join(run).join(format!("series/{probe}.csv")))
+        SeriesTable::read(&self.join(run).join(format!("series/{probe}.csv")))
     }
 
     fn options(&self, run: &str) -> RunOptions {
-        RunOptions { out: Some(self.0.join(run)), threads: Some(1), ..RunOptions::default() }
+        RunOptions { out: Some(self.join(run)), threads: Some(1), ..RunOptions::default() }
     }
 }
 
@@ -96,7 +96,7 @@ fn what_flows_through_a_section_is_speed_times_depth_wherever_it_stands() -> Res
 
 #[test]
 fn the_volume_that_flowed_is_what_is_missing_before_the_section() -> Result<()> {
-    let home = Home::new("gauges-flow");
+    let home = TestFolder::new("gauges-flow");
     // A column that falls, and a section through which all of its foot goes.
     let file = home
         .scene("[[probe]]\nflow = { from = [0.2, 0.0], to = [0.2, 0.3] }\nevery = 0.001\n[[probe]]\nfront = true\n");
@@ -152,7 +152,7 @@ const MEANED: &str = "[[probe]]\nname = \"mean\"\npressure = [0.1, 0.02]\nevery 
 
 #[test]
 fn an_average_is_the_mean_of_every_step_since_the_reading_before() -> Result<()> {
-    let home = Home::new("gauges-mean");
+    let home = TestFolder::new("gauges-mean");
     run::run(&home.scene(MEANED), &home.options("a"), &mut go_on)?;
     let (mean, all) = (home.readings("a", "mean")?, home.readings("a", "all")?);
     assert_eq!(mean.values[0][0], all.values[0][0], "the first is the reading itself");
@@ -172,24 +172,24 @@ fn an_average_is_the_mean_of_every_step_since_the_reading_before() -> Result<()>
 
 #[test]
 fn means_and_volumes_of_an_interrupted_run_end_as_those_of_an_unbroken_one() -> Result<()> {
-    let home = Home::new("gauges-resumed");
+    let home = TestFolder::new("gauges-resumed");
     let file =
         home.scene(&format!("{MEANED}[[probe]]\nflow = {{ from = [0.2, 0.0], to = [0.2, 0.3] }}\naverage = true\n"));
     run::run(&file, &home.options("whole"), &mut go_on)?;
     run::run(&file, &home.options("broken"), &mut |now: &Progress| now.steps < 7)?;
-    let broken = home.0.join("broken");
+    let broken = home.join("broken");
     run::resume(&broken, &[], Some(1), &mut |now: &Progress| now.steps < 23)?;
     run::resume(&broken, &[], Some(1), &mut go_on)?;
     let bytes = |run: &Path, name: &str| std::fs::read(run.join(format!("series/{name}.csv"))).unwrap();
     for name in ["mean", "all", "flow"] {
-        assert_eq!(bytes(&broken, name), bytes(&home.0.join("whole"), name), "{name}");
+        assert_eq!(bytes(&broken, name), bytes(&home.join("whole"), name), "{name}");
     }
     Ok(())
 }
 
 #[test]
 fn places_that_cannot_be_meant_are_refused_in_words() {
-    let home = Home::new("gauges-refused");
+    let home = TestFolder::new("gauges-refused");
     for (probe, word) in [
         ("elevation = { x = 0.1, from = 0.0, to = 0.2, count = 3 }", "one place or is a row"),
         ("elevation = { from = 0.0, to = 0.2 }", "either a count or a spacing"),

@@ -8,7 +8,7 @@ use pontoon::{
     run::{self, EnergyDrift, Progress, RunOptions},
 };
 
-use crate::common::Home;
+use crate::common::TestFolder;
 
 /// A box dropped by half a draft, which moves the water within a few steps.
 const SCENE: &str = r#"
@@ -30,8 +30,8 @@ free = { density = 500.0 }
 "#;
 
 /// A folder with the scene and `more` words of it.
-fn home(name: &str, more: &str) -> Home {
-    Home::with(&format!("progress-{name}"), &format!("{SCENE}{more}"))
+fn home(name: &str, more: &str) -> TestFolder {
+    TestFolder::with_scene(&format!("progress-{name}"), &format!("{SCENE}{more}"))
 }
 
 /// Runs the scene in `home`; what was told of the energy at each step.
@@ -58,8 +58,8 @@ fn row(table: &SeriesTable, i: usize) -> Vec<f64> {
 fn a_run_tells_the_share_of_its_energy_that_its_budget_cannot_account_for() -> Result<()> {
     // A budget tells more than the energy beside it.
     let home = home("budget", "[[probe]]\nenergy = true\n[[probe]]\nbudget = true\nevery = 1e-9\n");
-    let told = told(&home.0)?;
-    let budget = table(&home.0, "budget");
+    let told = told(&home)?;
+    let budget = table(&home, "budget");
     let residual = budget.columns.len() - 1;
     assert!(budget.columns[residual].starts_with("residual_J"));
     let share = |i: usize| {
@@ -76,28 +76,28 @@ fn a_run_tells_the_share_of_its_energy_that_its_budget_cannot_account_for() -> R
 #[test]
 fn a_run_without_a_budget_tells_how_its_energy_changed_and_one_without_either_nothing() -> Result<()> {
     let with = home("energy", "[[probe]]\nenergy = true\nevery = 1e-9\n");
-    let said = told(&with.0)?;
-    let energy = table(&with.0, "energy");
+    let said = told(&with)?;
+    let energy = table(&with, "energy");
     let total = energy.values.last().unwrap();
     let change = |i: usize| Some(EnergyDrift::Changed(total[i] - total[0], "J/m"));
     assert_eq!(said.len(), energy.times.len());
     assert!((0..said.len()).all(|i| said[i] == change(i)), "{said:?}");
     let without = home("neither", "[[probe]]\nmotion = \"box\"\n");
-    assert!(told(&without.0)?.iter().all(Option::is_none));
+    assert!(told(&without)?.iter().all(Option::is_none));
     Ok(())
 }
 
 #[test]
 fn a_resumed_run_tells_the_change_since_its_start() -> Result<()> {
     let home = home("resumed", "[[probe]]\nenergy = true\nevery = 1e-9\n");
-    let options = RunOptions { out: Some(home.0.join("run")), threads: Some(1), ..RunOptions::default() };
-    run::run(&home.0.join("scene.toml"), &options, &mut |now: &Progress| now.time < 0.05)?;
+    let options = RunOptions { out: Some(home.join("run")), threads: Some(1), ..RunOptions::default() };
+    run::run(&home.join("scene.toml"), &options, &mut |now: &Progress| now.time < 0.05)?;
     let mut first = None;
-    run::resume(&home.0.join("run"), &[], Some(1), &mut |now: &Progress| {
+    run::resume(&home.join("run"), &[], Some(1), &mut |now: &Progress| {
         first.get_or_insert((now.time, now.energy));
         true
     })?;
-    let energy = table(&home.0, "energy");
+    let energy = table(&home, "energy");
     let total = energy.values.last().unwrap();
     let (time, said) = first.unwrap();
     let i = energy.times.iter().position(|t| *t == time).unwrap();

@@ -7,7 +7,7 @@ use pontoon::{
     run::{self, Progress, RaoResult, RunOptions, StatisticsFilter},
 };
 
-use crate::common::Home;
+use crate::common::TestFolder;
 
 const SCENE: &str = r#"
 dimension = 2
@@ -76,11 +76,11 @@ fn float(eta: &[f64], dt: f64) -> Vec<f64> {
 }
 
 /// A finished run whose tables are those of the float in the sea; its pitch is 100 degrees a metre of heave.
-fn run_of_a_sea(name: &str) -> Result<Home> {
-    let home = Home::with(&format!("rao-{name}"), SCENE);
-    let out = home.0.join("run");
+fn run_of_a_sea(name: &str) -> Result<TestFolder> {
+    let home = TestFolder::with_scene(&format!("rao-{name}"), SCENE);
+    let out = home.join("run");
     let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
-    run::run(&home.0.join("scene.toml"), &options, &mut |_: &Progress| true)?;
+    run::run(&home.join("scene.toml"), &options, &mut |_: &Progress| true)?;
     assert!(!out.join(run::RAO_FILE).exists(), "a run of no waves has no such file");
     let dt = 0.05;
     let eta = sea(dt);
@@ -99,7 +99,7 @@ fn run_of_a_sea(name: &str) -> Result<Home> {
 #[test]
 fn a_float_in_an_irregular_sea_is_told_over_frequency_as_its_equation_says() -> Result<()> {
     let home = run_of_a_sea("all")?;
-    let told = run::statistics(&home.0.join("run"), &StatisticsFilter::default())?;
+    let told = run::statistics(&home.join("run"), &StatisticsFilter::default())?;
     let of = |series: &str| -> Vec<RaoResult> { told.raos.iter().filter(|a| a.series == series).cloned().collect() };
     assert!(told.raos.iter().all(|answer| answer.name == "rao"), "a regular wave is told at its period alone");
     assert!(of("buoy.surge_m").is_empty(), "what does not move does not answer");
@@ -126,7 +126,7 @@ fn a_float_in_an_irregular_sea_is_told_over_frequency_as_its_equation_says() -> 
 fn of_too_few_waves_it_is_told_how_many_are_needed() -> Result<()> {
     let home = run_of_a_sea("few")?;
     let late = StatisticsFilter { from: Some(370.0), ..StatisticsFilter::default() };
-    let told = run::statistics(&home.0.join("run"), &late)?;
+    let told = run::statistics(&home.join("run"), &late)?;
     assert!(told.raos.is_empty(), "30 s hold some 17 waves of this sea");
     // That of a `period` asks for nothing over frequency.
     let [remark] = &told.remarks[..] else { panic!("{:?}", told.remarks) };

@@ -13,7 +13,7 @@ use pontoon::{
     solid::Dim,
 };
 
-use crate::common::Home;
+use crate::common::TestFolder;
 
 /// Every file below `folder`, by its name from there, but for those that tell wall time.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -38,15 +38,15 @@ fn outlives<const D: usize>(
     name: &str,
     [first, second]: [f64; 2],
     keep: impl Fn(&mut Simulation<D>),
-) -> Result<(Home, Simulation<D>)>
+) -> Result<(TestFolder, Simulation<D>)>
 where
     Dim<D>: Dimension<D>,
 {
-    let home = Home::new(&format!("restart-{name}"));
+    let home = TestFolder::new(&format!("restart-{name}"));
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/spec/run/restart/{name}.toml"));
-    let options = |out: &str| RunOptions { out: Some(home.0.join(out)), threads: Some(1), ..RunOptions::default() };
+    let options = |out: &str| RunOptions { out: Some(home.join(out)), threads: Some(1), ..RunOptions::default() };
     run::run(&scene, &options("whole"), &mut |_: &Progress| true)?;
-    let (whole, broken) = (home.0.join("whole"), home.0.join("broken"));
+    let (whole, broken) = (home.join("whole"), home.join("broken"));
     run::run(&scene, &options("broken"), &mut |now: &Progress| now.time < first)?;
     run::resume(&broken, &[], Some(2), &mut |now: &Progress| now.time < second)?;
     run::resume(&broken, &[], Some(3), &mut |_: &Progress| true)?;
@@ -65,8 +65,8 @@ where
 }
 
 /// The text of a file of the unbroken run.
-fn text(home: &Home, name: &str) -> String {
-    fs::read_to_string(home.0.join("whole").join(name)).unwrap()
+fn text(home: &TestFolder, name: &str) -> String {
+    fs::read_to_string(home.join("whole").join(name)).unwrap()
 }
 
 #[test]
@@ -133,18 +133,18 @@ fn who_was_taken_out_is_known_after_a_restart() -> Result<()> {
 
 #[test]
 fn a_run_that_a_guard_stopped_goes_on_with_another() -> Result<()> {
-    let home = Home::new("restart-guard");
+    let home = TestFolder::new("restart-guard");
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/run/restart/spill.toml");
     let set = |key: &str, value: &str| (key.to_owned(), value.to_owned());
     let run = |out: &str, escape: &str| {
         let sets = vec![set("guard.escape", escape), set("checkpoint.every", "0.05")];
-        let options = RunOptions { out: Some(home.0.join(out)), overrides: sets, threads: Some(1) };
+        let options = RunOptions { out: Some(home.join(out)), overrides: sets, threads: Some(1) };
         run::run(&scene, &options, &mut |_: &Progress| true)
     };
     run("whole", "remove")?;
     let stopped = run("broken", "stop").expect_err("the water leaves the domain");
     assert!(stopped.to_string().contains("--set guard.escape=remove"), "{stopped}");
-    let broken = home.0.join("broken");
+    let broken = home.join("broken");
     let resume = |key: &str, value: &str| run::resume(&broken, &[set(key, value)], Some(1), &mut |_: &Progress| true);
     // No law may change on the way, a misspelt key is told, and a refusal leaves all as it was.
     for (key, value, said) in [
@@ -156,7 +156,7 @@ fn a_run_that_a_guard_stopped_goes_on_with_another() -> Result<()> {
         assert!(refused.contains(said), "{refused}");
     }
     resume("guard.escape", "remove")?;
-    let (unbroken, mended) = (files(&home.0.join("whole")), files(&broken));
+    let (unbroken, mended) = (files(&home.join("whole")), files(&broken));
     assert!(unbroken.keys().eq(mended.keys()), "{:?}\n{:?}", unbroken.keys(), mended.keys());
     // The checkpoint was made before the first alarm, so the two runs are one.
     for (file, bytes) in unbroken.iter().filter(|(file, _)| *file != "/report.html") {

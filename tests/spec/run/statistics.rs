@@ -8,7 +8,7 @@ use pontoon::{
     scene::Scene,
 };
 
-use crate::common::Home;
+use crate::common::TestFolder;
 
 const SCENE: &str = r#"
 dimension = 2
@@ -48,11 +48,11 @@ from = 5.0
 "#;
 
 /// A finished run whose tables are those of waves 0.1 m high, of which a quarter comes back.
-fn run_of_waves(name: &str) -> Result<Home> {
-    let home = Home::with(&format!("statistics-{name}"), SCENE);
-    let out = home.0.join("run");
+fn run_of_waves(name: &str) -> Result<TestFolder> {
+    let home = TestFolder::with_scene(&format!("statistics-{name}"), SCENE);
+    let out = home.join("run");
     let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
-    run::run(&home.0.join("scene.toml"), &options, &mut |_: &Progress| true)?;
+    run::run(&home.join("scene.toml"), &options, &mut |_: &Progress| true)?;
     assert!(
         fs::read_to_string(out.join("statistics.csv"))
             .unwrap()
@@ -91,7 +91,7 @@ fn value(rows: &[Statistic], name: &str, series: &str, quantity: &str) -> f64 {
 #[test]
 fn a_run_tells_heights_periods_reflection_and_raos_of_its_series() -> Result<()> {
     let home = run_of_waves("all")?;
-    let told = run::statistics(&home.0.join("run"), &StatisticsFilter::default())?;
+    let told = run::statistics(&home.join("run"), &StatisticsFilter::default())?;
     assert_eq!(told.remarks, Vec::<String>::new());
     let of = |name: &str, series: &str, quantity: &str| value(&told.rows, name, series, quantity);
     // The fit is exact.
@@ -116,10 +116,10 @@ fn a_run_tells_heights_periods_reflection_and_raos_of_its_series() -> Result<()>
 fn a_part_of_a_series_can_be_asked_for_and_a_series_that_is_none_is_refused() -> Result<()> {
     let home = run_of_waves("part")?;
     let ask = |series: &str| StatisticsFilter { series: Some(series.into()), from: Some(3.0), until: Some(9.0) };
-    let told = run::statistics(&home.0.join("run"), &ask("buoy"))?;
+    let told = run::statistics(&home.join("run"), &ask("buoy"))?;
     assert!(told.rows.iter().all(|row| row.series.starts_with("buoy.") && row.from_s >= 3.0 && row.until_s <= 9.0));
     assert!(told.rows.iter().any(|row| row.quantity == "rao"), "what the scene asks of it, too");
-    let refused = run::statistics(&home.0.join("run"), &ask("booy")).err().and_then(|e| e.help);
+    let refused = run::statistics(&home.join("run"), &ask("booy")).err().and_then(|e| e.help);
     assert_eq!(refused.as_deref(), Some("the probes are: row, gauge, buoy"));
     Ok(())
 }

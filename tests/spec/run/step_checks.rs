@@ -1,4 +1,4 @@
-//! Guards: what they see, and what a run does about it.
+//! Step checks and rollback: particles outside the limits or the domain, the response of a run, and restart after it.
 
 use pontoon::{
     error::ErrorKind,
@@ -10,7 +10,7 @@ use pontoon::{
     solid::Role,
 };
 
-use crate::common::{self, Home};
+use crate::common::{self, TestFolder};
 
 /// A small dam break, a thousand steps of which take half a second.
 fn dam_break() -> Simulation<2> {
@@ -19,81 +19,75 @@ fn dam_break() -> Simulation<2> {
     common::simulation(Model::water(2, dp, 0.2), water, 0.2, vec![common::tank([0.6, 0.4], dp)])
 }
 
-fn steps(sim: &mut Simulation<2>, n: u32) {
-    for _ in 0..n {
-        sim.step().expect("a sound run");
-    }
-}
-
-/// Gives the water nearest the bed's left end twice the speed of sound: no flow does that.
-fn plant(sim: &mut Simulation<2>) {
+/// Sets water at the left end of the bed to twice the speed of sound, which no flow reaches.
+fn set_supersonic(sim: &mut Simulation<2>) {
     let c0 = sim.system().model().c0;
     sim.set_water_velocity(|r| if r[0] < 0.03 { Vector::from([2.0 * c0, 0.0]) } else { Vector::zeros() });
 }
 
 #[test]
-fn the_first_alarm_is_answered_by_going_back_and_halving_the_step() {
+fn the_first_alarm_rolls_the_run_back_and_halves_the_step() {
     let mut sim = dam_break();
-    steps(&mut sim, 700);
+    common::steps(&mut sim, 700);
     let (time, limit) = (sim.time(), sim.step_limit());
-    plant(&mut sim);
-    sim.step().expect("the run goes back");
-    // States are kept every 500 steps; that of step 500 is old enough, 200 steps before.
+    set_supersonic(&mut sim);
+    sim.step().expect("the run rolls back");
+    // The run keeps a state every 500 steps. That of step 500 is old enough, 200 steps before the alarm.
     assert_eq!(sim.steps(), 500);
-    let told = sim.rollbacks().to_vec();
-    assert_eq!(told.len(), 1);
+    let rollbacks = sim.rollbacks().to_vec();
+    assert_eq!(rollbacks.len(), 1);
     assert!(
-        told[0].alarm.contains("speed of sound") && told[0].back_to == sim.time() && told[0].at >= time,
-        "{told:?}"
+        rollbacks[0].alarm.contains("speed of sound") && rollbacks[0].back_to == sim.time() && rollbacks[0].at >= time,
+        "{rollbacks:?}"
     );
-    // Half, but for what the flow itself asks for by then.
+    // Half of the limit, apart from its change with the flow.
     assert!(sim.step_limit() < 0.6 * limit, "{} after {limit}", sim.step_limit());
-    while sim.time() < told[0].halved_until {
-        sim.step().expect("the good state goes on");
+    while sim.time() < rollbacks[0].halved_until {
+        sim.step().expect("the restored state is sound");
     }
-    sim.step().expect("the good state goes on");
-    assert!(sim.step_limit() > 0.8 * limit, "the step is whole again: {} after {limit}", sim.step_limit());
+    sim.step().expect("the restored state is sound");
+    assert!(sim.step_limit() > 0.8 * limit, "the full step is restored: {} after {limit}", sim.step_limit());
 }
 
 #[test]
-fn an_alarm_that_returns_ends_the_run_with_its_report() {
+fn an_alarm_that_recurs_after_a_rollback_ends_the_run_with_a_fault() {
     let mut sim = dam_break();
-    steps(&mut sim, 700);
-    plant(&mut sim);
-    sim.step().expect("the run goes back");
-    plant(&mut sim);
-    let error = sim.step().expect_err("the alarm returned");
+    common::steps(&mut sim, 700);
+    set_supersonic(&mut sim);
+    sim.step().expect("the run rolls back");
+    set_supersonic(&mut sim);
+    let error = sim.step().expect_err("the alarm recurs");
     assert_eq!(error.kind, ErrorKind::Fault);
     assert!(error.fault.is_some_and(|fault| fault.who.starts_with("water particle")));
 }
 
 #[test]
-fn a_run_that_was_rescued_goes_on_with_half_the_step_after_a_restart() {
+fn a_run_after_a_rollback_keeps_the_halved_step_across_a_restart() {
     let mut whole = dam_break();
-    steps(&mut whole, 700);
-    plant(&mut whole);
-    steps(&mut whole, 20);
+    common::steps(&mut whole, 700);
+    set_supersonic(&mut whole);
+    common::steps(&mut whole, 20);
     let kept = whole.save().unwrap();
     let mut again = dam_break();
     again.restore(&kept).unwrap();
     assert!(whole.time() < whole.rollbacks()[0].halved_until && again.rollbacks() == whole.rollbacks());
-    // Past the time of half steps: 400 of them.
-    steps(&mut whole, 900);
-    steps(&mut again, 900);
+    // 900 steps pass the period of 400 halved steps.
+    common::steps(&mut whole, 900);
+    common::steps(&mut again, 900);
     assert!(whole.time() > whole.rollbacks()[0].halved_until);
     assert!(whole.save().unwrap() == again.save().unwrap());
 }
 
 #[test]
-fn a_healthy_run_is_not_changed_by_a_bit() {
+fn rollback_changes_no_bit_of_a_run_without_alarms() {
     let (mut with, mut without) = (dam_break(), dam_break().without_rollback());
-    steps(&mut with, 600);
-    steps(&mut without, 600);
+    common::steps(&mut with, 600);
+    common::steps(&mut without, 600);
     assert!(with.rollbacks().is_empty());
     assert!(with.save().unwrap() == without.save().unwrap());
 }
 
-/// A block of water that falls out of a domain whose sides are a metre away, with these limits.
+/// A block of water that falls out of its domain, with these limits.
 fn falling(limits: ParticleLimits) -> Simulation<2> {
     let dp = 0.02;
     let water = common::lattice([0.0, 0.0], [0.1, 0.1], dp);
@@ -105,19 +99,19 @@ fn falling(limits: ParticleLimits) -> Simulation<2> {
 }
 
 #[test]
-fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
-    let mut stops = falling(ParticleLimits::default());
-    let error = (0..10_000).find_map(|_| stops.step().err()).expect("the water falls out");
+fn a_particle_that_leaves_the_domain_stops_the_run_unless_escape_is_remove() {
+    let mut stopping = falling(ParticleLimits::default());
+    let error = (0..10_000).find_map(|_| stopping.step().err()).expect("the water falls out");
     assert!(error.to_string().contains("escape from the domain"), "{error}");
-    let mut goes_on = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
-    while goes_on.system().fluid().len() > 5 {
-        goes_on.step().expect("those that leave are taken out");
+    let mut removing = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
+    while removing.system().fluid().len() > 5 {
+        removing.step().expect("particles that leave are removed");
     }
-    // Twenty of twenty-five are gone, each listed once, below the domain, on its way down.
-    let lost = goes_on.removed_particles();
-    assert_eq!(lost.len(), 25 - goes_on.system().fluid().len());
+    // Twenty of twenty-five particles are removed. Each is listed once, below the domain and moving down.
+    let lost = removing.removed_particles();
+    assert_eq!(lost.len(), 25 - removing.system().fluid().len());
     let mut ids: Vec<u32> =
-        lost.iter().map(|(_, lost)| lost.id).chain(goes_on.system().fluid().id.iter().copied()).collect();
+        lost.iter().map(|(_, lost)| lost.id).chain(removing.system().fluid().id.iter().copied()).collect();
     ids.sort_unstable();
     assert!(ids.iter().copied().eq(0..25), "{ids:?}");
     for (t, lost) in lost {
@@ -127,12 +121,12 @@ fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
 }
 
 #[test]
-fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
-    // Thrown up by v²/2g = 0.32 m, three supports and more above where it stood, it leaves below, as splash does beside a tank.
+fn a_particle_that_falls_from_above_the_initial_water_is_recorded_as_over_a_wall() {
+    // The water rises by v²/2g = 0.32 m, more than three support radii, and leaves below, as splash beside a tank does.
     let mut thrown = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
     thrown.set_water_velocity(|_| Vector::from([0.0, 2.5]));
     while thrown.removed_particles().is_empty() {
-        thrown.step().expect("those that leave are taken out");
+        thrown.step().expect("particles that leave are removed");
     }
     for (_, lost) in thrown.removed_particles() {
         assert!(lost.r[1] < -0.05 && lost.exit.to_string().contains("over a wall"), "{lost:?}");
@@ -140,7 +134,7 @@ fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
 }
 
 #[test]
-fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
+fn a_resumed_run_with_removed_particles_reaches_the_same_bits() {
     let limits = ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() };
     let mut whole = falling(limits);
     while whole.removed_particles().is_empty() {
@@ -156,12 +150,12 @@ fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
 }
 
 #[test]
-fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
+fn density_and_speed_outside_the_limits_of_the_scene_stop_the_run() {
     for (limits, word) in [
         (ParticleLimits { density: [0.9, 1.1], ..ParticleLimits::default() }, "guard.density"),
         (ParticleLimits { speed: 0.1, ..ParticleLimits::default() }, "guard.speed"),
     ] {
-        let plant = |sim: &mut Simulation<2>| {
+        let exceed = |sim: &mut Simulation<2>| {
             let c0 = sim.system().model().c0;
             match word {
                 "guard.density" => sim.set_water_density(|_| 1150.0),
@@ -169,16 +163,16 @@ fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
             }
         };
         let (mut narrow, mut usual) = (falling(limits), falling(ParticleLimits::default()));
-        plant(&mut narrow);
-        plant(&mut usual);
-        let error = narrow.step().expect_err("outside what the scene allows");
+        exceed(&mut narrow);
+        exceed(&mut usual);
+        let error = narrow.step().expect_err("outside the limits of the scene");
         assert!(error.to_string().contains(word), "{error}");
-        usual.step().expect("inside what is usual");
+        usual.step().expect("inside the default limits");
     }
 }
 
 #[test]
-fn what_is_not_finite_is_told_by_the_step_that_sees_it() {
+fn a_value_that_is_not_finite_stops_the_run_at_its_step() {
     for what in ["velocity", "density"] {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut sim = falling(ParticleLimits::default());
@@ -188,7 +182,7 @@ fn what_is_not_finite_is_told_by_the_step_that_sees_it() {
                 _ => sim.set_water_density(|r| if r[0] < 0.02 { bad } else { 1000.0 }),
             }
             let fault = sim.step().expect_err(what).fault.expect("a fault");
-            // The step before and this one.
+            // The step before the change and the step after it.
             assert!(fault.who.starts_with("water particle") && fault.step <= 2, "{what} {bad}: {fault:?}");
         }
     }
@@ -210,37 +204,38 @@ fn thrown() -> Simulation<2> {
 }
 
 #[test]
-fn a_body_that_leaves_is_named_with_its_step_also_after_a_restart() {
+fn a_body_that_leaves_the_domain_is_named_with_its_step_also_after_a_restart() {
     let mut whole = thrown();
-    steps(&mut whole, 20);
+    common::steps(&mut whole, 20);
     let kept = whole.save().unwrap();
     let mut again = thrown();
     again.restore(&kept).unwrap();
     let [first, second] = [&mut whole, &mut again].map(|sim| {
-        let error = (0..1000).find_map(|_| sim.step().err()).expect("it flies out");
+        let error = (0..1000).find_map(|_| sim.step().err()).expect("the body leaves the domain");
         assert!(error.to_string().contains("escape from the domain of body \"float\""), "{error}");
         *error.fault.expect("a fault")
     });
-    // Half a metre at 10 m/s; the step in which its centre went over the side.
+    // Half a metre at 10 m/s: the step in which the centre passes the side of the domain.
     assert!((first.time - 0.05).abs() < 1e-3 && first.position[0] > 1.0, "{first:?}");
     assert_eq!((first.step, first.time), (second.step, second.time));
-    assert_eq!(first.step, whole.steps(), "the step that could not be made, counted from the start of the run");
+    assert_eq!(first.step, whole.steps(), "the number of the failed step counts from the start of the run");
 }
 
 #[test]
-fn a_timing_stops_at_the_first_alarm_and_tells_it() {
-    // A paddle at up to 30 m/s where sound has 10 m/s.
+fn a_timing_stops_at_the_first_alarm_and_reports_it() {
+    // A paddle moves at up to 30 m/s in water with c₀ = 10 m/s.
     let scene = "dimension = 2\ndp = 0.02\nuntil = 1.0\n\
         water = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.1] } } }]\n\
         [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [1.0, 0.3] } }\n\
         [[solid]]\nname = \"paddle\"\nshape = { box = { size = [0.1, 0.2] } }\nat = { x = 0.3, bottom = 0.0 }\n\
         driven = { along = [1.0, 0.0], distance = { formula = \"0.1*sin(300*t)\" } }\n";
-    let home = Home::with("timing-alarm", scene);
+    let home = TestFolder::with_scene("timing-alarm", scene);
     let asked = InspectOptions { threads: Some(1), timing: true, ..InspectOptions::default() };
-    let report = run::inspect(&home.0.join("scene.toml"), &asked).unwrap();
-    let told = report.preflight.findings.iter().find(|finding| finding.topic == "breaks_down").expect("it breaks down");
-    let after = |word: &str| told.what.split(word).nth(1).and_then(|rest| rest.split([' ', ',']).next());
+    let report = run::inspect(&home.join("scene.toml"), &asked).unwrap();
+    let finding =
+        report.preflight.findings.iter().find(|finding| finding.topic == "breaks_down").expect("the run fails");
+    let after = |word: &str| finding.what.split(word).nth(1).and_then(|rest| rest.split([' ', ',']).next());
     let count = |word: &str| after(word).and_then(|number| number.parse::<u64>().ok()).unwrap_or_default();
-    // "after 9 steps: ... step 10, t = ...": a run that went back meanwhile would have made more steps than it tells of.
-    assert_eq!(count("after ") + 1, count(", step "), "{}", told.what);
+    // "after 9 steps: ... step 10, t = ...": with a rollback the two numbers would differ by more than one.
+    assert_eq!(count("after ") + 1, count(", step "), "{}", finding.what);
 }

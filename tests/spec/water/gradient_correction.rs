@@ -1,4 +1,4 @@
-//! Corrected gradients: exact where the field is linear, momentum kept, and waves that live.
+//! Gradient correction: linear exactness, conservation of momentum and reduced damping of a standing wave.
 
 use pontoon::{
     geometry::Shape,
@@ -13,16 +13,16 @@ use pontoon::{
     },
 };
 
-use crate::common::{self, Dice};
+use crate::common::{self, Random};
 
 #[test]
-fn the_slope_of_a_linear_field_is_exact_however_particles_lie() {
+fn the_corrected_gradient_of_a_linear_field_is_exact_on_disordered_particles() {
     let (dp, h) = (0.01, 0.017);
     let (kernel, volume) = (Wendland::new(h, 3), dp * dp * dp);
-    let mut dice = Dice(5);
+    let mut random = Random(5);
     let places: Vec<Vector<3>> = common::lattice([-0.05; 3], [0.1; 3], dp)
         .into_iter()
-        .map(|r| r + (dice.point::<3>() - Vector::repeat(0.5)) * 0.6 * dp)
+        .map(|r| r + (random.point::<3>() - Vector::repeat(0.5)) * 0.6 * dp)
         .collect();
     let none = [[0.0; 3]; 3];
     let side = PairSide {
@@ -53,13 +53,13 @@ fn the_slope_of_a_linear_field_is_exact_however_particles_lie() {
         found[0] += plain;
         found[1] += Vector::from_fn(|i, _| plain[i] + (0..3).map(|j| form[i][j] * plain[j]).sum::<f64>());
     }
-    // Some hundred terms in f64; as it is the kernel is off by some per cent on such a cloud.
+    // Rounding of about a hundred terms in f64. The uncorrected kernel is wrong by some per cent on this cloud.
     assert!((found[1] - slope).norm() < 1e-12 * slope.norm(), "{:?}", found[1]);
     assert!((found[0] - slope).norm() > 1e-3 * slope.norm(), "{:?}", found[0]);
 }
 
 #[test]
-fn momentum_of_water_and_body_is_kept() {
+fn corrected_gradients_conserve_the_momentum_of_water_and_body() {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.gradient, model.pair_loop, model.gravity) =
@@ -77,14 +77,14 @@ fn momentum_of_water_and_body_is_kept() {
     for _ in 0..300 {
         sim.step().expect("a calm drop");
     }
-    // Forces are odd under the swap of a pair bit by bit; what is left is round-off of sums over some hundred particles.
+    // Pair forces are antisymmetric bit for bit; round-off of sums over some hundred particles remains.
     let off = (momentum(&sim) - start).norm() / start.norm();
-    assert!(off < 1e-12, "{off:e} of the momentum made");
+    assert!(off < 1e-12, "the momentum changed by {off:e} of itself");
 }
 
-/// What is left of the height of a standing wave, 1 m long between two walls, after four periods, as the root of the mean square of the
-/// velocities at their largest.
-fn left(gradient: PressureGradient) -> f64 {
+/// Remaining fraction of the amplitude of a standing wave, 1 m long between two walls, after four periods. It is the ratio of the
+/// largest rms velocities.
+fn remaining_amplitude(gradient: PressureGradient) -> f64 {
     let (dp, depth, height) = (0.02, 0.4, 0.06);
     let viscosity = Viscosity::Laminar(Laminar { nu0: 1e-6 });
     let model = Model { gradient, viscosity, ..Model::water(2, dp, depth) };
@@ -93,7 +93,7 @@ fn left(gradient: PressureGradient) -> f64 {
     let levels = vec![depth; water.len()];
     let mut sim =
         Simulation::new(Setup::new(model, water, levels, vec![common::tank([1.0, 0.8], dp)])).expect("a setup");
-    // The wave as it passes through its flat state: potential flow of the first mode.
+    // The wave starts with a flat surface: potential flow of the first mode.
     let omega = (9.81 * k * (k * depth).tanh()).sqrt();
     let speed = 0.5 * height * omega / (k * depth).sinh();
     sim.set_water_velocity(|r| {
@@ -114,15 +114,16 @@ fn left(gradient: PressureGradient) -> f64 {
 }
 
 #[test]
-fn a_standing_wave_loses_less_of_its_height() {
-    let (plain, corrected) = (left(PressureGradient::Plain), left(PressureGradient::Corrected));
-    // What is lost is the kernel's: by a fifth less at least (by nearly a half in a wave of 90 dp, docs/explanation/validation.md).
-    assert!(1.0 - corrected < 0.8 * (1.0 - plain), "left: {plain} plain, {corrected} corrected");
-    assert!(corrected < 1.0, "no energy is made: {corrected}");
+fn corrected_gradients_damp_a_standing_wave_less_than_plain_ones() {
+    let (plain, corrected) =
+        (remaining_amplitude(PressureGradient::Plain), remaining_amplitude(PressureGradient::Corrected));
+    // Kernel errors cause the damping. It drops by a fifth at least, and by nearly a half in a wave of 90 dp (docs/explanation/validation.md).
+    assert!(1.0 - corrected < 0.8 * (1.0 - plain), "remaining amplitude: {plain} plain, {corrected} corrected");
+    assert!(corrected < 1.0, "the wave gains no energy: {corrected}");
 }
 
 #[test]
-fn what_it_does_not_go_with_is_refused() {
+fn corrected_gradients_with_the_cubic_kernel_or_with_shifting_are_refused() {
     let of = |kernel, shifting| Model {
         gradient: PressureGradient::Corrected,
         kernel,

@@ -1,4 +1,4 @@
-//! Periodic sides: what leaves at one comes in at the other, and the water does not notice where they are.
+//! Periodic sides: results do not depend on their position, and particles and momentum are conserved.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use pontoon::{
     sph::{particle_shifting::Shift, viscosity::Laminar},
 };
 
-use crate::common::{self, Dice};
+use crate::common::{self, Random};
 
 const DP: f64 = 0.05;
 
@@ -23,13 +23,13 @@ fn model() -> Model {
     model
 }
 
-/// A square metre of water, periodic from (`x`, `y`) on, its particles off their lattice, that swirls.
+/// A square metre of swirling water, periodic from (`x`, `y`), with particles displaced from the lattice.
 fn swirl(model: Model, x: f64, y: f64) -> Simulation<2> {
-    let mut dice = Dice(7);
-    let off = |r: Vector<2>, dice: &mut Dice| r + (dice.point::<2>() - Vector::repeat(0.5)) * (0.2 * DP);
+    let mut random = Random(7);
+    let off = |r: Vector<2>, random: &mut Random| r + (random.point::<2>() - Vector::repeat(0.5)) * (0.2 * DP);
     let wrap = |r: f64, from: f64| from + (r - from).rem_euclid(1.0);
     let water: Vec<Vector<2>> =
-        common::lattice([0.0, 0.0], [1.0, 1.0], DP).into_iter().map(|r| off(r, &mut dice)).collect();
+        common::lattice([0.0, 0.0], [1.0, 1.0], DP).into_iter().map(|r| off(r, &mut random)).collect();
     let velocity = water.iter().map(|r| Vector::from([-(TAU * r[1]).sin(), (TAU * r[0]).sin()])).collect();
     let pressure = water.iter().map(|r| 2000.0 + 300.0 * (TAU * r[0]).cos()).collect();
     let water: Vec<_> = water.iter().map(|r| Vector::from([wrap(r[0], x), wrap(r[1], y)])).collect();
@@ -40,10 +40,10 @@ fn swirl(model: Model, x: f64, y: f64) -> Simulation<2> {
 }
 
 #[test]
-fn the_water_does_not_feel_where_the_sides_are() {
-    for (sweep, bound) in [(PairLoopKind::Reference, 1e-9), (PairLoopKind::Fast, 1e-3)] {
+fn the_position_of_the_periodic_sides_does_not_change_the_flow() {
+    for (pair_loop, bound) in [(PairLoopKind::Reference, 1e-9), (PairLoopKind::Fast, 1e-3)] {
         let at = |x: f64, y: f64| {
-            let mut sim = swirl(Model { pair_loop: sweep, ..model() }, x, y);
+            let mut sim = swirl(Model { pair_loop, ..model() }, x, y);
             (0..20).for_each(|_| sim.step().expect("a sound run"));
             let fluid = sim.system().fluid();
             let mut v = vec![Vector::<2>::zeros(); fluid.len()];
@@ -51,14 +51,14 @@ fn the_water_does_not_feel_where_the_sides_are() {
             v
         };
         let (here, there) = (at(0.0, 0.0), at(0.37, -0.61));
-        // Sums in another order: rounding, which 20 steps let grow; lanes round in single precision.
+        // Sums are in another order, and 20 steps amplify the rounding. SIMD lanes round in single precision.
         let off = here.iter().zip(&there).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        assert!(off < bound, "{sweep:?}: {off} m/s");
+        assert!(off < bound, "{pair_loop:?}: {off} m/s");
     }
 }
 
 #[test]
-fn nobody_is_lost_and_momentum_stays() {
+fn periodic_sides_conserve_particles_and_momentum() {
     let mut sim = swirl(model(), 0.0, 0.0);
     let (before, mass) = (common::water_momentum(&sim), sim.system().particle_mass());
     let n = sim.system().fluid().len();
@@ -68,19 +68,18 @@ fn nobody_is_lost_and_momentum_stays() {
     let fluid = sim.system().fluid();
     let mut ids = fluid.id.to_vec();
     ids.sort_unstable();
-    assert!(ids.iter().copied().eq(0..n as u32), "every particle is there once");
-    // Between new lists a particle may have gone a little beyond its side.
+    assert!(ids.iter().copied().eq(0..n as u32), "every particle is present once");
+    // Between two rebuilds of the neighbour lists a particle may lie slightly outside its side.
     assert!(fluid.r.iter().all(|r| r.iter().all(|x| (-DP..1.0 + DP).contains(x))));
-    // A pair gives what it takes, but for the last bit of an image's place: single precision of the largest force.
+    // Pair forces cancel except for the last bit of the position of an image: single precision of the largest force.
     let drift = (common::water_momentum(&sim) - before).norm();
     assert!(drift < 1e-5 * n as f64 * mass, "{drift} kg m/s");
 }
 
 #[test]
-fn a_resumed_run_goes_on_to_the_same_bits_and_so_does_any_number_of_threads() {
+fn a_periodic_run_has_the_same_bits_after_a_restart_and_on_any_number_of_threads() {
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| {
+        common::on_threads(threads, || {
             let mut sim = swirl(model(), 0.0, 0.0);
             (0..60).for_each(|_| sim.step().expect("a sound run"));
             let kept = sim.save().expect("a state");
@@ -97,7 +96,7 @@ fn a_resumed_run_goes_on_to_the_same_bits_and_so_does_any_number_of_threads() {
 }
 
 #[test]
-fn walls_take_from_a_driven_channel_what_drives_it() {
+fn the_wall_drag_in_a_steady_periodic_channel_equals_the_driving_force() {
     // In steady flow the drag of both walls is the weight of the water along the channel, images not counted.
     let (height, length, g) = (1.0, 0.5, 0.8);
     let mut model = Model { gravity: vec![g, 0.0], shifting: Shifting::None, diffusion: Diffusion::None, ..model() };
@@ -116,12 +115,12 @@ fn walls_take_from_a_driven_channel_what_drives_it() {
     }
     let drag: f64 = sim.system().solids().iter().map(|s| s.load.force[0]).sum();
     let driven = 1000.0 * height * length * g;
-    // After five times H²/(π² ν) seven thousandths are still on their way.
+    // The flow approaches its steady state with the time H²/(π² ν); after five of them seven thousandths remain.
     assert!((drag / driven - 1.0).abs() < 0.02, "{drag} N/m of {driven} N/m");
 }
 
 #[test]
-fn sides_that_cannot_be_are_refused() {
+fn invalid_periodic_sides_are_refused() {
     let setup = |from: f64, to: f64, solids| {
         let water = common::lattice([0.0, 0.0], [1.0, 1.0], DP);
         let levels = vec![0.0; water.len()];

@@ -1,4 +1,4 @@
-//! The fast sweep against the oracle, on real states: what it rounds is far below what a step changes.
+//! The SIMD pair loop against the reference on states of real runs: its rounding is far below the change in a step.
 
 use pontoon::{
     geometry::Shape,
@@ -24,26 +24,26 @@ use pontoon::{
     },
 };
 
-use crate::common::{self, Dice};
+use crate::common::{self, Random};
 
-/// A simulation with one sweep, and then the same state under another.
-fn under<const D: usize>(setup: &Setup<D>, sweep: PairLoopKind, state: &[u8]) -> Simulation<D>
+/// The simulation of `setup` in `state` with this pair loop.
+fn under<const D: usize>(setup: &Setup<D>, pair_loop: PairLoopKind, state: &[u8]) -> Simulation<D>
 where
     Dim<D>: Dimension<D>,
 {
     let mut setup = setup.clone();
-    setup.model.pair_loop = sweep;
+    setup.model.pair_loop = pair_loop;
     let mut sim = Simulation::new(setup).expect("a sound setup");
     sim.restore(state).expect("the same scene");
     sim.update_rates();
     sim
 }
 
-/// Sums of the sizes of all terms on a water particle: of its acceleration and of its density's rate.
+/// Sums of the magnitudes of all terms of a fluid particle: of its acceleration and of its density rate.
 fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
     let system = sim.system();
     let (h, c0, rho0, dp) = (system.model().h, system.model().c0, system.model().rho0, system.model().dp);
-    let (fluid, skin) = (system.fluid(), system.boundary());
+    let (fluid, boundary) = (system.fluid(), system.boundary());
     let (mut force, mut rate) = (0.0, 0.0);
     let mut meet = |r: &Vector<D>, v: &Vector<D>, rho: f64| {
         let (r, v) = (fluid.r[a] - r, fluid.v[a] - v);
@@ -54,7 +54,7 @@ fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
         let pressure = (system.pressure(fluid.rho[a]).abs() + system.pressure(rho).abs()) / rho0;
         let viscous = 0.02 * c0 * h * v.norm() / r.norm().max(0.1 * h);
         force += (pressure + viscous) * grad;
-        // Diffusion: the difference of densities and, taken off it, that of still water.
+        // Diffusion: the difference of densities and, subtracted from it, the hydrostatic one.
         let differences = (rho - fluid.rho[a]).abs() / rho0 + system.gravity().dot(&r).abs() / (c0 * c0);
         rate += (v.norm() + 0.2 * c0 * h * differences / r.norm().max(0.1 * h)) * grad * rho0;
     };
@@ -63,41 +63,42 @@ fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
             meet(&fluid.r[b], &fluid.v[b], fluid.rho[b]);
         }
     });
-    system.visit_boundary_near(&fluid.r[a], &mut |b, _, _| meet(&skin.r[b], &skin.v[b], skin.rho[b]));
+    system.visit_boundary_near(&fluid.r[a], &mut |b, _, _| meet(&boundary.r[b], &boundary.v[b], boundary.rho[b]));
     (force, rate)
 }
 
-/// Holds every sweep in lanes to the oracle on one state.
-fn agrees<const D: usize>(name: &str, setup: &Setup<D>, state: &[u8])
+/// Asserts that the SIMD pair loop agrees with the reference on one state.
+fn assert_agrees<const D: usize>(name: &str, setup: &Setup<D>, state: &[u8])
 where
     Dim<D>: Dimension<D>,
 {
-    let oracle = under(setup, PairLoopKind::Reference, state);
-    let of = oracle.system();
-    let n = of.fluid().len();
-    let sizes: Vec<(f64, f64)> = (0..n).map(|i| sizes(&oracle, i)).collect();
+    let reference = under(setup, PairLoopKind::Reference, state);
+    let expected = reference.system();
+    let n = expected.fluid().len();
+    let sizes: Vec<(f64, f64)> = (0..n).map(|i| sizes(&reference, i)).collect();
     let most = sizes.iter().fold((0.0f64, 0.0f64), |m, s| (m.0.max(s.0), m.1.max(s.1)));
-    let all_forces: f64 = sizes.iter().map(|s| s.0).sum::<f64>() * of.particle_mass();
+    let all_forces: f64 = sizes.iter().map(|s| s.0).sum::<f64>() * expected.particle_mass();
     let fast = under(setup, PairLoopKind::Fast, state);
-    let with = fast.system();
+    let found = fast.system();
     for (i, size) in sizes.iter().enumerate() {
-        let dv = (with.fluid_acceleration(i) - of.fluid_acceleration(i)).norm();
-        let drho = (with.fluid_density_rate(i) - of.fluid_density_rate(i)).abs();
-        // The bounds of docs/explanation/performance.md: a particle's own terms, and the largest for one at the rim.
+        let dv = (found.fluid_acceleration(i) - expected.fluid_acceleration(i)).norm();
+        let drho = (found.fluid_density_rate(i) - expected.fluid_density_rate(i)).abs();
+        // The bounds of docs/explanation/performance.md: relative to the terms of the particle, plus a fraction of the largest
+        // for particles with a neighbour at the edge of the support.
         assert!(dv <= 2e-5 * size.0 + 2e-6 * most.0, "{name}: dv {i} off by {dv}");
         assert!(drho <= 2e-5 * size.1 + 2e-6 * most.1, "{name}: drho {i} off by {drho}");
     }
-    // What the water loses, walls and bodies get: the rest is rounding of the sums.
-    let water: Vector<D> = (0..n).map(|i| with.fluid_acceleration(i) - with.gravity()).sum::<Vector<D>>();
-    let solids: Vector<D> = with.solids().iter().map(|s| s.load.force).sum();
-    let rest = (water * with.particle_mass() + solids).norm();
-    assert!(rest < 1e-7 * all_forces, "{name}: {rest} N of {all_forces} N made of nothing");
-    for (a, b) in with.solids().iter().zip(of.solids()) {
+    // The forces on water, walls and bodies cancel; the remainder is rounding of the sums.
+    let water: Vector<D> = (0..n).map(|i| found.fluid_acceleration(i) - found.gravity()).sum::<Vector<D>>();
+    let solids: Vector<D> = found.solids().iter().map(|s| s.load.force).sum();
+    let rest = (water * found.particle_mass() + solids).norm();
+    assert!(rest < 1e-7 * all_forces, "{name}: momentum error of {rest} N in forces of {all_forces} N");
+    for (a, b) in found.solids().iter().zip(expected.solids()) {
         let off = (a.load.force - b.load.force).norm();
         assert!(off < 1e-6 * all_forces, "{name}: load on {} off by {off} N", a.spec.name);
     }
-    // The peak may be a pair that one sees within and the other without the support, by a rounding.
-    let (a, b) = (with.step_limits(), of.step_limits());
+    // The peak may come from a pair that rounding puts inside the support in one loop and outside in the other.
+    let (a, b) = (found.step_limits(), expected.step_limits());
     assert!((a.acceleration / b.acceleration - 1.0).abs() < 1e-4, "{name}: {a:?} {b:?}");
     assert!((a.approach_rate - b.approach_rate).abs() <= 1e-4 * b.approach_rate + 1e-6, "{name}: {a:?} {b:?}");
 }
@@ -125,67 +126,67 @@ fn dam<const D: usize>(model: Model, size: [f64; D], origin: f64) -> Setup<D> {
 }
 
 #[test]
-fn a_dam_break_after_impact() {
+fn simd_agrees_with_the_reference_in_a_dam_break_after_impact() {
     let mut model = Model::water(2, 0.0125, 0.3);
     model.scheme = TimeScheme::Verlet { euler_every: 50 };
     let setup = dam(model, [0.8, 0.3], 0.0);
-    agrees("2-D", &setup, &run(&setup, 0.35));
+    assert_agrees("2-D", &setup, &run(&setup, 0.35));
     let setup = dam(Model::water(3, 0.025, 0.3), [0.6, 0.15, 0.3], 0.0);
-    agrees("3-D", &setup, &run(&setup, 0.3));
+    assert_agrees("3-D", &setup, &run(&setup, 0.3));
 }
 
 #[test]
-fn a_kilometre_from_the_origin() {
+fn simd_agrees_with_the_reference_a_kilometre_from_the_origin() {
     let setup = dam(Model::water(2, 0.02, 0.3), [0.8, 0.3], 1000.0);
-    agrees("far", &setup, &run(&setup, 0.1));
+    assert_agrees("far", &setup, &run(&setup, 0.1));
 }
 
 #[test]
-fn a_floating_box_and_a_light_one() {
+fn simd_agrees_with_the_reference_for_a_floating_box_of_normal_and_of_low_density() {
     for density in [500.0, 20.0] {
         let mut setup = dam(Model::water(2, 0.02, 0.3), [1.0, 0.3], 0.0);
         setup.water = common::lattice([0.0, 0.0], [1.0, 0.3], 0.02);
         setup.water.retain(|r| !((r[0] - 0.5).abs() < 0.1 && r[1] > 0.26));
         setup.surface_levels = vec![0.3; setup.water.len()];
         setup.solids.push(common::float(Shape::Box { size: Vector::from([0.2, 0.1]) }, [0.5, 0.31], density));
-        agrees("float", &setup, &run(&setup, 0.15));
+        assert_agrees("float", &setup, &run(&setup, 0.15));
     }
 }
 
 #[test]
-fn walls_that_settle() {
+fn simd_agrees_with_the_reference_for_relaxed_adami_walls() {
     let mut model = Model::water(2, 0.0125, 0.3);
     model.walls = Walls::RelaxedAdami;
     let setup = dam(model, [0.8, 0.3], 0.0);
-    agrees("2-D", &setup, &run(&setup, 0.35));
+    assert_agrees("2-D", &setup, &run(&setup, 0.35));
     let mut model = Model::water(3, 0.025, 0.3);
     model.walls = Walls::RelaxedAdami;
     let setup = dam(model, [0.6, 0.15, 0.3], 0.0);
-    agrees("3-D", &setup, &run(&setup, 0.3));
+    assert_agrees("3-D", &setup, &run(&setup, 0.3));
 }
 
 #[test]
-fn walls_that_let_water_slip_and_that_do_not() {
+fn simd_agrees_with_the_reference_for_free_slip_and_no_slip_walls() {
     for slip in [Slip::None, Slip::Free] {
         let setup = dam(Model { slip, ..Model::water(2, 0.0125, 0.3) }, [0.8, 0.3], 0.0);
-        agrees(&format!("2-D {slip:?}"), &setup, &run(&setup, 0.35));
+        assert_agrees(&format!("2-D {slip:?}"), &setup, &run(&setup, 0.35));
     }
     let setup = dam(Model { slip: Slip::None, ..Model::water(3, 0.025, 0.3) }, [0.6, 0.15, 0.3], 0.0);
-    agrees("3-D", &setup, &run(&setup, 0.3));
+    assert_agrees("3-D", &setup, &run(&setup, 0.3));
 }
 
 #[test]
-fn a_deep_column_at_rest() {
+fn simd_agrees_with_the_reference_in_a_deep_column_at_rest() {
     let (dp, depth) = (0.01, 10.0);
     let mut setup = dam(Model::water(2, dp, depth), [0.12, depth], 0.0);
     setup.water = common::lattice([0.0, 0.0], [0.12, depth], dp);
     setup.surface_levels = vec![depth; setup.water.len()];
-    agrees("deep", &setup, &run(&setup, 1e-4));
+    assert_agrees("deep", &setup, &run(&setup, 1e-4));
 }
 
 #[test]
-fn a_body_that_crosses_the_blocks() {
-    // A driven box goes through three slabs (each four dp thick) and the water with it.
+fn simd_agrees_with_the_reference_for_a_body_that_crosses_slabs_of_cells() {
+    // A driven box crosses three slabs of four dp each and moves the water.
     let mut setup = dam(Model::water(2, 0.02, 0.3), [1.2, 0.3], 0.0);
     setup.water = common::lattice([0.0, 0.0], [1.2, 0.3], 0.02);
     setup.water.retain(|r| (r[0] - 0.3).abs() > 0.06 || (r[1] - 0.15).abs() > 0.06);
@@ -196,20 +197,20 @@ fn a_body_that_crosses_the_blocks() {
     );
     let shape = Shape::Box { size: Vector::from([0.12, 0.12]) };
     setup.solids.push(common::solid("box", shape, Pose::at(Vector::from([0.3, 0.15])), Role::Driven(motion)));
-    agrees("crossing", &setup, &run(&setup, 0.26));
+    assert_agrees("crossing", &setup, &run(&setup, 0.26));
 }
 
 #[test]
-fn one_particle_and_a_drop_that_flies_through_many_columns() {
+fn simd_exerts_no_force_on_a_lone_particle_or_in_a_drop_in_uniform_flight() {
     let mut model = Model::water(3, 0.02, 0.3);
     let alone = Setup::new(model.clone(), vec![Vector::<3>::zeros()], vec![0.0], vec![]);
     let sim = Simulation::new(alone).expect("a sound setup");
     assert_eq!(
         sim.system().fluid_acceleration(0),
         sim.system().gravity(),
-        "a pad is no neighbour, and nobody is their own"
+        "a particle is not its own neighbour, and padding is not a neighbour"
     );
-    // Without gravity a drop keeps its shape as it flies ten columns far; its lists are made anew on the way.
+    // Without gravity a drop keeps its shape over a flight of ten columns; the neighbour lists are rebuilt during it.
     model.gravity = vec![0.0; 3];
     let water = common::lattice([0.0; 3], [0.1, 0.1, 0.1], 0.02);
     let domain = Bounds { min: Vector::repeat(-1.0), max: Vector::repeat(1.0) };
@@ -224,14 +225,14 @@ fn one_particle_and_a_drop_that_flies_through_many_columns() {
     }
     let end = sim.system().fluid();
     for (id, r) in end.id.iter().zip(end.r) {
-        let from = ids.iter().position(|i| i == id).expect("nobody is lost");
+        let from = ids.iter().position(|i| i == id).expect("no particle is lost");
         let way = r - start[from] - Vector::from([3.0, 2.0, -1.0]) * sim.time();
-        // No force acts at ρ₀; what single precision of equal velocities leaves is nothing.
+        // At ρ₀ no force acts, and differences of equal velocities are exactly zero in single precision.
         assert!(way.norm() < 1e-12, "{id}: {way:?}");
     }
 }
 
-/// Every combination of laws that a scene can name: one step from a stirred state ends where the oracle's does.
+/// Every combination of laws that a scene can select: one step from a disturbed state agrees with the reference.
 fn every_law<const D: usize>(size: [f64; D])
 where
     Dim<D>: Dimension<D>,
@@ -255,41 +256,41 @@ where
             (model.kernel, model.viscosity) = (kernel, viscosity);
             (model.diffusion, model.shifting) = (diffusion, shifting);
             model.gradient = PressureGradient::Plain;
-            ends_as_the_oracle(&model, size);
+            assert_step_agrees(&model, size);
             model.gradient = PressureGradient::Corrected;
             if model.conflict().is_none() {
-                ends_as_the_oracle(&model, size);
+                assert_step_agrees(&model, size);
             }
         }
     }
 }
 
-/// One step from a stirred state, of a column in a tank of that size.
-fn ends_as_the_oracle<const D: usize>(model: &Model, size: [f64; D])
+/// Asserts that one step from a disturbed state, of a column in a tank of that size, agrees with the reference.
+fn assert_step_agrees<const D: usize>(model: &Model, size: [f64; D])
 where
     Dim<D>: Dimension<D>,
 {
     let setup = dam(model.clone(), size, 0.0);
     let mut sim = Simulation::new(setup.clone()).expect("a sound setup");
-    let mut dice = Dice(9);
-    let swirl = Vector::<D>::from_fn(|_, _| 4.0 + dice.roll());
+    let mut random = Random(9);
+    let swirl = Vector::<D>::from_fn(|_, _| 4.0 + random.number());
     sim.set_water_velocity(|r| Vector::from_fn(|i, _| (swirl[i] * (r[(i + 1) % D] + 0.3)).sin()));
     for _ in 0..3 {
         sim.step().expect("a sound run");
     }
     let state = sim.save().expect("a state");
-    let mut oracle = under(&setup, PairLoopKind::Reference, &state);
-    oracle.step().expect("a sound run");
+    let mut reference = under(&setup, PairLoopKind::Reference, &state);
+    reference.step().expect("a sound run");
     let mut fast = under(&setup, PairLoopKind::Fast, &state);
     fast.step().expect("a sound run");
     let Model { kernel, gradient, viscosity, diffusion, shifting, .. } = model;
     let what = format!("{kernel:?} {gradient:?} {viscosity:?} {diffusion:?} {shifting:?} in {D}-D");
-    // Single precision: 1e-6 of the largest change of a step was seen.
-    let dt = oracle.dt();
+    // Single precision: 1e-6 of the largest change of a step was observed.
+    let dt = reference.dt();
     assert!((fast.dt() / dt - 1.0).abs() < 1e-5, "{what}: {} {dt}", fast.dt());
-    let most = oracle.system().step_limits().acceleration * dt;
-    for i in 0..oracle.system().fluid().len() {
-        let (a, b) = (fast.system().fluid(), oracle.system().fluid());
+    let most = reference.system().step_limits().acceleration * dt;
+    for i in 0..reference.system().fluid().len() {
+        let (a, b) = (fast.system().fluid(), reference.system().fluid());
         assert!((a.v[i] - b.v[i]).norm() < 1e-5 * most, "{what}: v of {i}");
         assert!((a.r[i] - b.r[i]).norm() < 1e-4 * most * dt + 1e-6 * dt, "{what}: r of {i}");
         assert!((a.rho[i] - b.rho[i]).abs() < 1e-3, "{what}: density of {i}");
@@ -297,60 +298,65 @@ where
 }
 
 #[test]
-fn every_law_in_two_dimensions() {
+fn simd_agrees_with_the_reference_for_every_law_in_two_dimensions() {
     every_law([0.8, 0.3]);
 }
 
 #[test]
-fn every_law_in_three_dimensions() {
+fn simd_agrees_with_the_reference_for_every_law_in_three_dimensions() {
     every_law([0.5, 0.25, 0.3]);
 }
 
-/// All sums of a stirred cloud by lanes with the instructions of `level`.
-fn with_instructions(level: simd::Level, water: &Particles<3>, skin: &Particles<3>, model: &Model) -> Vec<PairSums<3>> {
+/// All pair sums of a disordered cloud with the instruction set `level`.
+fn with_instructions(
+    level: simd::Level,
+    water: &Particles<3>,
+    boundary: &Particles<3>,
+    model: &Model,
+) -> Vec<PairSums<3>> {
     let mut near = NeighbourLists::new(model.support_radius(), model.dp, Some(level));
-    near.build(&water.r, &skin.r);
+    near.build(&water.r, &boundary.r);
     let units = Units { length: NeighbourLists::<3>::length_unit(model.support_radius()), time: model.h / model.c0 };
-    let (medium, state) = (model.fluid_properties::<3>(), EquationOfState::new(model.c0, model.gamma));
-    let counted = medium.in_units(&units);
-    let wall = ((Pressure, Continuity), Artificial { alpha: 0.1 }.term(&counted));
-    let inner = (wall, Fourtakas::default().term(&counted));
-    let kernel = Wendland::new(counted.h, 3);
-    let mut sweep = interaction::compile(kernel, inner, wall, &counted, units, Some(level));
-    let (mut sums, mut on_skin) =
+    let (properties, state) = (model.fluid_properties::<3>(), EquationOfState::new(model.c0, model.gamma));
+    let scaled = properties.in_units(&units);
+    let wall = ((Pressure, Continuity), Artificial { alpha: 0.1 }.term(&scaled));
+    let inner = (wall, Fourtakas::default().term(&scaled));
+    let kernel = Wendland::new(scaled.h, 3);
+    let mut pair_loop = interaction::compile(kernel, inner, wall, &scaled, units, Some(level));
+    let (mut sums, mut on_boundary) =
         (vec![PairSums::zero(); water.len()], vec![PairSums::zero(); near.boundary_near_fluid().len()]);
-    let (shown, stress, forms, marks) = (&skin.v[..], &[][..], &[][..], &[][..]);
+    let (boundary_velocity, stress, gradient_correction, suppressed) = (&boundary.v[..], &[][..], &[][..], &[][..]);
     let input = PairLoopInput {
         neighbours: &near,
         fluid: water,
-        boundary: skin,
-        boundary_velocity: shown,
+        boundary,
+        boundary_velocity,
         stress,
-        gradient_correction: forms,
-        shifting_suppressed: marks,
-        properties: &medium,
+        gradient_correction,
+        shifting_suppressed: suppressed,
+        properties: &properties,
         equation_of_state: &state,
     };
-    sweep.rates(&input, &mut PairLoopOutput { fluid: &mut sums, boundary: &mut on_skin, auxiliary: &mut [] });
-    sums.into_iter().chain(on_skin).collect()
+    pair_loop.rates(&input, &mut PairLoopOutput { fluid: &mut sums, boundary: &mut on_boundary, auxiliary: &mut [] });
+    sums.into_iter().chain(on_boundary).collect()
 }
 
 #[test]
-fn every_instruction_set_gives_the_same_bits() {
+fn every_instruction_set_computes_the_same_bits() {
     let model = Model::water(3, 0.05, 0.5);
-    let mut dice = Dice(4);
-    let (mut water, mut skin) = (Particles::default(), Particles::default());
+    let mut random = Random(4);
+    let (mut water, mut boundary) = (Particles::default(), Particles::default());
     for r in common::lattice([0.0; 3], [0.6, 0.5, 0.5], model.dp) {
-        water.push(r + dice.point::<3>() * 0.3 * model.dp, 1000.0 + dice.roll());
+        water.push(r + random.point::<3>() * 0.3 * model.dp, 1000.0 + random.number());
     }
     for v in &mut water.v {
-        *v = dice.point();
+        *v = random.point();
     }
     for r in common::lattice([0.0, 0.0, -0.2], [0.6, 0.5, 0.2], model.dp) {
-        skin.push(r, 1000.0);
+        boundary.push(r, 1000.0);
     }
-    // A processor has one or two; both round a multiplication and an addition once.
-    let all = simd::instruction_sets().into_iter().map(|level| with_instructions(level, &water, &skin, &model));
+    // A processor has one or two sets; all of them round a multiplication and an addition once.
+    let all = simd::instruction_sets().into_iter().map(|level| with_instructions(level, &water, &boundary, &model));
     let all: Vec<_> = all.collect();
     assert!(all.iter().all(|sums| *sums == all[0]));
 }

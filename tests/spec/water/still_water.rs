@@ -1,4 +1,4 @@
-//! Still water stays still.
+//! Still water: hydrostatic pressure, constant level and small spurious velocities.
 
 use pontoon::{
     model::{Model, PressureGradient, Shifting, TimeScheme, Walls},
@@ -37,11 +37,14 @@ fn profile(sim: &Simulation<2>) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn the_pressure_is_hydrostatic_and_the_level_stands() {
+fn still_water_keeps_hydrostatic_pressure_and_its_level() {
     for walls in [Walls::Dynamic, Walls::RelaxedAdami] {
-        stands(&still_tank(Model { walls, ..Model::water(2, DP, DEPTH) }, 5.0));
-        stands(&still_tank(Model { walls, gradient: PressureGradient::Corrected, ..Model::water(2, DP, DEPTH) }, 5.0));
-        // At h = 1.7 dp rows of the lattice fall out of step now and then, and stir the water by up to 3 % of √(g depth).
+        assert_hydrostatic(&still_tank(Model { walls, ..Model::water(2, DP, DEPTH) }, 5.0));
+        assert_hydrostatic(&still_tank(
+            Model { walls, gradient: PressureGradient::Corrected, ..Model::water(2, DP, DEPTH) },
+            5.0,
+        ));
+        // At h = 1.7 dp rows of the lattice rearrange occasionally and cause velocities of up to 3 % of √(g depth).
         let wide = Model { walls, h: 2.0 * DP, ..Model::water(2, DP, DEPTH) };
         let mut sim = still_tank(wide, 1.0);
         while sim.time() < 5.0 {
@@ -49,26 +52,26 @@ fn the_pressure_is_hydrostatic_and_the_level_stands() {
             let fastest = sim.system().fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
             assert!(fastest < 0.01 * (9.81 * DEPTH).sqrt(), "{fastest} m/s in still water at {} s", sim.time());
         }
-        stands(&sim);
+        assert_hydrostatic(&sim);
     }
 }
 
-fn stands(sim: &Simulation<2>) {
+fn assert_hydrostatic(sim: &Simulation<2>) {
     for (p, still) in profile(sim) {
         // 2 % of the pressure at the bed, the project's bound for Fourtakas' term.
         assert!((p - still).abs() < 0.02 * 9810.0 * DEPTH, "{p} Pa for {still} Pa");
     }
     let fluid = sim.system().fluid();
     let mean = fluid.r.iter().map(|r| r[1]).sum::<f64>() / fluid.len() as f64;
-    // The surface is at twice the mean height.
+    // The surface is at twice the mean height of the particles.
     assert!((2.0 * mean - DEPTH).abs() < 0.5 * DP, "level {}", 2.0 * mean);
-    // Weight of the water on the tank, N/m, within the noise of a sound wave.
+    // Weight of the water on the tank, N/m, within the fluctuation of a sound wave.
     let weight = sim.system().solids()[0].load.force[1];
     assert!((weight / (-9810.0 * 0.4 * DEPTH) - 1.0).abs() < 0.02, "{weight} N/m");
 }
 
 #[test]
-fn verlet_and_shifting_keep_still_water_too() {
+fn verlet_and_particle_shifting_keep_the_level_of_still_water() {
     for (scheme, shifting) in [
         (TimeScheme::Verlet { euler_every: 50 }, Shifting::None),
         (TimeScheme::Symplectic, Shifting::Everywhere(Shift::default())),

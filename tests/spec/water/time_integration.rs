@@ -1,4 +1,4 @@
-//! Steppers: their order on motions whose solution is known or refines itself, and the length of a step.
+//! Time integration: order of convergence, exact free fall, and the step size.
 
 use pontoon::{
     coupling::stiffest_frequency,
@@ -13,7 +13,7 @@ use crate::common;
 
 const SCHEMES: [TimeScheme; 2] = [TimeScheme::Verlet { euler_every: 1_000_000 }, TimeScheme::Symplectic];
 
-/// A small drop that swings between round and flat, stepped by `dt` up to `until`.
+/// A small drop that oscillates between round and flat, run with step `dt` until `until`.
 fn drop(scheme: TimeScheme, dt: f64, until: f64) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.2);
@@ -27,7 +27,7 @@ fn drop(scheme: TimeScheme, dt: f64, until: f64) -> Simulation<2> {
     sim
 }
 
-/// Largest difference of place and of density between equal particles of two runs.
+/// Largest differences of position and of density between corresponding particles of two runs.
 fn apart(a: &Simulation<2>, b: &Simulation<2>) -> (f64, f64) {
     let (a, b) = (a.system().fluid(), b.system().fluid());
     let mut of_id = vec![0; b.len()];
@@ -38,20 +38,20 @@ fn apart(a: &Simulation<2>, b: &Simulation<2>) -> (f64, f64) {
 }
 
 #[test]
-fn both_schemes_are_of_second_order() {
+fn both_time_schemes_are_of_second_order() {
     for scheme in SCHEMES {
         let until = 0.02;
         let runs: Vec<_> = [2e-4, 1e-4, 5e-5].iter().map(|&dt| drop(scheme, dt, until)).collect();
         let (coarse, fine) = (apart(&runs[0], &runs[1]), apart(&runs[1], &runs[2]));
-        // Halving the step quarters the difference: 4, and between 3 and 5 with the next order in it.
-        for (name, ratio) in [("place", coarse.0 / fine.0), ("density", coarse.1 / fine.1)] {
+        // Halving the step quarters the difference: a ratio of 4, between 3 and 5 with the next order.
+        for (name, ratio) in [("position", coarse.0 / fine.0), ("density", coarse.1 / fine.1)] {
             assert!((3.0..5.0).contains(&ratio), "{scheme:?}: {name} {ratio}");
         }
     }
 }
 
 #[test]
-fn free_fall_is_exact() {
+fn free_fall_is_exact_with_both_time_schemes() {
     for scheme in SCHEMES {
         let mut model = Model::water(2, 0.01, 0.1);
         model.scheme = scheme;
@@ -61,20 +61,20 @@ fn free_fall_is_exact() {
             sim.step_to(until).unwrap();
         }
         let fluid = sim.system().fluid();
-        // Constant acceleration is integrated exactly by both: rounding only.
+        // Both schemes integrate a constant acceleration exactly: rounding only.
         assert!((fluid.r[0][1] + 0.5 * 9.81 * until * until).abs() < 1e-14, "{scheme:?}");
         assert!((fluid.v[0][1] + 9.81 * until).abs() < 1e-13, "{scheme:?}");
     }
 }
 
 #[test]
-fn a_step_is_as_long_as_force_and_sound_allow() {
+fn the_step_size_follows_the_limits_of_acceleration_sound_and_viscosity() {
     let model = Model::water(2, 0.01, 1.0);
     let mut sim = common::simulation(model.clone(), vec![Vector::from([0.0, 0.0])], 0.0, vec![]);
     sim.step().unwrap();
-    // A lone particle: nothing closes in, and √(h/g) is far longer than h/c₀.
+    // For a lone particle no pair approaches, and √(h/g) is far longer than h/c₀.
     assert_eq!(sim.dt(), model.cfl * (model.h / model.c0));
-    // Morris' limit; artificial viscosity is in the other two.
+    // Morris' limit for laminar viscosity; the other two limits cover artificial viscosity.
     assert_eq!(model.viscosity.step_limit(model.h), f64::INFINITY);
     let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
     assert_eq!(thick.viscosity.step_limit(model.h), model.h * model.h / 4.0);
@@ -88,16 +88,16 @@ fn a_step_is_as_long_as_force_and_sound_allow() {
 }
 
 #[test]
-fn a_body_on_water_swings_faster_by_the_root_of_its_mass() {
+fn the_stiffest_frequency_of_a_body_falls_with_the_square_root_of_its_mass() {
     use pontoon::{geometry::Shape, solid::FreeBody};
     let dp = 0.01;
-    let medium = Model::water(2, dp, 1.0).fluid_properties::<2>();
+    let properties = Model::water(2, dp, 1.0).fluid_properties::<2>();
     let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };
-    let of = |density| stiffest_frequency(&shape, &FreeBody::from_density(&shape, density), &medium);
+    let of = |density| stiffest_frequency(&shape, &FreeBody::from_density(&shape, density), &properties);
     assert!((of(10.0) / of(1000.0) - 10.0).abs() < 1e-9);
-    // Ten dp across: 36 springs ρ₀ c₀² in the outer layer, nine a side, a corner's along its diagonal. Along an axis
-    // they add up to 18 on the mass 100 ρ dp²; about the centre to 4 Σ (i + ½)² over a side of nine, 4·60 dp², on
-    // 100·100/6 ρ dp⁴, which is less.
-    let omega = medium.c0 / dp * (18.0f64 / 100.0).sqrt();
+    // The box is ten dp wide. Its outer layer acts as 36 springs ρ₀ c₀², nine a side, with those of the corners along the
+    // diagonals. Along an axis they sum to 18 on the mass 100 ρ dp². About the centre they sum to 4 Σ (i + ½)² over a
+    // side of nine, 4·60 dp², on 100·100/6 ρ dp⁴, which is less.
+    let omega = properties.c0 / dp * (18.0f64 / 100.0).sqrt();
     assert!((of(1000.0) / omega - 1.0).abs() < 0.02, "{}", of(1000.0) / omega);
 }

@@ -1,4 +1,4 @@
-//! Paddles that absorb: what comes to them does not go back, their own wave goes on, and their state is kept.
+//! Active absorption: reflected waves are absorbed, the generated wave continues, and the state is part of a checkpoint.
 
 use std::{f64::consts::TAU, path::Path};
 
@@ -10,9 +10,11 @@ use pontoon::{
     simulation::Simulation,
 };
 
-/// A basin one half of a wave long, whose left end is a box; water 0.12 m deep is in it, about to rise at the left. The wave
-/// is 1.2 m long: ω² = g k tanh kd.
-const BASIN: &str = r#"title     = "A standing wave is let go"
+use crate::common;
+
+/// A basin half a wavelength long with water 0.12 m deep and a box as its left end. The standing wave is about to rise at the
+/// left. Its length is 1.2 m: ω² = g k tanh kd.
+const BASIN: &str = r#"title     = "A standing wave is released"
 dimension = 2
 dp        = 0.01
 until     = 3.0
@@ -35,10 +37,10 @@ at    = { x = -0.025, bottom = 0.0 }
 END
 "#;
 
-/// Its period, s.
+/// Period of the standing wave, s.
 const PERIOD: f64 = 1.175;
 
-const TAKER: &str = "driven = { along = [1.0, 0.0], wave = { absorb = { period = 1.175 } } }";
+const ABSORBER: &str = "driven = { along = [1.0, 0.0], wave = { absorb = { period = 1.175 } } }";
 
 fn built(end: &str) -> Result<BuiltScene<2>, Error> {
     Scene::parse(&BASIN.replace("END", end), Path::new(""), &[])?.build()
@@ -49,9 +51,9 @@ fn basin(end: &str) -> Simulation<2> {
 }
 
 #[test]
-fn a_standing_wave_is_gone_after_one_period_before_a_paddle_that_absorbs() {
-    // Mean energy of the motion over the second period.
-    let left = |end: &str| {
+fn an_absorbing_paddle_removes_a_standing_wave_within_one_period() {
+    // Mean kinetic energy over the second period.
+    let mean_energy = |end: &str| {
         let mut sim = basin(end);
         let (mut sum, mut count) = (0.0, 0);
         while sim.time() < 2.0 * PERIOD {
@@ -62,14 +64,14 @@ fn a_standing_wave_is_gone_after_one_period_before_a_paddle_that_absorbs() {
         }
         sum / f64::from(count)
     };
-    let (wall, taker) = (left("fixed = true"), left(TAKER));
-    // In one period all of it has met the paddle once. By linear theory nothing is left but of the first moments, as the
-    // paddle sets out from rest: a fifth of the amplitude would be 0.04 of the energy.
-    assert!(taker < 0.04 * wall, "{taker} of {wall}");
+    let (wall, absorber) = (mean_energy("fixed = true"), mean_energy(ABSORBER));
+    // In one period the whole wave reaches the paddle once. In linear theory only the start from rest leaves a remainder. The bound
+    // is a fifth of the amplitude, which is 0.04 of the energy.
+    assert!(absorber < 0.04 * wall, "{absorber} of {wall}");
 }
 
 #[test]
-fn a_basin_in_tune_with_its_paddle_holds_twice_the_wave_and_no_more() {
+fn an_absorbing_paddle_limits_a_resonant_basin_to_twice_the_wave_height() {
     let mut sim = basin(
         "driven = { along = [1.0, 0.0], wave = { regular = { height = 0.02, period = 1.175 }, ramp = 1.175, absorb = true } }",
     );
@@ -82,41 +84,39 @@ fn a_basin_in_tune_with_its_paddle_holds_twice_the_wave_and_no_more() {
             (low, high) = (low.min(level), high.max(level));
         }
     }
-    // 2H at the wall, cos k(0.6 − 0.565) of it here. A paddle that does not absorb sends all back in step: after five periods
-    // ten times H. A fifth is the height that two dp of wave lose and gauges miss.
+    // 2H at the wall, times cos k(0.6 − 0.565) at the gauge. Without absorption the paddle reflects in phase, which gives ten times H
+    // after five periods. The bound of a fifth covers the loss of a wave of two dp and the error of the gauge.
     let share = (high - low) / (2.0 * 0.02 * (TAU / 1.2 * 0.035).cos());
     assert!((0.8..1.2).contains(&share), "{share}");
 }
 
 #[test]
-fn a_run_with_a_paddle_that_absorbs_goes_on_to_the_same_bits_on_any_number_of_threads() {
-    let steps = |sim: &mut Simulation<2>, n: usize| (0..n).for_each(|_| sim.step().unwrap());
+fn a_run_with_an_absorbing_paddle_has_the_same_bits_after_a_restart_and_on_any_number_of_threads() {
     let runs: Vec<Vec<u8>> = [1, 3]
         .into_iter()
         .map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                let mut sim = basin(TAKER);
-                steps(&mut sim, 150);
+            common::on_threads(threads, || {
+                let mut sim = basin(ABSORBER);
+                common::steps(&mut sim, 150);
                 sim.save().unwrap()
             })
         })
         .collect();
     assert!(runs[0] == runs[1]);
-    let mut first = basin(TAKER);
-    steps(&mut first, 70);
+    let mut first = basin(ABSORBER);
+    common::steps(&mut first, 70);
     let kept = first.save().unwrap();
-    let mut again = basin(TAKER);
+    let mut again = basin(ABSORBER);
     again.restore(&kept).unwrap();
-    assert!(again.save().unwrap() == kept, "what was kept comes back whole");
-    steps(&mut again, 80);
+    assert!(again.save().unwrap() == kept, "a restored state saves to the same bytes");
+    common::steps(&mut again, 80);
     assert!(again.save().unwrap() == runs[0]);
-    let place = |sim: &Simulation<2>| sim.system().solids()[1].kinematics.pose.position[0];
-    assert!((place(&again) + 0.025).abs() > 1e-4, "it has yielded");
+    let position = |sim: &Simulation<2>| sim.system().solids()[1].kinematics.pose.position[0];
+    assert!((position(&again) + 0.025).abs() > 1e-4, "the paddle moved to absorb");
 }
 
 #[test]
-fn words_of_absorption_that_cannot_be_meant_are_named_with_what_can() {
+fn invalid_absorption_keys_are_refused_with_the_key_and_a_remedy() {
     let wave = |words: &str| format!("driven = {{ along = [1.0, 0.0], wave = {{ {words} }} }}");
     let regular = "regular = { height = 0.02, period = 1.2 }";
     let cases: [(String, &str, &str); 8] = [
@@ -139,17 +139,17 @@ fn words_of_absorption_that_cannot_be_meant_are_named_with_what_can() {
 }
 
 #[test]
-fn what_a_paddle_absorbs_is_told_before_a_run() {
-    let told = |end: &str| {
+fn preflight_reports_the_absorbing_paddles() {
+    let absorbers = |end: &str| {
         let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built(end).unwrap();
         preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[]).absorbers
     };
-    assert!(told("fixed = true").is_empty());
-    let own = &told(TAKER)[0];
-    // The kernel's reach before the face: 2 · 1.7 dp.
+    assert!(absorbers("fixed = true").is_empty());
+    let own = &absorbers(ABSORBER)[0];
+    // The gauge stands one support radius before the face: 2 · 1.7 dp.
     assert!((own.period_s - 1.175).abs() < 1e-12 && (own.gauge_m - 0.034).abs() < 1e-12, "{own:?}");
     assert!(own.sends_back.iter().all(|(_, share)| (1e-4..0.1).contains(share)), "{own:?}");
     let flap = "driven = { hinge = [0.0, 0.0], wave = { regular = { height = 0.02, period = 1.2 }, absorb = { stroke = 0.2 } } }";
-    let own = &told(flap)[0];
+    let own = &absorbers(flap)[0];
     assert!((own.stroke_m - 0.2).abs() < 1e-12 && (own.period_s - 1.2).abs() < 1e-12, "{own:?}");
 }
