@@ -1,13 +1,10 @@
 //! Accelerated tanks and floors: the slope of the free surface, a float on it, and a body carried by friction.
 
-use std::path::Path;
-
 use pontoon::{
     Result,
     geometry::Shape,
     math::{Bounds, Pose, Vector, expression::Formula},
     model::Model,
-    scene::Scene,
     simulation::{Setup, Simulation},
     solid::{Constraints, Dim, FreeBody, HasEngine, Load, PrescribedMotion, Role, SolidSpec, TimeFunction},
 };

@@ -9,6 +9,8 @@ use pontoon::{
     solid::{Constraints, ContactSpec},
 };
 
+use crate::common;
+
 /// A tank (solid 0) with three floats (1 to 3), a steel beam (4) above them and a steel post (5).
 const SCENE: &str = r#"
 dimension = 2

@@ -1,4 +1,4 @@
-//! Contact skins: bodies touch that far outside their faces, at rest and in a blow, and the page shows it.
+//! Contact skins: bodies touch at the skin distance outside their faces, at rest and in a collision, and the report shows the skin.
 
 use std::{fs, path::Path};
 
@@ -14,14 +14,14 @@ use pontoon::{
 use serde_json::Value;
 use tiny_skia::Pixmap;
 
-use crate::common;
+use crate::common::{self, TestFolder};
 
 const G: f64 = 9.81;
 
 /// Thickness of a skin, m.
 const SKIN: f64 = 5e-3;
 
-/// A solid with its centre this high above the origin, m.
+/// A solid with its centre at `height` (m) above the origin.
 fn at_height<const D: usize>(name: &str, shape: Shape<D>, height: f64, role: Role<D>, skin: f64) -> SolidSpec<D> {
     let place = Vector::from_fn(|i, _| if i == D - 1 { height } else { 0.0 });
     SolidSpec { contact_skin: skin, ..common::solid(name, shape, Pose::at(place), role) }
@@ -47,7 +47,7 @@ fn mass<const D: usize>(solid: &SolidSpec<D>) -> f64 {
     if let Role::Free(body) = &solid.role { body.mass } else { f64::INFINITY }
 }
 
-/// The engine of `solids` under gravity `g` (m/s²), at dp = 0.01 m: 0.5 mm of overlap is let pass.
+/// The engine of `solids` under gravity `g` (m/s²) at dp = 0.01 m, which allows 0.5 mm of initial overlap.
 fn engine<const D: usize>(solids: &[SolidSpec<D>], g: f64) -> Result<Box<dyn Engine<D>>>
 where
     Dim<D>: HasEngine<D>,
@@ -57,7 +57,7 @@ where
     Dim::<D>::engine(solids, &start, &Constraints::default(), &gravity, 0.01)
 }
 
-/// Half a second under gravity in steps of 0.1 ms.
+/// The engine after half a second under gravity in steps of 0.1 ms.
 fn settled<const D: usize>(solids: &[SolidSpec<D>]) -> Box<dyn Engine<D>>
 where
     Dim<D>: HasEngine<D>,
@@ -68,22 +68,22 @@ where
     engine
 }
 
-fn stands_off<const D: usize>()
+fn assert_boxes_rest_at_skins<const D: usize>()
 where
     Dim<D>: HasEngine<D>,
 {
-    // Let go 0.2 mm above where the skins meet.
+    // The boxes start 0.2 mm above the contact of the skins.
     let (low, high) = (0.05 + SKIN, 0.15 + 3.0 * SKIN);
     let solids = [floor::<D>(0.0), free("lower", cube(), low + 2e-4, SKIN), free("upper", cube(), high + 4e-4, SKIN)];
     let engine = settled(&solids);
-    // A contact of 500 Hz sinks g/(2πf)² = 1 µm under one body; 50 µm leave room for the landing and are a hundredth of a skin.
+    // A contact of 500 Hz sinks g/(2πf)² = 1 µm under one body. The bound of 50 µm covers the landing and is a hundredth of a skin.
     for (i, height) in [(1, low), (2, high)] {
         let sinks = height - engine.kinematics(i).pose.position[D - 1];
         assert!((-1e-9..50e-6).contains(&sinks), "{}-D: body {i} sinks {sinks} m", D);
     }
     let contacts = engine.contacts();
     assert_eq!(contacts.iter().map(|contact| contact.between).collect::<Vec<_>>(), [[0, 1], [1, 2]]);
-    // Each bears what is above it; where it does is where the skins meet: on the bare floor, and in the middle between two skins.
+    // Each contact carries the weight above it. Its position is on the bare floor, or midway between two skins.
     let weights = [mass(&solids[1]) + mass(&solids[2]), mass(&solids[2])].map(|mass| mass * G);
     for ((contact, weight), place) in contacts.iter().zip(weights).zip([0.0, 0.1 + 2.0 * SKIN]) {
         assert!((contact.normal_force / weight - 1.0).abs() < 1e-3, "{contact:?} for {weight} N");
@@ -93,15 +93,15 @@ where
 
 #[test]
 fn boxes_with_skins_of_5_mm_rest_10_mm_apart_and_5_mm_above_a_bare_floor() {
-    stands_off::<2>();
-    stands_off::<3>();
+    assert_boxes_rest_at_skins::<2>();
+    assert_boxes_rest_at_skins::<3>();
 }
 
-fn rolls_off<const D: usize>()
+fn assert_ball_rests_at_skins<const D: usize>()
 where
     Dim<D>: HasEngine<D>,
 {
-    // The floor's skin and the ball's own.
+    // The skins of floor and ball add up.
     let height = 0.05 + SKIN + 2.0 * SKIN;
     let solids = [floor::<D>(SKIN), free("ball", Shape::Ball { radius: 0.05 }, height + 2e-4, 2.0 * SKIN)];
     let sinks = height - settled(&solids).kinematics(1).pose.position[D - 1];
@@ -109,12 +109,12 @@ where
 }
 
 #[test]
-fn skins_of_unlike_thickness_add_up_under_a_ball() {
-    rolls_off::<2>();
-    rolls_off::<3>();
+fn skins_of_different_thickness_add_up_under_a_ball() {
+    assert_ball_rests_at_skins::<2>();
+    assert_ball_rests_at_skins::<3>();
 }
 
-fn turns_back<const D: usize>()
+fn assert_rebound_at_skins<const D: usize>()
 where
     Dim<D>: HasEngine<D>,
 {
@@ -129,33 +129,33 @@ where
         engine.step(dt, &[Load::zero(); 2], &[None, None]).unwrap();
         nearest = engine.kinematics(1).pose.position[D - 1].min(nearest);
     }
-    // It turns back where the next step and a half would take it into the skins, to where it came from.
+    // The cube rebounds within one and a half steps before the skins touch.
     let gap = nearest - (0.05 + 2.0 * SKIN);
     assert!((-1e-12..=1.6 * dt).contains(&gap), "{}-D: {gap} m before the skins", D);
     let velocity = engine.kinematics(1).velocity[D - 1];
-    assert!((velocity - 1.0).abs() < 1e-9, "Newton's law to round-off: {velocity}");
+    assert!((velocity - 1.0).abs() < 1e-9, "Newton's law of restitution to round-off: {velocity}");
 }
 
 #[test]
-fn a_blow_turns_back_at_the_skins() {
-    turns_back::<2>();
-    turns_back::<3>();
+fn a_collision_rebounds_at_the_skins() {
+    assert_rebound_at_skins::<2>();
+    assert_rebound_at_skins::<3>();
 }
 
-fn refused<const D: usize>()
+fn assert_overlap_refused<const D: usize>()
 where
     Dim<D>: HasEngine<D>,
 {
-    let near = |height: f64| [floor::<D>(SKIN), free("cube", cube(), height, SKIN)];
-    let message = engine(&near(0.058), G).err().map(|e| e.to_string()).unwrap_or_default();
+    let at = |height: f64| [floor::<D>(SKIN), free("cube", cube(), height, SKIN)];
+    let message = engine(&at(0.058), G).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(message.contains("\"cube\" starts 0.00200 m inside \"floor\", contact skins counted"), "{message}");
-    // A twentieth of dp is let pass, with skins as without.
-    assert!(engine(&near(0.0596), G).is_ok());
-    let bare = near(0.049).map(|solid| SolidSpec { contact_skin: 0.0, ..solid });
+    // A twentieth of dp of overlap is allowed, with and without skins.
+    assert!(engine(&at(0.0596), G).is_ok());
+    let bare = at(0.049).map(|solid| SolidSpec { contact_skin: 0.0, ..solid });
     let message = engine(&bare, G).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(message.contains("\"cube\" starts 0.00100 m inside \"floor\"") && !message.contains("skin"), "{message}");
-    // What comes later is held to the same.
-    let there = engine(&near(0.06), G).unwrap();
+    // The same limit applies to solids added during a run.
+    let there = engine(&at(0.06), G).unwrap();
     let late = free("late", cube(), 0.16, SKIN);
     let (who, depth) = there.deepest_overlap(&late, &late.initial_kinematics()).unwrap().unwrap();
     assert!(who == 1 && (depth - 2.0 * SKIN).abs() < 1e-6, "{who}: {depth} m");
@@ -164,12 +164,12 @@ where
 }
 
 #[test]
-fn a_start_within_the_skins_is_refused_by_name() {
-    refused::<2>();
-    refused::<3>();
+fn an_initial_overlap_of_skins_is_refused_with_the_names_of_the_solids() {
+    assert_overlap_refused::<2>();
+    assert_overlap_refused::<3>();
 }
 
-/// A box with such a skin afloat in a tank.
+/// A floating box with the key `skin` in a tank.
 fn scene(skin: &str) -> String {
     format!(
         r#"
@@ -197,7 +197,7 @@ free = {{ density = 500.0 }}
 }
 
 #[test]
-fn a_skin_is_half_of_the_smallest_extent_at_most_and_inspect_lists_it() -> Result<()> {
+fn a_skin_is_at_most_half_of_the_smallest_extent_and_is_a_listed_value() -> Result<()> {
     let built = |skin: &str| -> Result<Scene> {
         let scene = Scene::parse(&scene(skin), Path::new(""), &[])?;
         scene.build::<2>().map(|_| scene)
@@ -205,9 +205,12 @@ fn a_skin_is_half_of_the_smallest_extent_at_most_and_inspect_lists_it() -> Resul
     let values = built("contact_skin = 0.05")?.resolve()?;
     assert!(
         values.iter().any(|value| value.key == "solid.box.contact_skin" && value.value == "0.05"),
-        "it is in force"
+        "the value is listed"
     );
-    assert!(!built("")?.resolve()?.iter().any(|value| value.key.ends_with("skin")), "none is none");
+    assert!(
+        !built("")?.resolve()?.iter().any(|value| value.key.ends_with("skin")),
+        "without a skin no value is listed"
+    );
     for skin in ["-0.001", "0.051"] {
         let error = built(&format!("contact_skin = {skin}")).err().unwrap_or_else(|| panic!("{skin} passes"));
         let (text, help) = (error.to_string(), error.help.clone().unwrap_or_default());
@@ -218,21 +221,19 @@ fn a_skin_is_half_of_the_smallest_extent_at_most_and_inspect_lists_it() -> Resul
 }
 
 #[test]
-fn the_page_and_the_picture_show_the_skin_outside_the_face() {
-    let home = std::env::temp_dir().join(format!("pontoon-skins-{}", std::process::id()));
-    let _ = fs::remove_dir_all(&home);
-    fs::create_dir_all(&home).unwrap();
-    let ran = |name: &str, skin: &str| {
+fn the_report_and_the_picture_show_the_skin_outside_the_face() {
+    let home = TestFolder::new("skins");
+    let run = |name: &str, skin: &str| {
         fs::write(home.join("scene.toml"), scene(skin)).unwrap();
         let options = RunOptions { out: Some(home.join(name)), threads: Some(1), ..RunOptions::default() };
         run::run(&home.join("scene.toml"), &options, &mut |_: &Progress| true).unwrap().folder
     };
-    let (padded, bare) = (ran("padded", "contact_skin = 0.02"), ran("bare", ""));
+    let (padded, bare) = (run("padded", "contact_skin = 0.02"), run("bare", ""));
     let page = fs::read_to_string(report::write(&padded).unwrap().path).unwrap();
-    let (_, told) = page.split_once("id=\"told\">").unwrap();
-    let told: Value = serde_json::from_str(told.split_once("</script>").unwrap().0).unwrap();
-    let rim = |solid: usize| told.pointer(&format!("/runs/0/stage/solids/{solid}/rim/lines")).unwrap().clone();
-    assert_eq!(rim(0), Value::Array(vec![]), "the tank has none");
+    let (_, data) = page.split_once("id=\"told\">").unwrap();
+    let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let rim = |solid: usize| data.pointer(&format!("/runs/0/stage/solids/{solid}/rim/lines")).unwrap().clone();
+    assert_eq!(rim(0), Value::Array(vec![]), "the tank has no skin");
     let line = rim(1)[0].clone();
     assert!(line["closed"] == true, "{line}");
     for point in line["points"].as_array().unwrap() {
@@ -255,7 +256,6 @@ fn the_page_and_the_picture_show_the_skin_outside_the_face() {
     let (with, without) = (picture(&padded), picture(&bare));
     assert_eq!((with.width(), with.height()), (without.width(), without.height()));
     let unlike = with.pixels().iter().zip(without.pixels()).filter(|(a, b)| a != b).count();
-    // The dashes of a line of some 0.7 m where a metre has about 600 pixels: half of them at least; and nothing but a thin line.
+    // A dashed line of about 0.7 m at 600 pixels a metre: at least half of the dashes, and only a thin line.
     assert!((100..2000).contains(&unlike), "{unlike} pixels of dashes");
-    let _ = fs::remove_dir_all(&home);
 }

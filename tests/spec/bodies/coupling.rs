@@ -1,4 +1,4 @@
-//! Water and solids: what one loses the other gains.
+//! Coupling of water and solids: exchange of momentum and energy.
 
 use pontoon::{
     geometry::Shape,
@@ -10,29 +10,29 @@ use pontoon::{
 
 use crate::common;
 
-/// Both sweeps and what they may lose of what they add up in 500 to 1,000 steps: rounding of f64; and of single precision,
-/// of which a step leaves up to 1e-8 of its impulses, in any direction (docs/explanation/performance.md).
-const SWEEPS: [(PairLoopKind, f64); 2] = [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)];
+/// Both pair loops and the relative error that they may leave in 500 to 1,000 steps: rounding of f64, or of single precision, which
+/// leaves up to 1e-8 of the impulses of a step in any direction (docs/explanation/performance.md).
+const PAIR_LOOPS: [(PairLoopKind, f64); 2] = [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)];
 
-/// Speed of sound in a drop, m/s: so fast that 1,000 steps end before the drop has flown apart.
+/// Speed of sound in a drop, m/s. It is so high that 1,000 steps end before the drop disperses.
 const C0: f64 = 34.0;
 
-/// A drop in free space with a body inside it, started spinning and stretching.
-fn drop_with_body(scheme: TimeScheme, sweep: PairLoopKind) -> Simulation<2> {
+/// A drop in free space with a body inside, with an initial velocity field of rotation and strain.
+fn drop_with_body(scheme: TimeScheme, pair_loop: PairLoopKind) -> Simulation<2> {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
-    (model.scheme, model.gravity, model.pair_loop) = (scheme, vec![0.0, 0.0], sweep);
+    (model.scheme, model.gravity, model.pair_loop) = (scheme, vec![0.0, 0.0], pair_loop);
     (model.c0, model.walls) = (C0, Walls::Dynamic);
     if scheme != TimeScheme::Symplectic {
-        // Without damping no Euler step comes before its time.
+        // Without viscosity and diffusion no additional Euler step occurs.
         (model.cfl, model.viscosity, model.diffusion) = (0.2, Viscosity::None, Diffusion::None);
     }
-    // Under Verlet's one that is heavy enough: what joins a light one comes into the sum a step later.
-    drop_under(model, if scheme == TimeScheme::Symplectic { 600.0 } else { 2000.0 })
+    // Verlet needs a heavy body: the added mass of a light one would enter the sum a step later.
+    drop_with_model(model, if scheme == TimeScheme::Symplectic { 600.0 } else { 2000.0 })
 }
 
-/// That drop with another model and a body of another `density` (kg/m³).
-fn drop_under(model: Model, density: f64) -> Simulation<2> {
+/// The drop with this model and a body of `density` (kg/m³).
+fn drop_with_model(model: Model, density: f64) -> Simulation<2> {
     let dp = model.dp;
     let mut water = common::lattice([-0.2, -0.2], [0.4, 0.4], dp);
     water.retain(|r| r[0].abs() > 0.06 || r[1].abs() > 0.04);
@@ -42,53 +42,53 @@ fn drop_under(model: Model, density: f64) -> Simulation<2> {
     sim
 }
 
-/// What the body has, and has yet to get.
+/// Momentum of the body and its pending impulse.
 fn body_momentum(sim: &Simulation<2>) -> Vector<2> {
     let solid = &sim.system().solids()[0];
     let Role::Free(body) = &solid.spec.role else { panic!("a free body") };
     solid.kinematics.velocity * body.mass + sim.pending_impulse(0)
 }
 
-/// Sum of the sizes of what is added up, the scale of rounding.
+/// Sum of the magnitudes of the momenta of the water particles, the scale of rounding.
 fn momentum_scale(sim: &Simulation<2>) -> f64 {
     sim.system().fluid().v.iter().map(|v| v.norm()).sum::<f64>() * sim.system().particle_mass()
 }
 
 #[test]
-fn a_free_drop_with_a_body_inside_keeps_its_momentum() {
-    for (sweep, rounding) in SWEEPS {
-        let mut sim = drop_with_body(TimeScheme::Symplectic, sweep);
+fn a_free_drop_with_a_body_inside_conserves_momentum() {
+    for (pair_loop, rounding) in PAIR_LOOPS {
+        let mut sim = drop_with_body(TimeScheme::Symplectic, pair_loop);
         let (start, scale) = (common::water_momentum(&sim) + body_momentum(&sim), momentum_scale(&sim));
         for _ in 0..1000 {
             sim.step().unwrap();
         }
         let end = common::water_momentum(&sim) + body_momentum(&sim);
-        assert!(body_momentum(&sim).norm() > 1e-3 * scale, "the body was carried along");
+        assert!(body_momentum(&sim).norm() > 1e-3 * scale, "the body gained momentum");
         assert!((end - start).norm() < rounding * scale, "{:e}", (end - start).norm() / scale);
     }
 }
 
 #[test]
-fn walls_that_settle_keep_momentum_too() {
-    for (sweep, lost) in SWEEPS {
-        let mut model = drop_with_body(TimeScheme::Symplectic, sweep).system().model().clone();
+fn relaxed_adami_walls_conserve_momentum() {
+    for (pair_loop, lost) in PAIR_LOOPS {
+        let mut model = drop_with_body(TimeScheme::Symplectic, pair_loop).system().model().clone();
         model.walls = Walls::RelaxedAdami;
-        let mut sim = drop_under(model, 600.0);
+        let mut sim = drop_with_model(model, 600.0);
         let start = common::water_momentum(&sim) + body_momentum(&sim);
         for _ in 0..200 {
             sim.step().expect("a sound run");
         }
         let change = (common::water_momentum(&sim) + body_momentum(&sim) - start).norm();
-        assert!(change < lost * momentum_scale(&sim), "{sweep:?}: {change} kg m/s");
+        assert!(change < lost * momentum_scale(&sim), "{pair_loop:?}: {change} kg m/s");
     }
 }
 
 #[test]
-fn a_free_drop_keeps_its_angular_momentum() {
-    for (sweep, rounding) in SWEEPS {
+fn a_free_drop_conserves_angular_momentum() {
+    for (pair_loop, rounding) in PAIR_LOOPS {
         let dp = 0.02;
         let mut model = Model::water(2, dp, 0.3);
-        (model.gravity, model.pair_loop, model.c0) = (vec![0.0, 0.0], sweep, C0);
+        (model.gravity, model.pair_loop, model.c0) = (vec![0.0, 0.0], pair_loop, C0);
         let mut sim = common::simulation(model, common::lattice([-0.2, -0.2], [0.4, 0.4], dp), -1.0, vec![]);
         sim.set_water_velocity(|r| Vector::from([2.0 * r[0] + 3.0 * r[1], -2.0 * r[1] - 5.0 * r[0]]));
         let spin = |sim: &Simulation<2>| -> (f64, f64) {
@@ -100,23 +100,24 @@ fn a_free_drop_keeps_its_angular_momentum() {
         for _ in 0..1000 {
             sim.step().unwrap();
         }
-        // Forces along r_ab at the half step leave Σ r × v alone but for rounding, viscosity and diffusion too.
+        // Forces along r_ab at the half step conserve Σ r × v up to rounding, including viscosity and diffusion.
         assert!((spin(&sim).0 - start).abs() < rounding * scale, "{:e}", (spin(&sim).0 - start) / scale);
     }
 }
 
 #[test]
-fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
-    for (sweep, rounding) in SWEEPS {
-        // Derived in src/time/verlet.rs: ½(P⁺ + P) of the water and P⁺ of the bodies are constant between Euler
-        // steps; the plain sum is off by ½(P⁺ − P).
-        let mut sim = drop_with_body(TimeScheme::Verlet { euler_every: 1_000_000 }, sweep);
+fn verlet_conserves_the_mean_momentum_of_two_successive_steps() {
+    for (pair_loop, rounding) in PAIR_LOOPS {
+        // Derived in src/time_integration/verlet.rs: ½(P⁺ + P) of the water plus P⁺ of the bodies is constant between Euler
+        // steps; the plain sum differs by ½(P⁺ − P).
+        let mut sim = drop_with_body(TimeScheme::Verlet { euler_every: 1_000_000 }, pair_loop);
         let scale = momentum_scale(&sim);
         sim.step().unwrap();
         let mut before = common::water_momentum(&sim);
         sim.step().unwrap();
-        let shared = |now: Vector<2>, before: Vector<2>, sim: &Simulation<2>| (now + before) * 0.5 + body_momentum(sim);
-        let start = shared(common::water_momentum(&sim), before, &sim);
+        let mean_momentum =
+            |now: Vector<2>, before: Vector<2>, sim: &Simulation<2>| (now + before) * 0.5 + body_momentum(sim);
+        let start = mean_momentum(common::water_momentum(&sim), before, &sim);
         let plain = before + body_momentum(&sim);
         let mut largest_change: f64 = 0.0;
         for _ in 0..500 {
@@ -124,7 +125,7 @@ fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
             sim.step().unwrap();
             let now = common::water_momentum(&sim);
             largest_change = largest_change.max((now - before).norm());
-            let off = shared(now, before, &sim) - start;
+            let off = mean_momentum(now, before, &sim) - start;
             assert!(off.norm() < rounding * scale, "{:e}", off.norm() / scale);
             assert!((now + body_momentum(&sim) - plain).norm() < 2.0 * largest_change + rounding * scale);
         }
@@ -132,39 +133,40 @@ fn verlet_keeps_the_momentum_that_its_two_intervals_share() {
 }
 
 #[test]
-fn an_euler_step_moves_the_shared_momentum_by_less_than_a_step_does() {
+fn an_euler_step_changes_the_mean_momentum_by_less_than_a_step_does() {
     let (every, steps) = (50, 500);
     let mut sim = drop_with_body(TimeScheme::Verlet { euler_every: every }, PairLoopKind::Fast);
     sim.step().unwrap();
     let mut before = common::water_momentum(&sim);
-    let shared = |now: Vector<2>, before: Vector<2>, sim: &Simulation<2>| (now + before) * 0.5 + body_momentum(sim);
+    let mean_momentum =
+        |now: Vector<2>, before: Vector<2>, sim: &Simulation<2>| (now + before) * 0.5 + body_momentum(sim);
     sim.step().unwrap();
-    let start = shared(common::water_momentum(&sim), before, &sim);
+    let start = mean_momentum(common::water_momentum(&sim), before, &sim);
     let mut largest_change: f64 = 0.0;
     for _ in 0..steps {
         before = common::water_momentum(&sim);
         sim.step().unwrap();
         largest_change = largest_change.max((common::water_momentum(&sim) - before).norm());
     }
-    let off = (shared(common::water_momentum(&sim), before, &sim) - start).norm();
-    // ½|P − P⁻ − Δt F| an Euler step, each of the two no more than the largest change seen.
+    let off = (mean_momentum(common::water_momentum(&sim), before, &sim) - start).norm();
+    // Each Euler step changes it by ½|P − P⁻ − Δt F|; both terms are at most the largest change of a step.
     assert!(off < f64::from(steps / every) * largest_change, "{off:e} after changes of up to {largest_change:e}");
 }
 
 #[test]
-fn a_piston_gives_the_water_the_work_that_it_records() {
-    // Work by the recorded force against kinetic, potential and compression energy of water and walls: 2 %, the
-    // project's bound; what is lost goes into the floor under the walls' density. Walls that settle change their density
-    // otherwise than by being compressed, so that the balance is open by as much again.
+fn the_work_recorded_by_a_piston_equals_the_energy_gained_by_the_water() {
+    // Work of the recorded force against kinetic, potential and compression energy of water and walls. The bound of 2 % is that of the
+    // project; the difference is lost at the lower limit of the wall density. Relaxed Adami walls change their density without
+    // compression work, which doubles the bound.
     for (walls, open) in [(Walls::Dynamic, 0.02), (Walls::RelaxedAdami, 0.04)] {
-        let (work, gained) = pushed(walls);
+        let (work, gained) = piston_work(walls);
         assert!(work > 1.0, "the piston did {work} J/m");
         assert!((work / gained - 1.0).abs() < open, "{walls:?}: work {work} J/m, gained {gained} J/m");
     }
 }
 
-/// Water of this size (m) before a piston `thick` and `high` (m) on the bed of a tank, which goes as `law` (m) says.
-fn before_a_piston(model: Model, [long, deep]: [f64; 2], law: &str, [thick, high]: [f64; 2]) -> Simulation<2> {
+/// Water of this size (m) in front of a piston `thick` and `high` (m) on the bed of a tank. The piston moves by the formula `law` (m).
+fn water_and_piston(model: Model, [long, deep]: [f64; 2], law: &str, [thick, high]: [f64; 2]) -> Simulation<2> {
     let (dp, behind) = (model.dp, 0.4);
     let motion = PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse(law).unwrap()));
     let shape = Shape::Box { size: Vector::from([thick, high]) };
@@ -176,11 +178,11 @@ fn before_a_piston(model: Model, [long, deep]: [f64; 2], law: &str, [thick, high
 }
 
 /// The work (J/m) that a piston records, and the energy (J/m) that water and walls gain.
-fn pushed(walls: Walls) -> (f64, f64) {
+fn piston_work(walls: Walls) -> (f64, f64) {
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.3);
     (model.viscosity, model.diffusion, model.walls) = (Viscosity::None, Diffusion::None, walls);
-    let mut sim = before_a_piston(model, [1.2, 0.3], "0.06*(1-cos(6*t))/2", [0.08, 0.6]);
+    let mut sim = water_and_piston(model, [1.2, 0.3], "0.06*(1-cos(6*t))/2", [0.08, 0.6]);
     let start = energy(&sim);
     let mut work = 0.0;
     while sim.time() < 0.5 {
@@ -191,13 +193,13 @@ fn pushed(walls: Walls) -> (f64, f64) {
 }
 
 #[test]
-fn no_water_gets_under_a_piston_that_goes_to_and_fro_on_its_bed() {
-    // Strokes of 10 dp press water into the corner, where bed and piston slide on one another. Half a dp inside the face are the first
-    // boundary particles: water at their depth is on its way through. Without a hem the first is in after 0.5 s.
+fn no_water_leaks_under_a_piston_that_oscillates_on_its_bed() {
+    // Strokes of 10 dp press water into the sliding joint between bed and piston. The first boundary particles are half a dp inside the
+    // face, and water at their depth leaks through. Without the boundary extension the first particle leaks after 0.5 s.
     let dp = 0.02;
     let mut model = Model::water(2, dp, 0.4);
     (model.h, model.viscosity) = (2.0 * dp, Viscosity::None);
-    let mut sim = before_a_piston(model, [1.2, 0.4], "0.1*(1-cos(2*pi*t/1.6))", [0.1, 0.9]);
+    let mut sim = water_and_piston(model, [1.2, 0.4], "0.1*(1-cos(2*pi*t/1.6))", [0.1, 0.9]);
     while sim.time() < 4.8 {
         sim.step_to(4.8).unwrap();
         let face = sim.system().solids()[1].kinematics.pose.position[0] + 0.05;
@@ -211,7 +213,7 @@ fn no_water_gets_under_a_piston_that_goes_to_and_fro_on_its_bed() {
     }
 }
 
-/// Power of the piston on the water, W/m, with the velocity in the middle of the step that the load belongs to.
+/// Power of the piston on the water, W/m, with the velocity at the middle of the step of the load.
 fn power(sim: &Simulation<2>) -> f64 {
     let piston = &sim.system().solids()[1];
     let Role::Driven(motion) = &piston.spec.role else { panic!("a driven piston") };
@@ -219,18 +221,15 @@ fn power(sim: &Simulation<2>) -> f64 {
     -piston.load.force.dot(&middle.velocity)
 }
 
-/// Kinetic, potential and compression energy of the water, and compression of the boundary particles, J/m.
+/// Kinetic, potential and compression energy of the water, and compression energy of the boundary particles, J/m.
 fn energy(sim: &Simulation<2>) -> f64 {
     let system = sim.system();
-    let fluid = system.fluid();
-    let water = (0..fluid.len())
-        .map(|i| 0.5 * fluid.v[i].norm_squared() + 9.81 * fluid.r[i][1] + system.compression_energy(fluid.rho[i]));
     let walls = system.boundary().rho.iter().map(|&rho| system.compression_energy(rho));
-    (water.sum::<f64>() + walls.sum::<f64>()) * system.particle_mass()
+    common::water_energy(sim) + walls.sum::<f64>() * system.particle_mass()
 }
 
-/// How far (m) a body thrown over water is from the parabola after half a second, and how long that way is (m).
-fn thrown<const D: usize>(scheme: TimeScheme) -> (f64, f64)
+/// Distance (m) of a body thrown over water from its parabola after half a second, and the length (m) of its path.
+fn projectile_error<const D: usize>(scheme: TimeScheme) -> (f64, f64)
 where
     Dim<D>: Dimension<D>,
 {
@@ -239,7 +238,7 @@ where
     model.scheme = scheme;
     let (mut size, mut at) = ([0.3; D], [0.15; D]);
     (size[D - 1], at[D - 1]) = (0.2, 1.0);
-    // So light that in water it would answer with the inertia of that.
+    // The body is light enough for acoustic added mass in water.
     let mut body = common::float(Shape::Box { size: Vector::from_fn(|i, _| 0.1 + 0.05 * i as f64) }, at, 5.0);
     let Role::Free(free) = &mut body.role else { panic!("a free body") };
     (free.velocity[0], free.velocity[D - 1]) = (2.0, 3.0);
@@ -260,11 +259,11 @@ where
 }
 
 #[test]
-fn a_body_thrown_over_water_flies_as_in_a_vacuum() {
+fn a_body_thrown_over_water_follows_the_parabola_of_a_vacuum() {
     for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 40 }] {
-        for (off, way) in [thrown::<2>(scheme), thrown::<3>(scheme)] {
-            // A thousand steps of round-off; a step of g Δt/2 more or less would be 1e-4.
-            assert!(off < 1e-12 * way, "{scheme:?}: {off:e} m off in {way} m");
+        for (off, path) in [projectile_error::<2>(scheme), projectile_error::<3>(scheme)] {
+            // Round-off of a thousand steps; an error of g Δt/2 in one step would be 1e-4.
+            assert!(off < 1e-12 * path, "{scheme:?}: {off:e} m off in {path} m");
         }
     }
 }

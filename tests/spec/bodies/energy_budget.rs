@@ -1,4 +1,4 @@
-//! Loads by kind and the energy budget: they add up, and asking for them changes nothing.
+//! Load breakdown and energy budget: they close, and enabling them changes no bit of the run.
 
 use std::path::Path;
 
@@ -14,8 +14,8 @@ use pontoon::{
 
 use crate::common;
 
-/// A tank with bodies that touch, hang, swing and are pushed.
-const CROWD: &str = r#"
+/// A tank with bodies in contact, on a hinge, a spring and a rope, and under an external force.
+const SCENE: &str = r#"
 dimension = 2
 dp = 0.02
 until = 1.0
@@ -74,45 +74,48 @@ on = "raft"
 force = [4.0, 0.0]
 "#;
 
-fn crowd(model: &str) -> Simulation<2> {
-    let text = format!("{CROWD}\n[model]\n{model}");
+fn simulation(model: &str) -> Simulation<2> {
+    let text = format!("{SCENE}\n[model]\n{model}");
     let scene = Scene::parse(&text, Path::new(""), &[]).expect("a sound scene");
     Simulation::new(scene.build::<2>().expect("a sound scene").setup).expect("a sound setup")
 }
 
-/// The part of the largest kind of load by which those on solid number `i` miss what it did in the last step, forces and torques.
-fn missed(sim: &Simulation<2>, i: usize) -> f64 {
+/// Relative residual of the load breakdown of solid number `i` in the last step: the larger of those of force and torque.
+fn relative_residual(sim: &Simulation<2>, i: usize) -> f64 {
     let shares = sim.load_breakdown(i).unwrap();
     let force = shares.kinds().iter().fold(0.0f64, |most, (_, load)| most.max(load.force.norm()));
-    // Bodies 0.1 m large: torques far below a hundredth of a metre times the force are round-off of it.
+    // The bodies are 0.1 m large, so torques far below a hundredth of a metre times the force are round-off of the force.
     let turning = shares.kinds().iter().fold(0.01 * force, |most, (_, load)| most.max(torque(load)));
     let off = shares.residual();
     (off.force.norm() / force).max(torque(&off) / turning)
 }
 
 #[test]
-fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
-    // Round-off of sums of some hundred particles, and the engine's own: 1e-9 of the largest kind.
+fn the_loads_on_every_body_sum_to_the_change_of_its_momentum() {
+    // Round-off of sums over some hundred particles and of the engine: 1e-9 of the largest kind of load.
     for model in
         ["", "slip = \"partial\"", "walls = \"dbc\"\nviscosity = { laminar = { nu0 = 1e-4 } }\nslip = \"none\""]
     {
-        let mut sim = crowd(model);
+        let mut sim = simulation(model);
         sim.enable_load_breakdown();
         let mut seen = [false; 12];
         for step in 0..400 {
             sim.step().unwrap();
-            // What the rows of the hinge and the rope tell is all of it but for their turning in a step of several iterations, as bodies of
-            // unlike mass touch: 1e-3 as the rope comes taut.
+            // The readings of hinge and rope equal their loads. In a step of several iterations, with contacts between bodies of
+            // different mass, the constraints rotate during the step: 1e-3 as the rope becomes taut.
             let (hinged, hung) = (sim.load_breakdown(5).unwrap(), sim.load_breakdown(1).unwrap());
-            for (ties, told, weight) in [
+            for (constraints, reading, weight) in [
                 (hinged.joints, sim.joint_reading(0).force.norm(), hinged.weight),
                 (hung.ropes, sim.rope_reading(0).tension, hung.weight),
             ] {
-                let (force, round_off) = (ties.force.norm(), 1e-12 * weight.force.norm());
-                assert!((force - told).abs() <= 1e-3 * force + round_off, "{model}, {step}: {force} N, told {told} N");
+                let (force, round_off) = (constraints.force.norm(), 1e-12 * weight.force.norm());
+                assert!(
+                    (force - reading).abs() <= 1e-3 * force + round_off,
+                    "{model}, {step}: {force} N, reading {reading} N"
+                );
             }
             for i in 1..6 {
-                let off = missed(&sim, i);
+                let off = relative_residual(&sim, i);
                 assert!(off < 1e-9, "{model}, step {step}, solid {i}: {off:e}");
                 for (seen, (_, load)) in seen.iter_mut().zip(sim.load_breakdown(i).unwrap().kinds()) {
                     *seen |= load.force.norm() + torque(&load) > 0.0;
@@ -127,8 +130,8 @@ fn the_loads_on_every_body_add_up_to_the_change_of_its_momentum() {
 }
 
 #[test]
-fn joints_and_ropes_add_up_to_the_last_digits_where_nothing_touches() {
-    let mut text = CROWD.to_string();
+fn loads_with_joints_and_ropes_but_without_contacts_sum_to_round_off() {
+    let mut text = SCENE.to_string();
     for name in ["crate", "stone"] {
         let start = text.find(&format!("[[solid]]\nname = \"{name}\"")).unwrap();
         let end = start + 1 + text[start + 1..].find("[[solid]]").unwrap();
@@ -140,18 +143,18 @@ fn joints_and_ropes_add_up_to_the_last_digits_where_nothing_touches() {
     for step in 0..1500 {
         sim.step().unwrap();
         for i in 1..4 {
-            let off = missed(&sim, i);
+            let off = relative_residual(&sim, i);
             assert!(off < 1e-9, "step {step}, solid {i}: {off:e}");
         }
     }
-    assert!(sim.rope_reading(0).tension + sim.joint_reading(0).force.norm() > 0.0, "they carry something");
+    assert!(sim.rope_reading(0).tension + sim.joint_reading(0).force.norm() > 0.0, "the constraints carry load");
 }
 
 fn torque(load: &Load<2>) -> f64 {
     load.torque.axial()[0].abs()
 }
 
-/// What is stored beyond the entries after a run of `steps`, over the sum of the sizes of all entries; and that sum, J.
+/// Residual of the energy budget after a run of `steps`, and the sum of the magnitudes of its entries, J.
 fn residual<const D: usize>(mut sim: Simulation<D>, steps: usize) -> (f64, f64)
 where
     Dim<D>: Dimension<D>,
@@ -162,31 +165,31 @@ where
         sim.step().unwrap();
     }
     let row = probe.sample(&sim);
-    let turned = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
-    (row[row.len() - 1].abs(), turned)
+    let turnover = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
+    (row[row.len() - 1].abs(), turnover)
 }
 
 #[test]
 fn the_energy_budget_closes() {
-    // One in a hundred of what is turned over: steps are of second order.
+    // The bound is 1 % of the sum of the entries; the time step is of second order.
     let shifting = "shifting = { everywhere = { a = 2.0 } }\nviscosity = { sps = { nu0 = 1e-6 } }";
     for model in ["", "walls = \"dbc\"", "slip = \"partial\"", "gradient = \"corrected\"", shifting] {
-        let (off, turned) = residual(crowd(model), 3000);
-        assert!(off < 0.01 * turned, "{model}: {off} J of {turned} J");
+        let (off, turnover) = residual(simulation(model), 3000);
+        assert!(off < 0.01 * turnover, "{model}: {off} J of {turnover} J");
     }
 }
 
 #[test]
-fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
-    let mut sim = crowd("");
+fn added_and_removed_solids_and_water_enter_the_energy_budget() {
+    let mut sim = simulation("");
     sim.enable_energy_budget();
     let probe = EnergyBudgetProbe::new(sim.system());
-    let missing = |sim: &Simulation<2>| probe.sample(sim).last().copied().unwrap_or(f64::NAN);
+    let residual = |sim: &Simulation<2>| probe.sample(sim).last().copied().unwrap_or(f64::NAN);
     for _ in 0..300 {
         sim.step().unwrap();
     }
-    let before = missing(&sim);
-    // It comes moving and turning, half under water, and pushes its water out.
+    let before = residual(&sim);
+    // The body is added with velocity and spin, half under water, and displaces water.
     let shape = Shape::Box { size: Vector::from([0.1, 0.1]) };
     let mut late = common::float(shape, [0.7, 0.3], 700.0);
     let Role::Free(body) = &mut late.role else { panic!("a free body") };
@@ -195,46 +198,49 @@ fn what_comes_and_goes_brings_its_energy_and_takes_it_along() {
     let brought = 7.0 * (0.5 * 0.13 + 9.81 * 0.3) + 0.5 * (7.0 * 0.02 / 12.0) * 16.0;
     let added = sim.add_solid(late).unwrap();
     assert!(added.displaced > 0);
-    let ledger = *sim.energy_budget().unwrap();
-    assert!((ledger.solids / brought - 1.0).abs() < 1e-12, "{} J/m of {brought}", ledger.solids);
-    // Some 12 particles of 0.4 kg/m 0.27 m above the bottom.
-    assert!(ledger.removed < -0.3 * 9.81 * 0.24 * added.displaced as f64 * 0.4, "{} J/m", ledger.removed);
-    // At the moment itself nothing is missing but round-off.
-    assert!((missing(&sim) - before).abs() < 1e-9 * brought);
+    let budget = *sim.energy_budget().unwrap();
+    assert!((budget.solids / brought - 1.0).abs() < 1e-12, "{} J/m of {brought}", budget.solids);
+    // About 12 particles of 0.4 kg/m, 0.27 m above the bottom.
+    assert!(budget.removed < -0.3 * 9.81 * 0.24 * added.displaced as f64 * 0.4, "{} J/m", budget.removed);
+    // The addition itself changes the residual by round-off only.
+    assert!((residual(&sim) - before).abs() < 1e-9 * brought);
     for _ in 0..300 {
         sim.step().unwrap();
     }
-    let before = missing(&sim);
+    let before = residual(&sim);
     sim.remove_solid(added.solid).unwrap();
-    assert!((missing(&sim) - before).abs() < 1e-9 * brought);
+    assert!((residual(&sim) - before).abs() < 1e-9 * brought);
     for _ in 0..300 {
         sim.step().unwrap();
     }
-    let turned = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
-    // As for a run into which nothing comes.
-    assert!(missing(&sim).abs() < 0.01 * turned, "{} J of {turned} J", missing(&sim));
+    let turnover = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();
+    // The bound is that of a run without added solids.
+    assert!(residual(&sim).abs() < 0.01 * turnover, "{} J of {turnover} J", residual(&sim));
 }
 
 #[test]
-fn books_change_no_bit_and_outlive_a_restart() {
-    let (mut plain, mut booked) = (crowd(""), crowd(""));
-    booked.enable_energy_budget();
-    booked.enable_load_breakdown();
+fn load_breakdown_and_energy_budget_change_no_bit_and_continue_after_a_restart() {
+    let (mut plain, mut recorded) = (simulation(""), simulation(""));
+    recorded.enable_energy_budget();
+    recorded.enable_load_breakdown();
     for _ in 0..100 {
         plain.step().unwrap();
-        booked.step().unwrap();
+        recorded.step().unwrap();
     }
-    assert_eq!(plain.system().fluid().r, booked.system().fluid().r);
-    assert_eq!(plain.system().solids()[1].kinematics, booked.system().solids()[1].kinematics);
-    let mut again = crowd("");
+    assert_eq!(plain.system().fluid().r, recorded.system().fluid().r);
+    assert_eq!(plain.system().solids()[1].kinematics, recorded.system().solids()[1].kinematics);
+    let mut again = simulation("");
     again.enable_energy_budget();
     again.enable_load_breakdown();
-    again.restore(&booked.save().unwrap()).unwrap();
+    again.restore(&recorded.save().unwrap()).unwrap();
     for _ in 0..37 {
-        booked.step().unwrap();
+        recorded.step().unwrap();
         again.step().unwrap();
     }
-    assert_eq!(booked.energy_budget(), again.energy_budget());
-    assert_eq!(booked.load_breakdown(2), again.load_breakdown(2));
-    assert!(plain.restore(&booked.save().unwrap()).is_err(), "books of a checkpoint are not dropped unseen");
+    assert_eq!(recorded.energy_budget(), again.energy_budget());
+    assert_eq!(recorded.load_breakdown(2), again.load_breakdown(2));
+    assert!(
+        plain.restore(&recorded.save().unwrap()).is_err(),
+        "a checkpoint with a budget is refused by a simulation without one"
+    );
 }

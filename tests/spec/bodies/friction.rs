@@ -5,7 +5,6 @@ use pontoon::{
     geometry::Shape,
     math::{Pose, Vector},
     model::Model,
-    simulation::Simulation,
     solid::Role,
 };
 

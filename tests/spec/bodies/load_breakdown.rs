@@ -1,11 +1,13 @@
-//! Loads by kind on bodies in space that are tied and turn: forces and torques add up to what the engine's step did.
+//! Load breakdown of constrained, rotating bodies in three dimensions: forces and torques sum to the change of momentum.
 
 use std::path::Path;
 
 use pontoon::{Result, scene::Scene, simulation::Simulation, solid::Load};
 
-/// Above a little water: two bars, one on a slanting hinge and one on a ball joint under it, that spin; a brick that whirls on a rope;
-/// a plate on a ball joint that may not turn about x; a sled on a rail, pushed.
+use crate::common;
+
+/// Bodies above a small pool: two spinning bars, the upper on an inclined hinge and the lower on a ball joint below it; a brick that
+/// swings on a rope; a plate on a ball joint with rotation about x locked; and a sled on a rail.
 const MOBILE: &str = r#"
 dimension = 3
 dp        = 0.05
@@ -96,7 +98,7 @@ fn largest(loads: &[Load<3>]) -> (f64, f64) {
 }
 
 #[test]
-fn the_torques_on_tied_bodies_that_spin_in_space_add_up_in_every_step() -> Result<()> {
+fn loads_on_constrained_spinning_bodies_sum_to_zero_in_every_step() -> Result<()> {
     let mut sim = common::scene_simulation::<3>(MOBILE)?;
     sim.enable_load_breakdown();
     let mut turned = 0.0f64;
@@ -106,21 +108,21 @@ fn the_torques_on_tied_bodies_that_spin_in_space_add_up_in_every_step() -> Resul
             let (shares, name) = (sim.load_breakdown(i).unwrap(), &sim.system().solids()[i].spec.name);
             let (force, torque) = largest(&shares.kinds().map(|(_, load)| load));
             let off = largest(&[shares.residual()]);
-            // Round-off of I Ω/Δt and of sums that the pulls of the ties are found from: 1e-9 of the largest kind, and of a torque
-            // whose arm is 10 mm where a body is hardly turned.
+            // Round-off of I Ω/Δt and of the constraint reactions: 1e-9 of the largest kind of load. Torques are compared with an arm of
+            // 10 mm at least, for bodies with small torques.
             assert!(off.0 < 1e-9 * force, "step {step}, {name}: {:e} N of {force} N", off.0);
             let scale = torque.max(0.01 * force);
             assert!(off.1 < 1e-9 * scale, "step {step}, {name}: {:e} N m of {scale} N m", off.1);
         }
         turned = turned.max(largest(&[sim.load_breakdown(2).unwrap().change]).1);
     }
-    assert!(turned > 0.1, "the lower bar is turned by up to {turned} N m");
-    assert!(sim.rope_reading(0).tension > 0.0 && sim.joint_reading(3).motor_force != 0.0, "what is tied carries");
+    assert!(turned > 0.1, "the torque on the lower bar is at most {turned} N m");
+    assert!(sim.rope_reading(0).tension > 0.0 && sim.joint_reading(3).motor_force != 0.0, "rope and motor carry load");
     Ok(())
 }
 
 #[test]
-fn the_change_of_a_tied_body_is_that_of_its_angular_momentum_to_first_order_in_the_step() -> Result<()> {
+fn the_change_term_of_a_constrained_body_equals_its_angular_momentum_change_to_first_order() -> Result<()> {
     // Over 50 ms, in N m s: Σ change Δt against I Ω at both ends, in the world's axes.
     let off = |dt_max: &str| -> Result<(f64, f64)> {
         let sets = [("time.dt_max".to_string(), dt_max.to_string())];
@@ -145,7 +147,7 @@ fn the_change_of_a_tied_body_is_that_of_its_angular_momentum_to_first_order_in_t
     };
     let ((coarse, gained), (fine, _)) = (off("1e-3")?, off("2.5e-4")?);
     assert!(coarse < 0.02 * gained, "{coarse} of {gained} N m s");
-    // A quarter of the step leaves a quarter.
+    // First order: a quarter of the step leaves a quarter of the error.
     assert!((0.15..0.35).contains(&(fine / coarse)), "{fine} after {coarse} N m s");
     Ok(())
 }

@@ -1,9 +1,6 @@
-//! Meshes and drawings beside a scene: the same solid from every format, what is refused, and a hull that floats.
+//! Mesh and SVG files of a scene: the same solid from every format, refused files, contact choices, and a floating mesh.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path};
 
 use pontoon::{
     Error,
@@ -15,16 +12,15 @@ use pontoon::{
 };
 use proptest::prelude::*;
 
-/// Corners of a wedge, m, and its facets, counted from 0: nothing about it is symmetric.
+use crate::common::TestFolder;
+
+/// Corners (m) of an asymmetric wedge and its facets, with indices from 0.
 const CORNERS: [[f64; 3]; 5] =
     [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, 0.25, 0.0], [0.0, 0.25, 0.0], [0.125, 0.125, 0.375]];
 const FACETS: [[usize; 3]; 6] = [[0, 2, 1], [0, 3, 2], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
 
-/// A folder of its own for the files of a test.
-fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("pontoon-meshes-{name}-{}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
-    folder
+fn folder(name: &str) -> TestFolder {
+    TestFolder::new(&format!("meshes-{name}"))
 }
 
 fn text_stl(facets: &[[usize; 3]]) -> String {
@@ -47,11 +43,11 @@ fn binary_stl(facets: &[[usize; 3]], header: &str) -> Vec<u8> {
 
 fn obj() -> String {
     let corners: String = CORNERS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
-    // The bottom as one facet of four corners, one facet counted from the end, one with texture and normal.
+    // The bottom is one facet of four corners. One facet counts from the end, and one has texture and normal.
     format!("{corners}o wedge\nf 1 4 3 2\nf 1 2 5\nf 2 3 5\ng stern\nf -3 -2 -1\nvn 0 0 1\nf 4//1 1//1 5//1\n")
 }
 
-/// A 3-D scene with one free solid of this shape, afloat.
+/// A 3-D scene with one floating solid of this shape.
 fn scene(shape: &str, folder: &Path) -> Result<Scene, Error> {
     let text = format!(
         "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = {{ box = {{ min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 0.5] }} }}\n\
@@ -77,77 +73,76 @@ fn refusal(words: &str, folder: &Path) -> String {
 }
 
 #[test]
-fn text_and_binary_stl_and_obj_give_the_same_solid() {
+fn text_stl_binary_stl_and_obj_define_the_same_solid() {
     let folder = folder("formats");
     fs::write(folder.join("text.stl"), text_stl(&FACETS)).unwrap();
-    fs::write(folder.join("loud.STL"), text_stl(&FACETS).to_uppercase().replace('\n', "\r\n")).unwrap();
+    fs::write(folder.join("capitals.STL"), text_stl(&FACETS).to_uppercase().replace('\n', "\r\n")).unwrap();
     fs::write(folder.join("nameless.stl"), text_stl(&FACETS).replacen("solid a wedge", "solid", 1)).unwrap();
     fs::write(folder.join("binary.stl"), binary_stl(&FACETS, "made by hand")).unwrap();
-    fs::write(folder.join("sly.stl"), binary_stl(&FACETS, "solid, says the header of this binary file")).unwrap();
+    fs::write(folder.join("text_header.stl"), binary_stl(&FACETS, "solid, says the header of this binary file"))
+        .unwrap();
     fs::write(folder.join("mesh.obj"), obj()).unwrap();
     let first = mesh("file = \"text.stl\"", &folder).unwrap();
     let volume = first.volume_properties();
-    // A pyramid: a third of base and height, its centroid a quarter up.
+    // A pyramid: a third of base times height, with its centroid at a quarter of the height.
     assert!((volume.volume - 0.5 * 0.25 * 0.375 / 3.0).abs() < 1e-16);
     assert!((volume.centroid - Vector::from([0.21875, 0.125, 0.09375])).norm() < 1e-15);
-    for file in ["loud.STL", "nameless.stl", "binary.stl", "sly.stl"] {
+    for file in ["capitals.STL", "nameless.stl", "binary.stl", "text_header.stl"] {
         assert_eq!(mesh(&format!("file = \"{file}\""), &folder).unwrap(), first, "{file}");
     }
     let other = mesh("file = \"mesh.obj\"", &folder).unwrap();
     assert_eq!((other.points().len(), other.facets().len()), (5, 6));
     assert!((other.volume_properties().second_moment - volume.second_moment).norm() < 1e-15 * volume.volume);
-    // The same in millimetres, and doubled.
+    // Millimetres times 2000: twice the size.
     let large = mesh("file = \"text.stl\", unit = \"mm\", scale = 2000.0", &folder).unwrap();
     assert!((large.volume_properties().volume - 8.0 * volume.volume).abs() < 1e-15);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn files_that_are_no_solid_are_refused_in_words() {
+fn mesh_files_without_a_closed_solid_are_refused_with_the_reason() {
     let folder = folder("refused");
     let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).unwrap();
     write("open.stl", text_stl(&FACETS[1..]).as_bytes());
     write("inside_out.stl", text_stl(&FACETS.map(|[a, b, c]| [b, a, c])).as_bytes());
     write("mesh.ply", b"ply");
     write("cut.stl", &binary_stl(&FACETS, "cut short")[..200]);
-    write("promises.stl", &[&binary_stl(&FACETS, "two thousand million facets")[..80], &[0xff; 4], &[0; 600]].concat());
+    write("too_many.stl", &[&binary_stl(&FACETS, "two thousand million facets")[..80], &[0xff; 4], &[0; 600]].concat());
     write("nan.stl", text_stl(&FACETS).replacen("0.375", "nan", 1).as_bytes());
     write("empty.stl", b"");
     write("line.stl", &[b"solid x\n".to_vec(), b"0 ".repeat(1 << 20)].concat());
     write("few.obj", b"v 0 0 0\nf 1 2 3\n");
-    let says = |words: &str, what: &[&str]| {
-        let message = refusal(words, &folder);
-        what.iter().for_each(|what| assert!(message.contains(what), "no \"{what}\" in: {message}"));
+    let assert_refused = |keys: &str, parts: &[&str]| {
+        let message = refusal(keys, &folder);
+        parts.iter().for_each(|part| assert!(message.contains(part), "no \"{part}\" in: {message}"));
     };
-    says(
+    assert_refused(
         "file = \"open.stl\"",
         &["the mesh is open: 3 edges", "(0.0000, 0.0000, 0.0000)", "scene.toml:8", "fill the holes"],
     );
-    says("file = \"inside_out.stl\"", &["inside out", "flip = true"]);
+    assert_refused("file = \"inside_out.stl\"", &["inside out", "flip = true"]);
     assert!(mesh("file = \"inside_out.stl\", flip = true", &folder).is_ok());
-    says("file = \"mesh.ply\"", &["neither .stl nor .obj"]);
-    says("file = \"cut.stl\"", &["cut.stl cannot be read"]);
-    says("file = \"promises.stl\"", &["promises.stl cannot be read"]);
-    says("file = \"nan.stl\"", &["nan.stl cannot be read"]);
-    says("file = \"empty.stl\"", &["empty.stl cannot be read"]);
-    says("file = \"line.stl\"", &["a line of more than"]);
-    says("file = \"few.obj\"", &["few.obj cannot be read"]);
-    says("file = \"opn.stl\"", &["did you mean \"open.stl\"?"]);
-    says("file = \"../open.stl\"", &["leads out of the scene's folder"]);
-    says("file = \"open.stl\", scale = -1.0", &["scale"]);
-    says("file = \"open.stl\", unit = \"furlong\"", &["furlong", "mm"]);
+    assert_refused("file = \"mesh.ply\"", &["neither .stl nor .obj"]);
+    assert_refused("file = \"cut.stl\"", &["cut.stl cannot be read"]);
+    assert_refused("file = \"too_many.stl\"", &["too_many.stl cannot be read"]);
+    assert_refused("file = \"nan.stl\"", &["nan.stl cannot be read"]);
+    assert_refused("file = \"empty.stl\"", &["empty.stl cannot be read"]);
+    assert_refused("file = \"line.stl\"", &["a line of more than"]);
+    assert_refused("file = \"few.obj\"", &["few.obj cannot be read"]);
+    assert_refused("file = \"opn.stl\"", &["did you mean \"open.stl\"?"]);
+    assert_refused("file = \"../open.stl\"", &["leads out of the scene's folder"]);
+    assert_refused("file = \"open.stl\", scale = -1.0", &["scale"]);
+    assert_refused("file = \"open.stl\", unit = \"furlong\"", &["furlong", "mm"]);
     let flat = "dimension = 2\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }\n\
                 [[solid]]\nname = \"body\"\nfixed = true\nshape = { mesh = { file = \"open.stl\" } }\n";
     let error = Scene::parse(flat, &folder, &[]).and_then(|scene| scene.build::<2>().map(|_| ())).unwrap_err();
     assert!(error.to_string().contains("needs a 3-D scene"), "{error}");
-    fs::remove_dir_all(folder).unwrap();
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_bytes_of_a_mesh_make_the_reader_panic(
+    fn changed_bytes_of_a_mesh_file_cause_no_panic(
         changes in prop::collection::vec((0usize..400, 0usize..20, prop::collection::vec(any::<u8>(), 0..8)), 1..4),
         kind in 0usize..3,
     ) {
@@ -163,14 +158,14 @@ proptest! {
         }
         let folder = folder("any");
         fs::write(folder.join(name), bytes).unwrap();
-        // A mesh, or an error that says which file.
+        // The result is a mesh or an error that names the file.
         let message = refusal(&format!("file = \"{name}\""), &folder);
         prop_assert!(message.is_empty() || message.contains(name) || message.contains("dp") || message.contains("float"), "{message}");
     }
 }
 
-/// The polygon of a drawing at dp 0.01, with the words `more` beside its file.
-fn drawn(folder: &Path, svg: &str, more: &str) -> Result<Shape<2>, Error> {
+/// The polygon of an SVG drawing at dp 0.01, with the keys `more` after its file.
+fn polygon(folder: &Path, svg: &str, more: &str) -> Result<Shape<2>, Error> {
     fs::write(folder.join("drawing.svg"), svg).unwrap();
     let text = format!(
         "dimension = 2\ndp = 0.01\nuntil = 1.0\n[[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [4.0, 0.5] }} }}\n\
@@ -180,49 +175,47 @@ fn drawn(folder: &Path, svg: &str, more: &str) -> Result<Shape<2>, Error> {
 }
 
 #[test]
-fn curves_of_a_drawing_enclose_their_area_and_y_points_up() {
+fn the_curves_of_a_drawing_enclose_their_area_with_y_upwards() {
     let folder = folder("drawing");
-    // A half disc of radius 300 mm, its round side down on the screen, drawn clockwise there, in a moved and doubled layer.
+    // A half disc of radius 300 mm with its round side down on the screen, drawn clockwise, in a translated and scaled layer.
     let svg = "<svg xmlns='http://www.w3.org/2000/svg'><g transform='translate(10 20) scale(2)'>\
                <path id='hull' d='M 0,0 h 300 a 150,150 0 0 1 -300,0 z'/></g></svg>";
-    let shape = drawn(&folder, svg, ", unit = \"mm\"").unwrap();
+    let shape = polygon(&folder, svg, ", unit = \"mm\"").unwrap();
     let volume = shape.volume_properties();
     let (area, exact) = (volume.volume, 0.5 * std::f64::consts::PI * 0.3 * 0.3);
-    // Straight lines within 0.01 dp of an arc 0.94 m long lack two thirds of that: 6e-5 m², 0.05 %.
+    // Chords within 0.01 dp of an arc 0.94 m long lack two thirds of that area: 6e-5 m², 0.05 %.
     assert!(area < exact && area > exact - 1e-4 * 0.95, "{area} for {exact}");
     let bounds = shape.bounds();
-    // y on the screen 20 to 320 is −0.020 to −0.320 m: the round side is below.
+    // Screen y from 20 to 320 is −0.020 to −0.320 m: the round side is below.
     assert!((bounds.max[1] + 0.020).abs() < 1e-12 && (bounds.min[1] + 0.320).abs() < 1e-4, "{bounds:?}");
     assert!((bounds.min[0] - 0.010).abs() < 1e-4 && (bounds.max[0] - 0.610).abs() < 1e-4, "{bounds:?}");
-    assert!(volume.centroid[1] > -0.02 - 0.15, "the flat side, above, has more of it");
+    assert!(volume.centroid[1] > -0.02 - 0.15, "the centroid is nearer to the flat side, which is above");
     let Shape::Polygon { points } = shape else { panic!("no polygon") };
     assert!((30..300).contains(&points.len()), "{} points", points.len());
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn drawings_without_one_closed_outline_are_refused_in_words() {
+fn drawings_without_exactly_one_closed_outline_are_refused_with_the_reason() {
     let folder = folder("drawings");
-    let says = |svg: &str, more: &str, what: &str| {
-        let message = drawn(&folder, svg, more).err().map(|e| e.to_string()).unwrap_or_default();
-        assert!(message.contains(what), "no \"{what}\" in: {message}");
+    let assert_message = |svg: &str, more: &str, part: &str| {
+        let message = polygon(&folder, svg, more).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(message.contains(part), "no \"{part}\" in: {message}");
     };
     let two = "<svg><path id='a' d='M0,0 L1,0 1,1 z'/><polygon id='b' points='0,0 0.5,0 0.5,0.5'/></svg>";
-    says(two, "", "there are 2 paths");
-    says(two, ", id = \"c\"", "no path with the id \"c\"");
-    says(two, ", id = \"b\"", "");
-    says("<svg><rect width='1' height='1'/></svg>", "", "no path in this drawing");
-    says("<svg><path d='M0,0 L1,0 1,1'/></svg>", "", "it is not closed");
-    says("<svg><path d='M0,0 L1,0 1,1 z M2,0 L3,0 3,1 z'/></svg>", "", "it has 2 outlines");
-    says("<svg><path d='M0,0 L1,0 1e300,1 z'/></svg>", "", "far too large");
-    says("<svg><path d='nonsense'/></svg>", "", "the path cannot be read");
-    says("svg", "", "this is no SVG");
-    says("<svg><path d='M0,0 L1,1 1,0 0,1 z'/></svg>", "", "crosses itself");
-    says(two, ", id = \"b\", scale = 0.0", "scale");
-    fs::remove_dir_all(folder).unwrap();
+    assert_message(two, "", "there are 2 paths");
+    assert_message(two, ", id = \"c\"", "no path with the id \"c\"");
+    assert_message(two, ", id = \"b\"", "");
+    assert_message("<svg><rect width='1' height='1'/></svg>", "", "no path in this drawing");
+    assert_message("<svg><path d='M0,0 L1,0 1,1'/></svg>", "", "it is not closed");
+    assert_message("<svg><path d='M0,0 L1,0 1,1 z M2,0 L3,0 3,1 z'/></svg>", "", "it has 2 outlines");
+    assert_message("<svg><path d='M0,0 L1,0 1e300,1 z'/></svg>", "", "far too large");
+    assert_message("<svg><path d='nonsense'/></svg>", "", "the path cannot be read");
+    assert_message("svg", "", "this is no SVG");
+    assert_message("<svg><path d='M0,0 L1,1 1,0 0,1 z'/></svg>", "", "crosses itself");
+    assert_message(two, ", id = \"b\", scale = 0.0", "scale");
 }
 
-/// A ball of 20 by 40 facets and its poles as OBJ text.
+/// A ball of 20 rings of 40 points and two poles as OBJ text.
 fn ball_obj(radius: f64) -> String {
     let (n, ring) = (20, 40);
     let mut text = String::new();
@@ -247,7 +240,7 @@ fn ball_obj(radius: f64) -> String {
 }
 
 #[test]
-fn a_mesh_ball_floats_at_its_draft() {
+fn a_mesh_ball_floats_at_the_draft_of_archimedes() {
     let folder = folder("ball");
     fs::write(folder.join("ball.obj"), ball_obj(0.12)).unwrap();
     let dp = 0.03;
@@ -259,7 +252,7 @@ fn a_mesh_ball_floats_at_its_draft() {
     );
     let built = Scene::parse(&text, &folder, &[]).unwrap().build::<3>().unwrap();
     let start = built.setup.solids[1].pose.position[2];
-    // Half of it is under water: its middle lies in the surface, to the bisection's 1e-14.
+    // Half of the ball is under water, so its centre is in the surface, to the 1e-14 of the bisection.
     assert!((start - 0.3).abs() < 1e-12, "{start}");
     assert!(matches!(built.setup.solids[1].role, Role::Free(_)));
     let mut sim = Simulation::new(built.setup).unwrap();
@@ -268,13 +261,12 @@ fn a_mesh_ball_floats_at_its_draft() {
         sim.step().unwrap();
         most = most.max((sim.system().solids()[1].kinematics.pose.position[2] - start).abs());
     }
-    // 0.5 dp, as the scene buoyancy-3d allows its ball: one fits no lattice.
+    // The bound of 0.5 dp is that of the ball in the scene buoyancy-3d; a ball does not fit the lattice.
     assert!(most < 0.5 * dp, "{} dp off", most / dp);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn what_others_touch_of_a_mesh_is_a_choice() {
+fn the_contact_geometry_of_a_mesh_is_a_choice() {
     let folder = folder("touch");
     fs::write(folder.join("text.stl"), text_stl(&FACETS)).unwrap();
     for (word, contact) in [
@@ -285,14 +277,13 @@ fn what_others_touch_of_a_mesh_is_a_choice() {
         let words = format!("{{ mesh = {{ file = \"text.stl\", contact = \"{word}\" }} }}");
         assert!(matches!(shape(&words, &folder), Ok(Shape::Mesh { contact: c, .. }) if c == contact), "{word}");
     }
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn a_body_wholly_inside_a_fixed_mesh_is_refused() {
-    let folder = folder("swallowed");
+fn a_body_that_starts_inside_a_fixed_mesh_is_refused() {
+    let folder = folder("inside");
     fs::write(folder.join("text.stl"), text_stl(&FACETS)).unwrap();
-    // The pyramid is 2 m × 1 m wide and 1.5 m high, the box 0.1 m: nowhere near the surface.
+    // The pyramid is 2 m × 1 m wide and 1.5 m high and the box 0.1 m, so the box is far from the surface.
     let start = |contact: &str, x: f64| {
         let text = format!(
             "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = {{ box = {{ min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 0.5] }} }}\n\
@@ -307,17 +298,16 @@ fn a_body_wholly_inside_a_fixed_mesh_is_refused() {
     for contact in ["fitting", "surface", "hull"] {
         let message = start(contact, 2.75);
         assert!(message.contains("\"box\" starts 0.") && message.contains("m inside \"rock\""), "{contact}: {message}");
-        assert_eq!(start(contact, 4.0), "", "{contact}: beside it");
+        assert_eq!(start(contact, 4.0), "", "{contact}: beside the mesh");
     }
     assert_eq!(start("none", 2.75), "");
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn a_body_that_comes_wholly_inside_a_fixed_mesh_is_refused_and_so_is_a_mesh_round_a_body() {
-    let folder = folder("comes");
+fn adding_a_body_inside_a_fixed_mesh_or_a_mesh_around_a_body_is_refused() {
+    let folder = folder("added");
     fs::write(folder.join("text.stl"), text_stl(&FACETS)).unwrap();
-    // As above: the rock is 2 m × 1 m × 1.5 m, the bodies 0.1 m.
+    // The rock is 2 m × 1 m × 1.5 m, the bodies are 0.1 m.
     let text = "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0, 0.0], max = [0.5, 0.5, 0.3] } }\n\
                 [[solid]]\nname = \"rock\"\nfixed = true\nat = { x = 2.0, y = 0.0, z = 0.0 }\n\
                 shape = { mesh = { file = \"text.stl\", scale = 4.0 } }\n\
@@ -326,23 +316,22 @@ fn a_body_that_comes_wholly_inside_a_fixed_mesh_is_refused_and_so_is_a_mesh_roun
     let setup = Scene::parse(text, &folder, &[]).unwrap().build::<3>().unwrap().setup;
     let (rock, float) = (setup.solids[0].clone(), setup.solids[1].clone());
     let mut sim = Simulation::new(setup).unwrap();
-    let mut come = |spec: &pontoon::solid::SolidSpec<3>, name: &str, x: f64| {
+    let mut add = |spec: &pontoon::solid::SolidSpec<3>, name: &str, x: f64| {
         let mut spec = spec.clone();
         spec.name = name.into();
         spec.pose.position[0] = x;
         sim.add_solid(spec).err().map(|e| e.to_string()).unwrap_or_default()
     };
-    let message = come(&float, "box", 2.75);
+    let message = add(&float, "box", 2.75);
     assert!(message.contains("\"box\" would come 0.") && message.contains("m inside \"rock\""), "{message}");
-    // A rock whose inside is where the float is.
-    let message = come(&rock, "boulder", 3.85);
+    // A rock that contains the float.
+    let message = add(&rock, "boulder", 3.85);
     assert!(message.contains("\"boulder\" would come 0.") && message.contains("m inside \"float\""), "{message}");
-    assert_eq!(come(&float, "box", 4.3), "", "beside both, and nothing had changed");
-    fs::remove_dir_all(folder).unwrap();
+    assert_eq!(add(&float, "box", 4.3), "", "beside both, and the refusals changed nothing");
 }
 
 #[test]
-fn a_body_that_leaves_no_water_is_named() {
+fn a_body_that_displaces_all_water_is_named_in_the_error() {
     let text = "dimension = 2\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }\n\
                 [[solid]]\nname = \"barge\"\nshape = { box = { size = [1.2, 0.8] } }\nat = { x = 0.5, bottom = -0.1 }\n\
                 free = { density = 500.0 }\n";

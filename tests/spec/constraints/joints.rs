@@ -1,4 +1,4 @@
-//! Joints, lines and forces in a scene and in water; what they promise in air is in `solid/rig/tests.rs`.
+//! Joints, springs, ropes and forces of a scene in water. Tests of constraints without water are in `tests/unit/solid/assembly.rs`.
 
 use std::path::Path;
 
@@ -9,7 +9,9 @@ use pontoon::{
     simulation::Simulation,
 };
 
-/// A buoy held under water by a line, and a flap hinged at the bed; half as heavy as water, 0.02 m² each.
+use crate::common;
+
+/// A buoy held under water by a line, and a flap hinged at the bed; both have half the density of water and 0.02 m².
 const MOORED: &str = r#"
 dimension = 2
 dp        = 0.02
@@ -63,43 +65,37 @@ fn moored() -> Result<Simulation<2>> {
 }
 
 #[test]
-fn a_line_and_a_hinge_carry_what_archimedes_says() -> Result<()> {
+fn a_line_and_a_hinge_carry_the_net_buoyancy_of_their_bodies() -> Result<()> {
     let mut sim = moored()?;
     let (line, foot) = (sim.find_spring("line")?, sim.find_joint("foot")?);
-    let (mut tension, mut carried) = (0.0, 0.0);
-    while sim.time() < 2.0 {
-        sim.step_to(2.0)?;
-        if sim.time() > 1.0 {
-            tension += sim.spring_reading(line).tension * sim.dt();
-            carried -= sim.joint_reading(foot).force[1] * sim.dt();
-        }
-    }
-    // (ρ₀ − ρ) g V, held to 2 %: the bodies are 5 dp thick, and the line gives way by 5 mm.
+    let [tension, carried] = common::time_mean(&mut sim, 1.0, 2.0, |sim| {
+        [sim.spring_reading(line).tension, -sim.joint_reading(foot).force[1]]
+    })?;
+    // (ρ₀ − ρ) g V to 2 %: the bodies are 5 dp thick, and the line stretches by 5 mm.
     let exact = 500.0 * 9.81 * 0.02;
     assert!((tension / exact - 1.0).abs() < 0.02, "line {tension} N/m, exact {exact}");
     assert!((carried / exact - 1.0).abs() < 0.02, "hinge {carried} N/m, exact {exact}");
-    assert!(sim.joint_reading(foot).position.abs() < 0.05, "the flap stands: {:?}", sim.joint_reading(foot));
+    assert!(sim.joint_reading(foot).position.abs() < 0.05, "the flap stays upright: {:?}", sim.joint_reading(foot));
     Ok(())
 }
 
 #[test]
-fn a_moored_and_hinged_run_resumed_goes_on_to_the_same_bits() -> Result<()> {
-    let steps = |sim: &mut Simulation<2>, n: usize| (0..n).try_for_each(|_| sim.step());
+fn a_resumed_run_with_a_mooring_and_a_hinge_reaches_the_same_bits() -> Result<()> {
     let mut whole = moored()?;
-    steps(&mut whole, 30)?;
+    common::steps(&mut whole, 30);
     whole.spring_parameters(0).rest_length = 0.19;
     let kept = whole.save()?;
-    steps(&mut whole, 30)?;
+    common::steps(&mut whole, 30);
     let mut resumed = moored()?;
     resumed.restore(&kept)?;
-    steps(&mut resumed, 30)?;
+    common::steps(&mut resumed, 30);
     assert!(resumed.save()? == whole.save()?);
     assert!(whole.spring_reading(0).tension > 0.0 && whole.joint_reading(0).absorbed_energy != 0.0);
     Ok(())
 }
 
 #[test]
-fn probes_of_ties_name_their_units_and_read_what_the_simulation_tells() -> Result<()> {
+fn joint_and_line_probes_name_their_units_and_read_the_values_of_the_simulation() -> Result<()> {
     let mut sim = moored()?;
     sim.step()?;
     let (foot, line) = (JointProbe::new(sim.system(), "foot")?, LineProbe::spring(sim.system(), "line")?);
@@ -119,16 +115,16 @@ fn probes_of_ties_name_their_units_and_read_what_the_simulation_tells() -> Resul
     Ok(())
 }
 
-/// A tank of water 1.2 m × 0.4 m, and what else `words` say, at this spacing (m).
-fn pool(dp: f64, words: &str) -> Result<Scene> {
+/// A tank of water of 1.2 m × 0.4 m with spacing `dp` (m), and the sections `more`.
+fn pool(dp: f64, more: &str) -> Result<Scene> {
     let text = format!(
         "dimension = 2\ndp = {dp}\nuntil = 4.0\n[[water]]\nfill = {{ box = {{ min = [0, 0], max = [1.2, 0.4] }} }}\n\
-         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.2, 0.6] }} }}\n{words}"
+         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.2, 0.6] }} }}\n{more}"
     );
     Scene::parse(&text, Path::new(""), &[])
 }
 
-/// A barge with its ballast on one side, in a guide in which it may heave and turn by 2°.
+/// A barge with ballast on one side, in a guide with free heave and 2° of free rotation.
 const GUIDED: &str = r#"
 [[solid]]
 name  = "barge"
@@ -147,29 +143,23 @@ limits_deg = { turn = [-2.0, 2.0] }
 "#;
 
 #[test]
-fn a_guide_with_play_carries_the_moment_that_the_water_does_not() -> Result<()> {
+fn a_guide_at_its_stop_carries_the_difference_of_heeling_and_righting_moment() -> Result<()> {
     let mut sim = Simulation::new(pool(0.0125, GUIDED)?.build::<2>()?.setup)?;
     let guide = JointProbe::new(sim.system(), "guide")?;
     assert_eq!(Probe::<2>::columns(&guide)[3..], ["y_m", "turn_deg"]);
-    let mut carried = 0.0;
-    while sim.time() < 4.0 {
-        sim.step_to(4.0)?;
-        if sim.time() > 3.0 {
-            carried += sim.joint_reading(0).torque.axial()[0] * sim.dt();
-        }
-    }
+    let [carried] = common::time_mean(&mut sim, 3.0, 4.0, |sim| [sim.joint_reading(0).torque.axial()[0]])?;
     let [y, turn]: [f64; 2] = guide.sample(&sim)[3..].try_into().unwrap();
-    // Its ballast would have it list by 13°; heave is free, and 0.2 dp is what a draft is known to.
+    // Without the guide the barge would list by 13°. Heave is free, and the draft is accurate to 0.2 dp.
     assert!((turn + 2.0).abs() < 1e-3 && y.abs() < 0.2 * 0.0125, "{turn}° and {y} m");
-    assert!(sim.system().solids()[1].kinematics.pose.position[0] - 0.6 < 1e-6, "and it does not drift");
-    // Weight × (offset cos φ − GM sin φ), with BM = B²/12T and KB − KG = −25 mm; moments of 8 rows are right to a few hundredths.
+    assert!(sim.system().solids()[1].kinematics.pose.position[0] - 0.6 < 1e-6, "the barge does not drift");
+    // Weight × (offset cos φ − GM sin φ), with BM = B²/12T and KB − KG = −25 mm. Moments of 8 rows are accurate to a few per cent.
     let (gm, list) = (0.3 * 0.3 / 0.6 - 0.025, 2f64.to_radians());
     let exact = 500.0 * 0.03 * 9.81 * (0.03 * list.cos() - gm * list.sin());
     assert!((carried / exact - 1.0).abs() < 0.05, "{carried} N m/m, exact {exact}");
     Ok(())
 }
 
-/// A flap pinned under a paddle that goes to and fro in the surface.
+/// A flap pinned under a paddle that oscillates at the surface.
 const PINNED: &str = r#"
 [[solid]]
 name   = "paddle"
@@ -191,42 +181,46 @@ at      = [0.5, 0.34]
 "#;
 
 #[test]
-fn a_flap_pinned_to_a_moving_paddle_goes_with_it_and_its_loads_add_up() -> Result<()> {
+fn a_flap_pinned_to_a_driven_paddle_stays_attached_and_its_loads_sum_to_zero() -> Result<()> {
     let mut sim = Simulation::new(pool(0.02, PINNED)?.build::<2>()?.setup)?;
     sim.enable_load_breakdown();
-    let (mut torn, mut swung): (f64, f64) = (0.0, 0.0);
+    let (mut gap, mut swing): (f64, f64) = (0.0, 0.0);
     while sim.time() < 1.0 {
         sim.step_to(1.0)?;
         let [paddle, flap] = [1, 2].map(|i| sim.system().solids()[i].kinematics.pose);
         let apart = paddle.point(&[0.0, -0.08].into()) - flap.point(&[0.0, 0.12].into());
-        (torn, swung) = (torn.max(apart.norm()), swung.max(sim.joint_reading(0).position.abs()));
+        (gap, swing) = (gap.max(apart.norm()), swing.max(sim.joint_reading(0).position.abs()));
         let shares = sim.load_breakdown(2).unwrap();
         let largest = shares.kinds().iter().map(|(_, load)| load.force.norm()).fold(0.0, f64::max);
         let off = shares.residual().force.norm();
         assert!(off < 1e-9 * largest, "{off} N/m of {largest} at {} s", sim.time());
     }
-    // The engine mends places as fast as it moves them: what is left is of second order in the step.
-    assert!(torn < 1e-5, "the pin is torn by {torn} m");
-    assert!(swung.to_degrees() > 2.0, "the water swings it: {}°", swung.to_degrees());
+    // The engine corrects positions within the step; the remainder is of second order in the step.
+    assert!(gap < 1e-5, "the joint is open by {gap} m");
+    assert!(swing.to_degrees() > 2.0, "the flap swings in the water: {}°", swing.to_degrees());
     Ok(())
 }
 
 #[test]
-fn a_joint_that_something_contradicts_is_told_of() -> Result<()> {
+fn a_joint_in_conflict_with_another_constraint_is_reported() -> Result<()> {
     let more = "[[joint]]\nname = \"weld\"\nkind = \"fixed\"\nbetween = [\"tank\", \"flap\"]\nat = [0.5, 0.14]\n";
     let text = format!("{PINNED}\n{more}");
     let mut sim = Simulation::new(pool(0.02, &text)?.build::<2>()?.setup)?;
-    assert!(sim.violated_joints().is_empty(), "whole at the start");
+    assert!(sim.violated_joints().is_empty(), "no joint is violated at the start");
     while sim.time() < 0.3 {
         sim.step_to(0.3)?;
     }
-    // The paddle has gone 65 mm from what is welded to the tank.
-    assert!(sim.violated_joints().iter().any(|said| said.contains("is torn by 0.06")), "{:?}", sim.violated_joints());
+    // The paddle has moved 65 mm away from the flap, which is fixed to the tank.
+    assert!(
+        sim.violated_joints().iter().any(|message| message.contains("is torn by 0.06")),
+        "{:?}",
+        sim.violated_joints()
+    );
     Ok(())
 }
 
 #[test]
-fn stiff_lines_shorten_the_step_and_nothing_else_does() -> Result<()> {
+fn only_stiff_springs_shorten_the_step() -> Result<()> {
     let limit = |stiffness: &str| -> Result<f64> {
         let sets = [("spring.line.stiffness".to_string(), stiffness.to_string())];
         Ok(Simulation::new(Scene::parse(MOORED, Path::new(""), &sets)?.build::<2>()?.setup)?.step_limit())
@@ -238,8 +232,8 @@ fn stiff_lines_shorten_the_step_and_nothing_else_does() -> Result<()> {
     Ok(())
 }
 
-/// What is said of the scene with `from` replaced by `to`.
-fn said(from: &str, to: &str) -> String {
+/// The error message of the scene with `from` replaced by `to`.
+fn error_message(from: &str, to: &str) -> String {
     assert!(MOORED.contains(from), "\"{from}\" is not in the scene");
     let built = Scene::parse(&MOORED.replacen(from, to, 1), Path::new(""), &[]).and_then(|scene| {
         scene.resolve()?;
@@ -249,7 +243,7 @@ fn said(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn wrong_words_of_ties_are_told_with_their_place_and_what_to_write() {
+fn wrong_keys_of_joints_and_springs_are_refused_with_their_location_and_a_remedy() {
     let motor = "motor   = { damping = 5.0 }";
     let cases: [(&str, &str, &[&str]); 26] = [
         (
@@ -292,17 +286,17 @@ fn wrong_words_of_ties_are_told_with_their_place_and_what_to_write() {
         ("to           = [0.3, 0.0]", "too = [0.3, 0.0]", &["unknown key \"too\"; did you mean \"to\"?"]),
     ];
     for (from, to, expected) in cases {
-        let message = said(from, to);
+        let message = error_message(from, to);
         for part in expected {
             assert!(message.contains(part), "{to}: \"{part}\" is not in\n{message}");
         }
     }
-    let twice = said(
+    let twice = error_message(
         "[[probe]]\njoint",
         "[[joint]]\nname = \"foot\"\nkind = \"fixed\"\nbetween = [\"flap\"]\nat = [0.7, 0.2]\n\n[[probe]]\njoint",
     );
     assert!(twice.contains("two joints are called \"foot\""), "{twice}");
-    let long = said(
+    let long = error_message(
         "[[joint]]",
         "[[rope]]\nname = \"r\"\nbetween = [\"buoy\"]\nfrom = [0.3, 0.2]\nto = [0.3, 0.0]\nlength = 0.1\n\n[[joint]]",
     );
@@ -310,15 +304,16 @@ fn wrong_words_of_ties_are_told_with_their_place_and_what_to_write() {
 }
 
 #[test]
-fn values_of_ties_may_be_numbers_formulas_or_tables() -> Result<()> {
-    let words = |text: &str| Scene::parse(&MOORED.replace("motor   = { damping = 5.0 }", text), Path::new(""), &[]);
+fn values_of_joints_and_forces_may_be_numbers_formulas_or_tables() -> Result<()> {
+    let with_motor =
+        |text: &str| Scene::parse(&MOORED.replace("motor   = { damping = 5.0 }", text), Path::new(""), &[]);
     for motor in [
         "motor = { damping = 5 }",
         "motor = { torque = \"sin(t)\", damping = \"5*t\" }",
         "motor = { torque = { formula = \"sin(t)\" }, strongest = 3.0 }",
         "motor = { position_deg = { file = \"angle.csv\", column = \"angle_deg\" }, stiffness = 100 }",
     ] {
-        let scene = words(motor)?;
+        let scene = with_motor(motor)?;
         let again = Scene::parse(&scene.to_toml()?, Path::new(""), &[])?;
         assert!(again == scene && again.to_toml()? == scene.to_toml()?, "{motor}: {}", scene.to_toml()?);
     }
@@ -329,17 +324,14 @@ fn values_of_ties_may_be_numbers_formulas_or_tables() -> Result<()> {
     let scene = Scene::parse(&MOORED.replacen("[[joint]]", force, 1), Path::new(""), &[])?;
     let links = scene.build::<2>()?.setup.constraints;
     assert_eq!((links.forces[0].force.len(), links.forces[0].torque.len(), links.contacts.len()), (2, 1, 2));
-    assert!(
-        !links.can_touch(1, 2) && links.can_touch(1, 0) && !links.can_touch(0, 2),
-        "what is jointed does not touch either"
-    );
+    assert!(!links.can_touch(1, 2) && links.can_touch(1, 0) && !links.can_touch(0, 2), "jointed solids do not touch");
     let pushed = links.forces[0].force[0].value_and_rate(0.5).0;
     assert_eq!(pushed, 5.0);
     Ok(())
 }
 
 #[test]
-fn a_force_on_a_body_in_water_moves_the_water_too() -> Result<()> {
+fn a_force_on_a_body_in_water_also_accelerates_its_added_mass() -> Result<()> {
     let force = "[[force]]\nname = \"tow\"\non = \"buoy\"\nforce = [30.0, 0.0]\n\n[[joint]]";
     let scene = Scene::parse(&MOORED.replacen("[[joint]]", force, 1), Path::new(""), &[])?;
     let mut towed = Simulation::new(scene.build::<2>()?.setup)?;
@@ -351,7 +343,7 @@ fn a_force_on_a_body_in_water_moves_the_water_too() -> Result<()> {
     }
     let speed = |sim: &Simulation<2>| sim.system().solids()[1].kinematics.velocity[0];
     let gained = speed(&towed) - speed(&still);
-    // In air it would have 30 N · 0.05 s / 10 kg; the water goes along with 0.2 to 2 times the mass of a block of that breadth.
+    // In air the velocity would be 30 N · 0.05 s / 10 kg. The added mass is 0.2 to 2 times the mass of a block of that breadth.
     assert!(0.15 / 3.0 < gained && gained < 0.15 / 1.2, "{gained} m/s");
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! What is told of a run while it goes on: of its energy, by the latest reading of a probe.
+//! Progress of a run: the reported energy drift, from the latest reading of a probe.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use pontoon::{
 
 use crate::common::TestFolder;
 
-/// A box dropped by half a draft, which moves the water within a few steps.
+/// A box released half a draft above equilibrium, which moves the water within a few steps.
 const SCENE: &str = r#"
 dimension = 2
 dp = 0.05
@@ -29,20 +29,20 @@ at = { x = 0.5, bottom = 0.35 }
 free = { density = 500.0 }
 "#;
 
-/// A folder with the scene and `more` words of it.
-fn home(name: &str, more: &str) -> TestFolder {
+/// A folder with the scene and the sections `more`.
+fn scene_folder(name: &str, more: &str) -> TestFolder {
     TestFolder::with_scene(&format!("progress-{name}"), &format!("{SCENE}{more}"))
 }
 
-/// Runs the scene in `home`; what was told of the energy at each step.
-fn told(home: &Path) -> Result<Vec<Option<EnergyDrift>>> {
-    let mut told = Vec::new();
+/// Runs the scene in `home` and returns the energy drift that each step reports.
+fn energy_drifts(home: &Path) -> Result<Vec<Option<EnergyDrift>>> {
+    let mut drifts = Vec::new();
     let options = RunOptions { out: Some(home.join("run")), threads: Some(1), ..RunOptions::default() };
     run::run(&home.join("scene.toml"), &options, &mut |now: &Progress| {
-        told.push(now.energy);
+        drifts.push(now.energy);
         true
     })?;
-    Ok(told)
+    Ok(drifts)
 }
 
 fn table(home: &Path, name: &str) -> SeriesTable {
@@ -55,10 +55,10 @@ fn row(table: &SeriesTable, i: usize) -> Vec<f64> {
 }
 
 #[test]
-fn a_run_tells_the_share_of_its_energy_that_its_budget_cannot_account_for() -> Result<()> {
-    // A budget tells more than the energy beside it.
-    let home = home("budget", "[[probe]]\nenergy = true\n[[probe]]\nbudget = true\nevery = 1e-9\n");
-    let told = told(&home)?;
+fn a_run_with_a_budget_reports_its_relative_energy_residual() -> Result<()> {
+    // The budget takes precedence over the energy probe.
+    let home = scene_folder("budget", "[[probe]]\nenergy = true\n[[probe]]\nbudget = true\nevery = 1e-9\n");
+    let drifts = energy_drifts(&home)?;
     let budget = table(&home, "budget");
     let residual = budget.columns.len() - 1;
     assert!(budget.columns[residual].starts_with("residual_J"));
@@ -66,30 +66,30 @@ fn a_run_tells_the_share_of_its_energy_that_its_budget_cannot_account_for() -> R
         let row = row(&budget, i);
         EnergyDrift::Unaccounted(row[residual].abs() / row[1..residual].iter().map(|x| x.abs()).sum::<f64>())
     };
-    // Read at every step: what is told is of that step, to the bit, and nothing before anything was turned over.
-    assert_eq!(told.len(), budget.times.len());
-    assert_eq!(told[0], None);
-    assert!((1..told.len()).all(|i| told[i] == Some(share(i))), "{told:?}");
+    // The probe reads at every step, so each report equals the reading of its step. Without any energy transfer there is no report.
+    assert_eq!(drifts.len(), budget.times.len());
+    assert_eq!(drifts[0], None);
+    assert!((1..drifts.len()).all(|i| drifts[i] == Some(share(i))), "{drifts:?}");
     Ok(())
 }
 
 #[test]
-fn a_run_without_a_budget_tells_how_its_energy_changed_and_one_without_either_nothing() -> Result<()> {
-    let with = home("energy", "[[probe]]\nenergy = true\nevery = 1e-9\n");
-    let said = told(&with)?;
+fn a_run_without_a_budget_reports_its_energy_change_and_one_without_energy_probes_reports_nothing() -> Result<()> {
+    let with = scene_folder("energy", "[[probe]]\nenergy = true\nevery = 1e-9\n");
+    let drifts = energy_drifts(&with)?;
     let energy = table(&with, "energy");
     let total = energy.values.last().unwrap();
     let change = |i: usize| Some(EnergyDrift::Changed(total[i] - total[0], "J/m"));
-    assert_eq!(said.len(), energy.times.len());
-    assert!((0..said.len()).all(|i| said[i] == change(i)), "{said:?}");
-    let without = home("neither", "[[probe]]\nmotion = \"box\"\n");
-    assert!(told(&without)?.iter().all(Option::is_none));
+    assert_eq!(drifts.len(), energy.times.len());
+    assert!((0..drifts.len()).all(|i| drifts[i] == change(i)), "{drifts:?}");
+    let without = scene_folder("neither", "[[probe]]\nmotion = \"box\"\n");
+    assert!(energy_drifts(&without)?.iter().all(Option::is_none));
     Ok(())
 }
 
 #[test]
-fn a_resumed_run_tells_the_change_since_its_start() -> Result<()> {
-    let home = home("resumed", "[[probe]]\nenergy = true\nevery = 1e-9\n");
+fn a_resumed_run_reports_the_energy_change_since_its_start() -> Result<()> {
+    let home = scene_folder("resumed", "[[probe]]\nenergy = true\nevery = 1e-9\n");
     let options = RunOptions { out: Some(home.join("run")), threads: Some(1), ..RunOptions::default() };
     run::run(&home.join("scene.toml"), &options, &mut |now: &Progress| now.time < 0.05)?;
     let mut first = None;
@@ -99,9 +99,9 @@ fn a_resumed_run_tells_the_change_since_its_start() -> Result<()> {
     })?;
     let energy = table(&home, "energy");
     let total = energy.values.last().unwrap();
-    let (time, said) = first.unwrap();
+    let (time, drift) = first.unwrap();
     let i = energy.times.iter().position(|t| *t == time).unwrap();
-    assert!(i > 3, "it was interrupted on its way");
-    assert_eq!(said, Some(EnergyDrift::Changed(total[i] - total[0], "J/m")));
+    assert!(i > 3, "the interruption is not at the start");
+    assert_eq!(drift, Some(EnergyDrift::Changed(total[i] - total[0], "J/m")));
     Ok(())
 }

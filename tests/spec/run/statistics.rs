@@ -1,4 +1,4 @@
-//! What is said of a run's series at its end: from the scene's words to the rows of `statistics.csv`.
+//! Statistics of the series of a run: from the keys of a scene to the rows of `statistics.csv`.
 
 use std::{f64::consts::TAU, fs};
 
@@ -47,7 +47,7 @@ waves = "gauge"
 from = 5.0
 "#;
 
-/// A finished run whose tables are those of waves 0.1 m high, of which a quarter comes back.
+/// A finished run with the tables of waves 0.1 m high and a reflection coefficient of a quarter.
 fn run_of_waves(name: &str) -> Result<TestFolder> {
     let home = TestFolder::with_scene(&format!("statistics-{name}"), SCENE);
     let out = home.join("run");
@@ -89,23 +89,23 @@ fn value(rows: &[Statistic], name: &str, series: &str, quantity: &str) -> f64 {
 }
 
 #[test]
-fn a_run_tells_heights_periods_reflection_and_raos_of_its_series() -> Result<()> {
+fn the_statistics_of_a_run_contain_exact_heights_periods_reflection_and_raos() -> Result<()> {
     let home = run_of_waves("all")?;
-    let told = run::statistics(&home.join("run"), &StatisticsFilter::default())?;
-    assert_eq!(told.remarks, Vec::<String>::new());
-    let of = |name: &str, series: &str, quantity: &str| value(&told.rows, name, series, quantity);
-    // The fit is exact.
+    let statistics = run::statistics(&home.join("run"), &StatisticsFilter::default())?;
+    assert_eq!(statistics.remarks, Vec::<String>::new());
+    let of = |name: &str, series: &str, quantity: &str| value(&statistics.rows, name, series, quantity);
+    // The separation of incident and reflected waves is exact.
     assert!((of("reflection", "row.eta_at_1_m", "reflection") - 0.25).abs() < 1e-6);
     assert!((of("reflection", "row.eta_at_1_m", "H_incident") - 0.1).abs() < 1e-7);
-    // At x = 1 m the two waves meet with 2k + 0.4 between them.
+    // At x = 1 m the phase difference of the two waves is 2k + 0.4.
     let at_one =
         (0.05_f64.powi(2) + 0.0125_f64.powi(2) + 2.0 * 0.05 * 0.0125 * (2.0 * 3.062_179_329_547_653 + 0.4_f64).cos())
             .sqrt();
     assert!((of("rao", "buoy.heave_m", "rao") - 0.03 / at_one).abs() < 1e-9);
     assert!((of("rao", "buoy.pitch_deg", "rao") - 3.0 / at_one).abs() < 1e-7);
-    let late = told.rows.iter().find(|row| row.name == "late").map(|row| (row.from_s, row.until_s));
+    let late = statistics.rows.iter().find(|row| row.name == "late").map(|row| (row.from_s, row.until_s));
     assert_eq!(late, Some((5.0, 19.98)));
-    // Samples 0.02 s apart miss a crest by 0.01 s at most: 1 − cos(0.05) of the height.
+    // Samples at 0.02 s miss a crest by 0.01 s at most: 1 − cos(0.05) of the height.
     assert!((of("late", "gauge.eta_m", "H_max") / (2.0 * at_one) - 1.0).abs() < 2e-3);
     assert!((of("", "gauge.eta_m", "T_z") - 1.25).abs() < 1e-3);
     assert!((of("", "buoy.heave_m", "std") - 0.03 / 2.0_f64.sqrt()).abs() < 1e-4);
@@ -113,20 +113,25 @@ fn a_run_tells_heights_periods_reflection_and_raos_of_its_series() -> Result<()>
 }
 
 #[test]
-fn a_part_of_a_series_can_be_asked_for_and_a_series_that_is_none_is_refused() -> Result<()> {
+fn statistics_of_a_selected_series_and_time_are_computed_and_an_unknown_series_is_refused() -> Result<()> {
     let home = run_of_waves("part")?;
     let ask = |series: &str| StatisticsFilter { series: Some(series.into()), from: Some(3.0), until: Some(9.0) };
-    let told = run::statistics(&home.join("run"), &ask("buoy"))?;
-    assert!(told.rows.iter().all(|row| row.series.starts_with("buoy.") && row.from_s >= 3.0 && row.until_s <= 9.0));
-    assert!(told.rows.iter().any(|row| row.quantity == "rao"), "what the scene asks of it, too");
+    let statistics = run::statistics(&home.join("run"), &ask("buoy"))?;
+    assert!(
+        statistics.rows.iter().all(|row| row.series.starts_with("buoy.") && row.from_s >= 3.0 && row.until_s <= 9.0)
+    );
+    assert!(
+        statistics.rows.iter().any(|row| row.quantity == "rao"),
+        "statistics of the scene for this series are included"
+    );
     let refused = run::statistics(&home.join("run"), &ask("booy")).err().and_then(|e| e.help);
     assert_eq!(refused.as_deref(), Some("the probes are: row, gauge, buoy"));
     Ok(())
 }
 
 #[test]
-fn statistics_that_cannot_be_meant_are_refused_in_words() {
-    for (words, expected) in [
+fn invalid_statistics_are_refused_with_the_reason() {
+    for (keys, expected) in [
         ("reflection = [\"gauge\"]", "1 gauge cannot tell"),
         ("reflection = [\"buoy\", \"gauge\"]", "one of these is none"),
         ("rao = { motion = \"booy\", wave = \"gauge\" }", "did you mean \"buoy\"?"),
@@ -135,8 +140,9 @@ fn statistics_that_cannot_be_meant_are_refused_in_words() {
         ("waves = \"gauge\"\nreflection = [\"row\"]", "a statistic is of one kind"),
         ("waves = \"gauge\"\nfrom = 2.0\nuntil = 1.0", "nothing lies between"),
     ] {
-        let text = format!("{SCENE}\n[[statistic]]\n{words}\n");
-        let said = Scene::parse(&text, ".".as_ref(), &[]).and_then(|scene| scene.plan()).err().map(|e| e.to_string());
-        assert!(said.as_ref().is_some_and(|said| said.contains(expected)), "{words}: {said:?}");
+        let text = format!("{SCENE}\n[[statistic]]\n{keys}\n");
+        let message =
+            Scene::parse(&text, ".".as_ref(), &[]).and_then(|scene| scene.plan()).err().map(|e| e.to_string());
+        assert!(message.as_ref().is_some_and(|message| message.contains(expected)), "{keys}: {message:?}");
     }
 }

@@ -1,7 +1,7 @@
-//! Hostile scenes: whatever they say, they are refused in words; no panic, no hang, no memory beyond what is meant. A
-//! small set of what `fuzz/` tries by the million.
+//! Invalid and malicious input: it is refused with a message, without panics, hangs or excessive memory. `fuzz/` tries millions of
+//! such inputs.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use pontoon::{
     Error,
@@ -9,7 +9,9 @@ use pontoon::{
 };
 use proptest::prelude::*;
 
-/// A tank of water, a float, a wall, a paddle: a number of every sort.
+use crate::common::TestFolder;
+
+/// A tank of water, a float, a wall and a paddle, with every kind of number.
 const SCENE: &str = r#"dimension = 2
 dp        = 0.1
 until     = 1.0
@@ -76,15 +78,15 @@ every  = 0.1
 pressure = [0.5, 0.2]
 "#;
 
-/// Numbers that nobody means, and some that only look so.
+/// Extreme numbers and numbers that are not finite.
 const NUMBERS: [&str; 12] =
     ["0.0", "-0.0", "-1.0", "1e300", "-1e300", "1e-300", "5e-324", "1e18", "1e-18", "1e9", "nan", "-inf"];
 
-/// Particles up to which a scene is built here.
+/// Largest number of particles for which a test builds the scene.
 const SMALL: f64 = 4000.0;
 
-/// Reads, resolves and sizes; builds what is small.
-fn try_out(text: &str, folder: &Path) -> Result<(), Error> {
+/// Reads and resolves a scene and estimates its size; builds it if it is small.
+fn try_scene(text: &str, folder: &Path) -> Result<(), Error> {
     let scene = Scene::parse(text, folder, &[])?;
     scene.resolve()?;
     let size = scene.estimate_size()?;
@@ -97,7 +99,7 @@ fn try_out(text: &str, folder: &Path) -> Result<(), Error> {
     }
 }
 
-/// The pieces of a text that are numbers: where each begins and ends.
+/// The start and end of each number in a text.
 fn numbers(text: &str) -> Vec<(usize, usize)> {
     let part = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
     let mut found = Vec::new();
@@ -112,76 +114,74 @@ fn numbers(text: &str) -> Vec<(usize, usize)> {
 }
 
 #[test]
-fn no_number_in_any_place_makes_the_reader_panic_or_hang() {
-    assert_eq!(try_out(SCENE, Path::new(".")), Ok(()));
+fn extreme_numbers_at_any_position_cause_no_panic_or_hang() {
+    assert_eq!(try_scene(SCENE, Path::new(".")), Ok(()));
     for (start, end) in numbers(SCENE) {
         for number in NUMBERS {
             let text = [&SCENE[..start], number, &SCENE[end..]].concat();
-            // A word in place of a number may say anything but must say it.
-            let _ = try_out(&text, Path::new("."));
+            // Any result is admissible, but a panic is not.
+            let _ = try_scene(&text, Path::new("."));
         }
     }
 }
 
 #[test]
-fn a_scene_for_a_million_million_particles_is_refused_with_the_arithmetic() {
-    let refused = |text: &str, words: &[&str]| {
-        let what = try_out(text, Path::new(".")).expect_err("too many").to_string();
-        assert!(words.iter().all(|word| what.contains(word)), "{what}");
+fn a_scene_with_1e12_particles_is_refused_with_the_calculation() {
+    let assert_refused = |text: &str, parts: &[&str]| {
+        let message = try_scene(text, Path::new(".")).expect_err("too many").to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     };
     let water = SCENE.replace("level = 0.5", "").replace("[domain]\nmin = [-3.0, -2.0]\nmax = [4.0, 5.0]", "");
     let large = water.replace("max = [1.0, 0.8]", "max = [100000.0, 100000.0]");
-    refused(&large, &["asks for 1.0e12 particles", "10000000000 m² of water / dp²", "the most is 2e8", "write  dp ="]);
+    assert_refused(
+        &large,
+        &["asks for 1.0e12 particles", "10000000000 m² of water / dp²", "the most is 2e8", "write  dp ="],
+    );
     let walls = SCENE.replace("tank = { size = [1.0, 1.0]", "tank = { size = [1.0, 1e10]");
-    refused(&walls, &["e12 particles", "m of solids × 4 layers / dp", "the most is 2e8"]);
+    assert_refused(&walls, &["e12 particles", "m of solids × 4 layers / dp", "the most is 2e8"]);
     let fine = SCENE.replace("dp        = 0.1", "dp        = 7e-7");
-    refused(&fine, &["e12 particles", "write  dp ="]);
+    assert_refused(&fine, &["e12 particles", "write  dp ="]);
     let far =
         SCENE.replace("min = [0.0, 0.0]", "min = [1e9, 0.0]").replace("max = [1.0, 0.8]", "max = [1000000001.0, 0.8]");
-    refused(&far.replace("max = [4.0, 5.0]", "max = [2e9, 5.0]"), &["1.0e9 m from the origin", "move the scene"]);
+    assert_refused(
+        &far.replace("max = [4.0, 5.0]", "max = [2e9, 5.0]"),
+        &["1.0e9 m from the origin", "move the scene"],
+    );
 }
 
 #[test]
-fn a_long_scene_is_read_and_a_longer_one_refused() {
-    // A place, a name and a line for each of 20,000 probes and of 9,000 points: what grows with the square would take hours.
+fn a_scene_of_20000_probes_is_read_and_one_above_1_mib_is_refused() {
+    // 20,000 probes and 9,000 points: an algorithm of quadratic cost would take hours.
     let probes: String = (0..20_000).map(|i| format!("[[probe]]\npressure = [0.5, 0.{i:05}]\n")).collect();
     let points: Vec<String> = (0..9_000).map(|i| format!("[{}.0, {}.0]", i % 2, i)).collect();
     let text = SCENE.replace("[[-1.0, -0.5], [2.0, -0.6]]", &format!("[{}]", points.join(","))) + &probes;
     let scene = Scene::parse(&text, Path::new("."), &[]).unwrap();
     assert!(scene.resolve().unwrap().len() > 60_000);
-    let folder = desk("long");
+    let folder = TestFolder::new("bad-input-long");
     std::fs::write(folder.join("scene.toml"), SCENE.to_string() + &"# far too long\n".repeat(100_000)).unwrap();
     let what = Scene::read(&folder, &[]).unwrap_err().to_string();
     assert!(what.contains("has more than 1048576 bytes") && what.contains("tables beside the scene"), "{what}");
-    std::fs::remove_dir_all(folder).unwrap();
-}
-
-fn desk(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("pontoon-hostile-{name}-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
 }
 
 #[test]
-fn a_table_that_is_no_file_or_far_too_large_is_told_before_it_is_read() {
-    let home = desk("tables");
+fn a_table_that_is_a_folder_or_too_large_is_refused_before_it_is_read() {
+    let home = TestFolder::new("bad-input-tables");
     let with = |file: &str| {
         let law = format!("{{ file = \"{file}\", column = \"x_m\" }}");
-        let error = try_out(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &home).expect_err(file);
+        let error = try_scene(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &home).expect_err(file);
         error.to_string()
     };
     std::fs::create_dir_all(home.join("folder.csv")).unwrap();
     assert!(with("folder.csv").contains("\"folder.csv\" beside the scene is no file"), "{}", with("folder.csv"));
-    // A thousand million zeros, which take no room on the disk.
+    // A sparse file of 1 GiB, which uses no space on the disk.
     std::fs::File::create(home.join("large.csv")).and_then(|file| file.set_len(1 << 30)).unwrap();
     assert!(with("large.csv").contains("has more than 256 MiB"), "{}", with("large.csv"));
-    std::fs::remove_dir_all(home).unwrap();
 }
 
 #[cfg(unix)]
 #[test]
-fn a_link_beside_the_scene_does_not_lead_out_of_its_folder() {
-    let home = desk("link");
+fn a_link_out_of_the_folder_of_the_scene_is_refused() {
+    let home = TestFolder::new("bad-input-link");
     let bay = home.join("bay");
     std::fs::create_dir_all(&bay).unwrap();
     std::fs::write(home.join("secret.csv"), "t_s,x_m\n0,0\n1,1\n").unwrap();
@@ -190,17 +190,16 @@ fn a_link_beside_the_scene_does_not_lead_out_of_its_folder() {
     std::os::unix::fs::symlink("own.csv", bay.join("within.csv")).unwrap();
     let with = |file: &str| {
         let law = format!("{{ file = \"{file}\", column = \"x_m\" }}");
-        try_out(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &bay)
+        try_scene(&SCENE.replace("{ formula = \"5*sin(2*t)\" }", &law), &bay)
     };
     assert!(
         with("out.csv")
             .is_err_and(|e| e.message.contains("\"out.csv\" is a link that leads out of the scene's folder"))
     );
-    assert_eq!(with("within.csv"), Ok(()), "a link within the folder is as good as the file");
-    std::fs::remove_dir_all(home).unwrap();
+    assert_eq!(with("within.csv"), Ok(()), "a link within the folder is accepted");
 }
 
-/// Words, signs and numbers that are put into a scene.
+/// Text fragments that are inserted into a scene.
 const PIECES: [&str; 30] = [
     "",
     "[",
@@ -235,11 +234,11 @@ const PIECES: [&str; 30] = [
 ];
 
 proptest! {
-    // some seconds; `fuzz/` tries many more
+    // Takes some seconds; `fuzz/` tries many more.
     #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_change_of_a_shipped_scene_makes_the_reader_panic(
+    fn random_changes_of_a_bundled_scene_cause_no_panic(
         which in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0usize..5, 0usize..PIECES.len()), 1..5)
     ) {
@@ -251,12 +250,12 @@ proptest! {
             let end = (at + length).min(text.len());
             text.splice(at..end, PIECES[piece].chars());
         }
-        let _ = try_out(&text.into_iter().collect::<String>(), &Path::new("scenes").join(name));
+        let _ = try_scene(&text.into_iter().collect::<String>(), &Path::new("scenes").join(name));
     }
 
     #[test]
-    fn no_table_makes_its_reader_panic(text in "(t_s|x_m|,|\n|[0-9]{1,3}|-|\\.|nan|1e400|#|\"|\\PC){0,60}") {
-        let folder = desk("table");
+    fn random_tables_cause_no_panic_and_no_value_that_is_not_finite(text in "(t_s|x_m|,|\n|[0-9]{1,3}|-|\\.|nan|1e400|#|\"|\\PC){0,60}") {
+        let folder = TestFolder::new("bad-input-table");
         let path = folder.join("table.csv");
         std::fs::write(&path, format!("t_s,x_m\n{text}")).unwrap();
         if let Ok(series) = pontoon::scene::table::read_series(&path, "t_s", "x_m") {

@@ -1,4 +1,4 @@
-//! The scenes that come with the program: found by their folder, sound, and able to run.
+//! The bundled scenes: complete in the program, valid, and able to run.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,9 @@ use pontoon::{
     solid::Dim,
 };
 
-/// Scenes that are run coarser here: their own spacing takes minutes.
+use crate::common;
+
+/// Scenes with a coarser spacing in these tests, because their own takes minutes.
 const COARSER: [(&str, &str); 6] = [
     ("added-mass-3d", "0.04"),
     ("buoyancy-3d", "0.04"),
@@ -40,32 +42,26 @@ where
     Simulation::new(setup).expect("a sound setup")
 }
 
-fn steps<const D: usize>(sim: &mut Simulation<D>, n: usize) {
-    for _ in 0..n {
-        sim.step().expect("a sound step");
-    }
-}
-
-/// Runs 50 steps and looks where the water is.
-fn holds_water<const D: usize>(scene: &Scene)
+/// Runs 50 steps and asserts that no water is lost or inside a solid.
+fn assert_holds_water<const D: usize>(scene: &Scene)
 where
     Dim<D>: Dimension<D>,
 {
     let mut sim = simulation::<D>(scene);
     let count = sim.system().fluid().len();
-    steps(&mut sim, 50);
+    common::steps(&mut sim, 50);
     let system = sim.system();
     assert_eq!(system.fluid().len(), count);
     for solid in system.solids() {
         let depth = |x| -solid.spec.shape.signed_distance(&solid.kinematics.pose.local(x));
         let deepest = system.fluid().r.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
-        // The outermost skin is half a dp inside the face: water that is deeper than that is on its way through.
+        // The outermost boundary particles are half a dp inside the face; water at that depth leaks through.
         assert!(deepest < 0.5 * scene.dp, "water {deepest} m inside \"{}\"", solid.spec.name);
     }
 }
 
 #[test]
-fn every_scene_has_a_readme_and_is_built_into_the_program_with_all_its_files() {
+fn every_bundled_scene_is_in_the_program_with_all_its_files_and_a_readme() {
     let names = names();
     assert!(names.len() >= 7);
     let mut known: Vec<&str> = bundled_scenes().iter().map(|scene| scene.0).collect();
@@ -88,21 +84,21 @@ fn every_scene_has_a_readme_and_is_built_into_the_program_with_all_its_files() {
 }
 
 #[test]
-fn every_scene_runs_fifty_steps_and_holds_its_water() {
+fn every_bundled_scene_runs_fifty_steps_without_loss_or_leakage_of_water() {
     for name in names() {
         let coarser = COARSER.iter().find(|(of, _)| *of == name);
         let sets: Vec<_> = coarser.iter().map(|(_, dp)| ("dp".to_string(), dp.to_string())).collect();
         let scene = Scene::read(&home().join(&name), &sets).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert!(scene.resolve().unwrap().iter().any(|value| value.key == "model.kernel"), "{name}");
         match scene.dimension {
-            2 => holds_water::<2>(&scene),
-            _ => holds_water::<3>(&scene),
+            2 => assert_holds_water::<2>(&scene),
+            _ => assert_holds_water::<3>(&scene),
         }
     }
 }
 
 #[test]
-fn a_scene_that_is_printed_and_read_again_is_the_same() {
+fn every_bundled_scene_survives_writing_and_reading_from_its_folder() {
     for name in names() {
         let scene = Scene::read(&home().join(&name), &[]).unwrap();
         let again = Scene::parse(&scene.to_toml().unwrap(), &home().join(&name), &[]).unwrap();
@@ -112,20 +108,20 @@ fn a_scene_that_is_printed_and_read_again_is_the_same() {
 }
 
 #[test]
-fn the_raft_resumed_goes_on_to_the_same_bits() {
+fn the_resumed_raft_scene_reaches_the_same_bits() {
     let scene = Scene::read(&home().join("raft"), &[]).unwrap();
     let mut whole = simulation::<2>(&scene);
-    steps(&mut whole, 25);
-    let kept = whole.save().unwrap();
-    steps(&mut whole, 25);
+    common::steps(&mut whole, 25);
+    let saved = whole.save().unwrap();
+    common::steps(&mut whole, 25);
     let mut resumed = simulation::<2>(&scene);
-    resumed.restore(&kept).unwrap();
-    steps(&mut resumed, 25);
+    resumed.restore(&saved).unwrap();
+    common::steps(&mut resumed, 25);
     assert!(resumed.save().unwrap() == whole.save().unwrap());
 }
 
 #[test]
-fn jitter_moves_every_particle_by_no_more_than_it_says_and_always_the_same() {
+fn jitter_displaces_particles_reproducibly_by_at_most_its_value() {
     let water = |jitter: Option<&str>| {
         let sets: Vec<_> = jitter.into_iter().map(|s| ("jitter".to_string(), s.to_string())).collect();
         let scene = Scene::read(&home().join("still-tank"), &sets).unwrap();
@@ -136,12 +132,12 @@ fn jitter_moves_every_particle_by_no_more_than_it_says_and_always_the_same() {
     let off: Vec<f64> =
         still.iter().zip(&moved).flat_map(|(a, b)| ((b - a) / dp).iter().copied().collect::<Vec<_>>()).collect();
     let (most, mean) = (off.iter().fold(0.0, |m: f64, x| m.max(x.abs())), off.iter().sum::<f64>() / off.len() as f64);
-    // Evenly spread between ±1e-3: the mean of n of them is 6e-4/√n, here 1e-5.
+    // The displacements are uniform in ±1e-3; the standard deviation of the mean of n of them is 6e-4/√n, here 1e-5.
     assert!((0.99e-3..=1e-3 * (1.0 + 1e-9)).contains(&most) && mean.abs() < 5e-5, "{most} {mean}");
 }
 
 #[test]
-fn the_water_in_the_frames_of_a_scene_takes_200_mb_at_most_whoever_says_how_many() {
+fn the_water_in_the_frames_of_a_bundled_scene_takes_at_most_200_mb() {
     for name in names() {
         let scene = Scene::read(&home().join(&name), &[]).unwrap();
         let (size, plan) = (scene.estimate_size().unwrap(), scene.plan().unwrap());

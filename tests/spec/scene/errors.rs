@@ -1,5 +1,5 @@
-//! Wrong scenes: what the user reads, word for word, in `tests/golden/errors/`. A golden says "changed", not
-//! "right": renew with `UPDATE_GOLDEN=1`, and say why.
+//! Error messages of wrong scenes, compared with `tests/golden/errors/`. A golden file detects a change of a message, not an error.
+//! `UPDATE_GOLDEN=1` updates the files; the commit states the reason.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use pontoon::{
 };
 use proptest::prelude::*;
 
-/// A scene with which nothing is wrong.
+/// A valid scene.
 const GOOD: &str = r#"title     = "A box afloat"
 dimension = 2
 dp        = 0.05
@@ -50,45 +50,45 @@ fn golden(name: &str, message: &str) {
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
         std::fs::write(&path, format!("{message}\n")).unwrap();
     }
-    let kept = std::fs::read_to_string(&path).unwrap_or_default();
-    assert_eq!(message, kept.trim_end(), "the message \"{name}\" changed; renew with UPDATE_GOLDEN=1");
+    let expected = std::fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(message, expected.trim_end(), "the message \"{name}\" changed; update with UPDATE_GOLDEN=1");
 }
 
 fn folder() -> &'static Path {
     Path::new("tests/golden/errors")
 }
 
-/// Reads, resolves and builds, as a run does before its first step.
-fn try_out(text: &str, sets: &[(&str, &str)]) -> Result<(), Error> {
+/// Reads, resolves and builds a scene, as a run does before its first step.
+fn try_scene(text: &str, sets: &[(&str, &str)]) -> Result<(), Error> {
     let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
     let scene = Scene::parse(text, folder(), &sets)?;
     scene.resolve()?;
     match scene.dimension {
-        2 => begin::<2>(&scene),
-        _ => begin::<3>(&scene),
+        2 => try_build::<2>(&scene),
+        _ => try_build::<3>(&scene),
     }
 }
 
-fn begin<const D: usize>(scene: &Scene) -> Result<(), Error>
+fn try_build<const D: usize>(scene: &Scene) -> Result<(), Error>
 where
     Dim<D>: Dimension<D>,
 {
     Simulation::new(scene.build::<D>()?.setup).map(|_| ()).map_err(|error| scene.with_location(error))
 }
 
-/// What the user reads of the good scene with `from` replaced by `to`.
+/// Compares the error message of the valid scene with `from` replaced by `to` with the golden file `name`.
 fn wrong(name: &str, from: &str, to: &str) {
-    assert!(GOOD.contains(from), "\"{from}\" is not in the good scene");
-    let message = try_out(&GOOD.replacen(from, to, 1), &[]).expect_err("this scene is wrong").to_string();
+    assert!(GOOD.contains(from), "\"{from}\" is not in the valid scene");
+    let message = try_scene(&GOOD.replacen(from, to, 1), &[]).expect_err("this scene is wrong").to_string();
     golden(name, &message);
 }
 
 fn wrong_set(name: &str, key: &str, value: &str) {
-    golden(name, &try_out(GOOD, &[(key, value)]).expect_err("this setting is wrong").to_string());
+    golden(name, &try_scene(GOOD, &[(key, value)]).expect_err("this setting is wrong").to_string());
 }
 
 #[test]
-fn an_old_name_keeps_working_and_is_noted_with_the_new_one() {
+fn a_former_name_is_still_read_and_noted_with_the_new_name() {
     let parse = |text: &str, sets: &[(&str, &str)]| {
         let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
         Scene::parse(text, folder(), &sets)
@@ -114,17 +114,17 @@ fn an_old_name_keeps_working_and_is_noted_with_the_new_one() {
     assert_eq!(notes[1], "solid.box.skin (--set): \"skin\" is called \"contact_skin\" now");
     // An override with either name replaces the value of the text.
     assert_eq!(parse(&both.replace("scatter   = 0.01\n", ""), &[("scatter", "0.02")]).unwrap().jitter, Some(0.02));
-    let error = parse(&both, &[]).expect_err("one of the two must go").to_string();
+    let error = parse(&both, &[]).expect_err("two names of one value").to_string();
     assert!(error.contains("scatter and jitter say the same thing twice") && error.contains(":6:1"), "{error}");
 }
 
 #[test]
-fn the_good_scene_is_good() {
-    try_out(GOOD, &[]).unwrap();
+fn the_valid_scene_is_accepted() {
+    try_scene(GOOD, &[]).unwrap();
 }
 
 #[test]
-fn wrong_words_name_the_nearest_right_ones() {
+fn errors_of_unknown_names_suggest_the_nearest_known_name() {
     wrong("unknown_key", "viscosity =", "viscocity =");
     wrong("unknown_key_in_a_solid", "density =", "densty =");
     wrong("unknown_section", "[model]", "[modle]");
@@ -140,7 +140,7 @@ fn wrong_words_name_the_nearest_right_ones() {
 }
 
 #[test]
-fn values_that_cannot_be_meant_are_refused() {
+fn invalid_values_are_refused() {
     wrong("negative_dp", "dp        = 0.05", "dp        = -0.05");
     wrong("four_dimensions", "dimension = 2", "dimension = 4");
     wrong("two_roles", "fixed = true", "fixed = true\nfree = { density = 500.0 }");
@@ -177,7 +177,7 @@ fn values_that_cannot_be_meant_are_refused() {
 }
 
 #[test]
-fn shapes_laws_and_files_that_are_wrong_are_refused() {
+fn invalid_shapes_motions_and_files_are_refused() {
     let box_shape = "{ box = { size = [0.2, 0.1] } }";
     wrong("bad_polygon", box_shape, "{ polygon = [[0.0, 0.0], [0.1, 0.1], [0.1, 0.0], [0.0, 0.1]] }");
     wrong("polygon_of_two_points", box_shape, "{ polygon = [[0.0, 0.0], [0.1, 0.1]] }");
@@ -195,21 +195,21 @@ fn shapes_laws_and_files_that_are_wrong_are_refused() {
 }
 
 #[test]
-fn bodies_that_cannot_be_are_refused() {
-    // The paddle's face is at 0.05 m, the box reaches to 0.02 m.
+fn impossible_bodies_are_refused() {
+    // The face of the paddle is at 0.05 m; the box extends to 0.02 m.
     wrong("overlapping_start", "at    = { x = 0.5,", "at    = { x = 0.12,");
     wrong("negative_inertia", "density = 500.0", "density = 500.0, inertia = -0.1");
-    // 3-D: no body's third principal moment exceeds the sum of the other two.
+    // 3-D: the largest principal moment of a body is at most the sum of the other two.
     let deep = "dimension = 3\ndp = 0.05\nuntil = 1.0\nwater = [{ fill = { box = { min = [0, 0, 0], max = [0.4, 0.4, 0.2] } } }]\n\
         [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [0.4, 0.4, 0.4] } }\n\
         [[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.2, 0.1] } }\nat = { x = 0.2, y = 0.2, draft = \"equilibrium\" }\n\
         free = { density = 500.0, inertia = [0.005, 0.005, 0.02] }\n";
-    golden("inertia_of_no_body", &try_out(deep, &[]).expect_err("no body has it").to_string());
-    try_out(&deep.replace("0.02]", "0.009]"), &[]).expect("a body has this one");
+    golden("inertia_of_no_body", &try_scene(deep, &[]).expect_err("an impossible inertia").to_string());
+    try_scene(&deep.replace("0.02]", "0.009]"), &[]).expect("a possible inertia");
 }
 
 #[test]
-fn settings_of_the_command_line_are_judged_alike() {
+fn wrong_overrides_are_refused_like_wrong_scenes() {
     wrong_set("set_unknown_key", "model.viscocity", "none");
     wrong_set("set_unknown_choice", "model.viscosity", "viscous");
     wrong_set("set_unknown_solid", "solid.bos.free.density", "500");
@@ -219,7 +219,7 @@ fn settings_of_the_command_line_are_judged_alike() {
 }
 
 #[test]
-fn settings_win_over_the_scene() {
+fn overrides_replace_values_of_the_scene() {
     let sets = [
         ("model.viscosity", "none"),
         ("model.diffusion.molteni.delta", "0.2"),
@@ -245,25 +245,25 @@ fn settings_win_over_the_scene() {
 }
 
 #[test]
-fn a_bare_word_is_the_choice_with_its_defaults() {
+fn a_choice_by_name_alone_has_its_default_parameters() {
     let bare = GOOD.replace("{ artificial = { alpha = 0.02 } }", "\"artificial\"");
     let read = |text: &str| Scene::parse(text, folder(), &[]).unwrap();
     assert_eq!(read(&bare), read(GOOD));
 }
 
 #[test]
-fn a_scene_that_is_written_reads_the_same() {
+fn a_bundled_scene_survives_writing_and_reading() {
     for (name, text, _) in pontoon::scene::bundled_scenes() {
         let folder = Path::new("scenes").join(name);
         let scene = Scene::parse(text, &folder, &[]).unwrap();
         let again = Scene::parse(&scene.to_toml().unwrap(), &folder, &[]).unwrap();
         assert_eq!(scene, again, "{name}");
-        assert!(scene.resolve().unwrap().len() > 30, "{name}: every value in force is listed");
+        assert!(scene.resolve().unwrap().len() > 30, "{name}: all values are listed");
     }
 }
 
 #[test]
-fn every_shipped_scene_is_built() {
+fn every_bundled_scene_is_built() {
     for (name, _, files) in pontoon::scene::bundled_scenes() {
         assert!(files.iter().any(|(file, _)| *file == "README.md"), "{name} has a README");
         let scene = Scene::read(&Path::new("scenes").join(name), &[]).unwrap();
@@ -276,7 +276,7 @@ fn every_shipped_scene_is_built() {
 }
 
 #[test]
-fn a_misspelt_set_is_shown_as_it_was_written() {
+fn an_error_about_an_override_shows_its_key_as_written() {
     for (key, value, shown) in [
         ("modle.walls", "1", "modle"),
         ("modle.walls.modle", "1", "modle"),
@@ -284,44 +284,44 @@ fn a_misspelt_set_is_shown_as_it_was_written() {
         ("model.kernal.cubic", "1", "model.kernal"),
         ("model.viscosity.artifical.alpha", "1", "model.viscosity"),
         ("solid.2.driven.stroke", "1", "solid.paddle.driven.stroke"),
-        // Within a value, as within the text of a scene.
+        // Keys inside the value of an override.
         ("model.viscosity", "{ artificial = { alpah = 1 } }", "model.viscosity.artificial.alpah"),
         ("solid.paddle.driven", "{ stroke = 1 }", "solid.paddle.driven.stroke"),
         ("statistic", "[{ roa = 1 }]", "statistic.0.roa"),
         ("contact", "[{ contact = 1 }]", "contact.0.contact"),
         ("solid", "[{ name = 'raft', sahpe = 1 }]", "solid.raft.sahpe"),
     ] {
-        let error = try_out(GOOD, &[(key, value)]).unwrap_err().to_string();
+        let error = try_scene(GOOD, &[(key, value)]).unwrap_err().to_string();
         assert!(error.contains(&format!("in --set, {shown}\n")), "{key}: {error}");
     }
 }
 
 #[test]
-fn a_key_that_is_unknown_within_a_solid_is_told_with_all_that_is_above_it() {
+fn an_error_about_an_unknown_key_of_a_solid_contains_its_full_path() {
     for (from, to, shown) in [
         ("distance = {", "stroke = 1.0, distance = {", "24:32, solid.paddle.driven.stroke"),
         ("formula = ", "formla = ", "24:45, solid.paddle.driven.distance.formla"),
     ] {
-        let error = try_out(&GOOD.replacen(from, to, 1), &[]).unwrap_err().to_string();
+        let error = try_scene(&GOOD.replacen(from, to, 1), &[]).unwrap_err().to_string();
         assert!(error.contains(&format!("in scene.toml:{shown}\n")), "{error}");
     }
 }
 
 proptest! {
-    // some seconds; changes of the text itself are in `hostile`
+    // Takes some seconds; `bad_input` changes the text itself.
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_setting_makes_the_reader_panic(key in "[a-z_.0-9]{0,24}", value in "\\PC{0,12}") {
+    fn random_overrides_cause_no_panic(key in "[a-z_.0-9]{0,24}", value in "\\PC{0,12}") {
         if let Ok(scene) = Scene::parse(GOOD, folder(), &[(key, value)]) {
             let _ = scene.resolve();
         }
     }
 }
 
-/// What a program prints whose `main` returns the error, as those in `examples/` do.
+/// The output of a program whose `main` returns the error, as in `examples/`.
 #[test]
-fn a_main_that_fails_says_so_in_words() {
+fn an_error_returned_from_main_prints_message_and_help() {
     let error = Error::scene("nothing is called \"narow\"").help("write narrow");
     assert_eq!(format!("{error:?}"), "nothing is called \"narow\"\n  write narrow");
 }

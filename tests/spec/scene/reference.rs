@@ -1,18 +1,14 @@
-//! The pages of `docs/reference` against the program. Keys, defaults and fragments of scenes, files, columns and figures of a run,
-//! commands and options: each page names what exists, and `scene.md` and `command-line.md` name nothing else. `schema` checks that
-//! `scene.md` names every key and word.
+//! The pages of `docs/reference` against the program: keys, defaults and fragments of scenes, files, columns and quantities of a run,
+//! commands and options. Each page is complete; `scene.md` and `command-line.md` contain no other names. `schema` checks that
+//! `scene.md` names every key and choice.
 
-use std::{
-    collections::BTreeSet,
-    fs,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{collections::BTreeSet, fs, path::Path, process::Command};
 
 use pontoon::scene::{Scene, schema};
 use serde_json::Value;
 
 use super::schema::collect_names;
+use crate::common::TestFolder;
 
 /// The text of a page of the reference.
 pub fn page(name: &str) -> String {
@@ -119,7 +115,7 @@ motion = "buoy"
 /// A wave for `WAVE` in [`SCENE`].
 const REGULAR: &str = "regular = { height = 0.06, period = 1.2 }";
 
-/// Section of the page, prefix of its keys in the list of values in force, whether each of these keys needs a row.
+/// Section of the page, prefix of its keys in the list of values, whether each of these keys needs a row.
 const SECTIONS: [(&str, &str, bool); 8] = [
     ("`[model]`", "model.", true),
     ("`[time]`", "time.", true),
@@ -131,7 +127,7 @@ const SECTIONS: [(&str, &str, bool); 8] = [
     ("`[[joint]]`", "spring.line.", false),
 ];
 
-/// Defaults that follow from other values: the page gives a formula instead of a number.
+/// Defaults that follow from other values: the page has a formula instead of a number.
 const DERIVED: [&str; 6] = [
     "model.h",
     "model.c0",
@@ -169,10 +165,10 @@ fn every_default_of_the_scene_reference_is_the_default_of_a_scene() {
                 let (line, default) = (row.cells.join(" | "), &row.cells[2]);
                 let given = numbers(default);
                 let same_numbers = numbers(&value.value).iter().all(|x| given.contains(x));
-                let same_words =
-                    unquoted_names(&value.value.replace('"', " ")).into_iter().all(|word| default.contains(word));
+                let same_names =
+                    unquoted_names(&value.value.replace('"', " ")).into_iter().all(|name| default.contains(name));
                 let named = key.split('.').all(|part| line.contains(part));
-                assert!(same_numbers && same_words && named, "{value}, but the page has: {line}");
+                assert!(same_numbers && same_names && named, "{value}, but the page has: {line}");
             }
         }
     }
@@ -210,14 +206,6 @@ fn former_names_of_the_scene_reference_are_still_read() {
         values.collect::<Vec<_>>()
     };
     assert_eq!(values(true), values(false));
-}
-
-/// An empty folder of this name.
-fn empty_folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("pontoon-reference-{}-{name}", std::process::id()));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
 }
 
 /// The output of the program for these arguments.
@@ -278,7 +266,7 @@ formula = "0"
 bound = { off = 1.0 }
 "#;
 
-/// What the probes of a run with every kind of probe measure.
+/// The quantities of a run with every kind of probe.
 const MEASURED: [&str; 19] = [
     "force = \"buoy\"",
     "balance = \"raft\"",
@@ -329,8 +317,8 @@ fn keys(value: &Value, found: &mut BTreeSet<String>) {
 }
 
 #[test]
-fn every_file_key_column_and_figure_of_a_run_is_in_the_output_reference() {
-    let folder = empty_folder("outputs");
+fn every_file_key_column_and_quantity_of_a_run_is_in_the_output_reference() {
+    let folder = TestFolder::new("reference-outputs");
     let probes: String = MEASURED.iter().map(|probe| format!("[[probe]]\n{probe}\nevery = 0.001\n")).collect();
     let text = SCENE.replace("until = 1.0", "until = 0.005").replace("WAVE", &format!("{REGULAR}, absorb = true"));
     fs::write(folder.join("scene.toml"), format!("{text}{PROBES}{probes}")).unwrap();
@@ -353,7 +341,6 @@ fn every_file_key_column_and_figure_of_a_run_is_in_the_output_reference() {
     keys(&serde_json::from_str(&read(&folder.join("run/manifest.json"))).unwrap(), &mut names);
     let preflight = pontoon(&["inspect", "scene.toml", "--no-timing", "--json"], &folder);
     keys(&serde_json::from_str(&preflight).unwrap(), &mut names);
-    fs::remove_dir_all(folder).unwrap();
 
     assert!(names.len() > 150, "{} names were found", names.len());
     let known = code_names(&page);

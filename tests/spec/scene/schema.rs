@@ -13,7 +13,7 @@ const ANNOTATIONS: [&str; 7] = ["$schema", "title", "description", "default", "f
 /// Violations of `schema`, a part of `root`, by `value`. An unknown keyword fails the test.
 fn violations(root: &Value, schema: &Value, value: &Value, path: &str) -> Vec<String> {
     let Some(rules) = schema.as_object() else {
-        return if schema == &json!(false) { vec![format!("{path} is not known")] } else { vec![] };
+        return if schema == &json!(false) { vec![format!("{path} is unknown")] } else { vec![] };
     };
     let of = |schema: &Value| violations(root, schema, value, path);
     let list = |rule: &Value| rule.as_array().cloned().unwrap_or_default();
@@ -61,7 +61,7 @@ fn violations(root: &Value, schema: &Value, value: &Value, path: &str) -> Vec<St
                 .collect(),
             "properties" | "additionalProperties" => vec![],
             keyword if ANNOTATIONS.contains(&keyword) => vec![],
-            other => panic!("the keyword {other} is not known here"),
+            other => panic!("the keyword {other} is unknown here"),
         });
     }
     for (key, value) in value.as_object().into_iter().flatten() {
@@ -80,7 +80,7 @@ fn has_type(name: &str, value: &Value) -> bool {
         "boolean" => value.is_boolean(),
         "number" => value.is_number(),
         "integer" => value.as_f64().is_some_and(|x| x.fract() == 0.0),
-        other => panic!("the type {other} is not known here"),
+        other => panic!("the type {other} is unknown here"),
     }
 }
 
@@ -92,7 +92,7 @@ fn violations_of_scene(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_shipped_scene_follows_the_schema() {
+fn every_bundled_scene_is_valid_by_the_schema() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let files = fs::read_dir(scenes).unwrap().flatten().map(|entry| entry.path().join("scene.toml"));
     let files: Vec<_> = files.filter(|file| file.is_file()).collect();
@@ -107,7 +107,7 @@ const SCENE: &str =
     "dimension = 2\ndp = 0.02\nuntil = 1\n[[water]]\nfill = { box = { min = [0, 0], max = [1.0, 0.4] } }\n";
 
 #[test]
-fn every_form_of_a_key_follows_the_schema() {
+fn every_form_of_a_key_is_valid_by_the_schema() {
     for keys in [
         "[model]\nviscosity = \"none\"\nkernel = \"cubic\"\nslip = \"free\"",
         "[model]\nviscosity = { laminar = { nu0 = 1e-6 } }\nshifting = \"everywhere\"\ndiffusion = { none = {} }",
@@ -132,7 +132,7 @@ fn every_form_of_a_key_follows_the_schema() {
 }
 
 #[test]
-fn a_misspelt_key_and_a_wrong_word_violate_the_schema() {
+fn a_misspelt_key_or_value_violates_the_schema() {
     for (keys, expected) in [
         ("[[solid]]\nname = \"a\"\nsahpe = { ball = { radius = 0.1 } }", "sahpe"),
         ("[model]\nviscosity = \"artifical\"", "viscosity"),
@@ -151,7 +151,7 @@ fn a_misspelt_key_and_a_wrong_word_violate_the_schema() {
 }
 
 #[test]
-fn a_solid_has_one_role_a_body_one_mass_and_a_probe_one_quantity() {
+fn the_schema_requires_exactly_one_role_of_a_solid_one_mass_of_a_body_and_one_quantity_of_a_probe() {
     let solid = "[[solid]]\nname = \"a\"\nshape = { ball = { radius = 0.1 } }\n";
     for (keys, path) in [
         (format!("{solid}fixed = true\nfree = {{ density = 500 }}"), "scene.solid"),
@@ -200,13 +200,13 @@ fn schema_and_program_refuse_false_for_keys_that_can_only_be_true() {
     }
 }
 
-/// Adds the keys and words of a schema at every depth to `names`.
+/// Adds the keys and choices of a schema at every depth to `names`.
 pub fn collect_names(schema: &Value, names: &mut BTreeSet<String>) {
     if let Some(keys) = schema.get("properties").and_then(Value::as_object) {
         names.extend(keys.keys().cloned());
     }
-    let words = schema.get("enum").and_then(Value::as_array).into_iter().flatten().chain(schema.get("const"));
-    names.extend(words.filter_map(Value::as_str).map(String::from));
+    let choices = schema.get("enum").and_then(Value::as_array).into_iter().flatten().chain(schema.get("const"));
+    names.extend(choices.filter_map(Value::as_str).map(String::from));
     match schema {
         Value::Object(entries) => entries.values().for_each(|inner| collect_names(inner, names)),
         Value::Array(items) => items.iter().for_each(|inner| collect_names(inner, names)),
@@ -215,7 +215,7 @@ pub fn collect_names(schema: &Value, names: &mut BTreeSet<String>) {
 }
 
 #[test]
-fn every_key_and_word_of_a_scene_is_in_the_scene_reference() {
+fn every_key_and_choice_of_a_scene_is_in_the_scene_reference() {
     let (page, mut names) = (page("scene.md"), BTreeSet::new());
     collect_names(&schema(), &mut names);
     assert!(names.len() > 150, "{} names were found", names.len());
