@@ -782,8 +782,8 @@ fn exporting_surfaces_without_the_feature_is_refused_with_the_remedy() {
 #[cfg(feature = "surface")]
 fn the_surface_of_a_3d_run_is_exported_as_meshes_and_that_of_a_2d_run_is_refused() {
     let folder = TestFolder::new("surface");
-    for (scene, folder) in [("still-tank", "flat"), ("still-tank-3d", "deep")] {
-        let arguments = ["run", scene, "--until", "0.02", "--set", "frames.every=0.01", "--out", folder, "--no-report"];
+    for (scene, run) in [("still-tank", "flat"), ("still-tank-3d", "deep")] {
+        let arguments = ["run", scene, "--until", "0.02", "--set", "frames.every=0.01", "--out", run, "--no-report"];
         let output = folder.pontoon(&arguments);
         assert_eq!(output.code, Some(0), "{}", output.err);
     }

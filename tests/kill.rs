@@ -331,23 +331,23 @@ fn a_folder_without_write_permission_is_refused_and_left_unchanged() {
     use std::os::unix::fs::PermissionsExt;
     let folder = TestFolder::new("locked");
     folder.kill_run("a");
-    let folder = folder.path("a");
+    let run = folder.path("a");
     // A folder in place of the lock file prevents writing for every user, including root.
-    let _ = fs::remove_file(folder.join("run.lock"));
-    fs::create_dir(folder.join("run.lock")).unwrap();
-    let before = files(&folder);
+    let _ = fs::remove_file(run.join("run.lock"));
+    fs::create_dir(run.join("run.lock")).unwrap();
+    let before = files(&run);
     assert_refused(&folder.resume("a"), &["a/run.lock: cannot be written"]);
-    assert!(before == files(&folder), "a file changed");
-    fs::remove_dir(folder.join("run.lock")).unwrap();
+    assert!(before == files(&run), "a file changed");
+    fs::remove_dir(run.join("run.lock")).unwrap();
 
-    fs::set_permissions(&folder, fs::Permissions::from_mode(0o555)).unwrap();
-    if fs::write(folder.join("probe"), "").is_ok() {
+    fs::set_permissions(&run, fs::Permissions::from_mode(0o555)).unwrap();
+    if fs::write(run.join("probe"), "").is_ok() {
         println!("permissions do not restrict this user: the test skips a read-only folder");
     } else {
         assert_refused(&folder.resume("a"), &["a/run.lock: cannot be written"]);
-        assert!(before == files(&folder), "a file changed");
+        assert!(before == files(&run), "a file changed");
     }
-    fs::set_permissions(&folder, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::set_permissions(&run, fs::Permissions::from_mode(0o755)).unwrap();
 }
 
 #[test]

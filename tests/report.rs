@@ -165,7 +165,7 @@ fn evaluate(page: &Path, script: &str) -> Value {
 }
 
 /// Takes a screenshot of the open `page` and asserts that it is not blank.
-fn screenscreenshot(page: &Path, name: &str, more: &[&str]) {
+fn screenshot(page: &Path, name: &str, more: &[&str]) {
     let file = page.with_file_name(name);
     let picture = format!("--screenshot={}", file.display());
     browse(page, name, &[&[picture.as_str()], more].concat());

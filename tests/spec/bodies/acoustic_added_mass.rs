@@ -91,10 +91,10 @@ fn a_falling_sheet_of_foam_comes_to_rest_on_the_water() {
 
 #[test]
 fn water_a_light_body_and_its_pending_impulse_conserve_momentum() {
-    for (sweep, rounding) in [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)] {
+    for (pair_loop, rounding) in [(PairLoopKind::Reference, 1e-12), (PairLoopKind::Fast, 1e-8)] {
         let dp = 0.02;
         let mut model = Model::water(2, dp, 0.3);
-        (model.gravity, model.pair_loop, model.c0, model.walls) = (vec![0.0, 0.0], sweep, 34.0, Walls::Dynamic);
+        (model.gravity, model.pair_loop, model.c0, model.walls) = (vec![0.0, 0.0], pair_loop, 34.0, Walls::Dynamic);
         let mut water = common::lattice([-0.2, -0.2], [0.4, 0.4], dp);
         water.retain(|r| r[0].abs() > 0.06 || r[1].abs() > 0.04);
         let shape = Shape::Box { size: Vector::from([0.12, 0.08]) };

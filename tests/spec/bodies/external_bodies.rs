@@ -252,21 +252,21 @@ fn a_run_with_added_and_removed_solids_has_the_same_bits_on_any_number_of_thread
         common::on_threads(threads, || {
             let mut sim = pool()?;
             change_solids(&mut sim)?;
-            let kept = sim.save()?;
+            let saved = sim.save()?;
             common::steps(&mut sim, 40);
-            Ok((kept, sim.save()?))
+            Ok((saved, sim.save()?))
         })
     };
-    let (kept, end) = run(1)?;
-    assert!(run(2)? == (kept.clone(), end.clone()), "two threads");
+    let (saved, end) = run(1)?;
+    assert!(run(2)? == (saved.clone(), end.clone()), "two threads");
     let mut resumed = pool()?;
-    assert!(resumed.restore(&kept).is_err(), "the solids of the checkpoint differ");
+    assert!(resumed.restore(&saved).is_err(), "the solids of the checkpoint differ");
     let mut resumed = pool()?;
     resumed.restore_with_added_solids(
-        &kept,
+        &saved,
         vec![block("first", [0.5, 0.4], 30.0), block("second", [0.3, 0.25], 700.0)],
     )?;
-    assert!(resumed.save()? == kept, "a restored state saves to the same bytes");
+    assert!(resumed.save()? == saved, "a restored state saves to the same bytes");
     common::steps(&mut resumed, 40);
     assert!(resumed.save()? == end, "the resumed run reaches the same bits");
     Ok(())

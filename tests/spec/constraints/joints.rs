@@ -1,4 +1,4 @@
-//! Joints, springs, ropes and forces of a scene in water. Tests of constraints without water are in `tests/unit/solid/assembly.rs`.
+//! Joints, springs, ropes and forces of a scene in water. Tests of constraints without water are in `tests/unit/solid/constraint/assembly.rs`.
 
 use std::path::Path;
 
@@ -84,10 +84,10 @@ fn a_resumed_run_with_a_mooring_and_a_hinge_reaches_the_same_bits() -> Result<()
     let mut whole = moored()?;
     common::steps(&mut whole, 30);
     whole.spring_parameters(0).rest_length = 0.19;
-    let kept = whole.save()?;
+    let saved = whole.save()?;
     common::steps(&mut whole, 30);
     let mut resumed = moored()?;
-    resumed.restore(&kept)?;
+    resumed.restore(&saved)?;
     common::steps(&mut resumed, 30);
     assert!(resumed.save()? == whole.save()?);
     assert!(whole.spring_reading(0).tension > 0.0 && whole.joint_reading(0).absorbed_energy != 0.0);

@@ -68,11 +68,11 @@ fn a_resumed_run_reaches_the_same_bits() {
     for kind in KINDS {
         let mut whole = scene(kind);
         common::steps(&mut whole, 73);
-        let kept = whole.save().unwrap();
+        let saved = whole.save().unwrap();
         common::steps(&mut whole, 120);
         let mut resumed = scene(kind);
-        resumed.restore(&kept).unwrap();
-        assert_eq!(resumed.save().unwrap(), kept, "a restored state saves to the same bytes");
+        resumed.restore(&saved).unwrap();
+        assert_eq!(resumed.save().unwrap(), saved, "a restored state saves to the same bytes");
         common::steps(&mut resumed, 120);
         assert!(resumed.save().unwrap() == whole.save().unwrap(), "{kind:?}");
     }
@@ -81,20 +81,20 @@ fn a_resumed_run_reaches_the_same_bits() {
 #[test]
 fn a_damaged_checkpoint_is_refused() {
     let sim = scene(KINDS[0]);
-    let kept = sim.save().unwrap();
+    let saved = sim.save().unwrap();
     let mut other = scene(KINDS[0]);
-    assert!(other.restore(&kept[..kept.len() / 2]).is_err());
+    assert!(other.restore(&saved[..saved.len() / 2]).is_err());
     assert!(other.restore(&[]).is_err());
     // Eight bytes at a time become a number that is not finite or far too large. The result is an error or a valid state, no panic.
     for wrong in [f64::NAN, f64::INFINITY, 1e99, -1e15] {
-        for at in (0..kept.len() - 8).step_by(kept.len() / 300) {
-            let mut bytes = kept.clone();
+        for at in (0..saved.len() - 8).step_by(saved.len() / 300) {
+            let mut bytes = saved.clone();
             bytes[at..at + 8].copy_from_slice(&wrong.to_le_bytes());
             let _ = other.restore(&bytes);
         }
     }
     // The first position, after the number of particles.
-    let places = kept.windows(8).position(|b| b == sim.system().fluid().r[0][0].to_le_bytes()).unwrap();
-    let far = [&kept[..places], &1e15f64.to_le_bytes(), &kept[places + 8..]].concat();
+    let places = saved.windows(8).position(|b| b == sim.system().fluid().r[0][0].to_le_bytes()).unwrap();
+    let far = [&saved[..places], &1e15f64.to_le_bytes(), &saved[places + 8..]].concat();
     assert!(other.restore(&far).is_err_and(|e| e.message.contains("nowhere")));
 }

@@ -67,9 +67,9 @@ fn a_run_after_a_rollback_keeps_the_halved_step_across_a_restart() {
     common::steps(&mut whole, 700);
     set_supersonic(&mut whole);
     common::steps(&mut whole, 20);
-    let kept = whole.save().unwrap();
+    let saved = whole.save().unwrap();
     let mut again = dam_break();
-    again.restore(&kept).unwrap();
+    again.restore(&saved).unwrap();
     assert!(whole.time() < whole.rollbacks()[0].halved_until && again.rollbacks() == whole.rollbacks());
     // 900 steps pass the period of 400 halved steps.
     common::steps(&mut whole, 900);
@@ -140,9 +140,9 @@ fn a_resumed_run_with_removed_particles_reaches_the_same_bits() {
     while whole.removed_particles().is_empty() {
         whole.step().unwrap();
     }
-    let kept = whole.save().unwrap();
+    let saved = whole.save().unwrap();
     let mut again = falling(limits);
-    again.restore(&kept).unwrap();
+    again.restore(&saved).unwrap();
     for sim in [&mut whole, &mut again] {
         (0..50).for_each(|_| sim.step().unwrap());
     }
@@ -207,9 +207,9 @@ fn thrown() -> Simulation<2> {
 fn a_body_that_leaves_the_domain_is_named_with_its_step_also_after_a_restart() {
     let mut whole = thrown();
     common::steps(&mut whole, 20);
-    let kept = whole.save().unwrap();
+    let saved = whole.save().unwrap();
     let mut again = thrown();
-    again.restore(&kept).unwrap();
+    again.restore(&saved).unwrap();
     let [first, second] = [&mut whole, &mut again].map(|sim| {
         let error = (0..1000).find_map(|_| sim.step().err()).expect("the body leaves the domain");
         assert!(error.to_string().contains("escape from the domain of body \"float\""), "{error}");

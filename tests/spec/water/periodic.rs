@@ -82,15 +82,15 @@ fn a_periodic_run_has_the_same_bits_after_a_restart_and_on_any_number_of_threads
         common::on_threads(threads, || {
             let mut sim = swirl(model(), 0.0, 0.0);
             (0..60).for_each(|_| sim.step().expect("a sound run"));
-            let kept = sim.save().expect("a state");
+            let saved = sim.save().expect("a state");
             (0..60).for_each(|_| sim.step().expect("a sound run"));
-            (kept, sim.save().expect("a state"))
+            (saved, sim.save().expect("a state"))
         })
     };
-    let (kept, whole) = on(1);
-    assert!(on(3) == (kept.clone(), whole.clone()));
+    let (saved, whole) = on(1);
+    assert!(on(3) == (saved.clone(), whole.clone()));
     let mut resumed = swirl(model(), 0.0, 0.0);
-    resumed.restore(&kept).expect("a state of this setup");
+    resumed.restore(&saved).expect("a state of this setup");
     (0..60).for_each(|_| resumed.step().expect("a sound run"));
     assert!(resumed.save().expect("a state") == whole);
 }

@@ -105,10 +105,10 @@ fn a_run_with_an_absorbing_paddle_has_the_same_bits_after_a_restart_and_on_any_n
     assert!(runs[0] == runs[1]);
     let mut first = basin(ABSORBER);
     common::steps(&mut first, 70);
-    let kept = first.save().unwrap();
+    let saved = first.save().unwrap();
     let mut again = basin(ABSORBER);
-    again.restore(&kept).unwrap();
-    assert!(again.save().unwrap() == kept, "a restored state saves to the same bytes");
+    again.restore(&saved).unwrap();
+    assert!(again.save().unwrap() == saved, "a restored state saves to the same bytes");
     common::steps(&mut again, 80);
     assert!(again.save().unwrap() == runs[0]);
     let position = |sim: &Simulation<2>| sim.system().solids()[1].kinematics.pose.position[0];

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn numbers_are_rounded_to_the_side_that_helps() {
+fn numbers_are_rounded_up_or_down_to_two_digits() {
     assert_eq!(
         [three_digits(0.123456), three_digits(-12.0), three_digits(1234.4), three_digits(2e-7)],
         ["0.123", "-12", "1234", "2.00e-7"]

@@ -7,7 +7,7 @@ fn flat(x: [f64; 2]) -> Vector<2> {
     Vector::from(x)
 }
 
-/// How far the points of the rim of `shape`, 0.02 m thick, are off it, m.
+/// Errors (m) of the distances of the outline points of a skin 0.02 m thick from `shape`.
 fn off<const D: usize>(shape: &Shape<D>) -> Vec<f64> {
     let ContactSkinOutline { lines, dots } = ContactSkinOutline::of_shape(shape, 0.02, 0.05);
     let points = lines.iter().flat_map(|line| &line.points).chain(&dots);
@@ -15,21 +15,21 @@ fn off<const D: usize>(shape: &Shape<D>) -> Vec<f64> {
 }
 
 #[test]
-fn every_point_of_a_rim_is_as_far_outside_the_faces_as_the_skin_is_thick() {
+fn every_outline_point_of_a_skin_is_at_the_skin_thickness_from_the_shape() {
     let block = |at: [f64; 2]| (Pose::at(flat(at)), Shape::Box { size: flat([0.2, 0.1]) });
     let flat_ones = [
         Shape::Box { size: flat([0.4, 0.2]) },
         Shape::Ball { radius: 0.1 },
         Shape::Capsule { length: 0.3, radius: 0.1, axis: 0 },
         Shape::Tank { size: flat([1.0, 0.5]), thickness: 0.1 },
-        // With a corner that points inwards.
+        // A polygon with a reentrant corner.
         Shape::Polygon { points: [[0.0, 0.0], [0.5, 0.0], [0.2, 0.2], [0.0, 0.5]].map(flat).to_vec() },
-        // Two boxes, one on the other's shoulder: what of each lies in the other's skin is left out.
+        // Two touching boxes: the part of each outline within the skin of the other is omitted.
         Shape::Compound(vec![block([0.0, 0.0]), block([0.15, 0.1])]),
     ];
     for shape in flat_ones {
         let off = off(&shape);
-        // Circles are drawn with 48 corners: 0.04 mm. What is cut may lie in the other's skin by 2 % of it, 0.4 mm.
+        // Circles have 48 corners: 0.04 mm. A cut line may end in the other skin by 2 % of its thickness, 0.4 mm.
         assert!(off.len() > 8 && off.iter().all(|x| (-5e-4..1e-9).contains(x)), "{shape:?}: {off:?}");
     }
     let cube = |at: [f64; 3]| (Pose::at(Vector::from(at)), Shape::Box { size: Vector::from([0.2, 0.2, 0.1]) });
@@ -52,7 +52,7 @@ fn every_point_of_a_rim_is_as_far_outside_the_faces_as_the_skin_is_thick() {
 }
 
 #[test]
-fn the_rim_of_a_box_is_one_closed_line_and_that_of_a_pile_is_cut_where_its_parts_meet() {
+fn the_skin_outline_of_a_box_is_one_closed_line_and_that_of_a_compound_is_cut_at_its_joints() {
     let block = |at: [f64; 2]| (Pose::at(flat(at)), Shape::Box { size: flat([0.2, 0.1]) });
     let lines = |shape: &Shape<2>| ContactSkinOutline::of_shape(shape, 0.02, 0.05).lines;
     let single = lines(&Shape::Box { size: flat([0.2, 0.1]) });
@@ -62,22 +62,22 @@ fn the_rim_of_a_box_is_one_closed_line_and_that_of_a_pile_is_cut_where_its_parts
 }
 
 #[test]
-fn in_space_the_rim_of_a_box_lies_between_the_normals_of_its_faces_all_along_its_edges() {
+fn the_skin_outline_of_a_3d_box_follows_its_edges_midway_between_the_face_normals() {
     let size = Vector::<3>::from([0.4, 0.2, 0.3]);
     let lines = ContactSkinOutline::of_shape(&Shape::Box { size }, 0.02, 0.05).lines;
-    assert_eq!(lines.len(), 6, "two rings and four uprights, uncut: {lines:?}");
+    assert_eq!(lines.len(), 6, "two rings and four vertical lines, uncut: {lines:?}");
     for x in lines.iter().flat_map(|line| &line.points) {
         let beyond = (0..3).filter(|&i| x[i].abs() - 0.5 * size[i] > 0.01).count();
-        // Over two faces by 0.02 m/√2, at corners over three by 0.02 m/√3.
-        assert!(beyond >= 2, "{x:?} is over {beyond} faces");
+        // The points are beyond two faces by 0.02 m/√2, at corners beyond three by 0.02 m/√3.
+        assert!(beyond >= 2, "{x:?} is beyond {beyond} faces");
     }
     let corners = lines.iter().flat_map(|line| &line.points).filter(|x| (0..3).all(|i| x[i].abs() > 0.5 * size[i]));
-    assert_eq!(corners.count(), 4 + 4 + 4 * 2, "rings and uprights meet");
+    assert_eq!(corners.count(), 4 + 4 + 4 * 2, "rings and vertical lines meet");
 }
 
 #[cfg(feature = "dim3")]
 #[test]
-fn the_rim_of_a_drawn_box_is_that_of_the_box() -> crate::error::Result<()> {
+fn the_skin_outline_of_a_mesh_box_equals_that_of_the_box() -> crate::error::Result<()> {
     use std::collections::BTreeSet;
 
     use crate::geometry::{ContactGeometry, Mesh};

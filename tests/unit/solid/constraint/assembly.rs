@@ -1,4 +1,4 @@
-//! What ties promise, on the engine alone: no water.
+//! Constraints without water: forces, contact entries, holds, restart and refused constraints.
 
 use std::f64::consts::PI;
 
@@ -16,29 +16,29 @@ use crate::{
 
 pub(in crate::solid) const G: f64 = 9.81;
 
-/// Solids and their ties in air.
-pub(in crate::solid) struct Air<const D: usize> {
+/// Solids and their constraints without water.
+pub(in crate::solid) struct DrySystem<const D: usize> {
     pub(in crate::solid) solids: Vec<SolidSpec<D>>,
     pub(in crate::solid) engine: Box<dyn Engine<D>>,
-    pub(in crate::solid) rig: Assembly<D>,
+    pub(in crate::solid) assembly: Assembly<D>,
     pub(in crate::solid) t: f64,
     gravity: f64,
 }
 
-impl<const D: usize> Air<D>
+impl<const D: usize> DrySystem<D>
 where
     Dim<D>: HasEngine<D>,
 {
     pub(in crate::solid) fn new(solids: Vec<SolidSpec<D>>, links: Constraints<D>, gravity: f64) -> Self {
-        Self::made(solids, links, gravity).unwrap()
+        Self::try_new(solids, links, gravity).unwrap()
     }
 
-    fn made(solids: Vec<SolidSpec<D>>, links: Constraints<D>, gravity: f64) -> Result<Self> {
+    fn try_new(solids: Vec<SolidSpec<D>>, links: Constraints<D>, gravity: f64) -> Result<Self> {
         let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
         let mut down = Vector::zeros();
         down[D - 1] = -gravity;
         let engine = Dim::<D>::engine(&solids, &start, &links, &down, 0.01)?;
-        Ok(Self { rig: Assembly::new(&links, start), solids, engine, t: 0.0, gravity })
+        Ok(Self { assembly: Assembly::new(&links, start), solids, engine, t: 0.0, gravity })
     }
 
     pub(in crate::solid) fn now(&self) -> Vec<Kinematics<D>> {
@@ -58,7 +58,7 @@ where
         };
         let loads: Vec<_> = self.solids.iter().map(weight).collect();
         let around = LoadContext { wet: vec![false; loads.len()], loads, sound_crossing_time: 0.0 };
-        self.rig.apply_loads(&mut *self.engine, &before, &around, [self.t, dt]);
+        self.assembly.apply_loads(&mut *self.engine, &before, &around, [self.t, dt]);
         self.t += dt;
         let driven = |solid: &SolidSpec<D>| match &solid.role {
             Role::Driven(motion) => Some(motion.kinematics(&solid.pose, self.t)),
@@ -67,7 +67,7 @@ where
         let targets: Vec<_> = self.solids.iter().map(driven).collect();
         let idle = Load::zero();
         self.engine.step(dt, &vec![idle; targets.len()], &targets).unwrap();
-        self.rig.update_reactions(&*self.engine, [&before, &self.now()], dt, None);
+        self.assembly.update_reactions(&*self.engine, [&before, &self.now()], dt, None);
     }
 
     pub(in crate::solid) fn run(&mut self, dt: f64, until: f64) {
@@ -76,13 +76,13 @@ where
         }
     }
 
-    /// The mean time between the first rising passages of zero of what `look` sees, over `count` of them.
-    pub(in crate::solid) fn period(&mut self, dt: f64, count: usize, look: impl Fn(&Self) -> f64) -> f64 {
-        let (mut passages, mut before) = (Vec::new(), look(self));
+    /// The mean period of `sample` over `count` rising zero crossings.
+    pub(in crate::solid) fn period(&mut self, dt: f64, count: usize, sample: impl Fn(&Self) -> f64) -> f64 {
+        let (mut passages, mut before) = (Vec::new(), sample(self));
         while passages.len() <= count {
-            assert!(self.t < 100.0, "it does not swing");
+            assert!(self.t < 100.0, "no oscillation");
             self.step(dt);
-            let now = look(self);
+            let now = sample(self);
             if before < 0.0 && now >= 0.0 {
                 passages.push(self.t - dt * now / (now - before));
             }
@@ -104,12 +104,12 @@ pub(in crate::solid) fn point<const D: usize>(across: f64, up: f64) -> Vector<D>
     })
 }
 
-/// The axis across the plane of x and up, in the sense that turns up to x and, in 2-D, none: both are the same motion.
+/// The axis normal to the plane of x and up, with rotation from up to x. In 2-D it is zero, which is the same motion.
 pub(in crate::solid) fn across<const D: usize>() -> Vector<D> {
     Vector::from_fn(|i, _| if D == 3 && i == 1 { -1.0 } else { 0.0 })
 }
 
-/// A homogeneous free bar of 0.1 m and `length` (m) that stands, hangs or lies around `at`, 1000 kg/m³.
+/// A homogeneous free bar of 0.1 m and `length` (m) around `at` with 1000 kg/m³, horizontal if `lies`, else vertical.
 pub(in crate::solid) fn bar<const D: usize>(name: &str, length: f64, at: Vector<D>, lies: bool) -> SolidSpec<D> {
     let long = if lies { 0 } else { D - 1 };
     let shape = Shape::Box { size: Vector::from_fn(|i, _| if i == long { length } else { 0.1 }) };
@@ -146,13 +146,13 @@ pub(in crate::solid) fn joined<const D: usize>(joint: JointSpec<D>) -> Constrain
 }
 
 #[test]
-fn a_thrust_turns_with_its_body_and_wind_does_not() {
+fn a_body_frame_force_rotates_with_the_body_and_a_world_frame_force_does_not() {
     let run = |turns: bool, at: Option<Vector<2>>| {
         let solids = vec![bar::<2>("boat", 0.4, point(0.0, 0.0), true)];
         let force = vec![TimeFunction::constant(12.0), TimeFunction::constant(0.0)];
         let thrust =
             ForceSpec { name: "thrust".into(), solid: 0, at, force, torque: vec![], rotates_with_solid: turns };
-        let mut air = Air::new(solids, Constraints { forces: vec![thrust], ..Constraints::default() }, 0.0);
+        let mut air = DrySystem::new(solids, Constraints { forces: vec![thrust], ..Constraints::default() }, 0.0);
         air.engine.set_velocity(0, &Vector::zeros(), &Bivector::from_axial(&[PI]));
         air.run(1e-4, 1.0);
         (air.now()[0], body(&air.solids[0]), inertia(&air.solids[0]))
@@ -162,12 +162,12 @@ fn a_thrust_turns_with_its_body_and_wind_does_not() {
     // Turned by half a turn in 1 s: ∫ (cos πt, sin πt) dt = (0, 2/π).
     let (thrust, ..) = run(true, None);
     assert!((thrust.velocity - Vector::from([0.0, 12.0 / boat.mass * 2.0 / PI])).norm() < 1e-4, "{thrust:?}");
-    // Beside the centre, turning with the body, it gives a constant torque.
+    // An eccentric force that rotates with the body causes a constant torque.
     let (beside, ..) = run(true, Some(Vector::from([0.0, 0.05])));
     assert!((beside.spin.axial()[0] - PI + 12.0 * 0.05 / inertia).abs() < 1e-9, "{beside:?}");
 }
 
-/// How fast a box of friction 0.5 runs down a plane of friction 0.5 after 1 s, of a slope of 20 degrees.
+/// Speed (m/s) after 1 s of a box of friction 0.5 on a plane of friction 0.5 with a slope of 20 degrees.
 fn slides(contact: Option<ContactSpec>) -> f64 {
     let slope = 20f64.to_radians();
     let tilt = |x: f64, y: f64| Pose {
@@ -178,13 +178,13 @@ fn slides(contact: Option<ContactSpec>) -> f64 {
         SolidSpec { pose: tilt(0.0, -0.05), role: Role::Fixed, ..bar::<2>("plane", 8.0, Vector::zeros(), true) };
     let stone = SolidSpec { pose: tilt(0.0, 0.05), ..bar("stone", 0.2, Vector::zeros(), true) };
     let links = Constraints { contacts: contact.into_iter().collect(), ..Constraints::default() };
-    let mut air = Air::new(vec![plane, stone], links, G);
+    let mut air = DrySystem::new(vec![plane, stone], links, G);
     air.run(1e-4, 1.0);
     air.now()[1].velocity.norm()
 }
 
 #[test]
-fn a_box_slides_above_the_angle_of_friction_and_sticks_below() {
+fn the_friction_of_a_contact_entry_determines_sticking_and_sliding() {
     let pair =
         |friction: f64| ContactSpec { between: [1, 0], can_touch: true, friction: Some(friction), restitution: None };
     let (limit, slope) = (20f64.to_radians().tan(), 20f64.to_radians());
@@ -201,9 +201,9 @@ fn a_box_slides_above_the_angle_of_friction_and_sticks_below() {
 }
 
 #[test]
-fn a_held_body_stays_until_it_is_let_go() {
+fn a_held_body_is_at_rest_until_its_release() {
     let solids = vec![bar::<2>("stone", 0.2, point(0.0, 0.0), true)];
-    let mut air = Air::new(
+    let mut air = DrySystem::new(
         solids,
         Constraints { holds: vec![InitialHold { solid: 0, until: 0.5 }], ..Constraints::default() },
         G,
@@ -211,7 +211,7 @@ fn a_held_body_stays_until_it_is_let_go() {
     air.engine.push(0, &Vector::from([50.0, 0.0]), &Vector::from([0.0, 0.3]));
     air.run(1e-3, 0.4999);
     assert_eq!((air.now()[0].velocity, air.now()[0].centre), (Vector::zeros(), Vector::zeros()));
-    assert!((air.rig.next_release(0.4999) - 1e-4).abs() < 1e-12, "no step goes past the letting go");
+    assert!((air.assembly.next_release(0.4999) - 1e-4).abs() < 1e-12, "no step passes the release");
     air.run(1e-3, 1.5);
     assert!((air.now()[0].velocity - Vector::from([0.0, -G])).norm() < 1e-2, "{:?}", air.now()[0]);
 }
@@ -246,49 +246,53 @@ where
             tension_only: true,
         };
         let rope = RopeSpec { name: "rope".into(), ends: line(None, 0.1, 0.3), max_length: None };
-        Air::new(solids, Constraints { joints, springs: vec![spring], ropes: vec![rope], ..Constraints::default() }, G)
+        DrySystem::new(
+            solids,
+            Constraints { joints, springs: vec![spring], ropes: vec![rope], ..Constraints::default() },
+            G,
+        )
     };
     let mut whole = make();
     whole.run(5e-4, 0.3);
     let drive =
         MotorCommand { force: 1.0, position: 0.1, velocity: 0.0, stiffness: 10.0, damping: 1.0, max_force: 5.0 };
-    whole.rig.set_motor(0, Some(drive));
-    *whole.rig.spring_parameters(0) = SpringParameters { stiffness: 300.0, damping: 1.0, rest_length: 0.9 };
+    whole.assembly.set_motor(0, Some(drive));
+    *whole.assembly.spring_parameters(0) = SpringParameters { stiffness: 300.0, damping: 1.0, rest_length: 0.9 };
     whole.run(5e-4, 0.4);
-    let (kept, state, t) = (whole.engine.save().unwrap(), whole.rig.save(), whole.t);
+    let (saved, state, t) = (whole.engine.save().unwrap(), whole.assembly.save(), whole.t);
     let mut other = make();
-    other.engine.restore(&kept).unwrap();
-    assert!(other.rig.restore(state));
+    other.engine.restore(&saved).unwrap();
+    assert!(other.assembly.restore(state));
     other.t = t;
     whole.run(5e-4, 0.8);
     other.run(5e-4, 0.8);
     assert_eq!(whole.now(), other.now());
-    let readings = |air: &Air<D>| (0..4).map(|i| air.rig.joint_reading(i)).collect::<Vec<JointReading<D>>>();
+    let readings = |air: &DrySystem<D>| (0..4).map(|i| air.assembly.joint_reading(i)).collect::<Vec<JointReading<D>>>();
     assert_eq!(readings(&whole), readings(&other));
     assert_eq!(whole.engine.save().unwrap(), other.engine.save().unwrap());
-    assert!(readings(&whole)[1].absorbed_energy != 0.0 && whole.rig.rope_reading(0).tension > 0.0);
-    // The chain holds together: no hinge opens by more than 10 µm.
+    assert!(readings(&whole)[1].absorbed_energy != 0.0 && whole.assembly.rope_reading(0).tension > 0.0);
+    // No hinge of the chain opens by more than 10 µm.
     for i in 0..4 {
-        let ends = whole.rig.joints[i].end_kinematics(&whole.now());
+        let ends = whole.assembly.joints[i].end_kinematics(&whole.now());
         let gap = ends[0].pose.point(&point(0.15, 0.0)) - ends[1].pose.point(&point(-0.15, 0.0));
         assert!(gap.norm() < 1e-5, "{D}-D, hinge {i}: {}", gap.norm());
     }
 }
 
 #[test]
-fn restored_ties_go_on_to_the_same_bits() {
+fn restored_constraints_reach_the_same_bits() {
     restores::<2>();
     restores::<3>();
 }
 
 #[test]
-fn ties_that_cannot_be_meant_are_refused_in_words() {
+fn invalid_constraints_are_refused_with_the_reason() {
     let solids = || {
         let fixed = SolidSpec { role: Role::Fixed, ..bar::<2>("wall", 0.2, point(0.0, 1.0), true) };
         vec![bar("box", 0.2, point(0.0, 0.0), true), fixed]
     };
-    let said = |links: Constraints<2>| Air::made(solids(), links, G).map(|_| ()).unwrap_err().to_string();
-    let joint = |joint: JointSpec<2>| said(joined(joint));
+    let message = |links: Constraints<2>| DrySystem::try_new(solids(), links, G).map(|_| ()).unwrap_err().to_string();
+    let joint = |joint: JointSpec<2>| message(joined(joint));
     let at = Vector::zeros();
     assert!(joint(hinge([None, Some(1)], at)).contains("\"wall\" is not free"));
     assert!(joint(hinge([Some(0), Some(0)], at)).contains("to itself"));
@@ -301,14 +305,14 @@ fn ties_that_cannot_be_meant_are_refused_in_words() {
     );
     let twice =
         Constraints { joints: vec![hinge([None, Some(0)], at), hinge([None, Some(0)], at)], ..Constraints::default() };
-    assert!(said(twice).contains("sits where joint \"hinge\""));
+    assert!(message(twice).contains("sits where joint \"hinge\""));
     let ends = [LineEnd { solid: Some(0), at }, LineEnd { solid: None, at: point(0.0, 1.0) }];
     let spring = |stiffness: f64, damping: f64| {
         let spring = SpringSpec { name: "s".into(), ends, stiffness, damping, rest_length: None, tension_only: false };
-        said(Constraints { springs: vec![spring], ..Constraints::default() })
+        message(Constraints { springs: vec![spring], ..Constraints::default() })
     };
     assert!(spring(-1.0, 0.0).contains("stiffness of -1") && spring(1.0, -2.0).contains("damping of -2"));
     assert!(spring(0.0, 0.0).contains("neither stiff nor damped"));
     let rope = RopeSpec { name: "r".into(), ends, max_length: Some(0.9) };
-    assert!(said(Constraints { ropes: vec![rope], ..Constraints::default() }).contains("start 1 m apart"));
+    assert!(message(Constraints { ropes: vec![rope], ..Constraints::default() }).contains("start 1 m apart"));
 }

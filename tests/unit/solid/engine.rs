@@ -1,9 +1,9 @@
-//! What the engine promises, in both dimensions.
+//! Contract of the rapier engines in both dimensions: flight, loads, contacts, restart, faults and shapes.
 
 use std::sync::Arc;
 
-#[path = "contact.rs"]
-mod contact;
+#[path = "contacts.rs"]
+mod contacts;
 
 use super::{
     Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Load, PrescribedMotion, Role, SolidSpec, TimeFunction,
@@ -78,7 +78,7 @@ where
     (body.velocity[0], body.velocity[D - 1]) = (0.3, 5.0);
     body.spin = Bivector::from_axial(&[2.0, 3.0, -1.0][..Bivector::<D>::COMPONENTS]);
     body.centre[0] = 0.02;
-    // Far apart; of unlike mass, so that the engine would iterate were they near.
+    // The bodies are far apart. Their masses differ, so that the engine would iterate if they were near.
     let other = solid("pebble", cube(0.1), [9.0; D], Role::Free(FreeBody { mass: 0.01, ..light() }));
     let solids = [solid("stone", cube(0.1), [0.0; D], Role::Free(body)), other];
     let mut first = engine(&solids, down()).unwrap();
@@ -91,11 +91,15 @@ where
     t += fly(&mut *first, 5000..10_000);
     let now = first.kinematics(0);
     let thrown = body.centre + body.velocity * t + down() * (0.5 * t * t);
-    let way = G * t * t;
-    // 10,000 steps of round-off.
-    assert!((now.centre - thrown).norm() < 1e-12 * way, "{:e} of the way", (now.centre - thrown).norm() / way);
+    let distance = G * t * t;
+    // Round-off of 10,000 steps.
+    assert!(
+        (now.centre - thrown).norm() < 1e-12 * distance,
+        "{:e} of the distance",
+        (now.centre - thrown).norm() / distance
+    );
     assert!((now.velocity - body.velocity - down() * t).norm() < 1e-12 * G * t);
-    assert!((now.centre - now.pose.point(&body.centre)).norm() < 1e-15 * way);
+    assert!((now.centre - now.pose.point(&body.centre)).norm() < 1e-15 * distance);
     let mut again = engine(&solids, down()).unwrap();
     again.restore(&saved).unwrap();
     fly(&mut *again, 5000..10_000);
@@ -103,7 +107,7 @@ where
 }
 
 #[test]
-fn what_is_thrown_follows_galileos_parabola_to_round_off() {
+fn a_thrown_body_follows_a_parabola_to_round_off() {
     free_flight::<2>();
     free_flight::<3>();
 }
@@ -121,13 +125,13 @@ where
 }
 
 #[test]
-fn what_is_held_up_by_as_much_as_it_weighs_does_not_creep() {
+fn a_body_held_by_its_weight_does_not_move() {
     held_up::<2>();
     held_up::<3>();
 }
 
 #[test]
-fn a_force_up_on_the_right_turns_counter_clockwise() {
+fn an_upward_force_on_the_right_causes_counter_clockwise_rotation() {
     let mut body = light::<2>();
     body.centre = Vector::from([0.1, 0.0]);
     let spec = solid("lever", cube(0.1), [0.0, 0.0], Role::Free(body));
@@ -139,7 +143,7 @@ fn a_force_up_on_the_right_turns_counter_clockwise() {
     assert!((engine.kinematics(0).velocity - Vector::from([0.0, 0.5e-3])).norm() < 1e-15);
     let load = Load { force: Vector::zeros(), torque: Bivector::from_axial(&[-1.0]) };
     engine.step(1e-3, &[load], &[None]).unwrap();
-    // The push is over, and the opposite torque undoes it.
+    // The push applies to one step only, and the opposite torque cancels its effect.
     assert!(engine.kinematics(0).spin.axial()[0].abs() < 1e-12);
 }
 
@@ -148,7 +152,7 @@ where
     Dim<D>: HasEngine<D>,
 {
     rests_on(floor::<D>());
-    // A driven floor that stands is no other floor.
+    // A driven floor at rest equals a fixed floor.
     let stands = PrescribedMotion::slide(at_height(1.0).into(), TimeFunction::constant(0.0));
     rests_on(SolidSpec { role: Role::Driven(stands), ..floor::<D>() });
 }
@@ -163,29 +167,29 @@ where
     for _ in 0..5000 {
         engine.step(1e-4, &idle(2), &[driven, None]).unwrap();
     }
-    // A contact of 500 Hz sinks g/(2πf)² = 1 µm; the bound leaves room for the landing.
+    // A contact of 500 Hz sinks g/(2πf)² = 1 µm; the bound also covers the landing.
     let sink = 0.05 - engine.kinematics(1).pose.position[D - 1];
     assert!((0.0..50e-6).contains(&sink), "sinks {sink} m");
     let contacts = engine.contacts();
     assert_eq!((contacts.len(), contacts[0].between), (1, [0, 1]));
     assert!((contacts[0].normal_force / (2.0 * G) - 1.0).abs() < 1e-3, "{contacts:?}");
-    // Between the faces in the middle of the box, within what it sinks and creeps; the floor's centre is half a metre below.
+    // The contact point is between the faces in the middle of the box; the centre of the floor is half a metre below.
     assert!(contacts[0].at.norm() < 1e-3, "{contacts:?}");
-    // So the floor, whose centre is straight below, feels the weight and no moment.
+    // The centre of the floor is vertically below, so the weight causes no moment about it.
     assert!(contacts[0].loads[0].torque.0.norm() < 2e-3 * 2.0 * G, "{contacts:?}");
 }
 
 #[test]
-fn a_box_at_rest_weighs_on_the_floor() {
+fn a_box_at_rest_loads_the_floor_with_its_weight() {
     rests::<2>();
     rests::<3>();
-    // Where two facets meet, the engine solves the points of both as one face's.
+    // Along the edge of two facets the engine treats the contact points of both as those of one face.
     let seabed = meshed([1.0, 1.0, 1.0], false, ContactGeometry::Fitting);
     rests_on(solid("seabed", seabed, [0.0, 0.0, -0.5], Role::Fixed));
 }
 
 #[test]
-fn a_paddle_pushes_what_it_meets() {
+fn a_driven_paddle_pushes_a_free_body() {
     let motion =
         PrescribedMotion::slide(Vector::from([1.0, 0.0]), TimeFunction::Formula(Formula::parse("0.5*t").unwrap()));
     let paddle = solid("paddle", cube(0.1), [-0.101, 0.0], Role::Driven(motion.clone()));
@@ -195,7 +199,7 @@ fn a_paddle_pushes_what_it_meets() {
         let then = motion.kinematics(&solids[0].pose, 1e-4 * f64::from(step));
         engine.step(1e-4, &idle(2), &[Some(then), None]).unwrap();
     }
-    // Pushed without restitution it moves as the paddle does, 1 mm of gap later.
+    // Without restitution the box has the speed of the paddle after the gap of 1 mm is closed.
     let now = engine.kinematics(1);
     assert!((now.velocity[0] - 0.5).abs() < 1e-3, "{now:?}");
     assert!((now.pose.position[0] - 0.049).abs() < 1e-4, "{now:?}");
@@ -222,27 +226,27 @@ where
     engine.push(2, &down(), &Vector::zeros());
     let saved = engine.save().unwrap();
     run(&mut *engine, 400);
-    let unbroken: Vec<_> = (1..3).map(|i| engine.kinematics(i)).collect();
+    let uninterrupted: Vec<_> = (1..3).map(|i| engine.kinematics(i)).collect();
     let contacts = engine.contacts();
-    assert!(contacts.len() == 2, "both contacts last: {contacts:?}");
+    assert!(contacts.len() == 2, "both contacts persist: {contacts:?}");
     let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
     let mut other = Dim::<D>::engine(&solids, &start, &Constraints::default(), &down(), 0.01).unwrap();
     other.restore(&saved).unwrap();
     run(&mut *other, 400);
-    assert_eq!(unbroken, (1..3).map(|i| other.kinematics(i)).collect::<Vec<_>>());
+    assert_eq!(uninterrupted, (1..3).map(|i| other.kinematics(i)).collect::<Vec<_>>());
     assert_eq!(contacts, other.contacts());
     assert_eq!(other.restore(&saved[..saved.len() / 2]).unwrap_err().kind, ErrorKind::Restart);
     assert_eq!(other.restore(b"\x03abc").unwrap_err().kind, ErrorKind::Restart);
 }
 
 #[test]
-fn a_restored_engine_goes_on_to_the_same_bits() {
+fn a_restored_engine_reaches_the_same_bits() {
     restores::<2>();
     restores::<3>();
 }
 
 #[test]
-fn what_is_not_finite_is_a_fault_and_not_a_panic() {
+fn values_that_are_not_finite_cause_a_fault_and_no_panic() {
     let solids = [floor(), solid("box", cube(0.1), [0.2, 0.3], Role::Free(light()))];
     for force in [f64::NAN, f64::INFINITY, 1e300] {
         let mut engine = engine(&solids, down()).unwrap();
@@ -259,7 +263,7 @@ fn what_is_not_finite_is_a_fault_and_not_a_panic() {
 }
 
 #[test]
-fn bodies_inside_one_another_are_refused() {
+fn overlapping_bodies_are_refused() {
     let near = |gap: f64| {
         let solids = [floor(), solid("box", cube(0.1), [0.2, 0.05 + gap], Role::Free(light()))];
         engine(&solids, down()).map(|_| ())
@@ -273,7 +277,7 @@ fn bodies_inside_one_another_are_refused() {
 }
 
 #[test]
-fn a_locked_body_moves_only_as_it_may() {
+fn a_body_with_locked_motions_moves_only_along_the_free_ones() {
     let mut body = light::<3>();
     body.inertia[(0, 1)] = 4e-4;
     body.inertia[(1, 0)] = 4e-4;
@@ -290,7 +294,7 @@ fn a_locked_body_moves_only_as_it_may() {
     assert!((Vector::<3>::from_column_slice(&now.spin.axial()) - Vector::from([0.0, 0.5, 0.0])).norm() < 1e-9);
 }
 
-/// Rest height of a ball of radius 20 mm let go 5 mm above `face` over the point `at`.
+/// Height of the lower end of a ball of radius 20 mm at rest, released 5 mm above `face` over the point `at`.
 fn settled<const D: usize>(shape: Shape<D>, mut at: [f64; D], face: f64) -> f64
 where
     Dim<D>: HasEngine<D>,
@@ -308,7 +312,7 @@ where
 }
 
 #[test]
-fn every_shape_is_felt_at_its_true_face() {
+fn a_ball_rests_on_the_exact_face_of_every_shape() {
     let points = |list: &[[f64; 2]]| list.iter().map(|&p| p.into()).collect::<Vec<Vector<2>>>();
     let ell = points(&[[0.0, 0.0], [0.4, 0.0], [0.4, 0.1], [0.1, 0.1], [0.1, 0.3], [0.0, 0.3]]);
     let bed = points(&[[0.0, 0.5], [0.2, 0.2], [0.8, 0.2], [1.0, 0.5]]);
@@ -326,7 +330,7 @@ fn every_shape_is_felt_at_its_true_face() {
         (Shape::Cylinder { length: 0.2, radius: 0.07, axis: 1 }, [0.0, 0.02, 0.0], 0.07),
         (Shape::Tank { size: [0.4, 0.3, 0.3].into(), thickness: 0.02 }, [0.2, 0.1, 0.0], 0.0),
     ];
-    // A contact sinks 1 µm at this dt; 20 µm leaves room for the landing.
+    // A contact sinks 1 µm at this dt; the bound of 20 µm also covers the landing.
     for (shape, at, face) in flat {
         let height = settled(shape.clone(), at, face);
         assert!((height - face).abs() < 20e-6, "{shape:?}: {height} for {face}");
@@ -347,7 +351,7 @@ fn meshed(size: [f64; 3], notch: bool, contact: ContactGeometry) -> Shape<3> {
     let n = outline.len() as u32;
     let at = |y: f64| outline.iter().map(move |p| Vector::from([p[0], y, p[1]]));
     let points: Vec<Vector<3>> = at(-y).chain(at(y)).collect();
-    // Along the outline counter-clockwise seen from −y: the left end as it stands, the right one reversed.
+    // The outline is counter-clockwise seen from −y; the other end is reversed.
     let flat: &[[u32; 3]] = if notch {
         &[[0, 1, 5], [0, 5, 6], [0, 6, 7], [5, 1, 4], [1, 2, 3], [1, 3, 4]]
     } else {

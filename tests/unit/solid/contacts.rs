@@ -1,9 +1,9 @@
-//! How bodies meet: they bounce by Newton's law, make no energy, and the light bear the heavy.
+//! Contacts: Newton's law of restitution, conservation, stacks of unequal masses, and contact loads.
 
 use super::*;
 
-/// A cube of 0.1 m that flies at a wall with 1 m/s, flat, 1 cm off its middle, both of restitution `e`: where it is after
-/// 0.2 s, how fast it is then, and its spin.
+/// Position, velocity and spin after 0.2 s of a cube of 0.1 m that hits a wall flat with 1 m/s, 1 cm off the middle of the wall. Both
+/// have the restitution `e`.
 fn bounced<const D: usize>(e: f64) -> (f64, Vector<D>, Bivector<D>)
 where
     Dim<D>: HasEngine<D>,
@@ -31,14 +31,14 @@ where
 {
     for e in [0.2, 0.5, 1.0] {
         let (x, velocity, spin) = bounced::<D>(e);
-        // Newton's law to round-off; it turns back up to a step and a half before the wall 0.1 m away.
+        // Newton's law to round-off; the cube rebounds up to a step and a half before the wall, 0.1 m away.
         assert!((velocity[0] + e).abs() < 1e-9 && spin.0.norm() < 1e-7, "{e}: {velocity} {spin:?}");
         assert!((x - (0.1 - 0.1 * e)).abs() < 3.1e-3, "{e}: at {x} m");
     }
 }
 
 #[test]
-fn a_cube_bounces_with_its_restitution_and_does_not_turn() {
+fn a_cube_rebounds_with_its_restitution_and_without_spin() {
     bounces::<2>();
     bounces::<3>();
 }
@@ -65,7 +65,7 @@ where
             let now = engine.kinematics(i);
             let spin = now.spin.axial();
             momentum += now.velocity * body.mass;
-            // The bodies have hardly turned about more than one axis, so that their inertia is as at the start.
+            // The bodies rotate about one axis mainly, so their inertia is that of the start.
             let turning = (0..Bivector::<D>::COMPONENTS).map(|k| body.inertia[(k, k)] * spin[k] * spin[k]).sum::<f64>();
             energy += 0.5 * (body.mass * now.velocity.norm_squared() + turning);
         }
@@ -81,13 +81,13 @@ where
 }
 
 #[test]
-fn a_collision_keeps_momentum_and_makes_no_energy() {
+fn a_collision_conserves_momentum_and_gains_no_energy() {
     collides::<2>();
     collides::<3>();
 }
 
-/// How far the upper of two cubes on a floor, `ratio` times as heavy as the lower, sinks in 0.5 s of steps of 1 ms.
-fn stack_sinks<const D: usize>(ratio: f64) -> f64
+/// Sinkage (m) in 0.5 s of the upper of two cubes on a floor, `ratio` times as heavy as the lower one, with steps of 1 ms.
+fn stack_sinkage<const D: usize>(ratio: f64) -> f64
 where
     Dim<D>: HasEngine<D>,
 {
@@ -105,17 +105,23 @@ where
 }
 
 #[test]
-fn a_light_box_bears_one_ten_thousand_times_as_heavy() {
-    // Two contacts that give as under equal boxes, a millimetre at this step, of springs of 50 Hz; the bound is a tenth of
+fn a_light_box_supports_a_box_ten_thousand_times_as_heavy() {
+    // Two contacts deform as under equal boxes: a millimetre with springs of 50 Hz at this step. The bound is a tenth of
     // dp = 2 cm, as in `pontoon stress`.
     for ratio in [1.0, 100.0, 1e4] {
-        let sinks = [stack_sinks::<2>(ratio), stack_sinks::<3>(ratio)];
+        let sinks = [stack_sinkage::<2>(ratio), stack_sinkage::<3>(ratio)];
         assert!(sinks.iter().all(|sink| (0.0..2e-3).contains(sink)), "{ratio}: {sinks:?}");
     }
 }
 
-/// The largest part by which what contacts, weight and `load` say of the last step misses the change of momentum of solid `i`.
-fn missing<const D: usize>(engine: &dyn Engine<D>, i: usize, before: &Kinematics<D>, load: Load<D>, dt: f64) -> f64 {
+/// Relative difference of the sum of contact loads, weight and `load` from the change of momentum of solid `i` in the last step.
+fn relative_residual<const D: usize>(
+    engine: &dyn Engine<D>,
+    i: usize,
+    before: &Kinematics<D>,
+    load: Load<D>,
+    dt: f64,
+) -> f64 {
     let (now, mobility) = (engine.kinematics(i), engine.mobility(i));
     let contacts = engine.contacts();
     let touches = contacts.iter().flat_map(|c| c.between.into_iter().zip(c.loads)).filter(|(solid, _)| *solid == i);
@@ -124,7 +130,7 @@ fn missing<const D: usize>(engine: &dyn Engine<D>, i: usize, before: &Kinematics
         Load { force: touches.force + load.force + down() / mobility.linear[0], torque: touches.torque + load.torque };
     let change = (now.velocity - before.velocity) / (dt * mobility.linear[0]);
     let linear = (change - all.force).norm() / touches.force.norm().max(change.norm()).max(load.force.norm()).max(1.0);
-    // In space the engine turns the body with its spin while it changes: only a plane is told exactly.
+    // In 3-D the engine rotates the body during the step, so only the 2-D torque balance is exact.
     if D == 3 {
         return linear;
     }
@@ -156,17 +162,17 @@ where
         let before = [1, 2].map(|i| engine.kinematics(i));
         engine.step(1e-4, &loads, &[None; 3]).unwrap();
         for (i, before) in [1, 2].into_iter().zip(&before) {
-            let off = missing(&*engine, i, before, loads[i], 1e-4);
+            let off = relative_residual(&*engine, i, before, loads[i], 1e-4);
             assert!(off < 1e-9, "{D}-D, {heavy} kg, restitution {restitution}, step {step}, solid {i}: {off:e}");
             touched[i - 1] += engine.contacts().iter().filter(|c| c.between.contains(&i)).count();
         }
     }
-    assert!(touched.iter().all(|&steps| steps > 100), "they land, slide and rest: {touched:?}");
+    assert!(touched.iter().all(|&steps| steps > 100), "the bodies land, slide and rest: {touched:?}");
 }
 
 #[test]
-fn contact_loads_add_up_to_the_change_of_momentum() {
-    // Round-off of forces of 1e2 N that nearly cancel; the third has several iterations a step, the last rebounds.
+fn contact_loads_sum_to_the_change_of_momentum() {
+    // Round-off of forces of 1e2 N that nearly cancel. The third case has several iterations a step, the last one rebounds.
     for (heavy, restitution) in [(1.0, 0.0), (20.0, 0.0), (200.0, 0.0), (2.0, 0.5)] {
         adds_up::<2>(heavy, restitution);
         adds_up::<3>(heavy, restitution);
