@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_disturbed_lattice_becomes_even_again() {
+fn spreading_restores_the_spacing_of_a_disturbed_lattice() {
     let mut points: Vec<Vector<2>> = Vec::new();
     let cell = |i: i32, j: i32| Vector::from([i as f64, j as f64]);
     for (i, j) in (0..49).map(|k| (k % 7 - 3, k / 7 - 3)) {

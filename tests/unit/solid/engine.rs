@@ -364,7 +364,7 @@ fn meshed(size: [f64; 3], notch: bool, contact: ContactGeometry) -> Shape<3> {
 }
 
 #[test]
-fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
+fn a_ball_rests_on_the_exact_face_and_in_the_groove_of_a_mesh() {
     let size = [0.4, 0.4, 0.2];
     for contact in [ContactGeometry::Fitting, ContactGeometry::Surface, ContactGeometry::Hull] {
         let height = settled(meshed(size, false, contact), [0.03, 0.02, 0.0], 0.1);
@@ -377,11 +377,11 @@ fn a_mesh_is_felt_at_its_true_face_and_in_its_groove() {
 }
 
 #[test]
-fn a_moving_mesh_stands_on_its_hull_or_its_parts_and_is_saved_with_them() {
+fn a_free_mesh_rests_on_its_contact_parts_and_survives_a_restart() {
     let size = [0.1, 0.1, 0.1];
     for (shape, off) in [
         (meshed(size, false, ContactGeometry::Fitting), 20e-6),
-        (meshed(size, true, ContactGeometry::Fitting), 1e-3), // its parts are cut from voxels a sixtieth of it wide
+        (meshed(size, true, ContactGeometry::Fitting), 1e-3), // the contact parts are built from voxels of a sixtieth of its width
     ] {
         let seabed =
             solid("seabed", meshed([1.0, 1.0, 1.0], false, ContactGeometry::Fitting), [0.0, 0.0, -0.5], Role::Fixed);

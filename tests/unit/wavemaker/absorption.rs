@@ -54,7 +54,7 @@ fn an_absorbing_paddle_follows_its_law_within_its_limits_and_returns_to_rest() {
     let omega = TAU / period;
     let size = absorber.gain * amplitude / (omega * omega * absorber.lag - 1.0 / absorber.home).hypot(omega);
     let ((far, _), _) = run(amplitude, 60.0);
-    assert!((far / size - 1.0).abs() < 0.01, "{far} against {size}; the error is of first order in the step");
+    assert!((far / size - 1.0).abs() < 0.01, "{far} against {size}; the step is a hundredth of the lag T");
     // Thirty times the amplitude exceeds the limits: stroke and speed stay within them, and e^−4 of the stroke is left at the end.
     let ((far, fast), left) = run(30.0 * amplitude, 60.0 + 4.0 * absorber.home);
     let (stroke, speed) = absorber.motion_limits();
