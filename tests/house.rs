@@ -113,7 +113,7 @@ fn sources() -> Vec<(PathBuf, String)> {
     let mut all = Vec::new();
     collect(&home().join("src"), &mut all);
     all.sort();
-    assert!(all.len() > 30, "the source was found");
+    assert!(all.len() > 30, "source files were found");
     all
 }
 
@@ -139,15 +139,15 @@ fn findings(check: impl Fn(&Path, &str) -> Vec<String>) {
 }
 
 #[test]
-fn files_open_with_their_subject_and_have_at_most_500_lines_of_code() {
+fn files_begin_with_a_module_comment_and_have_at_most_500_lines_of_code() {
     findings(|_, text| {
         let mut found = Vec::new();
         if !text.starts_with("//!") {
-            found.push("does not open with //!".into());
+            found.push("does not begin with //!".into());
         }
         let lines = code(text).lines().filter(|line| !line.trim().is_empty()).count();
         if lines > FILE_LINES {
-            found.push(format!("{lines} lines of code: is it about one subject?"));
+            found.push(format!("{lines} lines of code, at most {FILE_LINES}"));
         }
         found
     });
@@ -193,7 +193,7 @@ fn modules_use_only_modules_before_them() {
 }
 
 #[test]
-fn engines_threads_and_printing_stay_in_their_modules() {
+fn external_crates_and_printing_are_used_in_their_modules_only() {
     let places: [(&str, &[&str]); 7] = [
         ("rapier", &["solid"]),
         ("parry", &["solid", "geometry"]),
@@ -222,7 +222,7 @@ fn engines_threads_and_printing_stay_in_their_modules() {
         places
             .iter()
             .filter(|(word, modules)| text.contains(word) && !modules.contains(&MODULES[own]))
-            .map(|(word, _)| format!("{word} does not belong in {}", MODULES[own]))
+            .map(|(word, _)| format!("{word} is not allowed in {}", MODULES[own]))
             .collect()
     });
 }
@@ -232,18 +232,18 @@ fn the_library_has_at_most_20_direct_dependencies_and_the_program_34() {
     let manifest: String = fs::read_to_string(home().join("Cargo.toml")).unwrap();
     let dependencies = manifest.split("[dependencies]\n").nth(1).and_then(|rest| rest.split("\n[").next()).unwrap();
     let all: Vec<&str> = dependencies.lines().filter(|line| line.contains(" = ")).collect();
-    // Of an engine there are two crates a dimension; all other optional crates belong to `cli` or `surface`.
+    // An engine has two crates for each dimension; all other optional crates belong to `cli` or `surface`.
     let required = all.iter().filter(|line| !line.contains("optional = true")).count();
-    assert!(required + 2 <= 20, "{required} and two of an engine");
+    assert!(required + 2 <= 20, "{required} required crates and two of an engine");
     let surface = all.iter().filter(|line| line.starts_with("splashsurf_lib")).count();
-    assert!(all.len() - surface <= 34, "{} and {surface} of the feature surface", all.len());
+    assert!(all.len() - surface <= 34, "{} crates, {surface} of them of the feature surface", all.len());
 }
 
 #[test]
 fn no_struct_of_the_physics_has_more_than_15_fields() {
     let physics = MODULES.iter().position(|name| *name == "plan");
     findings(|path, text| {
-        // What is written to files, and the configurations of TOML sections, have as many fields as those.
+        // Types of output files and of TOML sections have a field for each of their entries.
         if module(path).is_none_or(|own| Some(own) >= physics) || path.ends_with("model.rs") {
             return Vec::new();
         }
@@ -271,7 +271,7 @@ fn no_struct_of_the_physics_has_more_than_15_fields() {
 }
 
 #[test]
-fn the_methods_of_a_type_stand_in_at_most_three_files() {
+fn the_methods_of_a_type_are_in_at_most_three_files() {
     let mut files: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (path, text) in sources() {
         let Some(own) = module(&path) else { continue };
@@ -295,7 +295,7 @@ fn the_methods_of_a_type_stand_in_at_most_three_files() {
     assert!(many.is_empty(), "\n{}", many.join("\n"));
 }
 
-/// Types whose methods stand in more files today. The list may only shrink.
+/// Types with methods in more files. The list may only shrink.
 const IMPL_EXCEPTIONS: [(&str, usize); 5] = [
     ("geometry::Shape", 6),
     ("preflight::PreflightContext", 13),
@@ -320,7 +320,7 @@ fn cited_keys_are_in_the_bibliography() {
 }
 
 #[test]
-fn the_documented_tree_is_the_real_one() {
+fn the_documented_tree_equals_the_source_tree() {
     let page = fs::read_to_string(home().join("docs/explanation/architecture.md")).unwrap();
     let block = page.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap_or("");
     let mut documented: Vec<String> =
@@ -374,5 +374,5 @@ fn names_that_the_glossary_replaced_do_not_come_back() {
     let more: Vec<_> = uses.iter().filter(|(name, n)| **n > allowed.get(**name).copied().unwrap_or(0)).collect();
     assert!(more.is_empty(), "declared again: {more:?}");
     let fewer: Vec<_> = allowed.iter().filter(|(name, n)| uses.get(**name).copied().unwrap_or(0) < **n).collect();
-    assert!(fewer.is_empty(), "fewer than {REMAINING} says, so lower it: {fewer:?}");
+    assert!(fewer.is_empty(), "fewer than in {REMAINING}, so lower the numbers there: {fewer:?}");
 }

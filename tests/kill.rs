@@ -1,5 +1,5 @@
-//! Runs that are killed at any moment, and go on to the same bits; checkpoints that are damaged; folders and disks that
-//! refuse. All through the binary. Six kills by default; `KILLS=50 cargo test --release --test kill` makes fifty.
+//! Robustness of runs: kills at random moments, damaged checkpoints, folders and disks that refuse writes. All tests run the binary.
+//! The default is six kills; `KILLS=50 cargo test --release --test kill` makes fifty.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 #![cfg(unix)]
@@ -19,7 +19,7 @@ use pontoon::output::Checkpoint;
 const LAST: &str = "checkpoint.bin";
 const PREVIOUS: &str = "checkpoint.previous.bin";
 
-/// A float, two more and a paddle, with many checkpoints and frames, so that many moments lie in a write.
+/// The raft scene with many checkpoints and frames, so that many kills happen during a write.
 const RAFT: [&str; 9] = [
     "raft",
     "--until",
@@ -32,10 +32,10 @@ const RAFT: [&str; 9] = [
     "probe.0.every=0.0001",
 ];
 
-/// A fresh folder that is the working folder of a test.
-struct Desk(PathBuf);
+/// An empty folder that is the working folder of a test.
+struct TestFolder(PathBuf);
 
-impl Desk {
+impl TestFolder {
     fn new(name: &str) -> Self {
         let folder = std::env::temp_dir().join(format!("pontoon-kill-{name}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
@@ -47,34 +47,34 @@ impl Desk {
         self.0.join(name)
     }
 
-    fn command(&self, words: &[&str]) -> Command {
+    fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pontoon"));
-        command.args(words).current_dir(&self.0).stdin(Stdio::null());
+        command.args(arguments).current_dir(&self.0).stdin(Stdio::null());
         command
     }
 
     /// Starts a run of [`RAFT`] in the folder `out`.
     fn start(&self, out: &str, threads: &str) -> Child {
-        let words = [&["run"], &RAFT[..], &["--out", out, "--threads", threads, "--quiet", "--no-report"]].concat();
-        self.command(&words).stderr(Stdio::piped()).spawn().unwrap()
+        let arguments = [&["run"], &RAFT[..], &["--out", out, "--threads", threads, "--quiet", "--no-report"]].concat();
+        self.command(&arguments).stderr(Stdio::piped()).spawn().unwrap()
     }
 
     fn resume(&self, out: &str) -> Output {
         self.command(&["resume", out, "--no-report"]).output().unwrap()
     }
 
-    /// Rows of the table that is written most often.
+    /// Number of rows of the longest table.
     fn rows(&self, out: &str) -> usize {
         let tables = fs::read_dir(self.path(out).join("series")).into_iter().flatten().flatten();
         tables.map(|t| fs::read(t.path()).unwrap_or_default()).map(|t| lines(&t)).max().unwrap_or(0)
     }
 
-    /// A run of [`RAFT`] that was interrupted by a kill some checkpoints after its start.
-    fn killed(&self, out: &str) {
+    /// Starts a run of [`RAFT`] and kills it some checkpoints after its start.
+    fn kill_run(&self, out: &str) {
         let mut child = self.start(out, "2");
         self.wait_for(&mut child, out, 60);
         child.kill().unwrap();
-        assert!(child.wait().unwrap().code().is_none(), "it was killed before its end");
+        assert!(child.wait().unwrap().code().is_none(), "the run is killed before its end");
     }
 
     /// Waits until the tables of `out` have `rows` rows, or the run has ended.
@@ -85,7 +85,7 @@ impl Desk {
     }
 }
 
-impl Drop for Desk {
+impl Drop for TestFolder {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
@@ -95,22 +95,22 @@ fn lines(bytes: &[u8]) -> usize {
     bytes.iter().filter(|&&b| b == b'\n').count()
 }
 
-fn said(output: &Output) -> String {
+fn error_text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Ended with code 2 and said all of `words`, without a panic.
+/// Asserts the exit code 2 and all of `parts` on standard error, without a panic.
 #[track_caller]
-fn refused(output: &Output, words: &[&str]) {
-    let text = said(output);
+fn assert_refused(output: &Output, parts: &[&str]) {
+    let text = error_text(output);
     assert_eq!(output.status.code(), Some(2), "{text}");
     assert!(!text.contains("panicked"), "{text}");
-    for word in words {
-        assert!(text.contains(word), "\"{word}\" is not in:\n{text}");
+    for part in parts {
+        assert!(text.contains(part), "\"{part}\" is not in:\n{text}");
     }
 }
 
-/// Every file below `folder`, by its name from there.
+/// Every file below `folder` by its relative name.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     fn collect(folder: &Path, from: &Path, into: &mut BTreeMap<String, Vec<u8>>) {
         for path in fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path()) {
@@ -128,21 +128,21 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-/// Two runs have the same files, each with the same bytes, but for what tells wall time; and the same state.
+/// Asserts that two runs have the same state and the same files, byte for byte, without the files that contain wall time.
 #[track_caller]
-fn same_bits(broken: &Path, unbroken: &Path) {
-    let (a, b) = (files(broken), files(unbroken));
+fn assert_same_bits(killed: &Path, uninterrupted: &Path) {
+    let (a, b) = (files(killed), files(uninterrupted));
     assert!(a.keys().eq(b.keys()), "{:?}\n{:?}", a.keys(), b.keys());
     for (name, bytes) in &a {
         let times = [LAST, PREVIOUS, "manifest.json"].contains(&name.as_str());
         assert!(times || *bytes == b[name], "{name} differs");
     }
-    let [a, b] = [broken, unbroken].map(|folder| Checkpoint::read(&folder.join(LAST)).unwrap());
+    let [a, b] = [killed, uninterrupted].map(|folder| Checkpoint::read(&folder.join(LAST)).unwrap());
     assert!(a.state == b.state && a.outputs == b.outputs, "the states differ");
     assert_eq!((a.time, a.particle_steps), (b.time, b.particle_steps));
 }
 
-/// Pseudo-random numbers (SplitMix64), the same at every run.
+/// Reproducible pseudo-random numbers (SplitMix64).
 struct Random(u64);
 
 impl Random {
@@ -155,216 +155,220 @@ impl Random {
     }
 }
 
-/// What the kills met, to be told at the end.
+/// Counts of the states in which the kills left the run.
 #[derive(Debug, Default)]
-struct Met {
+struct KillCounts {
     kills: u32,
     before_the_first_checkpoint: u32,
     in_a_write_of_a_checkpoint: u32,
     in_another_write: u32,
-    between_the_names: u32,
+    between_two_renames: u32,
     runs: u32,
 }
 
-/// Starts or resumes the run in `broken` until it comes to its end, and kills it at random moments meanwhile.
-fn run_with_kills(desk: &Desk, wanted: u32, random: &mut Random, met: &mut Met) {
+/// Starts or resumes the run in `killed` until it ends, and kills it at random moments.
+fn run_with_kills(folder: &TestFolder, wanted: u32, random: &mut Random, counts: &mut KillCounts) {
     loop {
-        let (broken, threads) = (desk.path("broken"), ["1", "2", "3"][met.kills as usize % 3]);
-        let resumable = [LAST, PREVIOUS].iter().any(|name| broken.join(name).exists());
+        let (killed, threads) = (folder.path("killed"), ["1", "2", "3"][counts.kills as usize % 3]);
+        let resumable = [LAST, PREVIOUS].iter().any(|name| killed.join(name).exists());
         let mut child = if resumable {
-            desk.command(&["resume", "broken", "--threads", threads, "--quiet", "--no-report"]).spawn().unwrap()
+            folder.command(&["resume", "killed", "--threads", threads, "--quiet", "--no-report"]).spawn().unwrap()
         } else {
-            let _ = fs::remove_dir_all(&broken);
-            desk.start("broken", threads)
+            let _ = fs::remove_dir_all(&killed);
+            folder.start("killed", threads)
         };
-        if met.kills == wanted {
+        if counts.kills == wanted {
             assert_eq!(child.wait().unwrap().code(), Some(0));
             return;
         }
-        // One in five is killed while it starts, two within a write of a checkpoint, two at any point of a step.
+        // Of five kills one is during the start, two are during the write of a checkpoint, and two are at any point of a step.
         let how = random.below(5);
         if how > 0 {
-            let rows = desk.rows("broken") + random.below(40) as usize;
-            desk.wait_for(&mut child, "broken", rows);
+            let rows = folder.rows("killed") + random.below(40) as usize;
+            folder.wait_for(&mut child, "killed", rows);
         }
-        let part = broken.join("checkpoint.bin.part");
+        let part = killed.join("checkpoint.bin.part");
         while how > 2 && !part.exists() && child.try_wait().unwrap().is_none() {
             std::hint::spin_loop();
         }
         sleep(Duration::from_micros(random.below(if how > 2 { 2000 } else { 8000 })));
         child.kill().unwrap();
         if let Some(code) = child.wait().unwrap().code() {
-            assert_eq!(code, 0, "the run failed by itself");
+            assert_eq!(code, 0, "the run fails without a kill");
             return;
         }
-        met.kills += 1;
-        let names = if broken.exists() { files(&broken) } else { BTreeMap::new() };
+        counts.kills += 1;
+        let names = if killed.exists() { files(&killed) } else { BTreeMap::new() };
         let there = |name: &str| names.contains_key(name);
-        met.before_the_first_checkpoint += u32::from(!there(LAST) && !there(PREVIOUS));
-        met.between_the_names += u32::from(!there(LAST) && there(PREVIOUS));
-        met.in_a_write_of_a_checkpoint += u32::from(there("checkpoint.bin.part"));
+        counts.before_the_first_checkpoint += u32::from(!there(LAST) && !there(PREVIOUS));
+        counts.between_two_renames += u32::from(!there(LAST) && there(PREVIOUS));
+        counts.in_a_write_of_a_checkpoint += u32::from(there("checkpoint.bin.part"));
         let other = names.keys().any(|name| name.ends_with(".part") && name != "checkpoint.bin.part");
-        met.in_another_write += u32::from(other);
-        let whole = [LAST, PREVIOUS].iter().any(|name| Checkpoint::read(&broken.join(name)).is_ok());
-        assert!(whole || !there(LAST), "no whole checkpoint is left");
+        counts.in_another_write += u32::from(other);
+        let whole = [LAST, PREVIOUS].iter().any(|name| Checkpoint::read(&killed.join(name)).is_ok());
+        assert!(whole || !there(LAST), "no intact checkpoint remains");
     }
 }
 
 #[test]
-fn a_killed_run_goes_on_to_the_same_bits() {
+fn a_killed_and_resumed_run_reaches_the_same_bits() {
     let wanted: u32 = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
-    let desk = Desk::new("bits");
-    assert_eq!(desk.start("unbroken", "2").wait().unwrap().code(), Some(0));
-    let (mut random, mut met) = (Random(1), Met::default());
-    while met.kills < wanted || met.runs == 0 {
-        run_with_kills(&desk, wanted, &mut random, &mut met);
-        same_bits(&desk.path("broken"), &desk.path("unbroken"));
-        fs::remove_dir_all(desk.path("broken")).unwrap();
-        met.runs += 1;
+    let folder = TestFolder::new("bits");
+    assert_eq!(folder.start("uninterrupted", "2").wait().unwrap().code(), Some(0));
+    let (mut random, mut counts) = (Random(1), KillCounts::default());
+    while counts.kills < wanted || counts.runs == 0 {
+        run_with_kills(&folder, wanted, &mut random, &mut counts);
+        assert_same_bits(&folder.path("killed"), &folder.path("uninterrupted"));
+        fs::remove_dir_all(folder.path("killed")).unwrap();
+        counts.runs += 1;
     }
-    println!("{met:?}");
+    println!("{counts:?}");
 }
 
 #[test]
-fn a_damaged_checkpoint_is_told_and_the_one_before_goes_on_to_the_same_bits() {
-    let desk = Desk::new("damaged");
-    assert_eq!(desk.start("unbroken", "2").wait().unwrap().code(), Some(0));
-    desk.killed("a");
-    let good = fs::read(desk.path("a").join(LAST)).unwrap();
-    // Any byte, any length: sampled, each file read as a resume reads it.
+fn a_damaged_checkpoint_is_reported_and_the_previous_one_leads_to_the_same_bits() {
+    let folder = TestFolder::new("damaged");
+    assert_eq!(folder.start("uninterrupted", "2").wait().unwrap().code(), Some(0));
+    folder.kill_run("a");
+    let good = fs::read(folder.path("a").join(LAST)).unwrap();
+    // A sample of changed bytes and of lengths; each is read as on a restart.
     for place in (0..good.len()).step_by(good.len() / 400) {
         let mut bad = good.clone();
         bad[place] ^= 1 << (place % 8);
         assert!(Checkpoint::from_bytes(&bad).is_err(), "byte {place} changed");
         assert!(Checkpoint::from_bytes(&good[..place]).is_err(), "cut at {place}");
     }
-    let put = |name: &str, bytes: &[u8]| fs::write(desk.path("a").join(name), bytes).unwrap();
+    let put = |name: &str, bytes: &[u8]| fs::write(folder.path("a").join(name), bytes).unwrap();
     let mut flipped = good.clone();
     flipped[good.len() / 2] ^= 4;
-    let previous = fs::read(desk.path("a").join(PREVIOUS)).unwrap();
+    let previous = fs::read(folder.path("a").join(PREVIOUS)).unwrap();
 
-    // Both are of no use: both reasons are told, and nothing is written.
+    // Both checkpoints are unusable: the error contains both reasons, and no file changes.
     put(LAST, &flipped);
     put(PREVIOUS, &previous[..previous.len() / 2]);
-    let before = files(&desk.path("a"));
+    let before = files(&folder.path("a"));
     let both = ["a/checkpoint.bin: the checkpoint is damaged", "checkpoint.previous.bin: the checkpoint is cut short"];
-    refused(&desk.resume("a"), &both);
-    let mut after = files(&desk.path("a"));
+    assert_refused(&folder.resume("a"), &both);
+    let mut after = files(&folder.path("a"));
     after.remove("run.lock");
-    assert!(before.iter().filter(|(name, _)| *name != "run.lock").eq(&after), "something was overwritten");
+    assert!(before.iter().filter(|(name, _)| *name != "run.lock").eq(&after), "a file changed");
 
-    // A table that is shorter than at both checkpoints is told too.
+    // A table shorter than at both checkpoints is refused as well.
     put(LAST, &good);
     put(PREVIOUS, &previous);
-    let table =
-        desk.path("a/series").join(&*fs::read_dir(desk.path("a/series")).unwrap().next().unwrap().unwrap().file_name());
+    let table = folder
+        .path("a/series")
+        .join(&*fs::read_dir(folder.path("a/series")).unwrap().next().unwrap().unwrap().file_name());
     let rows = fs::read(&table).unwrap();
     fs::write(&table, &rows[..40]).unwrap();
-    refused(
-        &desk.resume("a"),
+    assert_refused(
+        &folder.resume("a"),
         &[".csv has 40 bytes, fewer than the ", "of checkpoint.bin", "of checkpoint.previous.bin"],
     );
     fs::write(&table, &rows).unwrap();
 
-    // The last is missing, as after a kill between two names, or of no use: the one before is taken, with a warning.
-    desk.killed("b");
-    fs::remove_file(desk.path("b").join(LAST)).unwrap();
-    let output = desk.resume("b");
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    assert!(said(&output).contains("warning: b/checkpoint.bin: there is no checkpoint; the run goes on from the"));
-    same_bits(&desk.path("b"), &desk.path("unbroken"));
+    // The last checkpoint is missing, as after a kill between two renames, or unusable: the previous one is used, with a warning.
+    folder.kill_run("b");
+    fs::remove_file(folder.path("b").join(LAST)).unwrap();
+    let output = folder.resume("b");
+    assert_eq!(output.status.code(), Some(0), "{}", error_text(&output));
+    assert!(
+        error_text(&output).contains("warning: b/checkpoint.bin: there is no checkpoint; the run goes on from the")
+    );
+    assert_same_bits(&folder.path("b"), &folder.path("uninterrupted"));
     put(LAST, &flipped);
-    let output = desk.resume("a");
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let output = folder.resume("a");
+    assert_eq!(output.status.code(), Some(0), "{}", error_text(&output));
     for word in
         ["warning: a/checkpoint.bin: the checkpoint is damaged; the run goes on from the checkpoint before", "t = "]
     {
-        assert!(said(&output).contains(word), "{}", said(&output));
+        assert!(error_text(&output).contains(word), "{}", error_text(&output));
     }
-    let manifest: serde_json::Value = serde_json::from_slice(&fs::read(desk.path("a/manifest.json")).unwrap()).unwrap();
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path("a/manifest.json")).unwrap()).unwrap();
     assert!(manifest["warnings"][0].as_str().is_some_and(|w| w.contains("damaged")), "{}", manifest["warnings"]);
-    same_bits(&desk.path("a"), &desk.path("unbroken"));
+    assert_same_bits(&folder.path("a"), &folder.path("uninterrupted"));
 }
 
 #[test]
-fn a_folder_that_is_taken_away_or_a_disk_that_refuses_ends_the_run_and_loses_nothing() {
-    let desk = Desk::new("away");
-    assert_eq!(desk.start("unbroken", "2").wait().unwrap().code(), Some(0));
+fn a_moved_folder_or_a_full_disk_ends_the_run_without_loss_of_data() {
+    let folder = TestFolder::new("away");
+    assert_eq!(folder.start("uninterrupted", "2").wait().unwrap().code(), Some(0));
 
-    let mut child = desk.start("a", "2");
-    desk.wait_for(&mut child, "a", 30);
-    fs::rename(desk.path("a"), desk.path("b")).unwrap();
+    let mut child = folder.start("a", "2");
+    folder.wait_for(&mut child, "a", 30);
+    fs::rename(folder.path("a"), folder.path("b")).unwrap();
     let output = child.wait_with_output().unwrap();
-    refused(&output, &["cannot be written", "the folder a", "is gone"]);
+    assert_refused(&output, &["cannot be written", "the folder a", "is gone"]);
     assert!(
-        !said(&output).contains("what could be kept"),
-        "nothing is kept in a folder that is gone: {}",
-        said(&output)
+        !error_text(&output).contains("what could be kept"),
+        "the error does not refer to data in a folder that is gone: {}",
+        error_text(&output)
     );
-    assert!(!desk.path("a").exists());
-    let output = desk.resume("b");
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    same_bits(&desk.path("b"), &desk.path("unbroken"));
+    assert!(!folder.path("a").exists());
+    let output = folder.resume("b");
+    assert_eq!(output.status.code(), Some(0), "{}", error_text(&output));
+    assert_same_bits(&folder.path("b"), &folder.path("uninterrupted"));
 
     if !Path::new("/dev/full").exists() {
-        println!("there is no /dev/full here: a full disk was not tried");
+        println!("there is no /dev/full: the test skips a full disk");
         return;
     }
-    let mut child = desk.start("c", "2");
-    desk.wait_for(&mut child, "c", 30);
-    while std::os::unix::fs::symlink("/dev/full", desk.path("c/checkpoint.bin.part")).is_err() {
+    let mut child = folder.start("c", "2");
+    folder.wait_for(&mut child, "c", 30);
+    while std::os::unix::fs::symlink("/dev/full", folder.path("c/checkpoint.bin.part")).is_err() {
         sleep(Duration::from_micros(100));
     }
-    let words = ["c/checkpoint.bin: cannot be written: No space left", "is intact", "go on with `pontoon resume c`"];
-    refused(&child.wait_with_output().unwrap(), &words);
-    let output = desk.resume("c");
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    same_bits(&desk.path("c"), &desk.path("unbroken"));
+    let parts = ["c/checkpoint.bin: cannot be written: No space left", "is intact", "go on with `pontoon resume c`"];
+    assert_refused(&child.wait_with_output().unwrap(), &parts);
+    let output = folder.resume("c");
+    assert_eq!(output.status.code(), Some(0), "{}", error_text(&output));
+    assert_same_bits(&folder.path("c"), &folder.path("uninterrupted"));
 }
 
 #[test]
-fn a_folder_that_may_not_be_written_is_told_and_left_as_it_is() {
+fn a_folder_without_write_permission_is_refused_and_left_unchanged() {
     use std::os::unix::fs::PermissionsExt;
-    let desk = Desk::new("locked");
-    desk.killed("a");
-    let folder = desk.path("a");
-    // A folder in place of the file is refused to everybody, root too.
-    let _ = fs::remove_file(folder.join("run.lock"));
-    fs::create_dir(folder.join("run.lock")).unwrap();
-    let before = files(&folder);
-    refused(&desk.resume("a"), &["a/run.lock: cannot be written"]);
-    assert!(before == files(&folder), "something was overwritten");
-    fs::remove_dir(folder.join("run.lock")).unwrap();
+    let folder = TestFolder::new("locked");
+    folder.kill_run("a");
+    let run = folder.path("a");
+    // A folder in place of the lock file prevents writing for every user, including root.
+    let _ = fs::remove_file(run.join("run.lock"));
+    fs::create_dir(run.join("run.lock")).unwrap();
+    let before = files(&run);
+    assert_refused(&folder.resume("a"), &["a/run.lock: cannot be written"]);
+    assert!(before == files(&run), "a file changed");
+    fs::remove_dir(run.join("run.lock")).unwrap();
 
-    fs::set_permissions(&folder, fs::Permissions::from_mode(0o555)).unwrap();
-    if fs::write(folder.join("probe"), "").is_ok() {
-        println!("permissions do not bind this user: a read-only folder was not tried");
+    fs::set_permissions(&run, fs::Permissions::from_mode(0o555)).unwrap();
+    if fs::write(run.join("probe"), "").is_ok() {
+        println!("permissions do not restrict this user: the test skips a read-only folder");
     } else {
-        refused(&desk.resume("a"), &["a/run.lock: cannot be written"]);
-        assert!(before == files(&folder), "something was overwritten");
+        assert_refused(&folder.resume("a"), &["a/run.lock: cannot be written"]);
+        assert!(before == files(&run), "a file changed");
     }
-    fs::set_permissions(&folder, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::set_permissions(&run, fs::Permissions::from_mode(0o755)).unwrap();
 }
 
 #[test]
 fn a_second_ctrl_c_stops_at_once_without_a_checkpoint() {
-    let desk = Desk::new("twice");
+    let folder = TestFolder::new("twice");
     let interrupt = |child: &Child| {
         assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     };
-    // Steps so long that the second one comes within the step of the first.
-    let words = ["run", "still-tank", "--dp", "0.0012", "--set", "probe.0.every=1e-9", "--set", "frames=off"];
-    let mut child = desk.command(&words).args(["--out", "a", "--quiet"]).stderr(Stdio::piped()).spawn().unwrap();
-    desk.wait_for(&mut child, "a", 3);
+    // A step takes so long that the second Ctrl-C arrives within the step of the first.
+    let arguments = ["run", "still-tank", "--dp", "0.0012", "--set", "probe.0.every=1e-9", "--set", "frames=off"];
+    let mut child = folder.command(&arguments).args(["--out", "a", "--quiet"]).stderr(Stdio::piped()).spawn().unwrap();
+    folder.wait_for(&mut child, "a", 3);
     interrupt(&child);
-    let mut answer = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
-    assert!(answer.any(|line| line.contains("Ctrl-C again stops at once")));
+    let mut messages = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(messages.any(|line| line.contains("Ctrl-C again stops at once")));
     interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    let names: Vec<String> = files(&desk.path("a")).into_keys().collect();
+    let names: Vec<String> = files(&folder.path("a")).into_keys().collect();
     assert!(!names.iter().any(|name| name.contains("checkpoint")), "{names:?}");
-    for (name, bytes) in files(&desk.path("a")).into_iter().filter(|(name, _)| name.ends_with(".csv")) {
+    for (name, bytes) in files(&folder.path("a")).into_iter().filter(|(name, _)| name.ends_with(".csv")) {
         assert!(bytes.ends_with(b"\n"), "{name} ends within a row");
     }
-    refused(&desk.resume("a"), &["there is no checkpoint", "every ten minutes"]);
+    assert_refused(&folder.resume("a"), &["there is no checkpoint", "every ten minutes"]);
 }

@@ -1,5 +1,5 @@
-//! The memory that an inspection tells is that which a run takes, counted by the allocator. Alone in its program, so
-//! that nothing else is counted.
+//! The memory estimate of `inspect` against the memory that a run allocates. The test is alone in its program, so that the allocator
+//! counts nothing else.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 #![allow(unsafe_code, reason = "it counts allocations")]
@@ -15,10 +15,10 @@ use pontoon::run::{self, InspectOptions, Progress, RunOptions};
 static NOW: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
 
-/// The system's allocator, and how much of it is in use.
+/// The system allocator with a count of the bytes in use.
 struct Counting;
 
-// SAFETY: every call is handed on to the system's allocator as it is.
+// SAFETY: every call is forwarded unchanged to the system allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let now = NOW.fetch_add(layout.size(), Relaxed) + layout.size();
@@ -36,7 +36,7 @@ unsafe impl GlobalAlloc for Counting {
 static COUNTING: Counting = Counting;
 
 #[test]
-fn a_run_takes_about_the_memory_that_was_told() {
+fn a_run_allocates_about_the_estimated_memory() {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let cases = [
         ("lobovsky", "0.004", vec![("dp", "0.003")]),
@@ -50,16 +50,16 @@ fn a_run_takes_about_the_memory_that_was_told() {
         sets.push(("until".into(), until.into()));
         let path = home.join(scene);
         let asked = InspectOptions { overrides: sets.clone(), ..InspectOptions::default() };
-        let told = run::inspect(&path, &asked).unwrap().preflight.size.memory_bytes;
+        let estimate = run::inspect(&path, &asked).unwrap().preflight.size.memory_bytes;
         let out = std::env::temp_dir().join(format!("pontoon-memory-{}-{i}", std::process::id()));
         let _ = std::fs::remove_dir_all(&out);
         let options = RunOptions { out: Some(out.clone()), overrides: sets, threads: Some(1) };
         let before = NOW.load(Relaxed);
         PEAK.store(before, Relaxed);
         run::run(&path, &options, &mut |_: &Progress| true).unwrap();
-        let taken = (PEAK.load(Relaxed) - before) as f64;
+        let used = (PEAK.load(Relaxed) - before) as f64;
         std::fs::remove_dir_all(&out).unwrap();
-        // Lists grow by doubling and steps keep copies for a while: a factor of 1.6 either way.
-        assert!((1.0 / 1.6..1.6).contains(&(taken / told)), "{scene} {more:?}: {taken} B, told {told} B");
+        // Lists grow by doubling and steps hold temporary copies: a factor of 1.6 either way.
+        assert!((1.0 / 1.6..1.6).contains(&(used / estimate)), "{scene} {more:?}: {used} B, estimate {estimate} B");
     }
 }

@@ -1,5 +1,5 @@
-//! The page of a run as a reader meets it: in a real browser (Chromium; without one those tests say so and pass), and as
-//! a file. Screenshots are left in the folder `tmp` of the build, to be looked at.
+//! The report of a run in a browser and as a file. Without Chromium the browser tests print "skipped" and pass. Screenshots remain
+//! in the folder `tmp` of the build for inspection.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 
@@ -18,7 +18,7 @@ use pontoon::{
 use serde_json::Value;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
-/// A box afloat in a small tank; its title is one that could break a page.
+/// A floating box in a small tank; the title contains HTML that must be escaped.
 const BAY: &str = r#"
 title     = "A box & a gauge </script><script>nothing()</script>"
 dimension = 2
@@ -85,34 +85,39 @@ motion = "ball"
 every = 0.05
 "#;
 
-/// A folder for the test `name`, empty.
-fn desk(name: &str) -> PathBuf {
+/// An empty folder for the test `name`.
+fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-/// Runs `scene` by the program as a stranger would, with the words `more`; the run's folder.
-fn ran(desk: &Path, name: &str, scene: &str, more: &[&str]) -> PathBuf {
+/// Runs `scene` by the program with the arguments `more` and returns the folder of the run.
+fn run_scene(folder: &Path, name: &str, scene: &str, more: &[&str]) -> PathBuf {
     let file = format!("{name}.toml");
-    fs::write(desk.join(&file), scene).unwrap();
-    let words = [&["run", &file, "--out", name, "--quiet"], more].concat();
-    let said = pontoon(desk, &words);
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    desk.join(name)
+    fs::write(folder.join(&file), scene).unwrap();
+    let arguments = [&["run", &file, "--out", name, "--quiet"], more].concat();
+    let result = pontoon(folder, &arguments);
+    assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+    folder.join(name)
 }
 
-fn pontoon(desk: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_pontoon")).args(words).current_dir(desk).stdin(Stdio::null()).output().unwrap()
+fn pontoon(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pontoon"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
 }
 
-/// Chromium, if it is installed. Without it a test prints "skipped", and fails in CI.
+/// The command of Chromium if it is installed. Without it a test prints "skipped", and fails in CI.
 fn chromium() -> Option<&'static str> {
     static FOUND: OnceLock<Option<&'static str>> = OnceLock::new();
     *FOUND.get_or_init(|| {
         let answers =
-            |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|said| said.status.success());
+            |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|result| result.status.success());
         let found = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(answers);
         if found.is_none() {
             assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs Chromium to open the page of a run");
@@ -122,10 +127,10 @@ fn chromium() -> Option<&'static str> {
     })
 }
 
-/// Opens `page` in the browser with the arguments `more`; nothing may be said on its console. What it prints.
+/// Opens `page` in the browser with the arguments `more`, asserts an empty console, and returns the printed text.
 fn browse(page: &Path, profile: &str, more: &[&str]) -> String {
     let profile = page.with_extension(profile);
-    let said = Command::new(chromium().unwrap())
+    let result = Command::new(chromium().unwrap())
         .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr"])
         .args(["--allow-file-access-from-files", "--virtual-time-budget=30000"])
         .arg(format!("--user-data-dir={}", profile.display()))
@@ -134,36 +139,33 @@ fn browse(page: &Path, profile: &str, more: &[&str]) -> String {
         .output()
         .unwrap();
     let _ = fs::remove_dir_all(&profile);
-    let errors = String::from_utf8_lossy(&said.stderr).into_owned();
+    let errors = String::from_utf8_lossy(&result.stderr).into_owned();
     let console: Vec<&str> = errors.lines().filter(|line| line.contains("CONSOLE")).collect();
     assert!(console.is_empty(), "{}: {console:#?}", page.display());
-    String::from_utf8_lossy(&said.stdout).into_owned()
+    String::from_utf8_lossy(&result.stdout).into_owned()
 }
 
-/// What `script` says of the open `page`: it fills the object `said`, with the players in `deck`.
-fn asked(page: &Path, script: &str) -> Value {
+/// Runs `script` in the open `page` and returns its object `result`. The players are in `deck`.
+fn evaluate(page: &Path, script: &str) -> Value {
     let text = fs::read_to_string(page).unwrap();
     let driver = format!(
-        "<script>pontoon.ready.then(async () => {{ const said = {{}}, {{ deck, films, charts }} = pontoon;\n\
+        "<script>pontoon.ready.then(async () => {{ const result = {{}}, {{ deck, films, charts }} = pontoon;\n\
          const wait = ms => new Promise(go => setTimeout(go, ms));\n{script}\n\
-         const note = document.createElement('pre'); note.id = 'said'; note.textContent = JSON.stringify(said);\n\
+         const note = document.createElement('pre'); note.id = 'result'; note.textContent = JSON.stringify(result);\n\
          document.body.append(note); }});</script></body>"
     );
-    let asking = page.with_extension("asked.html");
-    fs::write(&asking, text.replace("</body>", &driver)).unwrap();
-    let dom = browse(&asking, "profile", &["--window-size=1280,6000", "--dump-dom"]);
-    fs::remove_file(&asking).unwrap();
-    let said = dom.split("<pre id=\"said\">").nth(1).and_then(|rest| rest.split("</pre>").next());
-    let said = said
-        .expect("the page's scripts ran to their end")
-        .replace("&lt;", "<")
-        .replace("&gt;", ">")
-        .replace("&amp;", "&");
-    serde_json::from_str(&said).unwrap()
+    let file = page.with_extension("evaluated.html");
+    fs::write(&file, text.replace("</body>", &driver)).unwrap();
+    let dom = browse(&file, "profile", &["--window-size=1280,6000", "--dump-dom"]);
+    fs::remove_file(&file).unwrap();
+    let result = dom.split("<pre id=\"result\">").nth(1).and_then(|rest| rest.split("</pre>").next());
+    let result =
+        result.expect("the scripts of the page end").replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+    serde_json::from_str(&result).unwrap()
 }
 
-/// A picture of the open `page`; it shows something.
-fn shot(page: &Path, name: &str, more: &[&str]) {
+/// Takes a screenshot of the open `page` and asserts that it is not blank.
+fn screenshot(page: &Path, name: &str, more: &[&str]) {
     let file = page.with_file_name(name);
     let picture = format!("--screenshot={}", file.display());
     browse(page, name, &[&[picture.as_str()], more].concat());
@@ -171,7 +173,7 @@ fn shot(page: &Path, name: &str, more: &[&str]) {
     assert!(colours(&pixels) > 50, "{} is almost blank", file.display());
 }
 
-/// How many colours a picture has.
+/// The number of colours in a picture.
 fn colours(picture: &Pixmap) -> usize {
     let mut all: Vec<[u8; 4]> = picture.data().as_chunks::<4>().0.to_vec();
     all.sort_unstable();
@@ -189,154 +191,157 @@ fn number(text: &str, word: &str) -> f64 {
 }
 
 #[test]
-fn the_page_plays_and_tells_the_value_under_the_pointer() {
-    let desk = desk("plays");
+fn the_report_plays_and_shows_the_value_under_the_pointer() {
+    let folder = folder("plays");
     let scene = format!("{BAY}\n[[probe]]\nbudget = true\n");
-    let page = ran(&desk, "bay", &scene, &[]).join(report::REPORT_FILE);
-    assert!(page.is_file(), "a run leaves its page");
+    let page = run_scene(&folder, "bay", &scene, &[]).join(report::REPORT_FILE);
+    assert!(page.is_file(), "a run writes its report");
     if chromium().is_none() {
         return;
     }
     let script = "const view = deck.views[0], { canvas } = view;
-         deck.button.click(); for (let n = 0; n < 20 && !(deck.t > 0); n++) await wait(500); said.played = deck.t; deck.pause();
+         deck.button.click(); for (let n = 0; n < 20 && !(deck.t > 0); n++) await wait(500); result.played = deck.t; deck.pause();
          const key = key => canvas.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
-         key('End'); said.end = deck.t; key('Home'); said.home = deck.t; key('ArrowRight'); said.next = deck.t; key('Home');
-         key('+'); said.zoom = deck.look.zoom; key('0'); key('d'); key('w'); said.pan = deck.look.pan; key('0');
+         key('End'); result.end = deck.t; key('Home'); result.home = deck.t; key('ArrowRight'); result.next = deck.t; key('Home');
+         key('+'); result.zoom = deck.look.zoom; key('0'); key('d'); key('w'); result.pan = deck.look.pan; key('0');
          const point = ([x, y]) => { const box = canvas.getBoundingClientRect();
            canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + x, clientY: box.top + y, bubbles: true }));
            return view.tip.hidden ? '' : view.tip.textContent; };
-         said.water = point(view.pixel([0.21, 0.11])); said.box = point(view.pixel([0.5, 0.3])); said.air = point(view.pixel([0.2, 0.45]));
-         said.titles = charts.all.map(chart => chart.what.title); said.idle = document.querySelector('#charts').textContent;
-         said.frames = films[0].times.length; said.charts = document.querySelectorAll('.uplot').length;
-         said.moved = films[0].pose(1)[1]; deck.seek(0.1); said.later = films[0].pose(1)[1];
+         result.water = point(view.pixel([0.21, 0.11])); result.box = point(view.pixel([0.5, 0.3])); result.air = point(view.pixel([0.2, 0.45]));
+         result.titles = charts.all.map(chart => chart.what.title); result.idle = document.querySelector('#charts').textContent;
+         result.frames = films[0].times.length; result.charts = document.querySelectorAll('.uplot').length;
+         result.moved = films[0].pose(1)[1]; deck.seek(0.1); result.later = films[0].pose(1)[1];
          document.querySelectorAll('details').forEach(fold => fold.open = true); await wait(500);
-         said.wide = document.documentElement.scrollWidth - innerWidth; said.title = document.title;";
-    // How far depends on how often the browser draws, which on a busy machine may be never in its virtual time: then it is asked again.
-    let plays = |said: &Value| said["played"].as_f64().unwrap() > 0.0;
-    let said = (0..3).map(|_| asked(&page, script)).find(plays).expect("it plays");
-    assert!(said["home"] == 0.0 && said["end"].as_f64().unwrap() >= 0.2 - 1e-9, "{said}");
-    let next = said["next"].as_f64().unwrap();
-    assert!((0.02..0.03).contains(&next), "the second frame is the first step at or past 0.02 s: {said}");
-    assert_eq!(said["zoom"], 1.4);
-    assert!([0, 1].iter().all(|i| said["pan"][i].as_f64().unwrap() > 0.0), "to the right and up by keys alone: {said}");
-    // Still water: P = ρ g (0.3 − y); that of the lattice is 2 % more at most, and values are rounded to 1/600 of the range.
-    let water = said["water"].as_str().unwrap();
+         result.wide = document.documentElement.scrollWidth - innerWidth; result.title = document.title;";
+    // The progress depends on the drawing rate of the browser. On a busy machine it can be zero in its virtual time, hence three attempts.
+    let plays = |result: &Value| result["played"].as_f64().unwrap() > 0.0;
+    let result = (0..3).map(|_| evaluate(&page, script)).find(plays).expect("the page plays");
+    assert!(result["home"] == 0.0 && result["end"].as_f64().unwrap() >= 0.2 - 1e-9, "{result}");
+    let next = result["next"].as_f64().unwrap();
+    assert!((0.02..0.03).contains(&next), "the second frame is the first step at or past 0.02 s: {result}");
+    assert_eq!(result["zoom"], 1.4);
+    assert!([0, 1].iter().all(|i| result["pan"][i].as_f64().unwrap() > 0.0), "keys pan to the right and up: {result}");
+    // Still water: P = ρ g (0.3 − y). The lattice adds 2 % at most, and values are rounded to 1/600 of the range.
+    let water = result["water"].as_str().unwrap();
     let still = 1000.0 * 9.81 * (0.3 - number(water, "y "));
-    assert!((number(water, "pressure ") / still - 1.0).abs() < 0.03, "{water}, where still water has {still} Pa");
-    assert!(said["box"].as_str().unwrap().starts_with("box (free)"), "{said}");
-    assert_eq!(said["air"], "");
-    assert_eq!(said["frames"], 11);
-    assert!(said["charts"].as_u64().unwrap() >= 5, "{said}");
-    let entries = said["titles"].as_array().unwrap().iter().filter(|title| *title == "energy by entry").count();
-    let idle = said["idle"].as_str().unwrap();
-    assert!(entries == 1 && idle.contains("0 throughout: ") && idle.contains("motors, springs, forces"), "{said}");
-    assert_ne!(said["moved"], said["later"], "the box moves");
-    assert!(said["wide"].as_f64().unwrap() <= 0.0, "nothing sticks out at the right: {said}");
-    assert!(said["title"].as_str().unwrap().contains("</script>"), "the title is as it was written: {said}");
+    assert!((number(water, "pressure ") / still - 1.0).abs() < 0.03, "{water}, hydrostatic {still} Pa");
+    assert!(result["box"].as_str().unwrap().starts_with("box (free)"), "{result}");
+    assert_eq!(result["air"], "");
+    assert_eq!(result["frames"], 11);
+    assert!(result["charts"].as_u64().unwrap() >= 5, "{result}");
+    let entries = result["titles"].as_array().unwrap().iter().filter(|title| *title == "energy by entry").count();
+    let idle = result["idle"].as_str().unwrap();
+    assert!(entries == 1 && idle.contains("0 throughout: ") && idle.contains("motors, springs, forces"), "{result}");
+    assert_ne!(result["moved"], result["later"], "the box moves");
+    assert!(result["wide"].as_f64().unwrap() <= 0.0, "no content overflows at the right: {result}");
+    assert!(result["title"].as_str().unwrap().contains("</script>"), "the title is unchanged: {result}");
 }
 
 #[test]
-fn the_page_is_looked_at_in_light_and_dark_and_on_a_phone() {
-    let desk = desk("looks");
-    let run = ran(&desk, "bay", BAY, &[]);
+fn the_report_renders_in_light_and_dark_mode_and_at_phone_width() {
+    let folder = folder("screenshots");
+    let run = run_scene(&folder, "bay", BAY, &[]);
     if chromium().is_none() {
         return;
     }
     let page = run.join(report::REPORT_FILE);
-    shot(&page, "light.png", &["--window-size=1280,2600"]);
-    shot(&page, "dark.png", &["--window-size=1280,2600", "--blink-settings=preferredColorScheme=0"]);
-    // A window is never narrower than 500 pixels; a frame in it is.
+    screenshot(&page, "light.png", &["--window-size=1280,2600"]);
+    screenshot(&page, "dark.png", &["--window-size=1280,2600", "--blink-settings=preferredColorScheme=0"]);
+    // A window is at least 500 pixels wide, so a frame in it has the width of a phone.
     let frame = run.join("phone.html");
     let text = format!(
         "<style>body{{margin:0}}</style><iframe style=\"border:0;width:390px;height:3600px\" src=\"{}\"></iframe>",
         report::REPORT_FILE
     );
     fs::write(&frame, text).unwrap();
-    shot(&frame, "phone.png", &["--window-size=500,3600"]);
+    screenshot(&frame, "phone.png", &["--window-size=500,3600"]);
 }
 
 #[test]
-fn a_deep_tank_turns_and_is_cut() {
-    let desk = desk("deep");
-    let run = ran(&desk, "tub", DEEP, &[]);
+fn the_report_of_a_3d_run_rotates_and_shows_a_cut() {
+    let folder = folder("deep");
+    let run = run_scene(&folder, "tub", DEEP, &[]);
     if chromium().is_none() {
         return;
     }
-    let said = asked(
+    let result = evaluate(
         &run.join(report::REPORT_FILE),
         "const view = deck.views[0], seen = () => { const who = new Set(view.raster.who); return [...who].filter(k => k >= 0).length; };
-         said.all = films[0].n; said.seen = seen(); deck.look.yaw += 1.2; deck.draw(); said.turned = seen();
-         deck.look.mode = 'y'; deck.fit(); said.cut = view.water.near.slice(0, view.water.n).filter(near => near >= 0.45).length;
+         result.all = films[0].n; result.seen = seen(); deck.look.yaw += 1.2; deck.draw(); result.turned = seen();
+         deck.look.mode = 'y'; deck.fit(); result.cut = view.water.near.slice(0, view.water.n).filter(near => near >= 0.45).length;
          const [x, y] = view.pixel([0.12, 0.12]), box = view.canvas.getBoundingClientRect();
          view.canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + x, clientY: box.top + y }));
-         said.tip = view.tip.textContent;",
+         result.tip = view.tip.textContent;",
     );
-    let figure = |name: &str| said[name].as_u64().unwrap();
-    assert!(figure("seen") > 100 && figure("seen") < figure("all"), "what is behind is not seen: {said}");
-    assert!(figure("turned") > 100, "{said}");
-    assert!(figure("cut") >= 40 && figure("cut") < figure("all") / 3, "two layers of eight: {said}");
-    assert!(number(said["tip"].as_str().unwrap(), "pressure ") > 500.0, "{said}");
+    let figure = |name: &str| result[name].as_u64().unwrap();
+    assert!(figure("seen") > 100 && figure("seen") < figure("all"), "hidden particles are not drawn: {result}");
+    assert!(figure("turned") > 100, "{result}");
+    assert!(figure("cut") >= 40 && figure("cut") < figure("all") / 3, "the cut shows two layers of eight: {result}");
+    assert!(number(result["tip"].as_str().unwrap(), "pressure ") > 500.0, "{result}");
 }
 
 #[test]
-fn runs_are_laid_over_one_another_locked_in_time() {
-    let desk = desk("compare");
-    ran(&desk, "a", BAY, &["--no-report"]);
-    ran(&desk, "b", BAY, &["--set", "solid.box.free.density=250", "--no-report"]);
-    assert!(!desk.join("a").join(report::REPORT_FILE).exists(), "--no-report leaves the page out");
-    let said = pontoon(&desk, &["compare", "a", "b", "--out", "both.html"]);
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    let page = desk.join("both.html");
+fn compared_runs_share_time_and_colour_range() {
+    let folder = folder("compare");
+    run_scene(&folder, "a", BAY, &["--no-report"]);
+    run_scene(&folder, "b", BAY, &["--set", "solid.box.free.density=250", "--no-report"]);
+    assert!(!folder.join("a").join(report::REPORT_FILE).exists(), "--no-report writes no report");
+    let result = pontoon(&folder, &["compare", "a", "b", "--out", "both.html"]);
+    assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+    let page = folder.join("both.html");
     let text = fs::read_to_string(&page).unwrap();
-    assert!(text.contains("solid.box.free.density") && text.contains("What differs"), "the difference is told");
+    assert!(text.contains("solid.box.free.density") && text.contains("What differs"), "the page lists the differences");
     if chromium().is_none() {
         return;
     }
-    let said = asked(
+    let result = evaluate(
         &page,
-        "deck.seek(0.1); said.times = deck.views.map(view => view.t); said.ranges = deck.views.map(view => view.look.range);
-         said.lines = charts.all[0].what.lines.map(line => line.label);",
+        "deck.seek(0.1); result.times = deck.views.map(view => view.t); result.ranges = deck.views.map(view => view.look.range);
+         result.lines = charts.all[0].what.lines.map(line => line.label);",
     );
-    assert_eq!((&said["times"][0], &said["times"][1]), (&Value::from(0.1), &Value::from(0.1)));
-    assert_eq!(said["ranges"][0], said["ranges"][1], "equal colours");
-    assert!(said["lines"].as_array().unwrap().iter().any(|line| line == "b"), "{said}");
-    shot(&page, "both.png", &["--window-size=1280,2000"]);
+    assert_eq!((&result["times"][0], &result["times"][1]), (&Value::from(0.1), &Value::from(0.1)));
+    assert_eq!(result["ranges"][0], result["ranges"][1], "equal colour ranges");
+    assert!(result["lines"].as_array().unwrap().iter().any(|line| line == "b"), "{result}");
+    screenshot(&page, "both.png", &["--window-size=1280,2000"]);
 }
 
 #[test]
-fn runs_of_unlike_scenes_are_drawn_with_who_has_what() {
-    let desk = desk("unlike");
-    ran(&desk, "a", BAY, &["--no-report"]);
+fn a_comparison_of_different_scenes_states_the_series_of_each_run() {
+    let folder = folder("unlike");
+    run_scene(&folder, "a", BAY, &["--no-report"]);
     let fronted = BAY.replace("[[probe]]\nenergy = true", "[[probe]]\nfront = true");
-    ran(&desk, "b", &fronted, &["--no-report"]);
-    ran(&desk, "tub", &DEEP.replace("[[probe]]", "[[probe]]\nname = \"box\""), &["--no-report"]);
+    run_scene(&folder, "b", &fronted, &["--no-report"]);
+    run_scene(&folder, "tub", &DEEP.replace("[[probe]]", "[[probe]]\nname = \"box\""), &["--no-report"]);
     let compare = |names: &[&str], out: &str| {
-        let said = pontoon(&desk, &[&["compare"][..], names, &["--out", out]].concat());
-        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-        (fs::read_to_string(desk.join(out)).unwrap(), String::from_utf8_lossy(&said.stderr).into_owned())
+        let result = pontoon(&folder, &[&["compare"][..], names, &["--out", out]].concat());
+        assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+        (fs::read_to_string(folder.join(out)).unwrap(), String::from_utf8_lossy(&result.stderr).into_owned())
     };
-    let (text, said) = compare(&["a", "b"], "ab.html");
-    assert!(text.contains("Not every run has every series; only in a: energy; only in b: front."), "who has what");
-    assert!(!said.contains("in common"), "{said}");
+    let (text, result) = compare(&["a", "b"], "ab.html");
+    assert!(
+        text.contains("Not every run has every series; only in a: energy; only in b: front."),
+        "series of each run"
+    );
+    assert!(!result.contains("in common"), "{result}");
     let (text, _) = compare(&["a", "tub"], "flat.html");
     assert!(
         text.contains("only in a: box.spin_radps, gauge, energy; only in tub: box.z_m, box.sway_m, box.roll_deg"),
-        "columns, too"
+        "columns of each run"
     );
-    ran(&desk, "ball", DEEP, &["--no-report"]);
-    let (_, said) = compare(&["a", "ball"], "none.html");
-    assert!(said.contains("the runs have no series in common"), "{said}");
+    run_scene(&folder, "ball", DEEP, &["--no-report"]);
+    let (_, result) = compare(&["a", "ball"], "none.html");
+    assert!(result.contains("the runs have no series in common"), "{result}");
     if chromium().is_none() {
         return;
     }
-    // What the first run lacks is drawn, too.
-    let said = asked(
-        &desk.join("flat.html"),
-        "said.charts = charts.all.map(chart => [chart.what.title, chart.what.said ?? '', chart.what.lines.length]);",
+    // Series that the first run lacks are drawn as well.
+    let result = evaluate(
+        &folder.join("flat.html"),
+        "result.charts = charts.all.map(chart => [chart.what.title, chart.what.said ?? '', chart.what.lines.length]);",
     );
     let chart = |title: &str| {
-        let all = said["charts"].as_array().unwrap();
-        all.iter().find(|chart| chart[0] == title).unwrap_or_else(|| panic!("{title}: {said}")).clone()
+        let all = result["charts"].as_array().unwrap();
+        all.iter().find(|chart| chart[0] == title).unwrap_or_else(|| panic!("{title}: {result}")).clone()
     };
     assert_eq!(chart("heave"), serde_json::json!(["heave", "", 2]));
     assert_eq!(chart("sway"), serde_json::json!(["sway", "only in tub", 1]));
@@ -344,13 +349,13 @@ fn runs_of_unlike_scenes_are_drawn_with_who_has_what() {
 }
 
 #[test]
-fn the_answer_of_a_body_to_waves_is_drawn_over_frequency() {
-    let desk = desk("answers");
+fn the_rao_of_a_body_is_drawn_over_frequency() {
+    let folder = folder("answers");
     let scene = format!("{BAY}\n[[statistic]]\nrao = {{ motion = \"box.heave_m\", wave = \"gauge\" }}\n");
-    let run = ran(&desk, "bay", &scene, &["--no-report"]);
+    let run = run_scene(&folder, "bay", &scene, &["--no-report"]);
     let sections = |run: &Path| fs::read_to_string(report::write(run).unwrap().path).unwrap();
     assert!(!sections(&run).contains("<div id=\"answers\">"), "0.2 s have no waves");
-    // A hundred waves of three periods, to which the box rises twice as high.
+    // A hundred waves of three periods; the heave of the box is twice the elevation.
     let mut tables = [
         ("gauge", String::from("t_s,level_m,eta_m")),
         ("box", String::from("t_s,x_m,y_m,surge_m,heave_m,pitch_deg,vx_mps,vy_mps,spin_radps")),
@@ -368,33 +373,33 @@ fn the_answer_of_a_body_to_waves_is_drawn_over_frequency() {
     if chromium().is_none() {
         return;
     }
-    let said = asked(
+    let result = evaluate(
         &run.join(report::REPORT_FILE),
-        "said.all = charts.all.filter(chart => chart.what.title.startsWith('rao'))
+        "result.all = charts.all.filter(chart => chart.what.title.startsWith('rao'))
            .map(({ what }) => [what.title, what.unit, what.lines[0].label, Math.min(...what.lines[0].x), Math.max(...what.lines[0].x)]);",
     );
     let expected = [("ratio", "m/m", 2.0), ("phase", "°", 0.0), ("coherence", "–", 1.0)];
-    for ((what, unit, value), chart) in expected.into_iter().zip(said["all"].as_array().unwrap()) {
+    for ((what, unit, value), chart) in expected.into_iter().zip(result["all"].as_array().unwrap()) {
         assert_eq!(chart[0], format!("rao · {what}"));
         assert!(chart[1] == unit && chart[2] == "box heave", "{chart}");
-        // A multiple of the wave is that multiple at every frequency, in single precision.
+        // Heave is a multiple of the wave, so the RAO is that multiple at every frequency, in single precision.
         let off = |end: usize| (chart[end].as_f64().unwrap() - value).abs();
         assert!(off(3) < 1e-5 && off(4) < 1e-5, "{chart}");
     }
-    assert_eq!(said["all"].as_array().unwrap().len(), 3);
+    assert_eq!(result["all"].as_array().unwrap().len(), 3);
 }
 
 #[test]
 fn a_picture_has_a_column_for_each_run_and_a_row_for_each_time() {
-    let desk = desk("picture");
-    ran(&desk, "a", BAY, &["--no-report"]);
-    let said = pontoon(&desk, &["compare", "a", "a", "--png", "fields.png", "--time", "0,0.2", "--width", "900"]);
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    let (two, path) = (Pixmap::load_png(desk.join("fields.png")).unwrap(), desk.join("one.png"));
+    let folder = folder("picture");
+    run_scene(&folder, "a", BAY, &["--no-report"]);
+    let result = pontoon(&folder, &["compare", "a", "a", "--png", "fields.png", "--time", "0,0.2", "--width", "900"]);
+    assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+    let (two, path) = (Pixmap::load_png(folder.join("fields.png")).unwrap(), folder.join("one.png"));
     assert_eq!(two.width(), 900);
-    let said = pontoon(&desk, &["report", "a", "--png", "one.png", "--by", "speed", "--range", "0,1"]);
-    assert!(said.status.success() && path.is_file(), "{}", String::from_utf8_lossy(&said.stderr));
-    // The same run twice: what stands in the left column stands in the right one.
+    let result = pontoon(&folder, &["report", "a", "--png", "one.png", "--by", "speed", "--range", "0,1"]);
+    assert!(result.status.success() && path.is_file(), "{}", String::from_utf8_lossy(&result.stderr));
+    // The same run twice: both columns show the same water.
     let dark = |from: u32, to: u32| {
         let inside = (from..to).flat_map(|x| (0..two.height()).map(move |y| (x, y)));
         inside
@@ -403,30 +408,30 @@ fn a_picture_has_a_column_for_each_run_and_a_row_for_each_time() {
     };
     let (left, right) = (dark(0, 450), dark(450, 900));
     assert!(left > 5000 && (left as f64 / right as f64 - 1.0).abs() < 0.15, "{left} and {right} pixels of water");
-    let said = pontoon(&desk, &["report", "a", "--time", "1"]);
-    assert!(!said.status.success(), "a time belongs to a picture");
+    let result = pontoon(&folder, &["report", "a", "--time", "1"]);
+    assert!(!result.status.success(), "--time needs --png");
 }
 
 #[test]
-fn one_command_runs_the_laws_and_draws_their_fields_side_by_side() {
-    let desk = desk("study");
-    fs::write(desk.join("bay.toml"), BAY).unwrap();
+fn a_study_draws_the_fields_of_its_variants_side_by_side() {
+    let folder = folder("study");
+    fs::write(folder.join("bay.toml"), BAY).unwrap();
     let plain = ["study", "bay.toml", "--vary", "model.diffusion=none,fourtakas", "--out", "s", "--quiet"];
-    let asked = |more: &[&str]| {
-        let said = pontoon(&desk, &[&plain[..], more].concat());
-        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-        String::from_utf8(said.stdout).unwrap()
+    let study = |more: &[&str]| {
+        let result = pontoon(&folder, &[&plain[..], more].concat());
+        assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+        String::from_utf8(result.stdout).unwrap()
     };
-    let run = desk.join("s/runs/dp-0.02_diffusion-none");
-    asked(&[]);
-    assert!(!run.join("frames.pvd").exists(), "a study keeps no frames");
-    // What was run without frames is run again with them, to the same readings.
-    let series = |folder: &str| fs::read(desk.join(folder).join("series/box.csv")).unwrap();
-    let said = asked(&["--png", "s/both.png", "--time", "0.1,0.2", "--width", "900"]);
-    let both = Pixmap::load_png(desk.join("s/both.png")).unwrap();
-    assert!(said.contains(&format!("both.png: 900 × {} pixels", both.height())), "{said}");
+    let run = folder.join("s/runs/dp-0.02_diffusion-none");
+    study(&[]);
+    assert!(!run.join("frames.pvd").exists(), "a study writes no frames by default");
+    // A run without frames is repeated with frames and has the same readings.
+    let series = |run: &str| fs::read(folder.join(run).join("series/box.csv")).unwrap();
+    let result = study(&["--png", "s/both.png", "--time", "0.1,0.2", "--width", "900"]);
+    let both = Pixmap::load_png(folder.join("s/both.png")).unwrap();
+    assert!(result.contains(&format!("both.png: 900 × {} pixels", both.height())), "{result}");
     assert_eq!(series("s/runs/dp-0.02_diffusion-none"), series("s/runs/dp-0.02_diffusion-none.old"));
-    // A column for each law: the laws differ, but as much water stands in the left half as in the right one.
+    // A column for each variant: both halves show the same amount of water.
     let coloured = |from: u32, to: u32| {
         let inside = (from..to).flat_map(|x| (0..both.height()).map(move |y| (x, y)));
         let grey = |p: PremultipliedColorU8| p.red().abs_diff(p.blue()) < 40 && p.red().abs_diff(p.green()) < 40;
@@ -434,17 +439,17 @@ fn one_command_runs_the_laws_and_draws_their_fields_side_by_side() {
     };
     let (left, right) = (coloured(0, 450), coloured(450, 900));
     assert!(left > 5000.0 && (left / right - 1.0).abs() < 0.15, "{left} and {right} pixels of water");
-    // A row for each time; frames that are there are drawn without another run.
-    asked(&["--png", "s/one.png", "--time", "0.2", "--width", "900"]);
-    let one = Pixmap::load_png(desk.join("s/one.png")).unwrap();
-    assert!(one.height() < both.height() && !desk.join("s/runs/dp-0.02_diffusion-none.old-2").exists());
-    for (word, time, told) in [("no/x.png", "0.1", "no folder"), ("x.png", "0.3", "end at 0.2 s")] {
-        let said = pontoon(&desk, &[&plain[..], &["--png", word, "--time", time]].concat());
-        assert!(!said.status.success() && String::from_utf8_lossy(&said.stderr).contains(told), "{said:?}");
+    // A row for each time; existing frames are drawn without another run.
+    study(&["--png", "s/one.png", "--time", "0.2", "--width", "900"]);
+    let one = Pixmap::load_png(folder.join("s/one.png")).unwrap();
+    assert!(one.height() < both.height() && !folder.join("s/runs/dp-0.02_diffusion-none.old-2").exists());
+    for (file, time, part) in [("no/x.png", "0.1", "no folder"), ("x.png", "0.3", "end at 0.2 s")] {
+        let result = pontoon(&folder, &[&plain[..], &["--png", file, "--time", time]].concat());
+        assert!(!result.status.success() && String::from_utf8_lossy(&result.stderr).contains(part), "{result:?}");
     }
 }
 
-/// A fault as the guard would report it.
+/// A fault as a step check reports it.
 fn fault() -> Error {
     let fault = Fault {
         reason: "the water has left".into(),
@@ -460,32 +465,32 @@ fn fault() -> Error {
 }
 
 #[test]
-fn a_run_that_failed_or_has_not_finished_says_so_on_its_page() {
-    let desk = desk("fails");
-    let run = ran(&desk, "bay", BAY, &["--no-report"]);
+fn the_report_of_a_failed_or_unfinished_run_states_its_status() {
+    let folder = folder("fails");
+    let run = run_scene(&folder, "bay", BAY, &["--no-report"]);
     let mut manifest = Manifest::read(&run).unwrap();
     manifest.status = RunStatus::Running;
     manifest.write(&run).unwrap();
-    let words = |run: &Path| {
+    let page_text = |run: &Path| {
         let page = report::write(run).unwrap();
         assert!(page.bytes < report::MAX_PAGE_BYTES);
         fs::read_to_string(page.path).unwrap()
     };
-    assert!(words(&run).contains("This run has not finished"));
-    let said = pontoon(&desk, &["report", "nowhere"]);
-    assert!(!said.status.success() && String::from_utf8_lossy(&said.stderr).contains("holds no run"));
+    assert!(page_text(&run).contains("This run has not finished"));
+    let result = pontoon(&folder, &["report", "nowhere"]);
+    assert!(!result.status.success() && String::from_utf8_lossy(&result.stderr).contains("holds no run"));
     manifest.record_failure(&fault());
     manifest.write(&run).unwrap();
-    let text = words(&run);
+    let text = page_text(&run);
     for word in ["This run could not go on", "the water has left", "shorten the step"] {
         assert!(text.contains(word), "{word:?} is not on the page");
     }
 }
 
 #[test]
-fn a_page_loads_nothing_and_a_scene_that_is_lost_is_a_remark() {
-    let desk = desk("lost");
-    let run = ran(&desk, "bay", BAY, &["--no-report"]);
+fn a_report_loads_no_external_resource_and_a_missing_scene_is_a_remark() {
+    let folder = folder("lost");
+    let run = run_scene(&folder, "bay", BAY, &["--no-report"]);
     fs::remove_dir_all(run.join("scene")).unwrap();
     let page = report::write(&run).unwrap();
     assert!(page.remarks.iter().any(|remark| remark.contains("bodies and gauges are not drawn")), "{:?}", page.remarks);

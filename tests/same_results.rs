@@ -1,8 +1,8 @@
-//! The results of every shipped scene after 50 steps have the bits that are recorded in `tests/golden/results.txt`.
+//! The results of every bundled scene after 50 steps have the bits that are recorded in `tests/golden/results.txt`.
 //!
-//! The redesign of the code may not change a result. The state is hashed through the public view of a simulation, so
-//! that the record does not depend on how a checkpoint arranges it; the series are hashed as files. On a mismatch the
-//! test prints the table of now, which replaces the record where a change is meant.
+//! The test hashes the state through the public interface of a simulation, so that the record does not depend on the
+//! layout of a checkpoint. It hashes the series as files. On a mismatch it prints the new table, which replaces the
+//! record after an intended change.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 
@@ -19,7 +19,7 @@ use pontoon::{
 /// Steps of each run.
 const STEPS: u64 = 50;
 
-/// Scenes that are run coarser here: their own spacing takes minutes.
+/// Scenes with a coarser spacing in this test, because their own takes minutes.
 const COARSER: [(&str, &str); 6] = [
     ("added-mass-3d", "0.04"),
     ("buoyancy-3d", "0.04"),
@@ -29,7 +29,7 @@ const COARSER: [(&str, &str); 6] = [
     ("wigley", "0.045"),
 ];
 
-/// Most water particles of a scene that is run with the reference too: it takes ten times as long.
+/// Largest number of water particles for a run with the reference pair loop, which takes ten times as long.
 const REFERENCE: usize = 8_000;
 
 /// FNV-1a, 64 bits.
@@ -51,7 +51,7 @@ impl Hash {
     }
 }
 
-/// Water, boundary particles, bodies and their loads after the steps.
+/// Hash of water, boundary particles, bodies and their loads after the steps.
 fn state<const D: usize>(scene: &Scene) -> u64
 where
     Dim<D>: Dimension<D>,
@@ -78,7 +78,7 @@ where
     hash.0
 }
 
-/// The series that the run writes over the steps, file by file.
+/// Hash of the series files that a run of these steps writes.
 fn series(path: &Path, sets: &[(String, String)], out: &Path) -> u64 {
     let options = RunOptions { out: Some(out.into()), overrides: sets.to_vec(), threads: None };
     run::run(path, &options, &mut |now: &Progress| now.steps < STEPS).unwrap();
@@ -93,29 +93,29 @@ fn series(path: &Path, sets: &[(String, String)], out: &Path) -> u64 {
 }
 
 #[test]
-fn every_shipped_scene_has_the_recorded_bits_after_fifty_steps() {
+fn every_bundled_scene_has_the_recorded_bits_after_fifty_steps() {
     let home = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = std::fs::read_dir(home.join("scenes")).unwrap().flatten().filter(|entry| entry.path().is_dir());
     let mut names: Vec<String> = folders.map(|entry| entry.file_name().into_string().unwrap()).collect();
     names.sort();
-    let desk = std::env::temp_dir().join(format!("pontoon-results-{}", std::process::id()));
+    let folder = std::env::temp_dir().join(format!("pontoon-results-{}", std::process::id()));
     let mut table = String::from("# scene sweep state series\n");
     for name in &names {
         let path = home.join("scenes").join(name);
-        for sweep in ["fast", "reference"] {
+        for pair_loop in ["fast", "reference"] {
             let dp = COARSER.iter().find(|(of, _)| of == name).map(|(_, dp)| ("dp".to_string(), dp.to_string()));
-            let sets: Vec<_> = dp.into_iter().chain([("model.sweep".to_string(), sweep.to_string())]).collect();
+            let sets: Vec<_> = dp.into_iter().chain([("model.sweep".to_string(), pair_loop.to_string())]).collect();
             let scene = Scene::read(&path, &sets).unwrap_or_else(|e| panic!("{name}: {e}"));
             let few = scene.estimate_size().unwrap().fluid < REFERENCE as f64;
-            if sweep == "reference" && !few {
+            if pair_loop == "reference" && !few {
                 continue;
             }
             let state = if scene.dimension == 2 { state::<2>(&scene) } else { state::<3>(&scene) };
-            let series = series(&path, &sets, &desk.join(format!("{name}-{sweep}")));
-            writeln!(table, "{name} {sweep} {state:016x} {series:016x}").unwrap();
+            let series = series(&path, &sets, &folder.join(format!("{name}-{pair_loop}")));
+            writeln!(table, "{name} {pair_loop} {state:016x} {series:016x}").unwrap();
         }
     }
-    let _ = std::fs::remove_dir_all(&desk);
+    let _ = std::fs::remove_dir_all(&folder);
     let recorded = std::fs::read_to_string(home.join("tests/golden/results.txt")).unwrap_or_default();
-    assert!(table == recorded, "other results than recorded; now:\n{table}");
+    assert!(table == recorded, "the results differ from the record; new table:\n{table}");
 }

@@ -10,7 +10,7 @@ mod load;
 pub(crate) mod prescribed_motion;
 pub(crate) mod rapier;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
-#[path = "../../tests/unit/solid/bodies.rs"]
+#[path = "../../tests/unit/solid/engine.rs"]
 mod tests;
 
 pub use constraint::{

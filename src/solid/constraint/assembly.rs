@@ -400,5 +400,5 @@ fn note<const D: usize>(
 }
 
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
-#[path = "../../../tests/unit/solid/assembly.rs"]
+#[path = "../../../tests/unit/solid/constraint/assembly.rs"]
 pub(in crate::solid) mod tests;

@@ -322,5 +322,5 @@ fn frame<const D: usize>(axis: &Vector<D>) -> Matrix<D> {
 }
 
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
-#[path = "../../../tests/unit/solid/joint.rs"]
+#[path = "../../../tests/unit/solid/constraint/joint.rs"]
 mod tests;

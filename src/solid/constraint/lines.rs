@@ -133,5 +133,5 @@ pub(in crate::solid) fn start_length<const D: usize>(ends: &[LineEnd<D>; 2]) -> 
 }
 
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
-#[path = "../../../tests/unit/solid/lines.rs"]
+#[path = "../../../tests/unit/solid/constraint/lines.rs"]
 mod tests;

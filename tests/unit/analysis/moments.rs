@@ -4,7 +4,7 @@ use super::*;
 use crate::error::Result;
 
 #[test]
-fn a_ramp_has_its_middle_as_mean_and_its_length_over_root_twelve_as_deviation() -> Result<()> {
+fn the_mean_of_a_ramp_is_its_middle_and_its_deviation_is_its_length_over_root_twelve() -> Result<()> {
     let t: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 1e-3).collect();
     let of = moments(&TimeSeries::new(t.clone(), t)?);
     assert!((of.mean - 0.5).abs() < 1e-12, "the trapezoid is exact for a line; got {}", of.mean);

@@ -11,11 +11,14 @@ fn sampled(f: impl Fn(f64) -> f64, until: f64) -> Result<TimeSeries> {
 }
 
 #[test]
-fn a_sine_has_its_period_and_twice_its_amplitude() -> Result<()> {
+fn the_waves_of_a_sine_have_its_period_and_twice_its_amplitude() -> Result<()> {
     let found = zero_crossing_waves(&sampled(|t| 0.5 + 0.1 * (TAU * t / 1.25).sin(), 10.0)?);
     let Some(found) = found else { panic!("a sine has waves") };
-    // The crossings are linear between samples 0.01 s apart, the crests up to half of that off.
-    assert_eq!(found.count, 6, "8 periods: the first begins with the record, the last does not come up again");
+    // Crossings are interpolated linearly between samples at 0.01 s; crests are up to half of that off.
+    assert_eq!(
+        found.count, 6,
+        "8 periods: the first begins with the record, and the last has no final upward crossing"
+    );
     for (what, x, exact) in [
         ("T_z", found.mean_period, 1.25),
         ("T third", found.significant_period, 1.25),
@@ -33,9 +36,9 @@ fn the_significant_height_is_the_mean_of_the_highest_third() -> Result<()> {
     // Groups of three waves of heights 1, 2 and 3, each a whole sine.
     let height = |t: f64| 1.0 + (t.floor() as i64).rem_euclid(3) as f64;
     let found = zero_crossing_waves(&sampled(|t| 0.5 * height(t) * (TAU * t).sin(), 30.0)?);
-    let Some(found) = found else { panic!("it has waves") };
+    let Some(found) = found else { panic!("waves") };
     assert!((found.significant_height - 3.0).abs() < 1e-2 && (found.max_height - 3.0).abs() < 1e-2, "{found:?}");
-    // The first wave begins with the record and is none, nor is the last: 28 of 30, of which nine are 3 high.
+    // The first and the last wave are incomplete and do not count: 28 of 30, of which nine have the height 3.
     assert!((found.mean_height - 2.0).abs() < 0.05, "{found:?}");
     Ok(())
 }
@@ -53,7 +56,7 @@ fn round_off_has_no_waves() -> Result<()> {
 }
 
 #[test]
-fn a_series_that_trembles_has_no_waves() -> Result<()> {
+fn a_rising_series_with_small_oscillations_has_no_waves() -> Result<()> {
     assert_eq!(zero_crossing_waves(&sampled(|t| t + 0.1 * (t * 2.0).sin(), 100.0)?), None);
     Ok(())
 }

@@ -3,12 +3,12 @@
 use super::*;
 
 /// Smallest distance between two points, and largest from a point to its nearest neighbour.
-fn spacing<const D: usize>(skin: &[BoundaryPoint<D>]) -> (f64, f64) {
+fn spacing<const D: usize>(points: &[BoundaryPoint<D>]) -> (f64, f64) {
     let nearest = |i: usize| {
-        let others = skin.iter().enumerate().filter(|(j, _)| *j != i);
-        others.map(|(_, p)| (p.r - skin[i].r).norm()).fold(f64::INFINITY, f64::min)
+        let others = points.iter().enumerate().filter(|(j, _)| *j != i);
+        others.map(|(_, p)| (p.r - points[i].r).norm()).fold(f64::INFINITY, f64::min)
     };
-    (0..skin.len()).map(nearest).fold((f64::INFINITY, 0.0), |(a, b), d| (a.min(d), b.max(d)))
+    (0..points.len()).map(nearest).fold((f64::INFINITY, 0.0), |(a, b), d| (a.min(d), b.max(d)))
 }
 
 fn first_layer_depth<const D: usize>(shape: &Shape<D>, dp: f64) {
@@ -19,11 +19,11 @@ fn first_layer_depth<const D: usize>(shape: &Shape<D>, dp: f64) {
 }
 
 #[test]
-fn a_box_of_ten_by_ten_dp_is_the_lattice() {
+fn the_boundary_points_of_a_box_of_ten_by_ten_dp_are_on_the_lattice() {
     let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
-    let skin = block.boundary_points(0.1, 1);
-    assert_eq!(skin.len(), 36);
-    for p in &skin {
+    let points = block.boundary_points(0.1, 1);
+    assert_eq!(points.len(), 36);
+    for p in &points {
         for x in p.r.iter() {
             let cell = (x + 0.5) / 0.1 - 0.5;
             assert!((cell - cell.round()).abs() < 1e-12);
@@ -35,7 +35,7 @@ fn a_box_of_ten_by_ten_dp_is_the_lattice() {
 }
 
 #[test]
-fn rings_and_shells_have_one_point_per_cell_of_surface() {
+fn discs_and_balls_have_one_boundary_point_per_cell_of_surface() {
     let (dp, radius): (f64, f64) = (0.1, 1.03);
     let disc = Shape::<2>::Ball { radius };
     assert_eq!(disc.boundary_points(dp, 1).len(), (TAU * (radius - 0.05) / dp).round() as usize);
@@ -49,7 +49,7 @@ fn rings_and_shells_have_one_point_per_cell_of_surface() {
 }
 
 #[test]
-fn skins_are_evenly_spaced() {
+fn boundary_points_are_evenly_spaced() {
     let dp = 0.1;
     for radius in [0.05, 0.1, 0.23, 0.5, 0.97] {
         let flat = [Shape::<2>::Ball { radius }, Shape::Capsule { length: 0.7, radius, axis: 0 }];
@@ -69,14 +69,14 @@ fn skins_are_evenly_spaced() {
 }
 
 #[test]
-fn a_tank_continues_its_lattice_into_the_walls() {
-    let skin = Shape::Tank { size: Vector::from([1.0, 0.5]), thickness: 0.3 }.boundary_points(0.1, 3);
-    assert_eq!(skin.len(), 16 * 3 + 2 * 3 * 5);
-    assert_eq!(skin.iter().filter(|p| p.layer == 0).count(), 12 + 2 * 5);
+fn the_boundary_points_of_a_tank_continue_the_lattice_of_the_water() {
+    let points = Shape::Tank { size: Vector::from([1.0, 0.5]), thickness: 0.3 }.boundary_points(0.1, 3);
+    assert_eq!(points.len(), 16 * 3 + 2 * 3 * 5);
+    assert_eq!(points.iter().filter(|p| p.layer == 0).count(), 12 + 2 * 5);
 }
 
 #[test]
-fn a_leap_over_the_inside_misses_no_cell_near_a_face() {
+fn skipping_interior_cells_misses_no_cell_near_a_face() {
     for high in [[0, 0], [3, 9], [7, 2], [9, 11]] {
         let (mut all, mut outer) = (Vec::new(), Vec::new());
         let near = |at: &[i64; 2]| (0..2).any(|i| at[i] < 2 || high[i] - at[i] < 2);
@@ -84,13 +84,13 @@ fn a_leap_over_the_inside_misses_no_cell_near_a_face() {
         each_outer(&[0; 2], &high, 2, |at| outer.extend(near(at).then_some(*at)));
         assert_eq!(all, outer, "in the same order");
     }
-    // Ten thousand million cells of air, not one of them visited.
+    // 1e10 cells of air, none of which is visited.
     let tank = Shape::Tank { size: Vector::from([1e5, 1e5]), thickness: 2.0 };
     assert_eq!(tank.boundary_points(1.0, 1).len(), 300_002);
 }
 
 #[test]
-fn the_joint_of_a_compound_has_neither_double_points_nor_a_hole() {
+fn the_joint_of_a_compound_has_no_double_points_and_no_gap() {
     let half = Shape::Box { size: Vector::from([0.5, 0.4]) };
     let at = |x: f64| Pose::at(Vector::from([x, 0.0]));
     let joined = Shape::Compound(vec![(at(0.0), half.clone()), (at(0.5), half)]);

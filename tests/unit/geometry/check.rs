@@ -11,7 +11,7 @@ fn refusal<const D: usize>(shape: Shape<D>) -> String {
 }
 
 #[test]
-fn impossible_shapes_are_refused_with_advice() {
+fn impossible_shapes_are_refused_with_the_reason() {
     assert!(refusal(Shape::Box { size: Vector::from([1.0, -1.0]) }).contains("-1"));
     assert!(refusal(Shape::<3>::Ball { radius: f64::NAN }).contains("NaN"));
     assert!(refusal(Shape::<2>::Capsule { length: 1.0, radius: 1.0, axis: 2 }).contains("axis 2"));
@@ -30,13 +30,13 @@ fn impossible_shapes_are_refused_with_advice() {
 }
 
 #[test]
-fn an_outline_of_a_million_points_is_refused_at_once() {
+fn an_outline_of_a_million_points_is_refused() {
     let points = (0..1_000_000).map(|i| Vector::from([f64::from(i), 0.0])).collect();
     assert!(refusal(Shape::<2>::Polyline { points, thickness: 0.1 }).contains("the most is 10000"));
 }
 
 #[test]
-fn sound_shapes_pass() {
+fn valid_shapes_are_accepted() {
     assert_eq!(Shape::Polygon { points: square() }.check(), Ok(()));
     assert_eq!(Shape::Polyline { points: square(), thickness: 0.1 }.check(), Ok(()));
     assert_eq!(Shape::<3>::Cylinder { length: 1.0, radius: 0.1, axis: 1 }.check(), Ok(()));

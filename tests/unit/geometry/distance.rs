@@ -8,11 +8,11 @@ fn v<const D: usize>(x: [f64; D]) -> Vector<D> {
 }
 
 fn near(a: f64, b: f64) {
-    assert!((a - b).abs() < 1e-12, "{a} is not {b}");
+    assert!((a - b).abs() < 1e-12, "{a} differs from {b}");
 }
 
 #[test]
-fn distances_are_negative_inside_and_exact() {
+fn signed_distances_are_exact_and_negative_inside() {
     let block = Shape::Box { size: v([2.0, 4.0, 6.0]) };
     near(block.signed_distance(&v([0.5, 0.0, 0.0])), -0.5);
     near(block.signed_distance(&v([4.0, 6.0, 0.0])), 5.0);
@@ -31,7 +31,7 @@ fn distances_are_negative_inside_and_exact() {
 }
 
 #[test]
-fn a_wall_is_solid_on_the_right_of_its_line() {
+fn a_polyline_wall_is_solid_to_the_right_of_its_line() {
     let points = [[0.0, 1.0], [0.0, 0.0], [2.0, 0.0]].map(Vector::from).to_vec();
     let wall = Shape::Polyline { points, thickness: 0.4 };
     near(wall.signed_distance(&v([0.3, 0.5])), 0.3);
@@ -53,7 +53,7 @@ fn a_tank_is_solid_in_its_walls_only() {
 }
 
 #[test]
-fn a_hollow_polygon_is_outside_in_its_notch() {
+fn the_notch_of_a_concave_polygon_is_outside() {
     let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 1.0], [0.0, 2.0]].map(Vector::from).to_vec();
     let notch = Shape::Polygon { points };
     near(notch.signed_distance(&v([1.0, 1.5])), 0.125_f64.sqrt());

@@ -7,11 +7,11 @@ fn pool<const D: usize>(size: [f64; D]) -> WaterRegion<D> {
     WaterRegion { shape: Shape::Box { size }, pose: Pose::at(size * 0.5) }
 }
 
-/// The nearest water to the solid's face, and the barest place of the wetted face.
+/// Smallest distance (dp) of water from the face of the solid, and largest distance of a wetted face point from water.
 fn clearance<const D: usize>(water: &[Vector<D>], shape: &Shape<D>, pose: &Pose<D>, dp: f64) -> (f64, f64) {
     let nearest = water.iter().map(|x| shape.signed_distance(&pose.local(x))).fold(f64::INFINITY, f64::min);
     let reach = |x: Vector<D>| water.iter().map(|w| (w - x).norm()).fold(f64::INFINITY, f64::min);
-    // Places on the face: a fine skin of the shape, brought up to the face.
+    // Points on the face: fine boundary points of the shape, projected to the face.
     let fine = shape.boundary_points(0.3 * dp, 1);
     let face = fine.iter().map(|p| p.r - shape.outward_normal(&p.r, 1e-3 * dp) * shape.signed_distance(&p.r));
     let top = water.iter().map(|w| w[D - 1]).fold(f64::NEG_INFINITY, f64::max);
@@ -19,19 +19,19 @@ fn clearance<const D: usize>(water: &[Vector<D>], shape: &Shape<D>, pose: &Pose<
     (nearest / dp, bare / dp)
 }
 
-fn fits<const D: usize>(filled: &FilledWater<D>, shape: &Shape<D>, pose: &Pose<D>, dp: f64) {
+fn assert_fits<const D: usize>(filled: &FilledWater<D>, shape: &Shape<D>, pose: &Pose<D>, dp: f64) {
     let (nearest, bare) = clearance(&filled.r, shape, pose, dp);
     assert!(nearest >= 0.45, "{shape:?}: water {nearest} dp from the face");
-    // Half a dp in front, half a spacing aside in D − 1 directions: 0.71 and 0.87 dp on a lattice that
-    // fits; uneven places add a fifth.
+    // Half a dp normal to the face and half a spacing along it in D − 1 directions: 0.71 and 0.87 dp on a fitting
+    // lattice; disorder adds a fifth.
     let most = if D == 2 { 0.85 } else { 1.04 };
     assert!(bare <= most, "{shape:?}: a gap of {bare} dp");
     let cells = crate::geometry::cells::spacing_flags(&filled.r, 0, 0.5 * dp);
-    assert!(cells.iter().all(|kept| *kept), "{shape:?}: points nearer than half a dp");
+    assert!(cells.iter().all(|spaced| *spaced), "{shape:?}: points closer than half a dp");
 }
 
 #[test]
-fn a_fitting_tank_and_body_leave_the_lattice_exact() {
+fn the_water_around_a_fitting_tank_and_body_is_the_exact_lattice() {
     let tank = Shape::Tank { size: Vector::from([4.0, 5.0]), thickness: 0.3 };
     let (block, at) = (Shape::Box { size: Vector::from([1.0, 0.5]) }, Pose::at(Vector::from([2.0, 1.25])));
     let solids = [(&tank, &Pose::identity()), (&block, &at)];
@@ -43,7 +43,7 @@ fn a_fitting_tank_and_body_leave_the_lattice_exact() {
 }
 
 #[test]
-fn regions_share_a_lattice_and_never_fill_twice() {
+fn overlapping_water_regions_share_a_lattice_without_duplicates() {
     let film = pool([2.0, 0.2]);
     let mut column = pool([0.5, 1.0]);
     column.pose.position[0] += 0.3;
@@ -54,59 +54,59 @@ fn regions_share_a_lattice_and_never_fill_twice() {
 }
 
 #[test]
-fn water_displaced_by_a_disc_has_its_area() {
+fn the_water_removed_by_a_disc_has_the_area_of_the_disc() {
     let pool = [pool([4.0, 4.0])];
     for (x, y) in [(2.0, 2.0), (2.03, 1.97), (2.0 + 0.031, 2.0 + 0.047)] {
         let (disc, at) = (Shape::Ball { radius: 0.5 }, Pose::at(Vector::from([x, y])));
         let filled = fill(&pool, &[(&disc, &at)], 0.1).unwrap();
-        // 78.5 cells; each of the four sides may be off by half a cell.
+        // 78.5 cells; the error is half a cell for each of the four sides.
         assert!((filled.removed_in_solids as f64 - 78.54).abs() <= 2.0, "{}", filled.removed_in_solids);
         assert_eq!(filled.r.len() + filled.removed_in_solids, 1600);
-        fits(&filled, &disc, &at, 0.1);
+        assert_fits(&filled, &disc, &at, 0.1);
     }
 }
 
 #[test]
-fn boxes_off_the_lattice_or_tilted_have_no_gap() {
+fn water_around_a_tilted_box_or_one_off_the_lattice_has_no_gap() {
     let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
     for (x, y, turn) in [(2.03, 2.0, 0.0), (2.05, 2.05, 0.0), (2.03, 1.98, 0.3), (2.0, 3.93, 0.0)] {
         let at = Pose::rotated(Vector::from([x, y]), &[turn]);
         let filled = fill(&[pool([4.0, 4.0])], &[(&block, &at)], 0.1).unwrap();
         let (wet, _) = block.submerged_volume(&at, 4.0);
-        // Half a cell for each of the four sides, not half a row.
+        // The error is half a cell for each of the four sides, not half a row.
         assert!((filled.removed_in_solids as f64 - 100.0 * wet).abs() <= 2.0, "{}", filled.removed_in_solids);
-        fits(&filled, &block, &at, 0.1);
+        assert_fits(&filled, &block, &at, 0.1);
     }
 }
 
 #[test]
-fn packing_round_a_float_leaves_the_surface_level() {
+fn packing_around_a_float_keeps_the_surface_level() {
     let block = Shape::Box { size: Vector::from([1.0, 1.0]) };
     let at = Pose::at(Vector::from([2.03, 3.95]));
     let filled = fill(&[pool([4.0, 4.0])], &[(&block, &at)], 0.1).unwrap();
     let top = filled.r.iter().map(|x| (x[1] - 3.95) / 0.1).fold(f64::NEG_INFINITY, f64::max);
-    // No mound: uneven places within a quarter of a spacing. A hollow would be a lack in the count.
+    // No particle rises by more than a quarter of a spacing. Tests of the particle count detect a hollow.
     assert!(top < 0.25, "the top row rises to {top} dp above its height");
 }
 
 #[test]
-fn water_lies_on_a_slope_and_not_beneath_it() {
+fn water_fills_the_space_above_a_slope_only() {
     let points = [[0.0, 0.0], [1.0, 0.0], [4.0, 1.2]].map(Vector::from).to_vec();
     let bed = Shape::Polyline { points, thickness: 0.2 };
     let filled = fill(&[pool([4.0, 1.0])], &[(&bed, &Pose::identity())], 0.05).unwrap();
     let area = 4.0 - 0.5 * 2.5 * 1.0 - 0.5; // the triangle under the slope up to x = 3.5, then the rest
     assert!((filled.r.len() as f64 * 0.0025 - area).abs() < 0.02, "{}", filled.r.len() as f64 * 0.0025);
-    fits(&filled, &bed, &Pose::identity(), 0.05);
-    // The lattice is as it was far from the slope.
+    assert_fits(&filled, &bed, &Pose::identity(), 0.05);
+    // Far from the slope the lattice is unchanged.
     assert!(filled.r.iter().any(|x| (x - Vector::from([0.025, 0.975])).norm() < 1e-9));
 }
 
 #[test]
-fn water_closes_round_a_ball() {
+fn water_around_a_ball_has_no_gap() {
     let (ball, at) = (Shape::Ball { radius: 0.4 }, Pose::at(Vector::from([1.013, 0.987, 1.03])));
     let filled = fill(&[pool([2.0, 2.0, 2.0])], &[(&ball, &at)], 0.1).unwrap();
     assert!((filled.removed_in_solids as f64 - 268.1).abs() < 8.0, "{}", filled.removed_in_solids);
-    fits(&filled, &ball, &at, 0.1);
+    assert_fits(&filled, &ball, &at, 0.1);
 }
 
 #[test]
@@ -114,13 +114,13 @@ fn a_gap_too_narrow_for_a_row_of_particles_stays_dry() {
     let tank = Shape::Tank { size: Vector::from([2.1, 5.0]), thickness: 0.4 };
     let (block, at) = (Shape::Box { size: Vector::from([2.0, 1.0]) }, Pose::at(Vector::from([1.05, 1.5])));
     let filled = fill(&[pool([2.1, 3.0])], &[(&tank, &Pose::identity()), (&block, &at)], 0.1).unwrap();
-    // Half a dp is left on either side: water would lie a quarter of dp from both faces.
+    // The gap is half a dp on either side, so water would be a quarter of a dp from both faces.
     assert!(filled.r.iter().all(|x| x[1] <= 1.0 || x[1] >= 2.0));
-    assert!(filled.r.len() >= 2 * 10 * 21 - 21, "what is below and above stays: {}", filled.r.len());
+    assert!(filled.r.len() >= 2 * 10 * 21 - 21, "the water below and above remains: {}", filled.r.len());
 }
 
 #[test]
-fn any_number_of_threads_fills_with_the_same_bits() {
+fn filling_has_the_same_bits_on_any_number_of_threads() {
     let (ball, at) = (Shape::Ball { radius: 0.4 }, Pose::at(Vector::from([1.013, 0.987, 1.03])));
     let filled = |threads: usize| {
         let workers = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -1,4 +1,4 @@
-//! Meshes against the shapes that they draw, and surfaces that are no solids.
+//! Meshes compared with the shapes that they represent, and invalid surfaces.
 
 use std::{f64::consts::TAU, sync::Arc};
 
@@ -56,7 +56,7 @@ fn refusal(points: &[Vector<3>], facets: &[[u32; 3]]) -> String {
 }
 
 #[test]
-fn a_mesh_that_draws_a_box_has_its_moments() {
+fn a_mesh_of_a_box_has_the_moments_of_the_box() {
     let (drawn, block) = boxes([0.3, 0.2, 0.5]);
     let (a, b) = (drawn.volume_properties(), block.volume_properties());
     // Thirty sums and products: a few units in the last place.
@@ -73,28 +73,28 @@ fn round_meshes_have_the_moments_of_their_polyhedra() {
     let volume = 4.0 / 3.0 * 8.0;
     assert!((eight.volume - volume).abs() < 1e-13 * volume);
     assert!((eight.second_moment - Matrix::identity() * (volume * 0.4)).norm() < 1e-12 * volume);
-    // What a fine polyhedron lacks to its ball falls with the square of its edges.
-    let lack = |n: u32| {
+    // The volume difference between polyhedron and ball falls with the square of the edge length.
+    let difference = |n: u32| {
         1.0 - ball(2.0, n).volume_properties().volume / Shape::<3>::Ball { radius: 2.0 }.volume_properties().volume
     };
-    let (coarse, fine) = (lack(15), lack(31));
+    let (coarse, fine) = (difference(15), difference(31));
     assert!(fine > 0.0 && (coarse / fine - 4.0).abs() < 0.1, "{coarse} {fine}");
 }
 
 #[test]
-fn moments_do_not_depend_on_where_the_mesh_lies() {
+fn moments_do_not_depend_on_the_position_of_the_mesh() {
     let (points, facets) = cuboid([0.3, 0.2, 0.5]);
     let there: Vec<_> = points.iter().map(|p| p + Vector::from([100.0, -50.0, 20.0])).collect();
     let (near, far) = (
         Mesh::new(&points, &facets).unwrap().volume_properties(),
         Mesh::new(&there, &facets).unwrap().volume_properties(),
     );
-    // The places themselves are only exact to 1e-14 m.
+    // The positions themselves are exact to 1e-14 m only.
     assert!((near.second_moment - far.second_moment).norm() < 1e-12 * near.second_moment.norm());
 }
 
 #[test]
-fn a_drawn_box_displaces_what_the_box_does() {
+fn a_mesh_of_a_box_has_the_submerged_volume_of_the_box() {
     let (drawn, block) = boxes([0.3, 0.2, 0.5]);
     for (turn, level) in [([0.0; 3], 0.05), ([0.3, -0.4, 0.5], 0.11), ([1.2, 0.1, 0.0], -0.08), ([0.0, 0.0, 1.0], 9.0)]
     {
@@ -106,14 +106,14 @@ fn a_drawn_box_displaces_what_the_box_does() {
 
 proptest! {
     #[test]
-    fn a_drawn_box_is_as_far_as_the_box(x in [-0.6..0.6, -0.6..0.6, -0.6..0.6f64]) {
+    fn a_mesh_of_a_box_has_the_signed_distance_of_the_box(x in [-0.6..0.6, -0.6..0.6, -0.6..0.6f64]) {
         let (drawn, block) = boxes([0.3, 0.2, 0.5]);
         let x = Vector::from(x);
         prop_assert!((drawn.signed_distance(&x) - block.signed_distance(&x)).abs() < 1e-12);
     }
 
     #[test]
-    fn a_notched_mesh_is_as_far_as_the_polygon_that_it_is_drawn_from(x in [-1.0..3.0, -1.0..3.0f64], z in -0.4..0.4f64) {
+    fn a_prism_mesh_has_the_signed_distance_of_its_concave_polygon(x in [-1.0..3.0, -1.0..3.0f64], z in -0.4..0.4f64) {
         let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 1.0], [0.0, 2.0]];
         let flat = Shape::Polygon { points: outline.map(Vector::from).to_vec() };
         let at = |z: f64| outline.map(|p| Vector::from([p[0], p[1], z]));
@@ -127,12 +127,12 @@ proptest! {
 }
 
 #[test]
-fn on_the_surface_the_normal_is_that_of_the_surface() {
+fn the_normal_at_a_point_of_the_surface_is_the_surface_normal() {
     let (points, facets) = cuboid([0.3, 0.2, 0.5]);
     let mesh = Mesh::new(&points, &facets).unwrap();
     let normal = |x: [f64; 3]| mesh.distance_and_normal(&Vector::from(x)).1;
     assert!((normal([0.02, 0.03, 0.25]) - Vector::from([0.0, 0.0, 1.0])).norm() < 1e-12);
-    // On an edge or a corner it is a face's, or between: it points out of all of them, or along.
+    // At an edge or a corner the normal is that of a face or between faces, and points into none of them.
     for x in [[0.15, 0.1, 0.0], [0.15, 0.1, 0.25]] {
         let n = normal(x);
         assert!((n.norm() - 1.0).abs() < 1e-12 && n.min() > -1e-12, "{n}");
@@ -140,7 +140,7 @@ fn on_the_surface_the_normal_is_that_of_the_surface() {
 }
 
 #[test]
-fn what_is_no_solid_is_refused_with_the_place() {
+fn surfaces_that_bound_no_solid_are_refused_with_the_position() {
     let (points, facets) = cuboid([2.0; 3]);
     assert!(refusal(&points, &facets[1..]).contains("3 edges with a facet on one side only"));
     let inside_out: Vec<_> = facets.iter().map(|&[a, b, c]| [b, a, c]).collect();
@@ -157,7 +157,7 @@ fn what_is_no_solid_is_refused_with_the_place() {
     let mut lost = points.clone();
     lost[5][1] = f64::NAN;
     assert!(refusal(&lost, &facets).contains("corner 6"));
-    // A second box that sticks through a side of the first, and one that stands beside it.
+    // A second box that intersects a side of the first, and one beside it.
     let with = |x: f64| {
         let more = points.iter().map(|p| p * 0.5 + Vector::from([x, 0.01, 0.02]));
         let all: Vec<_> = points.iter().copied().chain(more).collect();
@@ -168,9 +168,9 @@ fn what_is_no_solid_is_refused_with_the_place() {
 }
 
 #[test]
-fn a_shell_within_a_shell_faces_the_other_way() {
+fn a_shell_within_a_shell_must_face_inwards() {
     let (points, facets) = cuboid([2.0; 3]);
-    // Boxes of these scales, turned inside out or not, around places along x; of all the first is the largest.
+    // Boxes with a scale, an orientation (inside out or not) and a position along x; the first is the largest.
     let of = |boxes: &[(f64, bool, f64)]| {
         let place =
             |&(scale, _, x): &(f64, bool, f64)| points.iter().map(move |p| p * scale + Vector::from([x, 0.0, 0.0]));
@@ -189,13 +189,13 @@ fn a_shell_within_a_shell_faces_the_other_way() {
     let sound = |boxes: &[(f64, bool, f64)], volume: f64| assert!((of(boxes).unwrap() - volume).abs() < 1e-12);
     sound(&[(1.0, false, 0.0), (0.5, true, 0.0)], 7.0);
     sound(&[(1.0, false, 0.0), (0.5, true, 0.0), (0.25, false, 0.0)], 7.125);
-    // Beside one another, with and without a face in touch.
+    // Boxes beside one another, without and with a common face.
     sound(&[(1.0, false, 0.0), (0.5, false, 1.5)], 9.0);
     sound(&[(1.0, false, 0.0), (0.5, false, 2.0)], 9.0);
 }
 
 #[test]
-fn corners_in_one_place_are_one_and_facets_without_area_are_left_out() {
+fn coincident_corners_are_merged_and_facets_without_area_are_dropped() {
     let (points, facets) = cuboid([2.0; 3]);
     let loose: Vec<_> = facets.iter().flat_map(|f| f.map(|p| points[p as usize])).collect();
     let all: Vec<_> = (0..12).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).chain([[0, 0, 1]]).collect();
@@ -204,33 +204,33 @@ fn corners_in_one_place_are_one_and_facets_without_area_are_left_out() {
 }
 
 /// The smallest distance between two points, and the largest from one to its nearest neighbour.
-fn spacing(skin: &[BoundaryPoint<3>]) -> (f64, f64) {
+fn spacing(points: &[BoundaryPoint<3>]) -> (f64, f64) {
     let nearest = |p: &BoundaryPoint<3>| {
-        let others = skin.iter().map(|q| (q.r - p.r).norm()).filter(|d| *d > 0.0);
+        let others = points.iter().map(|q| (q.r - p.r).norm()).filter(|d| *d > 0.0);
         others.fold(f64::INFINITY, f64::min)
     };
-    skin.iter().map(nearest).fold((f64::INFINITY, 0.0), |(a, b), d| (a.min(d), b.max(d)))
+    points.iter().map(nearest).fold((f64::INFINITY, 0.0), |(a, b), d| (a.min(d), b.max(d)))
 }
 
-/// The skin's volume over the solid's, when it has all layers; asserts that it lies as it should: at its depth, or up to
-/// a quarter dp short of it where farther from the nearest face is nearer to the one opposite.
+/// Volume of all boundary points over the volume of the solid. Asserts the depth of each point: that of its layer, or up to a quarter
+/// dp less midway between two opposite faces.
 fn filled(shape: &Shape<3>, dp: f64) -> f64 {
-    let skin = shape.boundary_points(dp, 99);
-    for p in &skin {
+    let points = shape.boundary_points(dp, 99);
+    for p in &points {
         let depth = |x: &Vector<3>| -shape.signed_distance(x) / dp;
         let short = f64::from(p.layer) + 0.5 - depth(&p.r);
         let farther = depth(&(p.r - shape.outward_normal(&p.r, 1e-3 * dp) * (0.1 * dp)));
         let halfway = p.layer > 0 && (0.0..0.251).contains(&short) && farther < depth(&p.r);
         assert!(short.abs() < 1e-3 || halfway, "layer {} is {short} dp short", p.layer);
     }
-    let (least, most) = spacing(&skin);
-    // As the skins of the other shapes.
+    let (least, most) = spacing(&points);
+    // The spacing bounds are those of the other shapes.
     assert!(least >= 0.7 * dp && most <= 1.2 * dp, "points {} to {} dp apart", least / dp, most / dp);
-    skin.len() as f64 * dp.powi(3) / shape.volume_properties().volume
+    points.len() as f64 * dp.powi(3) / shape.volume_properties().volume
 }
 
 #[test]
-fn a_drawn_cube_has_as_many_boundary_particles_as_the_cube() {
+fn a_mesh_of_a_cube_has_as_many_boundary_points_as_the_cube() {
     let (drawn, block) = boxes([1.0; 3]);
     for layers in 1..=4 {
         let (a, b) =
@@ -242,7 +242,7 @@ fn a_drawn_cube_has_as_many_boundary_particles_as_the_cube() {
 }
 
 #[test]
-fn a_skin_stands_for_the_volume_of_its_mesh() {
+fn the_boundary_points_of_a_mesh_represent_its_volume() {
     for mesh in [ball(0.5, 20), ball(0.43, 3)] {
         let volume = filled(&shape(mesh), 0.05);
         assert!((volume - 1.0).abs() < 0.005, "{volume} of the volume");
@@ -250,11 +250,11 @@ fn a_skin_stands_for_the_volume_of_its_mesh() {
 }
 
 #[test]
-fn a_slab_of_any_thickness_has_its_volume_and_what_no_layer_holds_lies_halfway() {
+fn the_boundary_points_of_a_slab_of_any_thickness_represent_its_volume() {
     for thickness in [2.8, 3.4, 4.2, 4.5, 4.9] {
         let (slab, _) = boxes([1.0, 0.93, thickness * 0.05]);
         let volume = filled(&slab, 0.05);
-        // Found: at most 0.54 %, at 3.4 dp, where two sheets of a layer lie 0.4 dp apart and are as dense as they may be.
+        // Measured: at most 0.54 %, at 3.4 dp, where two sheets of a layer are 0.4 dp apart and have the largest allowed density.
         assert!((volume - 1.0).abs() < 0.01, "{thickness} dp: {volume} of the volume");
     }
 }

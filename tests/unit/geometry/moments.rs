@@ -3,11 +3,11 @@
 use super::*;
 
 fn near(a: f64, b: f64) {
-    assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()), "{a} is not {b}");
+    assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()), "{a} differs from {b}");
 }
 
 #[test]
-fn a_turned_box_of_two_halves_is_the_box() {
+fn a_compound_of_two_rotated_halves_has_the_moments_of_the_box() {
     let half = Shape::Box { size: Vector::from([1.0, 2.0]) };
     let whole = Shape::Box { size: Vector::from([2.0, 2.0]) }.volume_properties();
     let at = |x: f64| Pose::rotated(Vector::from([x, 3.0]), &[std::f64::consts::PI]);
@@ -18,7 +18,7 @@ fn a_turned_box_of_two_halves_is_the_box() {
 }
 
 #[test]
-fn a_polygon_agrees_with_the_box_it_draws() {
+fn a_rectangular_polygon_has_the_moments_of_the_box() {
     let points = [[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 3.0]].map(Vector::from).to_vec();
     let drawn = Shape::Polygon { points };
     let v = drawn.volume_properties();
@@ -48,7 +48,7 @@ fn round_shapes_have_the_textbook_moments() {
 }
 
 #[test]
-fn a_tank_weighs_as_its_three_slabs() {
+fn a_tank_has_the_moments_of_its_three_slabs() {
     let tank = Shape::Tank { size: Vector::from([4.0, 2.0]), thickness: 0.5 };
     let v = tank.volume_properties();
     near(v.volume, 2.5 + 2.0);

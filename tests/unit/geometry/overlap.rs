@@ -11,7 +11,7 @@ fn bar(at: [f64; 3], turn: f64) -> (Pose<3>, Shape<3>) {
 }
 
 #[test]
-fn parts_that_overlap_are_named_with_the_place() {
+fn overlapping_parts_are_named_with_the_position() {
     let block = |x: f64| (Pose::at([x, 0.0].into()), Shape::<2>::Box { size: [0.5, 0.4].into() });
     let message = refusal(vec![block(0.0), block(2.0), block(0.45)]);
     assert!(message.contains("parts 1 and 3") && message.contains("5.00e-2 m about (0.2250, 0.0000)"), "{message}");
@@ -23,7 +23,7 @@ fn parts_that_overlap_are_named_with_the_place() {
 }
 
 #[test]
-fn parts_that_touch_pass() {
+fn touching_parts_are_accepted() {
     let block = |at: [f64; 3], turn: f64| {
         (Pose::rotated(at.into(), &[0.0, turn, 0.0]), Shape::Box { size: [0.5, 0.4, 0.3].into() })
     };
@@ -35,5 +35,5 @@ fn parts_that_touch_pass() {
     let ball = |x: f64| (Pose::at([x, 0.0, 0.0].into()), Shape::Ball { radius: 0.1 });
     assert_eq!(refusal(vec![block([0.0; 3], 0.0), ball(0.35), ball(-0.35)]), "");
     let tank = (Pose::identity(), Shape::<3>::Tank { size: [0.5, 0.4, 0.3].into(), thickness: 0.1 });
-    assert_eq!(refusal(vec![tank, block([0.25, 0.2, 0.15], 0.0)]), "", "in its hollow");
+    assert_eq!(refusal(vec![tank, block([0.25, 0.2, 0.15], 0.0)]), "", "inside the tank");
 }

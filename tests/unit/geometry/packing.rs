@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_disturbed_lattice_becomes_even_again() {
+fn spreading_restores_the_spacing_of_a_disturbed_lattice() {
     let mut points: Vec<Vector<2>> = Vec::new();
     let cell = |i: i32, j: i32| Vector::from([i as f64, j as f64]);
     for (i, j) in (0..49).map(|k| (k % 7 - 3, k / 7 - 3)) {
@@ -21,11 +21,11 @@ fn a_disturbed_lattice_becomes_even_again() {
 }
 
 #[test]
-fn rows_of_a_cubic_lattice_do_not_swing() {
+fn spreading_damps_an_alternating_shift_of_a_cubic_lattice() {
     let place = |k: i32| Vector::from([(k % 15) as f64, (k / 15 % 15) as f64, (k / 225) as f64]);
     let is_inner = |x: &Vector<3>| x.iter().all(|c| (3.0..12.0).contains(c));
     let (inner, outer): (Vec<_>, Vec<_>) = (0..3375).map(place).partition(is_inner);
-    // Every other row is a little to the left, the rest to the right: the wave that swings first.
+    // Rows are shifted alternately to the left and to the right, the least stable mode.
     let shifted = inner.iter().map(|x| x + Vector::from([0.03 * (x[0] * std::f64::consts::PI).cos(), 0.0, 0.0]));
     let mut points: Vec<_> = shifted.chain(outer).collect();
     spread_points(&mut points, inner.len(), 1.0, |_, _, _| f64::INFINITY);

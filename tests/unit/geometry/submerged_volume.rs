@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_shape_under_water_displaces_its_volume_about_its_centroid() {
+fn a_submerged_shape_displaces_its_volume_at_its_centroid() {
     let pose = Pose::rotated(Vector::from([1.0, 2.0, 3.0]), &[0.3, -0.4, 0.5]);
     for shape in [
         Shape::Box { size: Vector::from([1.0, 2.0, 0.5]) },
@@ -20,7 +20,7 @@ fn a_shape_under_water_displaces_its_volume_about_its_centroid() {
 }
 
 #[test]
-fn the_wet_and_the_dry_part_are_mirror_images_at_half_draught() {
+fn half_of_a_symmetric_shape_is_submerged_at_half_draft() {
     for axis in 0..3 {
         let capsule = Shape::Capsule { length: 1.0, radius: 0.3, axis };
         let (wet, _) = capsule.submerged_volume(&Pose::at(Vector::from([5.0, 5.0, 1.0])), 1.0);
@@ -29,8 +29,8 @@ fn the_wet_and_the_dry_part_are_mirror_images_at_half_draught() {
 }
 
 #[test]
-fn partial_draughts_follow_the_formulas() {
-    // A standing box and cylinder: area times draught.
+fn submerged_volumes_at_partial_draft_follow_the_formulas() {
+    // A standing box and cylinder: area times draft.
     let pose = Pose::at(Vector::from([0.2, 0.0, 0.0]));
     let (v, c) = Shape::Box { size: Vector::from([2.0, 3.0, 1.0]) }.submerged_volume(&pose, 0.2);
     assert!((v - 6.0 * 0.7).abs() < 1e-12 && (c - Vector::from([0.2, 0.0, -0.15])).norm() < 1e-12);
@@ -44,7 +44,7 @@ fn partial_draughts_follow_the_formulas() {
     let (v, c) = Shape::<3>::Capsule { length: 1.0, radius: 0.5, axis: 2 }.submerged_volume(&Pose::identity(), -0.7);
     let (cap, at) = Shape::<3>::Ball { radius: 0.5 }.submerged_volume(&Pose::at(Vector::from([0.0, 0.0, -0.5])), -0.7);
     assert!((v - cap).abs() < 1e-5 * (PI / 4.0 + PI / 6.0) && (c - at).norm() < 1e-4, "{v} {cap}");
-    // A wedge, tip down, in 2-D: half its height wets a quarter of its area.
+    // A 2-D wedge with its tip down: at half its height a quarter of its area is submerged.
     let points = [[0.0, 0.0], [1.0, 1.0], [-1.0, 1.0]].map(Vector::from).to_vec();
     let (v, c) = Shape::Polygon { points }.submerged_volume(&Pose::identity(), 0.5);
     assert!((v - 0.25).abs() < 1e-14 && (c[1] - 1.0 / 3.0).abs() < 1e-14);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn precedence_is_that_of_mathematics() {
+fn operators_have_mathematical_precedence() {
     for (text, value) in [
         ("-t^2", -9.0),
         ("2^3^2", 512.0),
@@ -21,7 +21,7 @@ fn precedence_is_that_of_mathematics() {
 }
 
 #[test]
-fn the_rate_is_the_derivative() {
+fn the_rate_of_a_formula_is_its_derivative() {
     for (name, _) in FUNCTIONS {
         check_rate(&format!("{name}(0.3 + 0.4*t)"));
     }
@@ -42,17 +42,17 @@ fn check_rate(text: &str) {
 }
 
 #[test]
-fn a_wrong_formula_is_told_where_and_how() {
-    let said = |text: &str| Formula::parse(text).unwrap_err().to_string();
-    assert!(said("2*sinus(t)").contains("character 3: \"sinus\" is not known; did you mean \"sin"));
-    assert!(said("2*x").contains("\"x\" is not known"));
-    assert!(said("3t").contains("an operator is expected before 't'"));
-    assert!(said("sin(t").contains("it ends where ')' is expected"));
-    assert!(said("1.2.3").contains("\"1.2.3\" is not a number"));
+fn an_invalid_formula_is_refused_with_its_position_and_reason() {
+    let message = |text: &str| Formula::parse(text).unwrap_err().to_string();
+    assert!(message("2*sinus(t)").contains("character 3: \"sinus\" is not known; did you mean \"sin"));
+    assert!(message("2*x").contains("\"x\" is not known"));
+    assert!(message("3t").contains("an operator is expected before 't'"));
+    assert!(message("sin(t").contains("it ends where ')' is expected"));
+    assert!(message("1.2.3").contains("\"1.2.3\" is not a number"));
     for text in ["", "t*", ")", "sin t", "min(t)", "1e", "π", "t²", "2**t"] {
-        assert!(said(text).contains("known: "), "{text}");
+        assert!(message(text).contains("known: "), "{text}");
     }
-    assert!(said(&"(".repeat(900)).contains("nested"));
-    assert!(said(&"-".repeat(900)).contains("nested"));
-    assert!(said(&"1+".repeat(900)).contains("longer"));
+    assert!(message(&"(".repeat(900)).contains("nested"));
+    assert!(message(&"-".repeat(900)).contains("nested"));
+    assert!(message(&"1+".repeat(900)).contains("longer"));
 }

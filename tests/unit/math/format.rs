@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn columns_tell_their_units_and_their_names() {
+fn units_and_labels_follow_from_column_names() {
     assert_eq!(["fx_N_per_m", "fx_N", "heave_m, 0 at 2 s", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
     assert_eq!(unit("front_m (2)"), "m", "the second check of a series");
     assert_eq!(["power_W_per_m", "flow_m2ps", "eta_at_1.5_m"].map(unit), ["W/m", "m²/s", "m"]);
@@ -14,7 +14,7 @@ fn columns_tell_their_units_and_their_names() {
 }
 
 #[test]
-fn sizes_and_times_have_their_units() {
+fn sizes_and_durations_have_short_formats() {
     assert_eq!([bytes(12.0), bytes(1_500_000.0)], ["12 B", "1.5 MB"]);
     assert_eq!([duration(3.21), duration(125.0), duration(7260.0)], ["3.2 s", "2 min 05 s", "2 h 01 min"]);
 }

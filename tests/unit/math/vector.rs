@@ -3,8 +3,8 @@
 use super::*;
 
 #[test]
-fn a_turn_is_orthogonal_and_comes_back_as_its_angle() {
-    // In release this is also the guard against the compiler's fault that `exp` is written around.
+fn the_exponential_of_a_bivector_is_orthogonal_and_has_its_rotation_vector() {
+    // In release builds this also detects the compiler fault that `exp` works around.
     for turn in [[0.0, 0.0, 1.5], [0.3, -0.4, 0.5], [1e-5, 0.0, -1e-9], [-1.0, 2.0, 0.7]] {
         let r = Bivector::<3>::from_axial(&turn).exp();
         assert!((r * r.transpose() - Matrix::identity()).norm() < 1e-14, "{r}");
@@ -16,7 +16,7 @@ fn a_turn_is_orthogonal_and_comes_back_as_its_angle() {
 }
 
 #[test]
-fn a_force_upward_on_the_right_turns_counter_clockwise() {
+fn an_upward_force_on_the_right_has_a_counter_clockwise_torque() {
     let torque = Bivector::torque(&Vector::from([1.0, 0.0]), &Vector::from([0.0, 1.0]));
     assert_eq!(torque.axial(), vec![1.0]);
     assert_eq!(torque.power(&Bivector::from_axial(&[3.0])), 3.0);

@@ -33,7 +33,7 @@ fn the_hash_is_fnv_1a() {
 }
 
 #[test]
-fn a_checkpoint_reads_back_and_every_damage_is_seen() -> Result<()> {
+fn a_checkpoint_survives_writing_and_every_damage_is_detected() -> Result<()> {
     let good = example().to_bytes()?;
     assert_eq!(Checkpoint::from_bytes(&good)?, example());
     for cut in 0..good.len() {
@@ -53,7 +53,7 @@ fn a_checkpoint_reads_back_and_every_damage_is_seen() -> Result<()> {
     Ok(())
 }
 
-/// A file with a true hash over whatever lengths and payload.
+/// A file with a valid hash over any lengths and payload.
 fn forged(unfolded: u64, packed: &[u8]) -> Vec<u8> {
     let lengths = [unfolded, packed.len() as u64].map(u64::to_le_bytes).concat();
     let sum = fnv1a_continue(fnv1a(&lengths), packed).to_le_bytes();
@@ -61,21 +61,21 @@ fn forged(unfolded: u64, packed: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn a_forged_length_is_refused_before_memory_is_taken() -> io::Result<()> {
-    // 64 MB of nothing in some kB: refused for its ratio, and for a length that is not its own.
+fn a_forged_length_is_refused_before_memory_is_allocated() -> io::Result<()> {
+    // 64 MB of zeros in some kB: refused for the compression ratio, and for a wrong length.
     let bomb = zstd::encode_all(io::repeat(0).take(1 << 26), 1)?;
     for unfolded in [u64::MAX, 1 << 26, 1 << 40, 1000, 0] {
-        assert_eq!(refusal(&forged(unfolded, &bomb)), Some(ErrorKind::Restart), "{unfolded} bytes promised");
+        assert_eq!(refusal(&forged(unfolded, &bomb)), Some(ErrorKind::Restart), "declared length {unfolded} bytes");
     }
     assert_eq!(refusal(&forged(100, b"no zstd at all")), Some(ErrorKind::Restart));
-    // Lists that promise 2⁶⁰ entries.
+    // Lists with a declared length of 2⁶⁰ entries.
     let lists = [&[1, b'x', 7, 0][..], &[0xff; 9], &[1]].concat();
     assert_eq!(refusal(&forged(lists.len() as u64, &zstd::encode_all(&lists[..], 1)?)), Some(ErrorKind::Restart));
     Ok(())
 }
 
 #[test]
-fn the_last_two_are_kept_and_a_damaged_one_never_takes_the_place_of_a_good_one() -> Result<()> {
+fn the_last_two_checkpoints_are_kept_and_a_damaged_one_never_replaces_an_intact_one() -> Result<()> {
     let folder = std::env::temp_dir().join(format!("pontoon-checkpoint-{}", std::process::id()));
     fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
     let at = |time| Checkpoint { time, ..example() };

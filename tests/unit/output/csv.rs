@@ -7,7 +7,7 @@ fn columns() -> Vec<String> {
 }
 
 #[test]
-fn a_resumed_table_is_the_unbroken_one_byte_for_byte() -> Result<()> {
+fn a_resumed_table_equals_the_uninterrupted_one_byte_for_byte() -> Result<()> {
     let folder = std::env::temp_dir().join(format!("pontoon-table-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
     let path = folder.join("x.csv");
@@ -24,12 +24,12 @@ fn a_resumed_table_is_the_unbroken_one_byte_for_byte() -> Result<()> {
     again.append_row(0.1, &[-1e-9, 2.0])?;
     again.append_row(0.2, &[0.0, 0.0])?;
     again.truncate(whole.len() as u64)?;
-    assert_eq!(again.last_row(), Some((0.1, &[-1e-9, 2.0][..])), "the row that is the last again");
-    assert!(again.first_row().is_some_and(|row| row[0] == 1.0 / 3.0), "the first row stays: {:?}", again.first_row());
+    assert_eq!(again.last_row(), Some((0.1, &[-1e-9, 2.0][..])), "the last row after the truncation");
+    assert!(again.first_row().is_some_and(|row| row[0] == 1.0 / 3.0), "the first row remains: {:?}", again.first_row());
     assert_eq!(std::fs::read(&path).map_err(|e| Error::file(&path, e))?, whole);
     assert_eq!(whole, b"t_s,a_m,b_N\n0.0,0.3333333333333333,\n0.1,-1e-9,2.0\n");
     assert!(CsvTable::resume(&path, &columns(), 10_000).is_err(), "shorter than at the checkpoint");
     assert!(CsvTable::resume(&path, &columns()[..1], bytes).is_err(), "other columns");
-    assert!(CsvTable::resume(&path, &columns(), bytes - 1).is_err(), "a row that is not whole");
+    assert!(CsvTable::resume(&path, &columns(), bytes - 1).is_err(), "an incomplete row");
     std::fs::remove_dir_all(&folder).map_err(|e| Error::file(&folder, e))
 }

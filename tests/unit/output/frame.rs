@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn points_of_a_plane_get_a_third_coordinate_and_a_vertex_each() -> io::Result<()> {
+fn points_in_2d_are_written_with_a_third_coordinate_and_a_vertex_each() -> io::Result<()> {
     for points in [vec![Vector::<2>::new(1.0, 2.0), Vector::<2>::new(3.0, 4.0)], vec![]] {
         let numbers: Vec<f32> = points.iter().map(|x| x[0] as f32).collect();
         let file = points_vtu(&points, vec![DataArray::new("density", 1, numbers.clone())])?;
@@ -17,15 +17,15 @@ fn points_of_a_plane_get_a_third_coordinate_and_a_vertex_each() -> io::Result<()
 }
 
 #[test]
-fn the_list_of_frames_names_both_files_of_each_time() {
+fn the_index_of_frames_names_both_files_of_each_time() {
     let text = pvd_index(&[0.0, 0.25], "frames", &PARTS);
     assert!(text.contains("timestep=\"0.25\" part=\"1\" name=\"solids\" file=\"frames/solids_00001.vtu\""));
     assert_eq!(text.matches("<DataSet ").count(), 4);
 }
 
 #[test]
-fn an_unknown_field_names_the_nearest() {
-    let words = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None };
-    let error = FrameWriter::new(&std::env::temp_dir(), &words, vec![]).err();
+fn an_unknown_field_is_refused_with_the_nearest_name() {
+    let plan = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None };
+    let error = FrameWriter::new(&std::env::temp_dir(), &plan, vec![]).err();
     assert_eq!(error.and_then(|e| e.help), Some("did you mean \"pressure\"?".into()));
 }

@@ -3,8 +3,8 @@
 use super::*;
 
 #[test]
-fn frames_of_the_first_version_are_read() -> Result<()> {
-    // Twelve particles of water 10 ms after they began to fall, written by the crate vtkio with arrays in base 64.
+fn frames_of_the_first_format_version_are_read() -> Result<()> {
+    // Twelve particles of water 10 ms after the start of their fall, written by the crate vtkio with arrays in base 64.
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/frames");
     let frames = FrameSequence::open(&folder)?.ok_or_else(|| Error::file(&folder, "has no frames"))?;
     assert_eq!(frames.times(), [0.0, 0.01]);
@@ -36,7 +36,7 @@ fn a_damaged_frame_is_an_error_that_names_the_file() {
         let error = frames.water(1).unwrap_err().to_string();
         assert!(error.contains("water_00001.vtu: is not a frame of this program: it is cut short"), "{error}");
     }
-    // Whole at its end, but with an array that lacks some digits.
+    // The end of the file is intact, but an array lacks some digits.
     let text = String::from_utf8(whole).unwrap().replacen("eAE", "", 1);
     std::fs::write(&path, text).unwrap();
     let error = frames.water(1).unwrap_err().to_string();

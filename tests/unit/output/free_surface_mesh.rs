@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Still water on a lattice, 20 × 20 × 10 dp, that turns about z.
+/// Water on a lattice of 20 × 20 × 10 dp that rotates about z.
 fn block(dp: f32) -> FramePoints {
     let mut water = FramePoints::default();
     for n in 0..4000 {
@@ -21,13 +21,13 @@ fn the_surface_of_a_block_encloses_its_volume_and_is_level() -> Result<()> {
     let cone = |t: &[usize; 3]| corner(t[0]).dot(&corner(t[1]).cross(&corner(t[2]))) / 6.0;
     let volume: f64 = surface.triangles.iter().map(cone).sum();
     let exact = 4000.0 * f64::from(dp).powi(3);
-    // Edges are rounded over a dp, which takes 1 % of a block of this size; a mesh inside out would have less than none.
+    // Edges are rounded over a dp, which is 1 % of a block of this size. A mesh inside out would have a negative volume.
     assert!((volume / exact - 1.0).abs() < 0.02, "{volume} m³ for {exact}");
     let top = surface.corners.iter().filter(|x| x[2] > 0.1 && (x[0] - 0.2).abs() < 0.1 && (x[1] - 0.2).abs() < 0.1);
-    // A twentieth of dp: what a wave of ten dp is measured with is not to come from the surface.
+    // The bound is a twentieth of dp, so that the mesh adds no error to a wave of ten dp.
     assert!(top.clone().count() > 50);
     for x in top {
-        assert!((x[2] - 0.2).abs() < 0.05 * dp, "the surface lies at {} m", x[2]);
+        assert!((x[2] - 0.2).abs() < 0.05 * dp, "the surface is at {} m", x[2]);
     }
     Ok(())
 }
@@ -42,9 +42,9 @@ fn every_edge_has_two_triangles_and_every_corner_a_velocity() -> Result<()> {
             *edges.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
         }
     }
-    assert!(edges.values().all(|sum| *sum == 0), "each edge is walked once either way");
+    assert!(edges.values().all(|sum| *sum == 0), "each edge has two triangles of opposite direction");
     for (x, v) in surface.corners.iter().zip(&surface.velocity) {
-        // The mean of water within 3 dp, all of it on one side.
+        // The velocity is the mean of the water within 3 dp, all of it on one side.
         let off = (v[0] + x[1]).hypot(v[1] - x[0]);
         assert!(off < 1.5 * dp && v[2].abs() < 1e-6, "{v:?} m/s at {x:?}");
     }
@@ -53,7 +53,7 @@ fn every_edge_has_two_triangles_and_every_corner_a_velocity() -> Result<()> {
 }
 
 #[test]
-fn no_water_has_no_surface() -> Result<()> {
+fn the_free_surface_mesh_of_no_water_is_empty() -> Result<()> {
     assert_eq!(FreeSurfaceMesh::reconstruct(&FramePoints::default(), 0.1)?, FreeSurfaceMesh::default());
     Ok(())
 }

@@ -22,7 +22,7 @@ fn file(points: usize) -> Vec<u8> {
     write(points, cells, fields).unwrap()
 }
 
-/// Bits of the numbers, which NaN has too.
+/// Bits of the numbers, for a comparison that includes NaN.
 fn bits(values: &Values) -> Vec<u64> {
     match values {
         Values::F32(x) => x.iter().map(|x| u64::from(x.to_bits())).collect(),
@@ -33,8 +33,8 @@ fn bits(values: &Values) -> Vec<u64> {
 }
 
 #[test]
-fn a_grid_reads_back_to_the_bit() {
-    // None, one, a block of 65,536 bytes to the byte (of the fields with 4 bytes a point), and several blocks.
+fn a_grid_survives_writing_and_reading_to_the_bit() {
+    // No point, one point, exactly one block of 65,536 bytes (for fields with 4 bytes a point), and several blocks.
     for count in [0, 1, 16_384, 50_000] {
         let (points, cells, fields) = sample(count);
         let (read, read_fields) = read_points(&file(count)).unwrap();
@@ -53,7 +53,7 @@ fn a_grid_reads_back_to_the_bit() {
 }
 
 #[test]
-fn a_file_that_is_cut_anywhere_is_refused() {
+fn a_file_truncated_at_any_byte_is_refused() {
     let whole = file(40);
     let end = whole.trim_ascii_end().len();
     assert!(read_points(&whole[..end]).is_ok());
@@ -63,7 +63,7 @@ fn a_file_that_is_cut_anywhere_is_refused() {
 }
 
 #[test]
-fn a_file_with_a_wrong_byte_is_refused_or_read_and_never_a_panic() {
+fn a_file_with_a_wrong_byte_is_refused_or_read_without_a_panic() {
     let whole = file(12);
     for at in 0..whole.len() {
         for wrong in [0, 1, b'9', b'>', 0x80, 0xff] {
@@ -79,7 +79,7 @@ fn a_file_with_a_wrong_byte_is_refused_or_read_and_never_a_panic() {
 }
 
 #[test]
-fn the_reason_of_a_refusal_is_given() {
+fn a_refused_file_has_a_reason() {
     let refusal = |from: &str, to: &str| {
         let whole = file(3);
         let at = whole.windows(from.len()).position(|bytes| bytes == from.as_bytes()).unwrap();
@@ -97,7 +97,7 @@ fn the_reason_of_a_refusal_is_given() {
 }
 
 #[test]
-fn a_header_that_promises_too_much_is_refused() {
+fn a_block_header_with_wrong_sizes_is_refused() {
     let words = |words: &[u64]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<_>>();
     for header in [
         &[][..],
@@ -110,7 +110,7 @@ fn a_header_that_promises_too_much_is_refused() {
     ] {
         assert_eq!(decompress(&words(header), 8), None, "{header:?}");
     }
-    // A block that holds more or less than it says.
+    // A block with more or fewer bytes than its header declares.
     let mut data = Vec::new();
     append_blocks(&[1_u8; 100], u8::to_le_bytes, &mut data).unwrap();
     assert_eq!(decompress(&data, 8), Some(vec![1; 100]));

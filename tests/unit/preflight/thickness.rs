@@ -7,13 +7,13 @@ fn thin<const D: usize>(shape: Shape<D>) -> f64 {
 }
 
 #[test]
-fn the_thinnest_part_is_the_plate_not_the_hull_and_not_the_tip() {
-    // To a twentieth of dp: the least step inward.
-    let near = |a: f64, b: f64| assert!((a - b).abs() < 5e-4, "{a} is not {b}");
+fn the_thickness_of_a_shape_is_that_of_its_thinnest_part() {
+    // The bound is a twentieth of dp, the smallest inward step.
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 5e-4, "{a} differs from {b}");
     near(thin(Shape::Box { size: Vector::from([0.3, 0.04]) }), 0.04);
     near(thin(Shape::<2>::Ball { radius: 0.1 }), 0.2);
     near(thin(Shape::<3>::Cylinder { length: 0.3, radius: 0.05, axis: 2 }), 0.1);
-    // A joint is no face.
+    // The joint of a compound is not a face.
     let half = Shape::Box { size: Vector::from([0.1, 0.2]) };
     let at = |x: f64| Pose::at(Vector::from([x, 0.0]));
     near(thin(Shape::Compound(vec![(at(0.0), half.clone()), (at(0.1), half)])), 0.2);

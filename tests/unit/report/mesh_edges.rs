@@ -24,7 +24,7 @@ fn block(size: [f64; 3]) -> Result<Mesh> {
     Mesh::new(&points, &facets)
 }
 
-/// A ball of radius 1 m by so many belts of facets.
+/// A ball of radius 1 m with this number of belts of facets.
 fn ball(belts: u32) -> Result<Mesh> {
     let (around, step) = (2 * belts, std::f64::consts::PI / f64::from(belts));
     let on = |i: u32, j: u32| {
@@ -52,7 +52,7 @@ fn ball(belts: u32) -> Result<Mesh> {
 }
 
 #[test]
-fn a_block_is_drawn_by_its_twelve_edges() -> Result<()> {
+fn the_lines_of_a_block_are_its_twelve_edges() -> Result<()> {
     let lines = mesh_lines(&block([0.4, 0.2, 0.1])?);
     let length = |line: &Outline| (Vector::from(line.points[0]) - Vector::from(line.points[1])).norm();
     assert_eq!(lines.len(), 12, "no diagonals, no cuts");
@@ -61,7 +61,7 @@ fn a_block_is_drawn_by_its_twelve_edges() -> Result<()> {
 }
 
 #[test]
-fn a_ball_is_drawn_by_closed_cuts_that_lie_on_it() -> Result<()> {
+fn the_lines_of_a_ball_are_closed_cuts_on_its_surface() -> Result<()> {
     let mesh = ball(24)?;
     let lines = mesh_lines(&mesh);
     assert_eq!(lines.len(), CUTS.len() + 2);
@@ -74,14 +74,14 @@ fn a_ball_is_drawn_by_closed_cuts_that_lie_on_it() -> Result<()> {
         let round = line.points.iter().zip(line.points.iter().cycle().skip(1));
         let length: f64 = round.map(|(a, b)| (Vector::from(*a) - Vector::from(*b)).norm()).sum();
         let radius = Vector::from(line.points[0]).norm_squared() - off(line).powi(2);
-        // Chords of 24 belts are shorter by at most (π/24)²/4 of the circle, and lie deeper by as much.
+        // Chords of 24 belts are shorter than the circle by at most (π/24)²/4, and their depth is of the same order.
         let exact = std::f64::consts::TAU * radius.sqrt();
         assert!((length / exact - 1.0).abs() < 0.01, "{length} m of {exact} m");
     }
     Ok(())
 }
 
-/// How far the plane of a cut is from the origin, m.
+/// Distance (m) of the plane of a cut from the origin.
 fn off(line: &Outline) -> f64 {
     let level = |axis: usize| line.points.iter().all(|x| (x[axis] - line.points[0][axis]).abs() < 1e-12);
     (0..3).find(|&axis| level(axis)).map_or(f64::NAN, |axis| line.points[0][axis])

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn every_point_of_an_outline_lies_on_the_face_of_its_shape() {
+fn every_outline_point_is_on_the_face_of_its_shape() {
     let v2 = |x: [f64; 2]| Vector::<2>::from(x);
     let flat = [
         Shape::Box { size: v2([0.4, 0.2]) },
@@ -16,7 +16,7 @@ fn every_point_of_an_outline_lies_on_the_face_of_its_shape() {
     for shape in flat {
         for x in outlines(&shape).iter().flat_map(|line| &line.points) {
             let off = shape.signed_distance(&v2([x[0], x[1]]));
-            // The far side of a bend in a wall is drawn with a corner where the wall's own is round: half of the turn beyond.
+            // The far side of a bend in a wall is drawn with a corner, but the wall itself is round there.
             let corner = 0.1 * (1.0 / (0.5 * 0.5_f64.atan()).cos() - 1.0);
             assert!(off.abs() < corner + 1e-9, "{shape:?}: {x:?} is {off} m off");
         }

@@ -4,7 +4,7 @@ use super::*;
 use crate::math::Vector;
 
 #[test]
-fn the_motion_of_a_solid_is_found_from_its_points() {
+fn the_pose_of_a_solid_is_fitted_to_its_points() {
     let single = |x: Vector<3>| [x[0] as f32, x[1] as f32, x[2] as f32];
     let local: Vec<Vector<3>> =
         (0..40).map(|i| Vector::from([f64::from(i % 4), f64::from(i / 4 % 3), f64::from(i / 12)]) * 0.1).collect();
@@ -14,14 +14,14 @@ fn the_motion_of_a_solid_is_found_from_its_points() {
     );
     let points = |pose: &Pose<3>| local.iter().map(|x| single(pose.point(x))).collect::<Vec<_>>();
     let found = Placement::from_pose(&start).fitted_to(&points(&start), &points(&end));
-    let asked = Placement::from_pose(&end);
+    let expected = Placement::from_pose(&end);
     let x = [0.3, -0.2, 0.1];
-    let off = found.to_world(&x).iter().zip(asked.to_world(&x)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(off < 1e-6, "the points are known in single precision: 1e-7 of 3 m; off by {off}");
+    let off = found.to_world(&x).iter().zip(expected.to_world(&x)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-6, "the points have single precision, 1e-7 of 3 m; error {off}");
 }
 
 #[test]
-fn a_flat_solid_turns_in_its_plane() {
+fn the_fitted_pose_of_a_2d_solid_rotates_in_its_plane() {
     let start = Pose::<2>::at(Vector::from([1.0, 0.0]));
     let end = Pose::<2>::rotated(Vector::from([1.0, 0.0]), &[0.5]);
     let points = |pose: &Pose<2>| {

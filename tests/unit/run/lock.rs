@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn one_run_at_a_time_and_what_a_killed_one_leaves_is_no_hindrance() -> Result<()> {
+fn a_lock_excludes_a_second_run_and_a_stale_lock_is_replaced() -> Result<()> {
     let folder = std::env::temp_dir().join(format!("pontoon-lock-{}", std::process::id()));
     fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
     fs::write(folder.join("run.lock"), "1234567 left over").map_err(|e| Error::file(&folder, e))?;

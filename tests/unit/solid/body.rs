@@ -25,13 +25,13 @@ fn spec(mass: f64, inertia: [f64; 3]) -> SolidSpec<3> {
 }
 
 #[test]
-fn a_free_solid_starts_about_its_centre_of_mass() {
+fn the_initial_kinematics_of_a_free_solid_refer_to_its_centre_of_mass() {
     let centre = spec(1.0, [1.0; 3]).initial_kinematics().centre;
     assert!((centre - Vector::from([1.0, 0.1, 0.0])).norm() < 1e-15);
 }
 
 #[test]
-fn what_cannot_exist_is_refused() {
+fn impossible_masses_inertias_and_contact_properties_are_refused() {
     assert_eq!(spec(1.0, [1.0, 2.0, 3.0]).check_role(), Ok(()), "a flat plate");
     for (mass, inertia) in
         [(0.0, [1.0; 3]), (f64::NAN, [1.0; 3]), (1.0, [1.0, 1.0, 2.1]), (1.0, [1.0, 1.0, 0.0]), (-1.0, [1.0; 3])]
@@ -51,7 +51,7 @@ fn what_cannot_exist_is_refused() {
 }
 
 #[test]
-fn parts_of_a_free_solid_may_not_overlap() {
+fn overlapping_parts_of_a_free_solid_are_refused() {
     let part = |x: f64| (Pose::at(Vector::from([x, 0.0, 0.0])), Shape::Ball { radius: 0.1 });
     let shape = |x: f64| Shape::Compound(vec![part(0.0), part(x)]);
     let of = |shape: Shape<3>| SolidSpec { shape, ..spec(1.0, [1.0; 3]) };
@@ -62,7 +62,7 @@ fn parts_of_a_free_solid_may_not_overlap() {
 }
 
 #[test]
-fn a_box_has_the_inertia_of_the_books() {
+fn a_box_has_the_textbook_inertia() {
     let shape = Shape::Box { size: Vector::from([0.2, 0.3, 0.4]) };
     let body = FreeBody::from_mass(&shape, 12.0);
     let expected = Vector::from([0.3 * 0.3 + 0.4 * 0.4, 0.2 * 0.2 + 0.4 * 0.4, 0.2 * 0.2 + 0.3 * 0.3]);

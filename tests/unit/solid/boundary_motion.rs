@@ -4,7 +4,7 @@ use super::*;
 use crate::math::{Bivector, Pose};
 
 #[test]
-fn a_turning_solid_carries_its_skin() {
+fn boundary_particles_move_with_a_rotating_solid() {
     let quarter = std::f64::consts::FRAC_PI_2;
     let kinematics = Kinematics {
         pose: Pose::rotated(Vector::from([1.0, 2.0]), &[quarter]),
@@ -14,7 +14,7 @@ fn a_turning_solid_carries_its_skin() {
     };
     let (mut r, mut v) = (vec![Vector::zeros()], vec![Vector::zeros()]);
     place_boundary_particles(&kinematics, &[Vector::from([3.0, 0.0])], &mut r, &mut v);
-    // The arm (3, 0) is turned to (0, 3); a counter-clockwise spin of 2 rad/s moves it to −x at 6 m/s.
+    // The arm (3, 0) is rotated to (0, 3); a counter-clockwise spin of 2 rad/s moves its end towards −x at 6 m/s.
     assert!((r[0] - Vector::from([1.0, 5.0])).norm() < 1e-15);
     assert!((v[0] - Vector::from([-5.5, 0.0])).norm() < 1e-14);
 }

@@ -14,20 +14,20 @@ fn a_box_floats_at_the_draft_of_archimedes() {
     let (shape, body) = raft();
     let pose = Pose::at(Vector::from([3.0, 7.0]));
     let lift = equilibrium_height(&shape, &pose, body.mass, 1000.0, 0.4).unwrap();
-    // Half of it is under water: its middle lies in the surface. The bound is the bisection's.
+    // Half of the box is under water, so its centre is in the surface. The bound is that of the bisection.
     assert!((7.0 + lift - 0.4).abs() < 1e-12);
     let sinks = equilibrium_height(&shape, &pose, 2.5 * 20.0, 1000.0, 0.4).unwrap_err();
     assert!(sinks.to_string().contains("sinks") && sinks.to_string().contains("2.500"));
 }
 
 #[test]
-fn the_metacentre_of_a_box_is_where_the_books_have_it() {
+fn the_metacentric_height_of_a_box_agrees_with_the_textbook() {
     let (shape, mut body) = raft();
     let pose = Pose::at(Vector::zeros());
     let (breadth, draft) = (0.2, 0.05);
     let expected = breadth * breadth / (12.0 * draft) - 0.5 * draft;
     let gm = |body: &FreeBody<2>| metacentric_height(&shape, &pose, body, 1000.0, 0.0, &[1.0]).unwrap();
-    // The difference over ±1e-4 rad is off by (1e-4)², relative; round-off 1e-14/1e-4.
+    // The difference over ±1e-4 rad has a relative error of (1e-4)²; round-off is 1e-14/1e-4.
     assert!((gm(&body) - expected).abs() < 1e-7);
     body.centre[1] += 0.06;
     assert!((gm(&body) - (expected - 0.06)).abs() < 1e-7, "a top-heavy box capsizes");

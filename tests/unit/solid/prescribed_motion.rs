@@ -9,7 +9,7 @@ fn formula(text: &str) -> TimeFunction {
 }
 
 #[test]
-fn a_slide_starts_where_its_law_says_and_moves_at_its_rate() {
+fn a_slide_starts_at_the_value_of_its_law_and_moves_at_its_rate() {
     let table = TimeSeries::new([0.0, 0.5, 1.0, 2.0], [0.1, 0.2, 0.15, 0.3]).unwrap();
     let motion = PrescribedMotion::slide(Vector::from([2.0, 0.0]), TimeFunction::Table(table));
     let start = Pose::at(Vector::from([1.0, 1.0]));
@@ -22,7 +22,7 @@ fn a_slide_starts_where_its_law_says_and_moves_at_its_rate() {
 }
 
 #[test]
-fn a_hinge_keeps_its_centre_and_turns_at_its_rate() {
+fn a_hinge_keeps_its_centre_and_rotates_at_the_rate_of_its_law() {
     let centre = Vector::from([0.2, 0.0, -0.1]);
     let motion = PrescribedMotion::hinge(centre, &[0.0, 3.0, 4.0], formula("0.3*sin(2*t)"));
     let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
@@ -40,14 +40,14 @@ fn a_hinge_keeps_its_centre_and_turns_at_its_rate() {
 }
 
 #[test]
-fn a_positive_angle_turns_counter_clockwise_in_two_dimensions() {
+fn a_positive_angle_is_counter_clockwise_in_two_dimensions() {
     let motion = PrescribedMotion::hinge(Vector::zeros(), &[1.0], formula("t"));
     let now = motion.kinematics(&Pose::at(Vector::from([1.0, 0.0])), 0.5);
     assert!(now.pose.position[1] > 0.4 && now.spin.axial()[0] == 1.0);
 }
 
-/// The largest distance (m) of the velocities of some points from the central difference of where they are.
-fn off<const D: usize>(motion: &PrescribedMotion<D>, start: &Pose<D>, t: f64) -> f64 {
+/// The largest difference (m/s) of the velocities of some points from the central difference of their positions.
+fn velocity_error<const D: usize>(motion: &PrescribedMotion<D>, start: &Pose<D>, t: f64) -> f64 {
     let step = 1e-6;
     let [a, now, b] = [t - step, t, t + step].map(|t| motion.kinematics(start, t));
     let point = |i: usize| {
@@ -59,27 +59,27 @@ fn off<const D: usize>(motion: &PrescribedMotion<D>, start: &Pose<D>, t: f64) ->
 }
 
 #[test]
-fn each_motion_of_several_goes_in_the_frame_that_those_before_it_have_moved() {
+fn each_motion_of_a_chain_acts_in_the_frame_moved_by_those_before_it() {
     let turn = || PrescribedMotion::hinge(Vector::from([1.0, 0.0]), &[1.0], formula("0.5*pi*t"));
     let slide = || PrescribedMotion::slide(Vector::from([1.0, 0.0]), formula("2*t"));
     let start = Pose::at(Vector::from([1.0, 1.0]));
     let at = |motion: &PrescribedMotion<2>| motion.kinematics(&start, 1.0);
-    // A rail on the turntable points up by then; a turntable on the rail is 2 m further on. Round-off of cos π/2.
+    // A rail on the turntable points up at 1 s; a turntable on the rail has moved by 2 m. Round-off of cos π/2.
     let (railed, carted) = (PrescribedMotion::chain([turn(), slide()]), PrescribedMotion::chain([slide(), turn()]));
     assert!((at(&railed).pose.position - Vector::from([0.0, 2.0])).norm() < 1e-15);
     assert!((at(&carted).pose.position - Vector::from([2.0, 0.0])).norm() < 1e-15);
     assert!((at(&railed).velocity - Vector::from([-PI, 2.0 - 0.5 * PI])).norm() < 1e-14, "{:?}", at(&railed));
     assert!((at(&carted).velocity - Vector::from([2.0, -0.5 * PI])).norm() < 1e-14, "{:?}", at(&carted));
-    assert_eq!(at(&carted).centre, at(&carted).pose.position, "the origin of its frame");
+    assert_eq!(at(&carted).centre, at(&carted).pose.position, "the centre is the origin of the frame");
     // Truncation and round-off of the difference, as above.
-    assert!(off(&railed, &start, 0.3) < 1e-8 && off(&carted, &start, 0.3) < 1e-8);
+    assert!(velocity_error(&railed, &start, 0.3) < 1e-8 && velocity_error(&carted, &start, 0.3) < 1e-8);
     let one = PrescribedMotion::chain([turn()]);
-    assert_eq!(at(&one), at(&turn()), "of one it is that one");
+    assert_eq!(at(&one), at(&turn()), "a chain of one motion equals the motion");
     assert!(one.hinge_height().is_some() && carted.hinge_height().is_none());
 }
 
 #[test]
-fn several_motions_in_space_have_their_exact_rates() {
+fn a_chain_of_motions_in_three_dimensions_has_exact_rates() {
     let centre = |x: f64| Vector::from([x, 0.2, -0.1]);
     let motion = PrescribedMotion::chain([
         PrescribedMotion::slide(Vector::from([1.0, 0.0, 0.2]), formula("0.1*sin(3*t)")),
@@ -88,7 +88,7 @@ fn several_motions_in_space_have_their_exact_rates() {
         PrescribedMotion::slide(Vector::from([0.0, 1.0, 0.0]), formula("0.2*cos(t)")),
     ]);
     let start = Pose::rotated(Vector::from([0.2, 0.5, 0.3]), &[0.1, 0.2, 0.3]);
-    assert!(off(&motion, &start, 0.7) < 1e-8);
+    assert!(velocity_error(&motion, &start, 0.7) < 1e-8);
     let ways = motion.directions_at(&Vector::from([0.4, 0.5, 0.3]));
     assert!(ways.len() == 4 && ways.iter().all(|way| (way.norm() - 1.0).abs() < 1e-14), "{ways:?}");
     assert!((ways[0] - Vector::from([1.0, 0.0, 0.2]).normalize()).norm() < 1e-15);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn pressure_and_density_are_inverse_and_the_slope_is_the_speed_of_sound() {
+fn pressure_and_compression_are_inverse_and_the_slope_is_the_square_of_the_sound_speed() {
     let state = EquationOfState::new(20.0, 7.0);
     for x in [-0.01, 1e-9, 1e-4, 0.003, 0.05] {
         // The inverse takes a logarithm and an exponential: a few ulp.
@@ -16,8 +16,8 @@ fn pressure_and_density_are_inverse_and_the_slope_is_the_speed_of_sound() {
 }
 
 #[test]
-fn still_water_presses_with_its_weight() {
-    // Third order in x is left: 1 % of compression leaves 1e-4 times a factor of a few.
+fn the_lattice_pressure_of_hydrostatic_compression_equals_the_head() {
+    // The error is of third order in x: for 1 % of compression it is 1e-4 times a factor of a few.
     let state = EquationOfState::new(20.0, 7.0);
     for head in [0.0, 0.04, 0.4, 4.0] {
         let acting = state.lattice_pressure(state.hydrostatic_compression(head));
@@ -36,7 +36,7 @@ fn compression_energy_is_the_integral_of_pressure() {
                 state.pressure(y) / (1.0 + y).powi(2) * x / n as f64
             })
             .sum();
-        // Third order in x: the next term of the series is 1e-6 of the first at |x| = 1e-3.
+        // The error is of third order in x: the next term of the series is 1e-6 of the first at |x| = 1e-3.
         assert!((state.compression_energy(x) / sum - 1.0).abs() < 1e-5, "{x}: {} {sum}", state.compression_energy(x));
     }
 }

@@ -29,7 +29,7 @@ fn row(run: &str, n: f64, cpu_s: f64, status: &'static str) -> ResultRow {
 }
 
 #[test]
-fn cases_of_a_scene_stand_beside_one_another() {
+fn cases_of_a_scene_share_a_cost_plot() {
     let jobs = [job("column-1", "column", "none"), job("column-3", "column", "sps"), job("tank", "tank", "none")];
     let rows = [
         row("column-1", 0.5, 100.0, "finished"),
@@ -42,13 +42,13 @@ fn cases_of_a_scene_stand_beside_one_another() {
     for word in ["column: N of force.fx_N", ">1<", ">3<", "model.viscosity = none", "model.viscosity = sps"] {
         assert!(text.contains(word), "\"{word}\" is not in\n{text}");
     }
-    assert!(!text.contains("tank"), "one case has nothing to stand beside");
+    assert!(!text.contains("tank"), "a single case has no plot");
     assert_eq!(text.matches("<svg").count(), 1, "a second check of the series has the same N");
-    assert!(!text.contains("aligned"), "a figure that no case has is not drawn");
+    assert!(!text.contains("aligned"), "a metric that no case has is not drawn");
 }
 
 #[test]
-fn what_has_not_finished_is_not_drawn() {
+fn unfinished_runs_are_not_drawn() {
     let jobs = [job("column-1", "column", "none"), job("column-3", "column", "sps")];
     let rows = [row("column-1", 0.5, 100.0, "finished"), row("column-3", 0.4, 150.0, "failed")];
     assert!(cost_figures(&jobs, &rows).is_empty());

@@ -19,7 +19,7 @@ fn grid(dp: &[f64], vary: &[(&str, &[&str])]) -> ParameterGrid {
 }
 
 #[test]
-fn every_spacing_meets_every_combination_and_the_coarsest_comes_first() -> Result<()> {
+fn a_grid_combines_every_spacing_with_every_value_from_the_coarsest_on() -> Result<()> {
     let values: [(&str, &[&str]); 2] = [("model.kernel", &["cubic", "wendland"]), ("time.cfl", &["0.1", "0.2"])];
     let jobs = grid(&[0.01, 0.02, 0.005], &values).jobs(Path::new("out"))?;
     assert_eq!(jobs.len(), 12);
@@ -32,16 +32,16 @@ fn every_spacing_meets_every_combination_and_the_coarsest_comes_first() -> Resul
 }
 
 #[test]
-fn columns_are_headed_by_what_differs_and_frames_are_kept_at_their_times() -> Result<()> {
+fn column_titles_are_the_differing_values_and_frames_match_the_requested_times() -> Result<()> {
     let laws: [(&str, &[&str]); 1] = [("model.diffusion", &["none", "fourtakas"])];
     let named = |grid: ParameterGrid| grid.jobs(Path::new("out")).map(|jobs| distinguishing_labels(&jobs));
     assert_eq!(named(grid(&[0.01], &laws))?, ["diffusion = none", "diffusion = fourtakas"]);
     assert_eq!(named(grid(&[0.01, 0.02], &[]))?, ["dp = 0.02 m", "dp = 0.01 m"]);
     assert_eq!(named(grid(&[0.01], &[]))?, ["dp-0.01"]);
-    let kept =
+    let frames =
         ParameterGrid { frames: Some(0.1), ..grid(&[0.01], &[]) }.jobs(Path::new("out"))?[0].overrides[0].clone();
-    assert_eq!((kept.0.as_str(), kept.1.starts_with("{ every = 0.1,")), ("frames", true));
-    // Times that have no long interval in common: 200 frames, the nearest of which is taken.
+    assert_eq!((frames.0.as_str(), frames.1.starts_with("{ every = 0.1,")), ("frames", true));
+    // Times without a long common interval: 200 frames, of which the nearest is used.
     assert_eq!(
         [frame_interval(&[0.0], 2.0), frame_interval(&[0.5, 1.25], 2.0), frame_interval(&[0.333, 1.0], 2.0)],
         [2.0, 0.25, 0.01]
@@ -50,7 +50,7 @@ fn columns_are_headed_by_what_differs_and_frames_are_kept_at_their_times() -> Re
 }
 
 #[test]
-fn repeats_share_a_name_and_start_a_millionth_of_dp_apart() -> Result<()> {
+fn repeats_share_a_name_and_differ_by_a_jitter_of_a_millionth_of_dp() -> Result<()> {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/still-tank");
     let thrice = |sets: &[(&str, &str)]| {
         let sets = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
@@ -62,7 +62,7 @@ fn repeats_share_a_name_and_start_a_millionth_of_dp_apart() -> Result<()> {
     assert_eq!(jobs.iter().map(|job| job.folder.as_path()).collect::<Vec<_>>(), folders.map(Path::new));
     assert_eq!(distinguishing_labels(&jobs), ["repeat 1", "repeat 2", "repeat 3"]);
     let starts = |jobs: &[Job]| jobs.iter().map(|job| Ok(job.read_scene()?.jitter)).collect::<Result<Vec<_>>>();
-    // The first is what it would be without repeats, so that a study that has been run can be repeated.
+    // The first repeat equals a run without repeats, so that an existing study can be repeated.
     assert_eq!(starts(&jobs)?, [None, Some(1e-6), Some(2e-6)]);
     assert_eq!(starts(&thrice(&[("jitter", "1e-3")])?)?, [1e-3, 1e-3 + 1e-6, 1e-3 + 2e-6].map(Some));
     let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
@@ -73,7 +73,7 @@ fn repeats_share_a_name_and_start_a_millionth_of_dp_apart() -> Result<()> {
 }
 
 #[test]
-fn what_is_given_twice_or_not_at_all_is_refused() {
+fn duplicate_and_missing_values_are_refused() {
     let refused = |grid: ParameterGrid| grid.jobs(Path::new("out")).err().map(|e| e.kind);
     assert_eq!(refused(grid(&[0.01, 0.01], &[])), Some(ErrorKind::Usage));
     assert_eq!(refused(grid(&[], &[])), Some(ErrorKind::Usage));
@@ -82,7 +82,7 @@ fn what_is_given_twice_or_not_at_all_is_refused() {
 }
 
 #[test]
-fn a_long_name_is_cut_but_stays_its_own() -> Result<()> {
+fn a_long_name_is_shortened_and_remains_unique() -> Result<()> {
     let long = "{ artificial = { alpha = 0.0200000000000000000000000000000000000000000000000000000000000000000001 } }";
     let jobs = grid(&[0.01], &[("model.viscosity", &[long, &long.replace("1 }", "2 }")])]).jobs(Path::new("out"))?;
     assert!(jobs.iter().all(|job| job.name.len() <= LONGEST));

@@ -3,12 +3,12 @@
 use super::*;
 
 #[test]
-fn checks_of_one_series_are_told_apart() {
+fn several_checks_of_one_series_have_distinct_labels() {
     assert_eq!(check_labels(["a.x_m", "b.y_m", "a.x_m"]), ["a.x_m", "b.y_m", "a.x_m (2)"]);
 }
 
 #[test]
-fn a_value_with_commas_and_a_failure_of_several_lines_stay_in_their_cells() -> Result<()> {
+fn values_with_commas_and_messages_of_several_lines_stay_in_one_cell() -> Result<()> {
     let row = ResultRow {
         run: "dp-0.01".into(),
         dp: 0.01,

@@ -7,7 +7,7 @@ fn scene(name: &str) -> std::path::PathBuf {
 }
 
 #[test]
-fn every_case_is_a_scene_that_can_be_run_both_ways() -> Result<()> {
+fn every_validation_case_is_a_valid_scene_in_its_short_and_full_form() -> Result<()> {
     let all = validation_cases()?;
     assert!(all.len() >= 26, "{}", all.len());
     for case in &all {
@@ -21,12 +21,12 @@ fn every_case_is_a_scene_that_can_be_run_both_ways() -> Result<()> {
     let mut names: Vec<&str> = all.iter().map(|case| case.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), all.len(), "each has a name of its own");
+    assert_eq!(names.len(), all.len(), "names are unique");
     Ok(())
 }
 
 #[test]
-fn a_case_of_the_paper_has_its_laws_and_figures() -> Result<()> {
+fn a_validation_case_of_a_paper_has_its_models_and_published_values() -> Result<()> {
     let case = select_cases(&["column-17".to_string()], true)?.remove(0);
     let job = case.job(true, &scene("column"), Path::new("out"))?;
     let lines: Vec<String> = job.read_scene()?.resolve()?.iter().map(|v| format!("{} = {}", v.key, v.value)).collect();
@@ -46,7 +46,7 @@ fn a_case_of_the_paper_has_its_laws_and_figures() -> Result<()> {
 }
 
 #[test]
-fn a_case_that_is_not_there_names_the_nearest() {
+fn an_unknown_case_is_refused_with_the_nearest_name() {
     let error = select_cases(&["colum-3".to_string()], false).err();
     assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"column-3\"?")));
 }

@@ -7,7 +7,7 @@ use crate::{
     solid::{PrescribedMotion, TimeFunction},
 };
 
-/// A bed, its face at y = 0, and on it at dp = 0.1 a paddle 0.4 m thick, its foot at `foot` (m), that moves so.
+/// Extension particles of a paddle 0.4 m thick with its foot at `foot` (m) and this motion, on a bed with its face at y = 0, at dp = 0.1.
 fn paddle(foot: f64, motion: PrescribedMotion<2>) -> Vec<ExtensionParticle<2>> {
     let solid = |name: &str, size: [f64; 2], y: f64, role| SolidSpec {
         name: name.into(),
@@ -21,7 +21,7 @@ fn paddle(foot: f64, motion: PrescribedMotion<2>) -> Vec<ExtensionParticle<2>> {
     let specs =
         [solid("bed", [10.0, 1.0], -0.5, Role::Fixed), solid("paddle", [0.4, 2.0], foot + 1.0, Role::Driven(motion))];
     let model = Model::water(2, 0.1, 1.0);
-    assert!(extension_particles(0, &specs, &model).is_empty(), "a bed has none");
+    assert!(extension_particles(0, &specs, &model).is_empty(), "a bed has no extension");
     extension_particles(1, &specs, &model)
 }
 
@@ -30,27 +30,30 @@ fn along(direction: [f64; 2]) -> PrescribedMotion<2> {
 }
 
 #[test]
-fn a_piston_on_its_bed_is_carried_on_into_it_as_far_as_the_kernel_reaches() {
+fn a_piston_on_its_bed_is_extended_into_the_bed_by_the_kernel_support() {
     let extension = paddle(0.0, along([1.0, 0.0]));
     let layers = Model::water(2, 0.1, 1.0).boundary_layers();
-    // Four columns of a paddle four dp thick, in the lattice that its own rows have.
+    // Four columns of a paddle four dp thick, on the lattice of its own rows.
     assert_eq!(extension.len(), 4 * layers);
     for particle in &extension {
         let row = (particle.r[1] + 1.0) / -0.1 - 0.5;
         assert!((row - row.round()).abs() < 1e-9 && row > -0.1 && row < layers as f64, "{particle:?}");
-        assert!((particle.behind_face[0] - particle.r[0]).abs() < 1e-12, "as deep behind the face: {particle:?}");
+        assert!(
+            (particle.behind_face[0] - particle.r[0]).abs() < 1e-12,
+            "the same depth behind the face: {particle:?}"
+        );
     }
 }
 
 #[test]
-fn what_opens_or_stands_apart_or_reaches_into_the_bed_has_none() {
-    assert!(paddle(0.0, along([0.0, 1.0])).is_empty(), "a gate that is lifted");
+fn paddles_that_lift_pivot_at_the_bed_leave_a_gap_or_reach_into_it_have_no_extension() {
+    assert!(paddle(0.0, along([0.0, 1.0])).is_empty(), "a lifted gate");
     let about = |y: f64| PrescribedMotion::hinge(Vector::from([0.0, y]), &[1.0], TimeFunction::constant(0.0));
-    assert!(paddle(0.0, about(0.0)).is_empty(), "a flap hinged at the bed turns there");
-    assert!(!paddle(0.0, about(-1.0)).is_empty(), "one hinged far below slides");
+    assert!(paddle(0.0, about(0.0)).is_empty(), "a flap hinged at the bed does not slide");
+    assert!(!paddle(0.0, about(-1.0)).is_empty(), "a flap hinged far below slides");
     let both = |other: PrescribedMotion<2>| PrescribedMotion::chain([along([1.0, 0.0]), other]);
-    assert!(!paddle(0.0, both(about(-1.0))).is_empty(), "one that slides in both its motions");
-    assert!(paddle(0.0, both(along([0.0, 1.0]))).is_empty(), "a piston that is lifted, too");
+    assert!(!paddle(0.0, both(about(-1.0))).is_empty(), "both motions slide");
+    assert!(paddle(0.0, both(along([0.0, 1.0]))).is_empty(), "the second motion lifts the piston");
     assert!(paddle(0.3, along([1.0, 0.0])).is_empty(), "a gap of 3 dp");
-    assert!(paddle(-0.4, along([1.0, 0.0])).is_empty(), "rows of its own");
+    assert!(paddle(-0.4, along([1.0, 0.0])).is_empty(), "the paddle itself reaches into the bed");
 }

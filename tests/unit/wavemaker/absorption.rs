@@ -1,4 +1,4 @@
-//! Absorbing paddles against linear theory.
+//! Absorbing paddles compared with linear theory.
 
 use std::f64::consts::TAU;
 
@@ -7,8 +7,8 @@ use super::{
     *,
 };
 
-/// A paddle in 0.4 m of water that makes nothing and absorbs waves of `period` (s), its gauge 0.04 m before it or more.
-fn taker(paddle: Paddle, period: f64) -> Absorber {
+/// A paddle in 0.4 m of water without a wave of its own that absorbs waves of `period` (s), with its gauge at least 0.04 m before it.
+fn absorber(paddle: Paddle, period: f64) -> Absorber {
     let maker = maker(0.4, paddle);
     let tuning =
         AbsorptionSettings { period: None, gauge_distance: 0.04, water_level: 0.4, max_stroke: None, max_speed: None };
@@ -16,34 +16,34 @@ fn taker(paddle: Paddle, period: f64) -> Absorber {
 }
 
 #[test]
-fn an_absorbing_paddle_sends_nothing_back_of_its_period_and_little_of_those_beside() {
+fn an_absorbing_paddle_reflects_nothing_at_its_period_and_little_near_it() {
     let flap = |arm: f64| Paddle::Flap { arm };
     for paddle in [Paddle::Piston, flap(0.6), flap(0.4), flap(0.3)] {
         for period in [0.9, 1.2, 2.0, 4.0] {
-            let taker = taker(paddle, period);
-            let back = |share: f64| taker.reflection_coefficient(share * period);
+            let absorber = absorber(paddle, period);
+            let back = |share: f64| absorber.reflection_coefficient(share * period);
             assert!(back(1.0) < 1e-9, "{paddle:?} {period}: {}", back(1.0));
-            // A fixed wall sends back all; dispersion, the standing waves and the way to the gauge are in what is left.
+            // A fixed wall reflects all. Dispersion, evanescent waves and the distance to the gauge cause the remainder.
             assert!(back(1.5) < 0.15 && back(0.67) < 0.35, "{paddle:?} {period}: {} {}", back(1.5), back(0.67));
-            // Long waves are left to what brings it home, and are never made larger.
+            // The return to the rest position limits the absorption of long waves, but never amplifies them.
             assert!((1..40).all(|i| back(f64::from(i)) <= 1.0), "{paddle:?} {period}");
         }
     }
-    // In shallow water x′ = −√(g/d) e, whatever the period.
-    let gain = taker(Paddle::Piston, 8.0).gain;
+    // In shallow water x′ = −√(g/d) e for every period.
+    let gain = absorber(Paddle::Piston, 8.0).gain;
     assert!((gain / (G / 0.4_f64).sqrt() - 1.0).abs() < 0.01, "{gain}");
 }
 
 #[test]
-fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
+fn an_absorbing_paddle_follows_its_law_within_its_limits_and_returns_to_rest() {
     let (period, amplitude, step) = (1.2, 0.01, 1e-3);
-    let (taker, silent) = (taker(Paddle::Piston, period), maker(0.4, Paddle::Piston).at_rest(period).unwrap());
+    let (absorber, silent) = (absorber(Paddle::Piston, period), maker(0.4, Paddle::Piston).at_rest(period).unwrap());
     let run = |amplitude: f64, until: f64| {
         let level = |t: f64| if t < 60.0 { 0.4 + amplitude * (TAU * t / period).sin() } else { 0.4 };
         let (mut now, mut most) = (AbsorptionState::default(), (0.0_f64, 0.0_f64));
         for i in 0..(until / step) as usize {
             let t = i as f64 * step;
-            now = taker.update(&silent, &now, t, Some(level(t)));
+            now = absorber.update(&silent, &now, t, Some(level(t)));
             if t > 50.0 {
                 most = (most.0.max(now.offset_and_rate(t).0.abs()), most.1.max(now.offset_and_rate(t).1.abs()));
             }
@@ -52,21 +52,21 @@ fn a_paddle_yields_as_its_law_says_within_its_stroke_and_comes_home() {
     };
     // T x″ + x′ + x/τ = −F e.
     let omega = TAU / period;
-    let size = taker.gain * amplitude / (omega * omega * taker.lag - 1.0 / taker.home).hypot(omega);
+    let size = absorber.gain * amplitude / (omega * omega * absorber.lag - 1.0 / absorber.home).hypot(omega);
     let ((far, _), _) = run(amplitude, 60.0);
-    assert!((far / size - 1.0).abs() < 0.01, "{far} against {size}: the step is a hundredth of T");
-    // Thirty times as much is more than it may: it stays within its stroke and its speed, and e^−4 of that is left at the end.
-    let ((far, fast), left) = run(30.0 * amplitude, 60.0 + 4.0 * taker.home);
-    let (stroke, speed) = taker.motion_limits();
+    assert!((far / size - 1.0).abs() < 0.01, "{far} against {size}; the step is a hundredth of the lag T");
+    // Thirty times the amplitude exceeds the limits: stroke and speed stay within them, and e^−4 of the stroke is left at the end.
+    let ((far, fast), left) = run(30.0 * amplitude, 60.0 + 4.0 * absorber.home);
+    let (stroke, speed) = absorber.motion_limits();
     assert!(far <= 0.5 * stroke * 1.001 && fast <= speed * 1.001, "{far} {fast} of {stroke} {speed}");
     assert!(left.abs() < 0.02 * 0.5 * stroke, "{left}");
-    // Nothing to see: no water, no haste.
-    let dry = taker.update(&silent, &AbsorptionState::default(), 1.0, None);
+    // Without water at the gauge the paddle does not move.
+    let dry = absorber.update(&silent, &AbsorptionState::default(), 1.0, None);
     assert_eq!(dry.offset_and_rate(2.0), (0.0, 0.0));
 }
 
 #[test]
-fn a_paddle_alone_with_its_own_wave_does_not_yield() {
+fn an_absorbing_paddle_does_not_react_to_its_own_wave() {
     for (name, wave) in all() {
         let maker = maker(0.4, wave.paddle());
         let tuning = AbsorptionSettings {
@@ -85,7 +85,7 @@ fn a_paddle_alone_with_its_own_wave_does_not_yield() {
             assert!(now.offset_and_rate(t).0.abs() < 1e-12, "{name} at {t}");
         }
     }
-    // What it expects is the wave itself, away from the standing ones: η of linear theory, at x = 3 d.
+    // Far from the evanescent waves the expected elevation is that of the wave: η of linear theory, at x = 3 d.
     let wave = maker(0.4, Paddle::Piston).regular(0.02, 1.2, 0.4, 1).unwrap();
     let tuning =
         AbsorptionSettings { period: None, gauge_distance: 0.04, water_level: 0.4, max_stroke: None, max_speed: None };

@@ -1,4 +1,4 @@
-//! Waves by name against the limits that books give.
+//! Wavemaker theory compared with textbook limits.
 
 use std::f64::consts::{PI, TAU};
 
@@ -30,7 +30,7 @@ pub(super) fn all() -> Vec<(&'static str, PaddleMotion)> {
 }
 
 #[test]
-fn the_dispersion_relation_holds_to_the_last_digits() {
+fn the_dispersion_relation_holds_to_round_off() {
     for depth in [0.05, 0.4, 3.0, 100.0] {
         for period in [0.3, 1.0, 4.0, 30.0, 300.0] {
             let train = LinearWave::new(TAU / period, depth, G);
@@ -38,7 +38,7 @@ fn the_dispersion_relation_holds_to_the_last_digits() {
             assert!((omega2 / train.omega.powi(2) - 1.0).abs() < 1e-12, "d = {depth}, T = {period}");
         }
     }
-    // Long waves go at √(gd) as one, deep ones at g/ω, their energy at half of it.
+    // Phase and group velocity are √(gd) in shallow water, and g/ω and half of it in deep water.
     let (long, deep) = (LinearWave::new(1e-3, 1.0, G), LinearWave::new(10.0, 10.0, G));
     assert!(
         (long.celerity() / G.sqrt() - 1.0).abs() < 1e-6 && (long.group_velocity() / long.celerity() - 1.0).abs() < 1e-6
@@ -50,7 +50,7 @@ fn the_dispersion_relation_holds_to_the_last_digits() {
 }
 
 #[test]
-fn the_standing_waves_at_the_paddle_are_those_of_its_frequency() {
+fn evanescent_wave_numbers_satisfy_the_dispersion_relation_of_the_paddle() {
     for (j, kappa) in train::evanescent_wave_numbers(5.0, 0.4, G, 100).into_iter().enumerate() {
         let kd = 0.4 * kappa;
         assert!((25.0 + G * kappa * kd.tan()).abs() < 1e-9 * G * kappa * (1.0 + kd.tan().powi(2)), "{j}");
@@ -59,7 +59,7 @@ fn the_standing_waves_at_the_paddle_are_those_of_its_frequency() {
 }
 
 #[test]
-fn transfer_functions_have_the_limits_of_the_books() {
+fn transfer_functions_have_the_textbook_limits() {
     let train = |kd: f64| LinearWave { depth: 1.0, g: G, omega: (G * kd * kd.tanh()).sqrt(), k: kd };
     let (piston, flap) = (Paddle::Piston, Paddle::Flap { arm: 1.0 });
     // H/S = kd and kd/2; the next term is of (kd)², relative.
@@ -71,11 +71,11 @@ fn transfer_functions_have_the_limits_of_the_books() {
             && (flap.transfer_function(&train(20.0)) - 1.9).abs() < 1e-9
     );
     for kd in [0.3_f64, 1.0, 3.0] {
-        let told = 2.0 * ((2.0 * kd).cosh() - 1.0) / ((2.0 * kd).sinh() + 2.0 * kd);
-        assert!((piston.transfer_function(&train(kd)) / told - 1.0).abs() < 1e-12);
-        let told = 4.0 * (kd.sinh() / kd) * (kd * kd.sinh() - kd.cosh() + 1.0) / ((2.0 * kd).sinh() + 2.0 * kd);
-        assert!((flap.transfer_function(&train(kd)) / told - 1.0).abs() < 1e-12);
-        // A flap hinged far below is a piston; the higher the hinge, the less it moves.
+        let exact = 2.0 * ((2.0 * kd).cosh() - 1.0) / ((2.0 * kd).sinh() + 2.0 * kd);
+        assert!((piston.transfer_function(&train(kd)) / exact - 1.0).abs() < 1e-12);
+        let exact = 4.0 * (kd.sinh() / kd) * (kd * kd.sinh() - kd.cosh() + 1.0) / ((2.0 * kd).sinh() + 2.0 * kd);
+        assert!((flap.transfer_function(&train(kd)) / exact - 1.0).abs() < 1e-12);
+        // A flap with a very deep hinge equals a piston. A higher hinge moves less water.
         assert!(
             (Paddle::Flap { arm: 1e6 }.transfer_function(&train(kd)) / piston.transfer_function(&train(kd)) - 1.0)
                 .abs()
@@ -84,14 +84,14 @@ fn transfer_functions_have_the_limits_of_the_books() {
         let all = [2.0, 1.0, 0.5, 0.2].map(|arm| Paddle::Flap { arm }.transfer_function(&train(kd)));
         assert!(all.is_sorted_by(|a, b| a > b), "{all:?}");
     }
-    // Past the largest numbers nothing breaks off.
+    // The function is continuous beyond the range of the hyperbolic functions.
     let edge = [299.0, 301.0].map(|kd| flap.transfer_function(&train(kd)));
     assert!((edge[0] / edge[1] - 1.0).abs() < 1e-4, "{edge:?}");
 }
 
 #[test]
-fn the_second_order_of_a_piston_is_madsens_in_shallow_water() {
-    // Madsen leaves out the standing waves at the paddle, which are of (kd)², relative.
+fn the_second_order_of_a_piston_agrees_with_madsen_in_shallow_water() {
+    // Madsen omits the evanescent waves at the paddle, a relative (kd)².
     for (kd, close) in [(0.2, 0.003), (0.3, 0.006), (0.5, 0.05)] {
         let k = kd / 0.4;
         let train = LinearWave { depth: 0.4, g: G, omega: (G * k * f64::tanh(kd)).sqrt(), k };
@@ -100,9 +100,9 @@ fn the_second_order_of_a_piston_is_madsens_in_shallow_water() {
         let madsen = height * height / (32.0 * 0.4) * (3.0 * f64::cosh(kd) / f64::sinh(kd).powi(3) - 2.0 / c);
         let ours = second_order::correction(&Paddle::Piston, &train, a);
         assert!((ours.norm() / madsen - 1.0).abs() < close, "kd = {kd}: {} against {madsen}", ours.norm());
-        // sin 2ωt for a sin ωt; ours for a cosine, a quarter of its period earlier.
+        // Madsen has sin 2ωt for a sin ωt; this code has a cosine, a quarter of a period earlier.
         assert!((ours.arg() - 0.5 * PI).abs() < 0.01, "{}", ours.arg());
-        // It grows with the square, and a flap hinged far below is a piston.
+        // The correction is quadratic, and a flap with a very deep hinge equals a piston.
         let double = second_order::correction(&Paddle::Piston, &train, 2.0 * a);
         let far = second_order::correction(&Paddle::Flap { arm: 1e6 }, &train, a);
         assert!((double / ours - 4.0).norm() < 1e-9 && (far / ours - 1.0).norm() < 1e-4);
@@ -110,18 +110,18 @@ fn the_second_order_of_a_piston_is_madsens_in_shallow_water() {
 }
 
 #[test]
-fn a_paddle_starts_at_rest_at_its_place() {
+fn a_paddle_starts_at_rest_at_its_initial_position() {
     for (name, wave) in all() {
         assert_eq!(wave.coordinate_and_rate(0.0), (0.0, 0.0), "{name}");
-        // The rate comes in with the square of the time at least: in the first hundredth of the ramp a paddle has less
-        // than 3e-3 of its speed.
+        // The rate grows at least with the square of the time: after a hundredth of the ramp it is below 3e-3 of its
+        // maximum.
         let fastest = (0..4000).map(|i| wave.coordinate_and_rate(0.01 * f64::from(i)).1.abs()).fold(0.0, f64::max);
         assert!(wave.coordinate_and_rate(0.01 * wave.ramp_time()).1.abs() < 3e-3 * fastest, "{name}");
     }
 }
 
 #[test]
-fn the_rate_of_a_paddle_is_the_derivative_of_its_place() {
+fn the_rate_of_a_paddle_is_the_derivative_of_its_coordinate() {
     for (name, wave) in all() {
         let fastest = (0..4000).map(|i| wave.coordinate_and_rate(0.01 * f64::from(i)).1.abs()).fold(0.0, f64::max);
         for t in [0.05, 0.3, 0.7, 1.9, 3.3, 9.8, 19.0, 20.7] {
@@ -135,7 +135,7 @@ fn the_rate_of_a_paddle_is_the_derivative_of_its_place() {
 }
 
 #[test]
-fn a_sea_has_the_height_and_the_peak_that_were_asked_for() {
+fn an_irregular_sea_has_the_requested_height_and_peak_period() {
     for spectrum in [WaveSpectrum::jonswap(1.4, 3.3), WaveSpectrum::bretschneider(1.4)] {
         let wave = maker(5.0, Paddle::Piston).irregular(0.1, &spectrum, 3, 1000).unwrap();
         let Course::Tones(tones) = &wave.course else { panic!("a sea is a sum") };
@@ -144,12 +144,12 @@ fn a_sea_has_the_height_and_the_peak_that_were_asked_for() {
         };
         let m0: f64 = tones.iter().map(|tone| 0.5 * surface(tone).powi(2)).sum();
         assert!((4.0 * m0.sqrt() / 0.1 - 1.0).abs() < 1e-12);
-        // Components of equal energy stand closest at the peak: by twenties, to the width of twenty of them.
+        // Components of equal energy are densest at the peak, to the width of twenty of them.
         let spans: Vec<(f64, f64)> =
             tones.windows(21).map(|w| (w[20].omega - w[0].omega, 0.5 * (w[20].omega + w[0].omega))).collect();
         let closest = spans.iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
         assert!((closest.1 * 1.4 / TAU - 1.0).abs() < 0.02, "{}", closest.1);
-        // The measured spectrum: a share of the energy below f is that of the integral.
+        // The energy below f agrees with the integral of the spectrum.
         let below = |x: f64| tones.iter().filter(|tone| tone.omega < x * TAU / 1.4).count() as f64 / 1000.0;
         let sum = |to: f64| {
             (0..10_000)
@@ -166,7 +166,7 @@ fn a_sea_has_the_height_and_the_peak_that_were_asked_for() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bits_and_another_one_another_sea() {
+fn a_seed_determines_the_bits_of_a_sea() {
     let sea =
         |seed: u64| maker(0.4, Paddle::Piston).irregular(0.05, &WaveSpectrum::jonswap(1.4, 3.3), seed, 100).unwrap();
     let course = |wave: PaddleMotion| {
@@ -177,66 +177,66 @@ fn the_same_seed_gives_the_same_bits_and_another_one_another_sea() {
 }
 
 #[test]
-fn a_focused_group_has_all_crests_at_its_place_and_time() {
+fn a_focused_group_has_its_crest_at_the_focus() {
     let wave =
         maker(0.4, Paddle::Flap { arm: 0.5 }).focused(0.05, &WaveSpectrum::jonswap(1.4, 3.3), 4.0, 12.0, 80).unwrap();
     let at = |x: f64, t: f64| wave.elevation(x, t).unwrap();
     assert!((at(4.0, 12.0) - 0.05).abs() < 1e-12);
-    // Nowhere and never as high within some lengths and periods.
+    // The elevation is lower at all other positions and times within some wavelengths and periods.
     for (x, t) in [(3.5, 12.0), (4.5, 12.0), (4.0, 11.5), (4.0, 12.5), (2.0, 11.0), (6.0, 13.5)] {
         assert!(at(x, t).abs() < 0.045, "{x} {t}");
     }
 }
 
 #[test]
-fn the_piston_of_a_solitary_wave_goes_as_far_as_the_water_beneath_it() {
+fn the_stroke_of_a_solitary_wave_displaces_the_volume_of_the_wave() {
     let (h, d) = (0.1, 0.4);
     let wave = maker(d, Paddle::Piston).solitary(h, SolitaryTheory::Boussinesq).unwrap();
     let own = wave.properties().solitary.unwrap();
-    // S = √(16 H d/3), Goring; the tails left out are e^−10 of it.
+    // S = √(16 H d/3), Goring; the omitted tails are e^−10 of it.
     assert!((own.stroke() / (16.0 * h * d / 3.0_f64).sqrt() - 1.0).abs() < 1e-12);
     assert!((wave.coordinate_and_rate(30.0).0 / own.stroke() - 1.0).abs() < 1e-4);
-    // The water over the piston's way is that of the wave: ∫η dx = 2H/κ = S d.
+    // The displaced volume is that of the wave: ∫η dx = 2H/κ = S d.
     assert!((2.0 * h / own.kappa / d / own.stroke() - 1.0).abs() < 1e-12);
-    // At its fastest the face has the speed of the water under the crest, cH/(d + H).
+    // The largest speed is that of the water under the crest, cH/(d + H).
     let fastest = (0..100_000).map(|i| wave.coordinate_and_rate(1e-4 * f64::from(i)).1).fold(0.0, f64::max);
     assert!((fastest / (own.celerity * h / (d + h)) - 1.0).abs() < 1e-6, "{fastest}");
 }
 
 #[test]
-fn a_record_gives_back_what_was_measured() {
+fn a_wave_from_a_record_reproduces_the_recorded_elevation() {
     let maker = maker(0.4, Paddle::Piston);
     let eta = |t: f64| 0.02 * (TAU * t / 1.25 + 0.3).sin() + 0.01 * (TAU * t / 0.8).cos();
     let times: Vec<f64> = (0..=1000).map(|i| 2.0 + 0.02 * f64::from(i)).collect();
     let values: Vec<f64> = times.iter().map(|t| eta(*t)).collect();
     let wave = maker.measured(&TimeSeries::new(times, values).unwrap(), 1.5, 3.0).unwrap();
     for t in [4.0, 7.3, 11.1, 19.0] {
-        let shown = wave.elevation(1.5, t + 3.0).unwrap();
-        // Whole periods of both fit into the record: the rest is round-off and the half per cent at either end.
-        assert!((shown - eta(t)).abs() < 1e-4, "{t}: {shown} against {}", eta(t));
+        let reproduced = wave.elevation(1.5, t + 3.0).unwrap();
+        // The record contains whole periods of both components: the error is round-off and the half per cent at either end.
+        assert!((reproduced - eta(t)).abs() < 1e-4, "{t}: {reproduced} against {}", eta(t));
     }
-    assert_eq!(wave.coordinate_and_rate(25.1), (0.0, 0.0), "the record ended at 22 s, 3 s later here");
+    assert_eq!(wave.coordinate_and_rate(25.1), (0.0, 0.0), "the record ends at 22 s and has a delay of 3 s");
 }
 
 #[test]
-fn waves_that_cannot_be_are_refused_with_the_height_that_can() {
+fn breaking_and_invalid_waves_are_refused_with_the_possible_height() {
     let piston = maker(0.4, Paddle::Piston);
-    let said = |wave: Result<PaddleMotion>| wave.unwrap_err().to_string();
-    // 0.142 L tanh kd is less than 0.78 d here.
+    let message = |wave: Result<PaddleMotion>| wave.unwrap_err().to_string();
+    // 0.142 L tanh kd is below 0.78 d here.
     let most = LinearWave::new(TAU / 1.2, 0.4, G).breaking_height();
-    let told = said(piston.regular(0.4, 1.2, 0.0, 1));
-    assert!(told.contains("breaks") && told.contains(&format!("{most:.3} m")), "{told}");
-    assert!(said(piston.solitary(0.35, SolitaryTheory::Rayleigh)).contains("0.312 m"));
-    assert!(said(maker(0.4, Paddle::Flap { arm: 0.4 }).solitary(0.1, SolitaryTheory::Rayleigh)).contains("piston"));
-    assert!(said(piston.regular(0.05, 1.2, 0.0, 3)).contains("order"));
-    assert!(said(piston.regular(0.05, -1.0, 0.0, 1)).contains("period"));
-    assert!(said(piston.irregular(0.05, &WaveSpectrum::jonswap(1.4, 3.3), 1, 0)).contains("components"));
+    let breaking = message(piston.regular(0.4, 1.2, 0.0, 1));
+    assert!(breaking.contains("breaks") && breaking.contains(&format!("{most:.3} m")), "{breaking}");
+    assert!(message(piston.solitary(0.35, SolitaryTheory::Rayleigh)).contains("0.312 m"));
+    assert!(message(maker(0.4, Paddle::Flap { arm: 0.4 }).solitary(0.1, SolitaryTheory::Rayleigh)).contains("piston"));
+    assert!(message(piston.regular(0.05, 1.2, 0.0, 3)).contains("order"));
+    assert!(message(piston.regular(0.05, -1.0, 0.0, 1)).contains("period"));
+    assert!(message(piston.irregular(0.05, &WaveSpectrum::jonswap(1.4, 3.3), 1, 0)).contains("components"));
 }
 
 #[test]
-fn regions_of_the_chart_follow_height_and_depth() {
+fn theory_regions_follow_height_and_depth() {
     let region = |d: f64, t: f64, h: f64| LinearWave::new(TAU / t, d, G).theory_region(h);
-    // Deep: H/gT² = 0.001 parts Airy from Stokes, a quarter of breaking the second order from the higher.
+    // In deep water H/gT² = 0.001 separates Airy from Stokes, and a quarter of breaking separates second from higher order.
     assert_eq!(region(10.0, 1.0, 0.009), TheoryRegion::Airy);
     assert_eq!(region(10.0, 1.0, 0.02), TheoryRegion::Stokes2);
     assert_eq!(region(10.0, 1.0, 0.1), TheoryRegion::Stokes5);

@@ -3,7 +3,8 @@
 use super::*;
 use crate::solid::FreeBody;
 
-/// What is said of a free box of this length and height (m) with its centre here (m), in a tank a metre long or such a basin.
+/// The error message for a free box of this length and height (m) with its centre at height `at` (m), in a tank or a polyline basin
+/// one metre long.
 fn refusal(length: f64, height: f64, at: f64, basin: bool) -> String {
     let mut size = Vector::repeat(0.2);
     (size[0], size[D - 1]) = (length, height);
@@ -41,10 +42,10 @@ fn refusal(length: f64, height: f64, at: f64, basin: bool) -> String {
 }
 
 #[test]
-fn a_body_without_room_is_named_with_what_there_is() {
+fn a_body_larger_than_its_tank_is_refused_with_both_sizes() {
     for basin in [false, true] {
         if basin && D == 3 {
-            continue; // a polyline is flat
+            continue; // a polyline is 2-D
         }
         assert_eq!(refusal(0.9, 0.3, 0.5, basin), "");
         let long = refusal(1.05, 0.3, 0.5, basin);

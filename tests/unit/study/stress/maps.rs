@@ -21,37 +21,37 @@ const TINY: &str = r#"
     '''"#;
 
 #[test]
-fn the_holes_of_a_scene_are_filled_with_formulae_words_and_parts() -> Result<()> {
+fn placeholders_of_a_map_are_replaced_by_formulas_names_and_parts() -> Result<()> {
     let map = read(TINY, "tiny")?.remove(0);
     let cases = map.cases(false)?;
     assert_eq!((cases.len(), map.count(), map.cases(true)?.len()), (6, 6, 4));
     let text = cases[5].scene.to_toml()?;
     assert!(text.contains("cubic") && text.contains("0.6"), "{text}");
     assert_eq!(cases[5].values, ["30", "cubic"]);
-    assert!((0..6).all(|i| cases[..i].iter().all(|case| case.key != cases[i].key)), "each has its own key");
+    assert!((0..6).all(|i| cases[..i].iter().all(|case| case.key != cases[i].key)), "keys are unique");
     Ok(())
 }
 
 #[test]
-fn a_hole_that_cannot_be_filled_is_told_with_its_map() -> Result<()> {
-    for (from, to, said) in
+fn an_invalid_placeholder_is_refused_with_the_name_of_its_map() -> Result<()> {
+    for (from, to, part) in
         [("${y}", "${1/0}", "is inf"), ("${y}", "${ypsilon}", "not known"), ("${tank}", "${tank", "not closed")]
     {
         let map = read(&TINY.replace(from, to), "tiny")?.remove(0);
         let error = map.cases(false).err().map(|e| e.to_string()).unwrap_or_default();
-        assert!(error.contains(said) && error.contains("tiny"), "{error}");
+        assert!(error.contains(part) && error.contains("tiny"), "{error}");
     }
     Ok(())
 }
 
 #[test]
-fn every_case_of_the_program_can_be_built_or_is_refused_in_words() -> Result<()> {
+fn every_stress_case_of_the_program_is_built_or_refused_with_a_remedy() -> Result<()> {
     let all = maps(None)?;
     let cases = all.iter().map(|map| map.cases(false)).collect::<Result<Vec<_>>>()?.concat();
-    assert!(cases.len() >= 200, "{} cases: the matrix is to have 200", cases.len());
+    assert!(cases.len() >= 200, "{} cases, at least 200", cases.len());
     for case in &cases {
         assert!(case.criteria.energy.is_some() && case.criteria.walls.is_some(), "{}", case.map);
-        // A refusal is an outcome too, as long as it says what to write.
+        // A refusal is a valid outcome if it has a remedy.
         if let Err(error) = case.scene.plan() {
             assert!(error.kind == ErrorKind::Scene && error.help.is_some(), "{}: {error}", case.map);
         }
@@ -63,7 +63,7 @@ fn every_case_of_the_program_can_be_built_or_is_refused_in_words() -> Result<()>
 }
 
 #[test]
-fn a_map_that_is_not_there_names_the_nearest() -> Result<()> {
+fn an_unknown_map_is_refused_with_the_nearest_name() -> Result<()> {
     let error = select_maps(maps(None)?, &["flaot".to_string()], false).err();
     assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"float\"?")));
     Ok(())

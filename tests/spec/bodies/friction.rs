@@ -1,0 +1,91 @@
+//! Coulomb friction of a block on a slope, far from the water: sticking, sliding, and the acceleration.
+
+use pontoon::{
+    Result,
+    geometry::Shape,
+    math::{Pose, Vector},
+    model::Model,
+    solid::Role,
+};
+
+use crate::common;
+
+const G: f64 = 9.81;
+
+/// Mean acceleration (m/s²) over half a second of a block on a plane of `slope` (rad) with this coefficient of friction.
+fn acceleration(slope: f64, friction: f64) -> Result<f64> {
+    let (sin, cos) = slope.sin_cos();
+    let fall = sin / cos;
+    // The block is 0.1 m high and lies 0.3 m beside the upper end of the plane.
+    let (x, y) = (0.3 + 0.05 * sin, 1.7 * fall + 0.05 * cos);
+    let text = format!(
+        "dimension = 2\ndp = 0.02\nuntil = 0.5\nwater = [{{ fill = {{ box = {{ min = [-1.0, 0.0], max = [-0.6, 0.1] }} }} }}]\n\
+         [[solid]]\nname = \"pool\"\nfixed = true\nshape = {{ tank = {{ size = [0.4, 0.2] }} }}\nat = {{ x = -1.0 }}\n\
+         [[solid]]\nname = \"slope\"\nfixed = true\nfriction = {friction}\nshape = {{ polygon = [[0, 0], [2, 0], [0, {}]] }}\n\
+         [[solid]]\nname = \"block\"\nfriction = {friction}\nshape = {{ box = {{ size = [0.2, 0.1] }} }}\nfree = {{ density = 800 }}\n\
+         at = {{ x = {x}, y = {y}, angle_deg = {} }}",
+        2.0 * fall,
+        -slope.to_degrees(),
+    );
+    let mut sim = common::scene_simulation::<2>(&text)?;
+    while sim.time() < 0.5 {
+        sim.step_to(0.5)?;
+    }
+    Ok(sim.system().solids()[2].kinematics.velocity.norm() / 0.5)
+}
+
+#[test]
+fn a_block_on_a_slope_sticks_below_the_friction_angle_and_slides_above_it_with_coulomb_friction() -> Result<()> {
+    for slope in [10.0_f64, 20.0, 35.0] {
+        let slope = slope.to_radians();
+        // Friction 1 % above the limit of sticking, 1 % below it, half of it, and none.
+        for share in [1.01_f64, 0.99, 0.5, 0.0] {
+            let exact = G * slope.sin() * (1.0 - share).max(0.0);
+            let found = acceleration(slope, share * slope.tan())?;
+            // A thousandth of g sin φ, a tenth of the difference between sticking and sliding here. Measured: 3e-5 near the limit, where
+            // the contact needs time to form; otherwise round-off.
+            let off = (found - exact).abs() / (G * slope.sin());
+            assert!(off < 1e-3, "{} degrees, {share} of tan: {found} m/s², exact {exact}", slope.to_degrees());
+        }
+    }
+    Ok(())
+}
+
+/// Mean accelerations (m/s²) over half a second, down and across a slab of `slope` (rad), of a block of 0.3 × 0.2 × 0.1 m. The block is
+/// turned by `yaw` (rad), and its friction is `share` of the limit of sticking.
+fn acceleration_in_3d(slope: f64, yaw: f64, share: f64) -> Result<[f64; 2]> {
+    let slab = Pose::<3>::rotated(Vector::zeros(), &[0.0, slope, 0.0]);
+    let on = |x: [f64; 3], yaw: f64| slab.then(&Pose::rotated(Vector::from(x), &[0.0, 0.0, yaw]));
+    let (dp, depth) = (0.05, 0.2);
+    let mut pool = common::tank([0.2, 0.2, 0.3], dp);
+    pool.pose = Pose::at(Vector::from([-3.0, 0.0, 0.0]));
+    let under = Shape::Box { size: Vector::from([1.0, 0.5, 0.1]) };
+    let mut block = common::float(Shape::Box { size: Vector::from([0.3, 0.2, 0.1]) }, [0.0; 3], 800.0);
+    block.pose = on([-0.2, 0.0, 0.05], yaw);
+    let mut solids = vec![pool, common::solid("slab", under, on([0.0, 0.0, -0.05], 0.0), Role::Fixed), block];
+    solids.iter_mut().for_each(|solid| solid.friction = share * slope.tan());
+    let water = common::lattice([-3.0, 0.0, 0.0], [0.2, 0.2, depth], dp);
+    let model = Model { dt_max: 1e-3, ..Model::water(3, dp, depth) };
+    let mut sim = common::simulation(model, water, depth, solids);
+    while sim.time() < 0.5 {
+        sim.step_to(0.5)?;
+    }
+    let gained = sim.system().solids()[2].kinematics.velocity / 0.5;
+    Ok([0, 1].map(|axis| slab.rotation.column(axis).dot(&gained)))
+}
+
+#[test]
+fn a_block_in_three_dimensions_sticks_and_slides_with_coulomb_friction_at_any_yaw() -> Result<()> {
+    let slope = 20_f64.to_radians();
+    for yaw in [0.0, 30.0, 45.0] {
+        for share in [1.01_f64, 0.99, 0.5] {
+            let exact = G * slope.sin() * (1.0 - share).max(0.0);
+            let [down, across] = acceleration_in_3d(slope, f64::to_radians(yaw), share)?;
+            // The bound is that of two dimensions. rapier by itself with the same settings has errors of up to 7e-2 down and 8e-2 across
+            // the slope. With the corrected direction 3e-4 remains, from the first steps and in proportion to Δt.
+            let off = (down - exact).hypot(across) / (G * slope.sin());
+            assert!(off < 1e-3, "turned by {yaw} degrees, {share} of tan: {down}, {across} m/s², exact {exact}");
+        }
+    }
+    Ok(())
+}

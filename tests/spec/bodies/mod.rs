@@ -1,0 +1,19 @@
+//! Bodies in water: equilibrium, motion, loads, contact, and solids that a host program owns.
+
+mod accelerated_frames;
+mod acoustic_added_mass;
+mod buoyancy;
+mod concave_solids;
+mod contact_groups;
+mod contact_skin;
+mod contact_table;
+mod coupling;
+mod energy_budget;
+mod equilibrium;
+mod external_bodies;
+mod friction;
+mod load_breakdown;
+mod many_bodies;
+mod meshes;
+mod natural_periods;
+mod trim;

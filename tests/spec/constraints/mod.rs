@@ -1,0 +1,5 @@
+//! Joints, ropes, forces and prescribed motions.
+
+mod hinge_loads;
+mod joints;
+mod prescribed_motions;

@@ -1,0 +1,356 @@
+//! Checks against references: metrics computed by hand, and verdicts.
+
+use std::{fs, path::Path};
+
+use pontoon::{
+    analysis::{
+        Align, CheckPlan, Reference, ReferenceCheck, Score, Verdict, amplitude_ratio, first_peak_error,
+        format_verdicts, max_abs, relative_l2,
+    },
+    error::{ErrorKind, Result},
+    math::time_series::TimeSeries,
+    run::{self, Progress, RunOptions},
+    scene::Scene,
+};
+
+use crate::common::TestFolder;
+
+/// A folder with a table of a run and a reference.
+fn folder(name: &str, sim: &str, reference: &str) -> std::io::Result<TestFolder> {
+    let folder = TestFolder::new(&format!("checks-{name}"));
+    fs::write(folder.join("box.csv"), sim)?;
+    fs::write(folder.join("reference.csv"), reference)?;
+    Ok(folder)
+}
+
+/// An upper bound of N.
+fn bound(n: f64) -> Option<Score> {
+    Some(Score { relative_l2: Some(n), ..Score::default() })
+}
+
+/// A check of `series` against `column` over `time` of `reference.csv`.
+fn by_table(series: &str, [time, column]: [&str; 2], delay: f64, bound: Option<Score>) -> CheckPlan {
+    let (time, column) = (time.to_string(), column.to_string());
+    let plan = by_formula(series, "", bound);
+    CheckPlan { reference: Reference::Table { file: "reference.csv".into(), time, column, delay }, ..plan }
+}
+
+/// A check of `series` against a formula.
+fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckPlan {
+    CheckPlan {
+        series: series.into(),
+        reference: Reference::Formula(formula.into()),
+        from: None,
+        until: None,
+        zero: None,
+        mean: None,
+        align: None,
+        paper: None,
+        bound,
+    }
+}
+
+fn judge(plan: &CheckPlan, folder: &Path) -> Verdict {
+    ReferenceCheck::new(plan, folder).unwrap_or_else(|e| panic!("{e}")).verdict(folder)
+}
+
+/// A table of x(t) at intervals of 0.01 s for 3 s.
+fn table(x: impl Fn(f64) -> f64) -> String {
+    let row = |i: usize| format!("{:?},{:?}\n", 0.01 * i as f64, x(0.01 * i as f64));
+    std::iter::once("t_s,heave_m\n".to_string()).chain((0..=300).map(row)).collect()
+}
+
+const SIM: &str = "t_s,heave_m,gap_m\n0.0,0.0,\n1.0,2.0,5.0\n2.0,4.0,\n3.0,6.0,7.0\n";
+
+#[test]
+fn a_perfect_run_has_n_0_and_m_1_and_one_of_twice_the_amplitude_has_n_1_and_m_2() -> Result<()> {
+    let reference = TimeSeries::new([0.0, 1.0, 2.5], [1.0, -3.0, 0.5])?;
+    let twice = TimeSeries::new([0.0, 1.0, 2.5], [2.0, -6.0, 1.0])?;
+    assert_eq!([relative_l2(&reference, &reference)?, amplitude_ratio(&reference, &reference)?], [0.0, 1.0]);
+    assert_eq!([relative_l2(&twice, &reference)?, amplitude_ratio(&twice, &reference)?], [1.0, 2.0]);
+    assert_eq!(first_peak_error(&twice, &reference)?, 1.0);
+    Ok(())
+}
+
+#[test]
+fn metrics_of_a_reference_outside_the_run_or_of_zero_are_refused() -> Result<()> {
+    let sim = TimeSeries::new([0.0, 1.0], [1.0, 1.0])?;
+    let late = TimeSeries::new([0.5, 1.5], [1.0, 1.0])?;
+    let zero = TimeSeries::new([0.0, 1.0], [0.0, 0.0])?;
+    assert!(relative_l2(&sim, &late).is_err_and(|e| e.message.contains("0.5 to 1.5 s")));
+    assert!(amplitude_ratio(&sim, &zero).is_err() && first_peak_error(&sim, &zero).is_err());
+    assert_eq!(max_abs(&sim, &zero)?, 1.0);
+    Ok(())
+}
+
+#[test]
+fn a_verdict_passes_within_its_bound_and_fails_beyond_it() -> std::io::Result<()> {
+    // The error is 0.5 at each of two instants: N = √(0.5/(1.5² + 3.5²)) = 0.1857…
+    let folder = folder("bound", SIM, "# a comment\nt,z\n1.0,1.5\n2.0,3.5\n")?;
+    let verdict = |limit: f64| judge(&by_table("box.heave_m", ["t", "z"], 0.0, bound(limit)), &folder);
+    let (passing, failing) = (verdict(0.186), verdict(0.185));
+    assert_eq!((passing.passed, failing.passed), (Some(true), Some(false)));
+    let by_hand = (0.5_f64 / 14.5).sqrt();
+    let n = passing.metrics.relative_l2;
+    assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-15), "round-off; got {n:?}");
+    Ok(())
+}
+
+#[test]
+fn several_reference_values_at_an_instant_are_averaged_and_a_delay_shifts_them() -> std::io::Result<()> {
+    let folder = folder("mean", SIM, "t,z\n1.5,4.5\n0.5,2.0\n1.5,3.5\n0.5,2.0\n")?;
+    let verdict = judge(&by_table("box.heave_m", ["t", "z"], 0.5, bound(0.0)), &folder);
+    assert_eq!(
+        (verdict.metrics.relative_l2, verdict.metrics.amplitude_ratio, verdict.passed),
+        (Some(0.0), Some(1.0), Some(true))
+    );
+    Ok(())
+}
+
+#[test]
+fn a_run_shorter_than_its_reference_has_metrics_of_the_common_time_and_no_verdict() -> std::io::Result<()> {
+    let folder = folder("short", SIM, "t,z\n0,1\n1,2\n5,0\n6,0\n7,0\n")?;
+    let verdict = judge(&by_table("box.heave_m", ["t", "z"], 0.0, bound(9.0)), &folder);
+    assert_eq!((verdict.covered, verdict.passed), (0.4, None));
+    assert!(verdict.metrics.relative_l2.is_some() && verdict.note.is_some());
+    let far = judge(&by_table("box.heave_m", ["t", "z"], 100.0, bound(9.0)), &folder);
+    assert_eq!(far.passed, None);
+    assert!(far.note.is_some_and(|note| note.contains("the run at 0 and 3 s")));
+    Ok(())
+}
+
+#[test]
+fn empty_fields_of_a_table_are_gaps_and_invalid_tables_are_refused() -> std::io::Result<()> {
+    let folder = folder("gaps", SIM, "t,z\n1,5\n3,7\n2,\n")?;
+    let reference = folder.join("reference.csv");
+    let plan = |names: [&str; 2]| by_table("box.gap_m", names, 0.0, bound(0.0));
+    assert_eq!(judge(&plan(["t", "z"]), &folder).passed, Some(true));
+    let missing = ReferenceCheck::new(&plan(["t_s", "z"]), &folder).err();
+    assert_eq!(missing.map(|e| e.kind), Some(ErrorKind::Scene));
+    fs::write(&reference, "t,z\n1,5\n2,six\n")?;
+    let word = ReferenceCheck::new(&plan(["t", "z"]), &folder).err();
+    assert_eq!(word.and_then(|e| e.location).and_then(|p| p.line_column), Some((3, 1)));
+    let absent = ReferenceCheck::new(&plan(["t", "z"]), &folder.join("nowhere")).err();
+    assert_eq!(absent.map(|e| e.kind), Some(ErrorKind::File));
+    Ok(())
+}
+
+#[test]
+fn a_formula_reference_is_evaluated_at_the_times_of_the_run_within_the_window() -> std::io::Result<()> {
+    // x = 2 t, and 0.1 more before 1 s.
+    let folder = folder("formula", &table(|t| 2.0 * t + if t < 0.995 { 0.1 } else { 0.0 }), "")?;
+    let limit = |off: f64| Some(Score { off: Some(off), ..Score::default() });
+    let whole = judge(&by_formula("box.heave_m", "2*t", limit(0.05)), &folder);
+    assert!(whole.metrics.off.is_some_and(|off| (off - 0.1).abs() < 1e-12) && whole.passed == Some(false));
+    let late = CheckPlan { from: Some(1.0), ..by_formula("box.heave_m", "2*t", limit(0.05)) };
+    let late = judge(&late, &folder);
+    assert!(late.metrics.relative_l2.is_some_and(|n| n < 1e-12) && late.passed == Some(true) && late.covered == 1.0);
+    let early = CheckPlan { until: Some(0.9), ..by_formula("box.heave_m", "2*t", None) };
+    let n = judge(&early, &folder).metrics.relative_l2;
+    let by_hand = {
+        let t: Vec<f64> = (0..=90).map(|i| 0.01 * i as f64).collect();
+        (0.01 * t.len() as f64 / t.iter().map(|t| 4.0 * t * t).sum::<f64>()).sqrt()
+    };
+    assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-12), "{n:?} against {by_hand}");
+    // The run of 3 s covers a third of this window.
+    let beyond = CheckPlan { from: Some(2.0), until: Some(5.0), ..by_formula("box.heave_m", "2*t", limit(1.0)) };
+    let beyond = judge(&beyond, &folder);
+    assert!((beyond.covered - 1.0 / 3.0).abs() < 1e-12 && beyond.passed.is_none());
+    Ok(())
+}
+
+#[test]
+fn a_zero_reference_has_a_maximum_error_but_no_n() -> std::io::Result<()> {
+    let folder = folder("zero", &table(|t| 0.002 * (9.0 * t).sin()), "")?;
+    let both = Score { relative_l2: Some(0.5), off: Some(0.003), ..Score::default() };
+    let passing = judge(&by_formula("box.heave_m", "0", Some(Score { relative_l2: None, ..both })), &folder);
+    assert!(
+        passing.passed == Some(true)
+            && passing.metrics.relative_l2.is_none()
+            && passing.metrics.off.is_some_and(|x| x > 0.0019)
+    );
+    assert!(passing.note.is_some_and(|note| note.contains("zero throughout")));
+    let failing = judge(&by_formula("box.heave_m", "0", Some(both)), &folder);
+    assert_eq!(failing.passed, Some(false), "a bound on N fails without an N");
+    let infinite = judge(&by_formula("box.heave_m", "1/t", Some(both)), &folder);
+    assert!(infinite.passed == Some(false) && infinite.note.is_some_and(|note| note.contains("at t = 0 s")));
+    let absent = judge(&by_formula("box.surge_m", "0", Some(both)), &folder);
+    assert!(absent.passed == Some(false) && absent.note.is_some_and(|note| note.contains("no column")));
+    Ok(())
+}
+
+#[test]
+fn the_running_mean_keeps_a_line_and_averages_a_spike() -> Result<()> {
+    let t: Vec<f64> = (0..=10).map(|i| 0.1 * i as f64).collect();
+    let line = TimeSeries::new(t.clone(), t.clone())?.running_mean(0.3);
+    // Away from the ends, where the window is shortened.
+    assert!((2..=8).all(|i| (line.values()[i] - t[i]).abs() < 1e-12));
+    assert!((line.values()[0] - 0.075).abs() < 1e-12, "at the end half of the window remains");
+    // A triangle of height 1 and width 0.2 has the area 0.1; its mean over 0.4 s is 0.25.
+    let spike: Vec<f64> = (0..=10).map(|i| f64::from(i == 5)).collect();
+    let spike = TimeSeries::new(t, spike)?.running_mean(0.4);
+    assert!((spike.values()[5] - 0.25).abs() < 1e-12 && spike.values()[1] == 0.0);
+    Ok(())
+}
+
+#[test]
+fn a_running_mean_has_its_own_metrics_in_addition_to_the_raw_ones() -> std::io::Result<()> {
+    // Alternating noise, which a mean over several samples removes.
+    let noisy = |t: f64| t + if (t * 100.0).round() as i64 % 2 == 0 { 0.1 } else { -0.1 };
+    let folder = folder("noise", &table(noisy), "")?;
+    let plan = CheckPlan { mean: Some(0.2), ..by_formula("box.heave_m", "t", bound(0.01)) };
+    let verdict = judge(&plan, &folder);
+    let mean = verdict.meaned.and_then(|m| m.metrics.relative_l2);
+    assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.05) && mean.is_some_and(|n| n < 0.01));
+    assert_eq!(verdict.passed, Some(false), "the bound applies to the raw run");
+    Ok(())
+}
+
+#[test]
+fn a_series_with_a_zero_time_is_relative_to_its_value_at_that_time() -> std::io::Result<()> {
+    // The run has an offset of 0.3, which the reference lacks.
+    let folder = folder("zero", &table(|t| t * t + 0.3), "")?;
+    let raw = by_formula("box.heave_m", "t^2 - 0.25", bound(1e-9));
+    let set = CheckPlan { zero: Some(0.5), ..raw.clone() };
+    assert_eq!([judge(&raw, &folder).passed, judge(&set, &folder).passed], [Some(false), Some(true)]);
+    assert_eq!(judge(&set, &folder).series, "box.heave_m, 0 at 0.5 s");
+    let late = judge(&CheckPlan { zero: Some(1e3), ..set }, &folder);
+    assert!(late.passed.is_none() && late.note.is_some_and(|note| note.contains("before it is set to zero")));
+    Ok(())
+}
+
+#[test]
+fn the_delay_of_a_late_run_is_found_from_its_crossing_and_from_the_best_fit() -> std::io::Result<()> {
+    let pulse = |t: f64| 10.0 * (-((t - 1.0) / 0.15).powi(2)).exp();
+    let folder = folder("late", &table(|t| pulse(t - 0.05)), &table(pulse))?;
+    let plan = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None);
+    for align in [Align::Crossing(5.0), Align::Best] {
+        let limits = Score { aligned_relative_l2: Some(0.01), delay: Some(0.06), ..Score::default() };
+        let plan = CheckPlan { align: Some(align), bound: Some(limits), ..plan.clone() };
+        let verdict = judge(&plan, &folder);
+        // Crossings are interpolated linearly between samples; the curvature of the pulse causes an error of 8e-4 of its height.
+        let aligned = verdict.aligned.unwrap_or_else(|| panic!("{align:?} has no alignment"));
+        assert!((aligned.delay - 0.05).abs() < 2e-4 && aligned.relative_l2 < 0.003, "{align:?}: {aligned:?}");
+        assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.3), "alignment does not change the raw metric");
+        assert_eq!(verdict.passed, Some(true));
+        assert_eq!(verdict.arrival.is_some(), align != Align::Best);
+        let strict = CheckPlan { bound: Some(Score { delay: Some(0.04), ..Score::default() }), ..plan.clone() };
+        assert_eq!(judge(&strict, &folder).passed, Some(false));
+    }
+    let high = CheckPlan { align: Some(Align::Crossing(50.0)), bound: bound(9.0), ..plan.clone() };
+    let never = judge(&high, &folder);
+    assert!(never.aligned.is_none() && never.arrival.is_some_and(|a| a.run.is_none()));
+    assert_eq!(never.passed, Some(true), "no bound needs the alignment");
+    let limit = Some(Score { aligned_relative_l2: Some(9.0), ..Score::default() });
+    assert_eq!(judge(&CheckPlan { bound: limit, ..high }, &folder).passed, Some(false));
+    Ok(())
+}
+
+#[test]
+fn a_reference_with_its_own_clock_starts_at_the_crossing_of_the_run() -> std::io::Result<()> {
+    // The run is at rest for a second and then rises at 2 m/s. The reference begins at the crossing of 1 m.
+    let folder = folder("clock", &table(|t| (2.0 * (t - 1.0)).max(0.0)), &table(|t| 1.0 + 2.0 * t))?;
+    let plan = CheckPlan {
+        align: Some(Align::Start(1.0)),
+        until: Some(0.8),
+        bound: bound(0.01),
+        ..by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None)
+    };
+    let verdict = judge(&plan, &folder);
+    // All values are linear: round-off.
+    assert!(verdict.metrics.relative_l2.is_some_and(|n| n < 1e-12), "{verdict:?}");
+    let arrival = verdict.arrival.expect("the run crosses 1 m");
+    assert!(arrival.run.is_some_and(|t| (t - 1.5).abs() < 1e-12) && arrival.reference == Some(0.0), "{arrival:?}");
+    assert!(verdict.aligned.is_none() && verdict.covered == 1.0);
+
+    let formula = CheckPlan {
+        align: Some(Align::Start(1.0)),
+        from: Some(0.1),
+        ..by_formula("box.heave_m", "1 + 2*t", bound(1e-9))
+    };
+    assert_eq!(judge(&CheckPlan { until: Some(0.8), ..formula }, &folder).passed, Some(true));
+    let never = judge(&CheckPlan { align: Some(Align::Start(9.0)), ..plan }, &folder);
+    assert!(never.passed.is_none() && never.note.is_some_and(|note| note.contains("never passes 9")));
+    Ok(())
+}
+
+#[test]
+fn the_table_of_checks_contains_only_the_columns_in_use() -> std::io::Result<()> {
+    let folder = folder("table", &table(|t| t), "")?;
+    let plain = judge(&by_formula("box.heave_m", "t", bound(0.1)), &folder);
+    let heads = |verdicts: &[&Verdict]| {
+        let all: Vec<(&[String], &Verdict)> = verdicts.iter().map(|v| (&[][..], *v)).collect();
+        format_verdicts::verdict_rows(&all, &[])[0].join("|")
+    };
+    assert_eq!(heads(&[&plain]), "check|N|M|bound|");
+    let limit = Some(Score { off: Some(0.1), ..Score::default() });
+    let rich = CheckPlan { align: Some(Align::Best), mean: Some(0.1), ..by_formula("box.heave_m", "t", limit) };
+    let rich = judge(&rich, &folder);
+    assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean over|mean N|mean M|aligned N|aligned M|delay|off|bound|");
+    // A load series has its first peak as an additional column.
+    let load = Verdict { series: "wall.fx_N (2)".into(), bound: None, aligned: None, ..rich };
+    assert_eq!(heads(&[&load]), "check|N|M|mean over|mean N|mean M|peak|mean peak|bound|");
+    Ok(())
+}
+
+/// The error message of a scene with these keys in its check.
+fn error_message(keys: &str) -> String {
+    let text = format!(
+        "dimension = 2\ndp = 0.1\nuntil = 1.0\nwater = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.5] }} }} }}]\n\
+         probe = [{{ energy = true }}]\n[[check]]\nseries = \"energy.total_J_per_m\"\n{keys}"
+    );
+    Scene::parse(&text, Path::new("."), &[]).and_then(|s| s.plan()).expect_err("this check is wrong").to_string()
+}
+
+#[test]
+fn invalid_check_keys_are_refused_with_a_remedy() {
+    for (keys, parts) in [
+        ("", ["\"reference\" is missing", "write  reference = \"body.csv\""]),
+        ("reference = \"a.csv\"", ["\"column\" is missing", "check.0.column"]),
+        ("formula = \"0\"\ncolumn = \"x\"", ["a check by a formula has no column", "give either formula"]),
+        ("formula = \"2*sinus(t)\"", ["did you mean \"sin", "check.0.formula"]),
+        ("formula = \"0\"\nfrom = 2.0\nuntil = 1.0", ["nothing lies between from = 2 and until = 1", "later time"]),
+        ("formula = \"0\"\nmean = 0.0", ["mean must be a positive number", "write  mean = 0.005"]),
+        ("formula = \"0\"\nalign = \"bset\"", ["unknown align \"bset\"; did you mean \"best\"?", "crossing"]),
+        ("formula = \"0\"\nalign = { crossing = -5.0 }", ["crossing must be a positive number", "align = {"]),
+        ("formula = \"0\"\nalign = { start = 0.0 }", ["start must be a positive number", "align = {"]),
+        ("formula = \"0\"\nbound = { aligned_N = 0.1 }", ["nothing is aligned", "align = \"best\""]),
+        ("formula = \"0\"\nbound = { of = 0.1 }", ["unknown key \"of\"; did you mean \"off\"?", "bound = {"]),
+        ("formula = \"0\"\nbound = { off = -0.1 }", ["the largest that passes", "check.0.bound.off"]),
+    ] {
+        let message = error_message(keys);
+        assert!(parts.iter().all(|part| message.contains(part)), "{keys}: {message}");
+    }
+}
+
+#[test]
+fn a_scene_with_checks_survives_writing_and_reading() -> Result<()> {
+    let text = "dimension = 2\ndp = 0.1\nuntil = 1.0\nwater = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]\n\
+        probe = [{ energy = true }]\n[[check]]\nseries = \"energy.total_J_per_m\"\nformula = \"t\"\nfrom = 0.1\nuntil = 0.9\n\
+        mean = 0.01\nalign = { crossing = 5.0 }\nbound = { off = 0.1, peak = 0.2, aligned_N = 0.3, delay = 0.4 }\n\
+        [[check]]\nseries = \"energy.total_J_per_m\"\nformula = \"t\"\nalign = \"best\"\n";
+    let scene = Scene::parse(text, Path::new("."), &[])?;
+    assert_eq!(Scene::parse(&scene.to_toml()?, Path::new("."), &[])?, scene);
+    let lines: Vec<String> = scene.resolve()?.iter().map(|v| v.to_string()).collect();
+    assert!(lines.contains(&"check.0.align.crossing = 5.0  (scene line 12)".into()), "{}", lines.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn an_interrupted_run_has_metrics_but_a_verdict_only_after_its_end() -> Result<()> {
+    let home = TestFolder::new("checks-part");
+    let (scene, out) = (home.join("scene.toml"), home.join("run"));
+    let text = "dimension = 2\ndp = 0.05\nuntil = 0.2\nwater = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]\n\
+        solid = [{ name = \"tank\", fixed = true, shape = { tank = { size = [1.0, 1.0] } } }]\n\
+        probe = [{ name = \"tank\", force = \"tank\", every = 0.001 }]\n[[check]]\nseries = \"tank.fy_N_per_m\"\n\
+        formula = \"-4905\"\nbound = { N = 0.1 }\n";
+    fs::write(&scene, text).unwrap();
+    let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
+    let part = run::run(&scene, &options, &mut |now: &Progress| now.time < 0.1)?;
+    let verdict = &part.manifest.checks[0];
+    assert!(verdict.metrics.relative_l2.is_some_and(|n| n < 0.1) && verdict.passed.is_none(), "{verdict:?}");
+    assert!(verdict.note.as_ref().is_some_and(|note| note.contains("has not finished")), "{verdict:?}");
+    let whole = run::resume(&out, &[], Some(1), &mut |_: &Progress| true)?;
+    assert_eq!((whole.manifest.checks[0].passed, &whole.manifest.checks[0].note), (Some(true), &None));
+    Ok(())
+}

@@ -1,0 +1,11 @@
+//! Runs: restart, determinism, step checks, probes, checks and statistics.
+
+mod checks;
+mod determinism;
+mod gauges;
+mod probes;
+mod progress;
+mod rao;
+mod restart;
+mod statistics;
+mod step_checks;

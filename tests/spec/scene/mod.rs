@@ -1,0 +1,8 @@
+//! Scene files: schema, reference pages, errors, bad input, bundled scenes and preflight findings.
+
+mod bad_input;
+mod bundled_scenes;
+mod errors;
+mod preflight;
+mod reference;
+mod schema;

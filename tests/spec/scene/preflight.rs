@@ -1,0 +1,387 @@
+//! Preflight: its values agree with theory and with the run. Each finding appears with its fault and disappears after the
+//! correction that it proposes.
+
+use std::{f64::consts::PI, path::Path};
+
+use pontoon::{
+    model::Dimension,
+    preflight::{self, BodySummary, Preflight, Severity},
+    run::{self, Progress, RunOptions},
+    scene::{BuiltScene, Scene, bundled_scenes},
+    simulation::Simulation,
+    solid::Dim,
+};
+
+use crate::common::TestFolder;
+
+/// A valid scene: a floating box, a paddle and a sill.
+const GOOD: &str = r#"title     = "A box afloat"
+dimension = 2
+dp        = 0.01
+until     = 2.0
+
+[[water]]
+fill = { box = { min = [0.1, 0.0], max = [2.0, 0.4] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [2.0, 0.8] } }
+
+[[solid]]
+name  = "sill"
+fixed = true
+shape = { box = { size = [0.1, 0.2] } }
+at    = { x = 1.6, bottom = 0.0 }
+
+[[solid]]
+name   = "paddle"
+shape  = { box = { size = [0.1, 0.6] } }
+at     = { x = 0.05, bottom = 0.0 }
+driven = { along = [1.0, 0.0], distance = { formula = "0.04*(1-cos(2*pi*t))" } }
+
+[[solid]]
+name  = "box"
+shape = { box = { size = [0.2, 0.1] } }
+at    = { x = 1.0, draft = "equilibrium" }
+free  = { density = 500.0 }
+
+[[probe]]
+name     = "deep"
+pressure = [1.3, 0.1]
+
+[[probe]]
+name      = "gauge"
+elevation = { x = 1.6 }
+
+[frames]
+every = 0.01
+"#;
+
+fn preflight_report<const D: usize>(scene: &Scene) -> Preflight
+where
+    Dim<D>: Dimension<D>,
+{
+    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>().unwrap();
+    let sim = Simulation::new(setup).unwrap();
+    preflight::preflight(&sim, &plan, still_water, removed_by_solids, &[1, 2])
+}
+
+fn report(sets: &[(&str, &str)]) -> Preflight {
+    let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+    preflight_report::<2>(&Scene::parse(GOOD, Path::new(""), &sets).unwrap())
+}
+
+fn topics(of: &Preflight) -> Vec<&'static str> {
+    of.findings.iter().map(|f| f.topic).collect()
+}
+
+/// The report of the body `solid` in a tank of water of 1.4 m × 1.4 m × 0.5 m.
+fn body_summary(solid: &str) -> BodySummary {
+    let text = format!(
+        "dimension = 3\ndp = 0.05\nuntil = 1.0\nframes = \"off\"\n\
+         [[water]]\nfill = {{ box = {{ min = [0.0, 0.0, 0.0], max = [1.4, 1.4, 0.5] }} }}\n\
+         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.4, 1.4, 0.8] }} }}\n\
+         [[solid]]\nname = \"float\"\n{solid}\n"
+    );
+    preflight_report::<3>(&Scene::parse(&text, Path::new(""), &[]).unwrap()).bodies.remove(0)
+}
+
+#[track_caller]
+fn assert_close(a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance * b.abs(), "{a} is not {b}");
+}
+
+#[test]
+fn the_draft_periods_and_stability_of_a_box_agree_with_theory() {
+    let box_ = report(&[]).bodies.remove(0);
+    // Breadth 0.2 m, height 0.1 m, half of the water's density: 10 kg/m, draft 0.05 m.
+    let (breadth, draft, mass, g) = (0.2, 0.05, 10.0, 9.81);
+    let rest = box_.afloat.unwrap();
+    assert_close(box_.mass_kg, mass, 1e-12);
+    assert_close(box_.displaced_kg, mass, 1e-9);
+    assert_close(rest.draft_m, draft, 1e-9);
+    assert_close(rest.waterplane_m2, breadth, 1e-6);
+    // The metacentric height is a difference over ±1e-4 rad, with 1e-7 of round-off and truncation.
+    let gm = breadth * breadth / (12.0 * draft) + 0.5 * draft - 0.05;
+    assert_close(rest.tilts[0].gm_m, gm, 1e-5);
+    assert_close(rest.heave_s, 2.0 * PI * (draft / g).sqrt(), 1e-6);
+    assert_close(rest.heave_added_kg, 1000.0 * PI * breadth * breadth / 8.0, 1e-5);
+    assert_close(rest.heave_with_added_s, 2.0 * PI * ((mass + 5.0 * PI) / (1000.0 * g * breadth)).sqrt(), 1e-6);
+    let inertia = mass * (breadth * breadth + 0.1 * 0.1) / 12.0;
+    assert_close(rest.tilts[0].period_s.unwrap(), 2.0 * PI * (inertia / (mass * g * gm)).sqrt(), 1e-5);
+    assert!(rest.heel_deg.unwrap() < 1e-6);
+    // ½ C ρ₀ h over the wetted length of 0.2 m + 2·0.05 m. Boundary particles resolve it to one of 52.
+    assert_close(box_.over_limit * 0.5 * 0.4 * 1000.0 * 0.017 * 0.3, mass, 0.04);
+    assert_close(box_.thinnest_m, 0.1, 0.005);
+}
+
+#[test]
+fn a_box_at_a_yaw_angle_rolls_and_pitches_about_its_own_axes() {
+    // 0.6 m × 0.3 m × 0.2 m, half submerged: GM = b²/(12 T) + KB − KG for roll and pitch.
+    let body = "shape = { box = { size = [0.6, 0.3, 0.2] } }\nfree = { density = 500.0 }";
+    let at = "at = { x = 0.7, y = 0.7, draft = \"equilibrium\", turn_deg = [0.0, 0.0, 30.0] }";
+    let rest = body_summary(&format!("{body}\n{at}")).afloat.unwrap();
+    let gm = |breadth: f64| breadth * breadth / 1.2 - 0.05;
+    assert_close(rest.tilts[0].gm_m, gm(0.3), 1e-4);
+    assert_close(rest.tilts[1].gm_m, gm(0.6), 1e-4);
+    // The roll axis is the long axis at 30° from x, with either sign.
+    assert_close(rest.tilts[0].axis[0].abs(), (PI / 6.0).cos(), 1e-3);
+    let period = |breadth: f64| 2.0 * PI * ((breadth * breadth + 0.04) / 12.0 / (9.81 * gm(breadth))).sqrt();
+    assert_close(rest.tilts[0].period_s.unwrap(), period(0.3), 1e-3);
+    assert_close(rest.tilts[1].period_s.unwrap(), period(0.6), 1e-3);
+    assert_close(rest.heave_s, 2.0 * PI * (0.1_f64 / 9.81).sqrt(), 1e-6);
+    // A locked rotation is left out, and a ball has no restoring moment.
+    let locked = body.replace("500.0", "500.0, locked = [\"turn_x\"]");
+    assert_eq!(body_summary(&format!("{locked}\n{}", at.replace("30.0", "0.0"))).afloat.unwrap().tilts.len(), 1);
+    let ball = "shape = { ball = { radius = 0.2 } }\nat = { x = 0.7, y = 0.7, draft = \"equilibrium\" }";
+    let ball = body_summary(&format!("{ball}\nfree = {{ density = 500.0 }}")).afloat.unwrap();
+    assert!(ball.tilts.iter().all(|t| t.gm_m == 0.0 && t.period_s.is_none()));
+    // Half of the 8/3 ρ a³ of a disc. The waterplane is a difference over 1e-4 of the height.
+    assert_close(ball.heave_added_kg, 4.0 / 3.0 * 1000.0 * 0.2_f64.powi(3), 1e-4);
+}
+
+#[test]
+fn a_valid_scene_has_no_findings() {
+    assert_eq!(topics(&report(&[])), Vec::<&str>::new(), "{:#?}", report(&[]).findings);
+}
+
+/// A finding, the settings that cause it, a part of its proposed correction, and the settings of that correction.
+type Fault =
+    (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
+
+const FAULTS: [Fault; 27] = [
+    ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
+    // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
+    (
+        "slow_sound",
+        &[
+            ("solid.paddle.shape.box.size", "[0.01, 0.6]"),
+            ("solid.paddle.driven.distance.formula", "0.4*(1-cos(2*pi*t))"),
+        ],
+        "c0 = 26 ",
+        &[("solid.paddle.shape.box.size", "[0.01, 0.6]")],
+    ),
+    // A square, half submerged: GM = 0.2²/(12·0.1) + 0.05 − 0.1 = −1/60 m.
+    (
+        "capsizes",
+        &[("solid.box.shape.box.size", "[0.2, 0.2]")],
+        "by 0.017 m",
+        &[("solid.box.shape.box.size", "[0.2, 0.2]"), ("solid.box.free.centre_offset", "[0.0, -0.017]")],
+    ),
+    ("lists", &[("solid.box.free.centre_offset", "[0.005, 0.0]")], "angle_deg", &[]),
+    ("off_draft", &[("solid.box.at", "{ x = 1.0, bottom = 0.5 }")], "draft = \"equilibrium\"", &[]),
+    ("beside_water", &[("solid.box.at", "{ x = 2.5, bottom = 0.3 }")], "over the water", &[]),
+    (
+        "larger_than_water",
+        &[("solid.box.shape.box.size", "[2.4, 0.1]"), ("solid.box.at", "{ x = 1.0, bottom = 0.85 }")],
+        "longer by 0.5",
+        &[],
+    ),
+    ("large_inertia", &[("solid.box.free.inertia", "100.0")], "leave inertia out", &[]),
+    (
+        "far_tie",
+        &[("joint", "[{ name = \"arm\", kind = \"hinge\", between = [\"box\"], at = [1.0, 5.0] }]")],
+        "0.224 m large",
+        &[("joint", "[{ name = \"arm\", kind = \"hinge\", between = [\"box\"], at = [1.0, 0.5] }]")],
+    ),
+    ("light_body", &[("solid.box.free.density", "20.0")], "density = 37", &[("solid.box.free.density", "37.0")]),
+    (
+        "thin_body",
+        &[("solid.box.shape.box.size", "[0.2, 0.03]")],
+        "0.034 m",
+        &[("solid.box.shape.box.size", "[0.2, 0.034]")],
+    ),
+    (
+        "thin_body",
+        &[("solid.box.shape.box.size", "[0.2, 0.01]")],
+        "0.034 m",
+        &[("solid.box.shape.box.size", "[0.2, 0.034]")],
+    ),
+    (
+        "slender_body",
+        &[("solid.box.shape.box.size", "[0.2, 0.05]")],
+        "dp = 0.0073",
+        &[("solid.box.shape.box.size", "[0.2, 0.05]"), ("dp", "0.0073")],
+    ),
+    (
+        "thin_wall",
+        &[("solid.sill.shape.box.size", "[0.02, 0.2]")],
+        "0.034 m",
+        &[("solid.sill.shape.box.size", "[0.034, 0.2]")],
+    ),
+    (
+        "thin_wall",
+        &[("solid.sill.shape.box.size", "[0.01, 0.2]")],
+        "0.034 m",
+        &[("solid.sill.shape.box.size", "[0.034, 0.2]")],
+    ),
+    (
+        "narrow_gap",
+        &[("solid.box.at.x", "1.6"), ("solid.sill.shape.box.size", "[0.1, 0.33]")],
+        "0.014 m further",
+        &[("solid.box.at.x", "1.6"), ("solid.sill.shape.box.size", "[0.1, 0.315]")],
+    ),
+    // Two fixed solids: the sill above the bed.
+    ("narrow_gap", &[("solid.sill.at.bottom", "0.02")], "0.014 m further", &[("solid.sill.at.bottom", "0.034")]),
+    // A free body beside the wall of the tank.
+    ("narrow_gap", &[("solid.box.at.x", "1.88")], "0.014 m further", &[("solid.box.at.x", "1.865")]),
+    (
+        "probe_inside_solid",
+        &[("probe.deep.pressure", "[1.57, 0.1]")],
+        "[1.54",
+        &[("probe.deep.pressure", "[1.54, 0.1]")],
+    ),
+    ("probe_inside_solid", &[("solid.sill.shape.box.size", "[0.1, 1.3]")], "nearest water", &[]),
+    // A section may begin inside a solid but must leave it.
+    (
+        "probe_inside_solid",
+        &[("probe", "[{ flow = { from = [1.57, 0.0], to = [1.57, 0.15] } }]")],
+        "[1.54",
+        &[("probe", "[{ flow = { from = [1.57, 0.0], to = [1.57, 0.3] } }]")],
+    ),
+    ("probe_outside", &[("probe.deep.pressure", "[2.5, 0.1]")], "[1.99", &[("probe.deep.pressure", "[1.99, 0.1]")]),
+    ("probe_outside", &[("probe.gauge.elevation.x", "-1.0")], "nearest water", &[]),
+    ("probe_above", &[("probe.deep.pressure", "[1.3, 2.5]")], "nearest water", &[]),
+    ("shallow", &[("dp", "0.05")], "dp = 0.04", &[("dp", "0.04")]),
+    (
+        "low_waves",
+        &[("solid.paddle.driven.distance.formula", "0.004*(1-cos(2*pi*t))")],
+        "dp = 0.0",
+        &[("solid.paddle.driven.distance.formula", "0.02*(1-cos(2*pi*t))")],
+    ),
+    ("large_frames", &[("until", "20.0"), ("frames.every", "0.0001")], "frames.every = 0.00", &[("until", "20.0")]),
+];
+
+#[test]
+fn each_finding_appears_with_its_fault_and_disappears_after_its_correction() {
+    for (topic, fault, correction, corrected) in FAULTS {
+        let found = report(fault);
+        let finding = found.findings.iter().find(|f| f.topic == topic);
+        let finding = finding.unwrap_or_else(|| panic!("{topic} is not among {:#?}", found.findings));
+        assert!(finding.mend.contains(correction), "{topic}: {:?} does not contain {correction:?}", finding.mend);
+        assert!(!topics(&report(corrected)).contains(&topic), "{topic} remains after {corrected:?}");
+    }
+}
+
+#[test]
+fn water_removed_by_solids_is_a_warning() {
+    let wide = [("solid.sill.shape.box.size", "[1.1, 0.5]"), ("solid.sill.at.x", "1.45"), ("solid.box.at.x", "0.5")];
+    let found = report(&wide);
+    let finding = found.findings.iter().find(|f| f.topic == "water_removed").unwrap();
+    // 1.1 m of 1.9 m of water, and half of the box.
+    assert!(finding.severity == Severity::Warning && finding.what.contains("59.2 %"), "{finding:?}");
+}
+
+#[test]
+fn warnings_precede_notes_and_a_run_prints_warnings_only() {
+    let found = report(&[("model.c0_factor", "5"), ("solid.box.at", "{ x = 1.0, bottom = 0.5 }")]);
+    assert!(found.findings.is_sorted_by_key(|f| f.severity), "{:?}", found.findings);
+    let warnings = found.warnings();
+    assert!(!warnings.is_empty() && warnings.len() < found.findings.len(), "{warnings:?}");
+}
+
+#[test]
+fn more_than_four_findings_of_a_kind_are_shortened_to_three_and_a_count() {
+    let mut found = report(&[("model.c0_factor", "5")]);
+    let finding = found.findings[0].clone();
+    for (count, expected) in [(3, 3), (4, 4), (5, 4), (1000, 4)] {
+        found.findings = vec![finding.clone(); count];
+        let brief = found.brief();
+        assert_eq!(brief.len(), expected, "{count} findings");
+        assert!(count <= 4 || brief[3].what == format!("{} more of this kind ({})", count - 3, finding.topic));
+    }
+    assert_eq!(found.warnings().len(), if finding.severity == Severity::Warning { 4 } else { 0 });
+    // Each kind has its own count, in any order of the findings.
+    let note = preflight::Finding { severity: Severity::Note, ..finding.clone() };
+    found.findings = [finding, note].into_iter().cycle().take(12).collect();
+    let brief = found.brief();
+    let more: Vec<&str> = brief.iter().filter(|f| f.what.contains(" more of ")).map(|f| &f.what[..6]).collect();
+    assert_eq!((brief.len(), more), (8, vec!["3 more"; 2]));
+}
+
+#[test]
+fn touching_solids_have_no_gap_finding_and_a_lifted_gate_needs_no_higher_sound_speed() {
+    // The box rests on the sill.
+    let resting = [("solid.sill.shape.box.size", "[0.1, 0.45]"), ("solid.box.at", "{ x = 1.6, bottom = 0.45 }")];
+    assert!(!topics(&report(&resting)).iter().any(|t| ["narrow_gap", "off_draft"].contains(t)));
+    let lifted = [("solid.paddle.driven.along", "[0.0, 1.0]"), ("solid.paddle.driven.distance.formula", "4.0*t")];
+    let found = report(&lifted);
+    assert!(!topics(&found).contains(&"slow_sound") && found.waves.is_empty(), "{:?}", found.sound);
+    // Motion to the side needs it.
+    let pushed = report(&lifted[1..]);
+    assert!(topics(&pushed).contains(&"slow_sound"), "{:?}", pushed.sound);
+}
+
+#[test]
+fn the_bundled_scenes_have_no_warnings_except_documented_ones() {
+    // Waves of two dp, as the README of the scene states.
+    const KNOWN: [(&str, &str); 1] = [("ren-box", "low_waves")];
+    for (name, ..) in bundled_scenes() {
+        let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), &[]).unwrap();
+        let found = if scene.dimension == 2 { preflight_report::<2>(&scene) } else { preflight_report::<3>(&scene) };
+        let warnings = found.findings.iter().filter(|f| f.severity == Severity::Warning);
+        let found_topics: Vec<(&str, &str)> = warnings.map(|f| (*name, f.topic)).collect();
+        let known: Vec<(&str, &str)> = KNOWN.into_iter().filter(|(scene, _)| scene == name).collect();
+        assert_eq!(found_topics, known, "{:#?}", found.findings);
+    }
+}
+
+#[test]
+fn the_estimated_output_size_agrees_with_a_run() {
+    let home = TestFolder::new("preflight");
+    let out = home.join("run");
+    let sets = [("until", "0.05"), ("frames.every", "0.01"), ("checkpoint.every", "0.04")];
+    let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/raft");
+    let report = run::inspect(&scene, &run::InspectOptions { overrides: sets.clone(), ..Default::default() }).unwrap();
+    assert_eq!(report.timing, None, "timing is off by default");
+    let options = RunOptions { out: Some(out.clone()), overrides: sets, threads: None };
+    run::run(&scene, &options, &mut |_: &Progress| true).unwrap();
+    let bytes = |folder: &str| -> f64 {
+        let entries = std::fs::read_dir(out.join(folder)).unwrap().flatten();
+        entries.map(|e| e.metadata().unwrap().len() as f64).sum()
+    };
+    let estimate = &report.preflight.size.disk;
+    // The length of a row depends on its numbers.
+    assert_close(estimate.tables_bytes, bytes("series"), 0.2);
+    // Frames and checkpoints are compressed. The ratio depends on the flow, and here the water is still at rest.
+    let frames = bytes("frames") / estimate.frames_bytes;
+    assert!((0.3..1.0).contains(&frames), "{frames} of the estimate");
+    let packed = std::fs::metadata(out.join("checkpoint.bin")).unwrap().len() as f64 / estimate.checkpoint_bytes;
+    assert!((0.6..1.0).contains(&packed), "{packed} of the estimate");
+}
+
+#[test]
+fn a_finding_about_a_stiff_spring_contains_the_admissible_stiffness() {
+    let moored = |stiffness: f64| {
+        let spring = "[[spring]]\nname = \"line\"\nbetween = [\"box\"]\nfrom = [1.0, 0.35]\nto = [1.0, 0.0]";
+        let text = format!("{GOOD}\n{spring}\nstiffness = {stiffness:?}\n");
+        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+    };
+    let stiff = moored(1e9);
+    let finding = stiff.findings.iter().find(|f| f.topic == "stiff_spring").expect("1e9 N/m on 10 kg is stiff");
+    assert_eq!(stiff.step.bound_by, "springs");
+    let part: f64 = finding.mend.split(' ').next().unwrap().parse().unwrap();
+    let soft = moored(1e9 * part);
+    assert!(!topics(&soft).contains(&"stiff_spring") && soft.step.springs_s.unwrap() >= soft.step.sound_s);
+    assert_eq!(report(&[]).step.springs_s, None);
+}
+
+#[test]
+fn a_paddle_with_a_list_of_motions_has_the_report_of_a_single_motion() {
+    let alone = report(&[]);
+    let half = "{ along = [1.0, 0.0], distance = { formula = \"0.02*(1-cos(2*pi*t))\" } }";
+    let whole = "{ along = [1.0, 0.0], distance = { formula = \"0.04*(1-cos(2*pi*t))\" } }";
+    let text = GOOD.replace(whole, &format!("{{ motions = [{half}, {half}] }}"));
+    assert_ne!(text, GOOD);
+    let listed = preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap());
+    assert_eq!(topics(&listed), topics(&alone));
+    let [one, other] = [&alone, &listed].map(|found| found.waves.first().expect("the paddle generates waves"));
+    // The motions are equal up to round-off.
+    for (a, b) in [(one.stroke_m, other.stroke_m), (one.height_m, other.height_m), (one.paddle_mps, other.paddle_mps)] {
+        assert!((a / b - 1.0).abs() < 1e-9, "{one:?} {other:?}");
+    }
+    assert_eq!((one.period_s, &one.answers), (other.period_s, &other.answers));
+    assert_eq!(alone.sound.expected.len(), listed.sound.expected.len());
+}

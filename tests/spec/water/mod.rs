@@ -1,0 +1,11 @@
+//! The water: equations, pair loop, neighbours, time integration, and water at rest.
+
+mod gradient_correction;
+mod kernels;
+mod laws;
+mod neighbours;
+mod periodic;
+mod simd;
+mod still_water;
+mod symmetry;
+mod time_integration;

@@ -1,0 +1,155 @@
+//! Active absorption: reflected waves are absorbed, the generated wave continues, and the state is part of a checkpoint.
+
+use std::{f64::consts::TAU, path::Path};
+
+use pontoon::{
+    Error,
+    math::Vector,
+    preflight,
+    scene::{BuiltScene, Scene},
+    simulation::Simulation,
+};
+
+use crate::common;
+
+/// A basin half a wavelength long with water 0.12 m deep and a box as its left end. The standing wave is about to rise at the
+/// left. Its length is 1.2 m: ω² = g k tanh kd.
+const BASIN: &str = r#"title     = "A standing wave is released"
+dimension = 2
+dp        = 0.01
+until     = 3.0
+frames    = "off"
+
+[[water]]
+fill     = { box = { min = [0.0, 0.0], max = [0.6, 0.12] } }
+velocity = ["-0.115*sin(5.236*x)*cosh(5.236*y)/cosh(0.628)", "0.115*cos(5.236*x)*sinh(5.236*y)/cosh(0.628)"]
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [0.8, 0.3] } }
+at    = { x = -0.2 }
+
+[[solid]]
+name  = "end"
+shape = { box = { size = [0.05, 0.3] } }
+at    = { x = -0.025, bottom = 0.0 }
+END
+"#;
+
+/// Period of the standing wave, s.
+const PERIOD: f64 = 1.175;
+
+const ABSORBER: &str = "driven = { along = [1.0, 0.0], wave = { absorb = { period = 1.175 } } }";
+
+fn built(end: &str) -> Result<BuiltScene<2>, Error> {
+    Scene::parse(&BASIN.replace("END", end), Path::new(""), &[])?.build()
+}
+
+fn basin(end: &str) -> Simulation<2> {
+    Simulation::new(built(end).unwrap().setup).unwrap()
+}
+
+#[test]
+fn an_absorbing_paddle_removes_a_standing_wave_within_one_period() {
+    // Mean kinetic energy over the second period.
+    let mean_energy = |end: &str| {
+        let mut sim = basin(end);
+        let (mut sum, mut count) = (0.0, 0);
+        while sim.time() < 2.0 * PERIOD {
+            sim.step().unwrap();
+            if sim.time() > PERIOD {
+                (sum, count) = (sum + sim.system().kinetic_energy(), count + 1);
+            }
+        }
+        sum / f64::from(count)
+    };
+    let (wall, absorber) = (mean_energy("fixed = true"), mean_energy(ABSORBER));
+    // In one period the whole wave reaches the paddle once. In linear theory only the start from rest leaves a remainder. The bound
+    // is a fifth of the amplitude, which is 0.04 of the energy.
+    assert!(absorber < 0.04 * wall, "{absorber} of {wall}");
+}
+
+#[test]
+fn an_absorbing_paddle_limits_a_resonant_basin_to_twice_the_wave_height() {
+    let mut sim = basin(
+        "driven = { along = [1.0, 0.0], wave = { regular = { height = 0.02, period = 1.175 }, ramp = 1.175, absorb = true } }",
+    );
+    sim.set_water_velocity(|_| Vector::zeros());
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    while sim.time() < 6.0 * PERIOD {
+        sim.step().unwrap();
+        if sim.time() > 5.0 * PERIOD {
+            let level = sim.system().surface_heights(&Vector::from([0.565, 0.0])).next().unwrap();
+            (low, high) = (low.min(level), high.max(level));
+        }
+    }
+    // 2H at the wall, times cos k(0.6 − 0.565) at the gauge. Without absorption the paddle reflects in phase, which gives ten times H
+    // after five periods. The bound of a fifth covers the loss of a wave of two dp and the error of the gauge.
+    let share = (high - low) / (2.0 * 0.02 * (TAU / 1.2 * 0.035).cos());
+    assert!((0.8..1.2).contains(&share), "{share}");
+}
+
+#[test]
+fn a_run_with_an_absorbing_paddle_has_the_same_bits_after_a_restart_and_on_any_number_of_threads() {
+    let runs: Vec<Vec<u8>> = [1, 3]
+        .into_iter()
+        .map(|threads| {
+            common::on_threads(threads, || {
+                let mut sim = basin(ABSORBER);
+                common::steps(&mut sim, 150);
+                sim.save().unwrap()
+            })
+        })
+        .collect();
+    assert!(runs[0] == runs[1]);
+    let mut first = basin(ABSORBER);
+    common::steps(&mut first, 70);
+    let saved = first.save().unwrap();
+    let mut again = basin(ABSORBER);
+    again.restore(&saved).unwrap();
+    assert!(again.save().unwrap() == saved, "a restored state saves to the same bytes");
+    common::steps(&mut again, 80);
+    assert!(again.save().unwrap() == runs[0]);
+    let position = |sim: &Simulation<2>| sim.system().solids()[1].kinematics.pose.position[0];
+    assert!((position(&again) + 0.025).abs() > 1e-4, "the paddle moved to absorb");
+}
+
+#[test]
+fn invalid_absorption_keys_are_refused_with_the_key_and_a_remedy() {
+    let wave = |words: &str| format!("driven = {{ along = [1.0, 0.0], wave = {{ {words} }} }}");
+    let regular = "regular = { height = 0.02, period = 1.2 }";
+    let cases: [(String, &str, &str); 8] = [
+        (wave("absorb = true"), "wave.absorb", "period = 1.2"),
+        (wave("absorb = false"), "driven.wave", "which wave"),
+        (wave("absorb = 2.0"), "wave.absorb", "true, or a table"),
+        (wave("absorb = { period = 0.0 }"), "absorb.period", "positive"),
+        (wave("absorb = { perod = 1.0 }"), "absorb.perod", "did you mean \"period\""),
+        (wave("absorb = { period = 0.2 }"), "wave.absorb", "a smaller dp"),
+        (wave(&format!("{regular}, absorb = {{ stroke = 0.01 }}")), "wave.absorb", "a stroke of"),
+        (wave(&format!("{regular}, absorb = {{ speed = 0.01 }}")), "wave.absorb", "a speed of"),
+    ];
+    for (end, key, advice) in cases {
+        let message = built(&end).map(|_| ()).expect_err(&end).to_string();
+        assert!(
+            message.contains(key) && message.contains(advice) && message.contains("scene.toml:21:"),
+            "{end}:\n{message}"
+        );
+    }
+}
+
+#[test]
+fn preflight_reports_the_absorbing_paddles() {
+    let absorbers = |end: &str| {
+        let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built(end).unwrap();
+        preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[]).absorbers
+    };
+    assert!(absorbers("fixed = true").is_empty());
+    let own = &absorbers(ABSORBER)[0];
+    // The gauge stands one support radius before the face: 2 · 1.7 dp.
+    assert!((own.period_s - 1.175).abs() < 1e-12 && (own.gauge_m - 0.034).abs() < 1e-12, "{own:?}");
+    assert!(own.sends_back.iter().all(|(_, share)| (1e-4..0.1).contains(share)), "{own:?}");
+    let flap = "driven = { hinge = [0.0, 0.0], wave = { regular = { height = 0.02, period = 1.2 }, absorb = { stroke = 0.2 } } }";
+    let own = &absorbers(flap)[0];
+    assert!((own.stroke_m - 0.2).abs() < 1e-12 && (own.period_s - 1.2).abs() < 1e-12, "{own:?}");
+}

@@ -1,0 +1,6 @@
+//! Wavemakers, absorption and damping zones.
+
+mod absorption;
+mod generated_waves;
+mod sponge_layers;
+mod wavemaker;
