@@ -10,7 +10,7 @@ use pontoon::{
     solid::{Constraints, Dim, Engine, FreeBody, HasEngine, Kinematics, Load, Role, SolidSpec},
 };
 
-use crate::common::{self, TestFolder};
+use crate::common;
 
 const G: f64 = 9.81;
 
