@@ -26,7 +26,7 @@ pub fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<
 
 /// The rows (time, value) in which both columns hold a number.
 fn read_pairs(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>> {
-    let broken = |why: csv::Error| Error::file(path, why);
+    let broken = |why: csv::Error| Error::table(path, &why);
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(broken)?;
     let header = reader.headers().map_err(broken)?.clone();

@@ -231,7 +231,7 @@ impl Scene {
         let mut text = String::new();
         let opened = std::fs::File::open(&file);
         opened.and_then(|opened| opened.take(MOST_TEXT + 1).read_to_string(&mut text)).map_err(|e| {
-            Error::file(&file, e)
+            Error::read(&file, &e)
                 .help("name a scene file, or a folder that holds scene.toml; `pontoon scenes` lists some")
         })?;
         if text.len() as u64 > MOST_TEXT {

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::{
-    error::{Error, Result, nearest_name},
+    error::{Error, ErrorCode, Result, nearest_name},
     math::time_series::TimeSeries,
 };
 
@@ -34,6 +34,7 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
         let guess = nearest_name(name, others.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
         return Err(Error::scene(format!("there is no file \"{name}\" beside the scene{guess}"))
+            .with_code(ErrorCode::FileNotFound)
             .help("files that a scene names are looked for in the folder of the scene"));
     }
     Ok(full)
@@ -64,7 +65,7 @@ fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
 /// `File` if it cannot be read; `Scene` if it is too large.
 pub fn read_header(path: &Path) -> Result<Vec<String>> {
     let mut reader = reader(path)?;
-    let header = reader.headers().map_err(|e| Error::file(path, e))?;
+    let header = reader.headers().map_err(|e| Error::table(path, &e))?;
     Ok(header.iter().map(String::from).collect())
 }
 
@@ -74,7 +75,7 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
             .help("keep the columns and the times that the scene needs"));
     }
     let mut builder = csv::ReaderBuilder::new();
-    builder.comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(|e| Error::file(path, e))
+    builder.comment(Some(b'#')).trim(csv::Trim::All).from_path(path).map_err(|e| Error::table(path, &e))
 }
 
 /// The columns `names` of the table at `path`, one list each; rows with a blank cell among
@@ -85,7 +86,7 @@ fn reader(path: &Path) -> Result<csv::Reader<std::fs::File>> {
 pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let mut reader = reader(path)?;
     let file = path.display().to_string();
-    let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
+    let header = reader.headers().map_err(|e| Error::table(path, &e))?.clone();
     let number = |name: &&str| {
         header.iter().position(|column| column == *name).ok_or_else(|| {
             let guess = nearest_name(name, header.iter());
@@ -98,7 +99,7 @@ pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<Vec<f64>>> {
     let numbers: Vec<usize> = names.iter().map(number).collect::<Result<_>>()?;
     let mut columns = vec![Vec::new(); names.len()];
     for record in reader.records() {
-        let record = record.map_err(|e| Error::file(path, e))?;
+        let record = record.map_err(|e| Error::table(path, &e))?;
         let cells: Vec<&str> = numbers.iter().map(|&i| record.get(i).unwrap_or("")).collect();
         if cells.iter().any(|cell| cell.is_empty()) {
             continue;

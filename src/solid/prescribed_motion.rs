@@ -24,6 +24,18 @@ pub enum TimeFunction {
     Wave(Box<PaddleMotion>),
 }
 
+impl From<f64> for TimeFunction {
+    fn from(x: f64) -> Self {
+        Self::constant(x)
+    }
+}
+
+impl From<Formula> for TimeFunction {
+    fn from(formula: Formula) -> Self {
+        Self::Formula(formula)
+    }
+}
+
 impl TimeFunction {
     /// The law that is `x` at all times.
     pub fn constant(x: f64) -> Self {

@@ -21,8 +21,8 @@ use periodic::Images;
 pub use periodic::Periodic;
 pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
-pub(crate) use step_check::StepCheck;
 pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
+pub(crate) use step_check::{LimitViolation, StepCheck};
 
 pub use crate::interaction::StepLimits;
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::water::StillWaterLevel;
 use crate::{
-    error::{Error, Result},
+    error::{Error, ErrorCode, Result},
     math::expression::Formula,
     plan::{Align, CheckPlan, Reference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
@@ -99,7 +99,7 @@ impl ProbeSeries<'_> {
         self.names.iter().position(|known| known == name).ok_or_else(|| {
             let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
             let what = format!("no probe is called \"{name}\"{}", suggestion(name, &names));
-            ctx.error_with_help(key, what, format!("known: {}", names.join(", ")))
+            ctx.error_with_help(key, what, format!("known: {}", names.join(", "))).with_code(ErrorCode::UnknownName)
         })
     }
 

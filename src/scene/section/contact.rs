@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::solid::SolidConfig;
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     scene::context::{Context, suggestion},
     solid::ContactSpec,
 };
@@ -57,7 +57,9 @@ impl ContactConfig {
         let known: Vec<&str> = solids.iter().map(|solid| solid.name.as_str()).chain(groups.iter().copied()).collect();
         if let Some(name) = between.iter().find(|name| !known.contains(&name.as_str())) {
             let what = format!("no solid or group is called \"{name}\"{}", suggestion(name, &known));
-            return Err(ctx.error_with_help(key, what, format!("known: {}", known.join(", "))));
+            return Err(ctx
+                .error_with_help(key, what, format!("known: {}", known.join(", ")))
+                .with_code(ErrorCode::UnknownName));
         }
         let of_group = between.iter().any(|name| groups.contains(name.as_str()));
         let twice = between.len() == 2 && between[0] == between[1];

@@ -13,7 +13,7 @@ use super::{
     solid::{MotionMode, SolidConfig, require_solid, verify_modes},
 };
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     scene::{
         context::{Context, Defaults, last_part},
         untagged::{CoordinateUnit, TimeValueConfig},
@@ -177,7 +177,11 @@ impl JointConfig {
         for (word, vector, needed, allowed) in needs {
             let key = format!("{key}.{word}");
             match vector {
-                None if needed => return Err(ctx.error_at(&key, format!("{word} is missing: which way?"))),
+                None if needed => {
+                    return Err(ctx
+                        .error_at(&key, format!("{word} is missing: which way?"))
+                        .with_code(ErrorCode::MissingKey));
+                }
                 Some(_) if !(needed || allowed) => {
                     let help = "a slider, a tow and a generic joint have  along, a hinge in 3-D has  axis; no other joint has a direction";
                     return Err(ctx.error_with_help(&key, format!("{word} has no meaning here"), help));
@@ -205,7 +209,9 @@ impl JointConfig {
         let free = self.free.as_deref().unwrap_or_default();
         verify_modes(ctx, &format!("{key}.free"), free)?;
         if generic && free.is_empty() {
-            return Err(ctx.error_with_help(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]"));
+            return Err(ctx
+                .error_with_help(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]")
+                .with_code(ErrorCode::MissingKey));
         }
         if !generic && self.free.is_some() {
             let help = "the other kinds say what they leave free; a list has  kind = \"generic\"";
@@ -248,9 +254,9 @@ impl JointConfig {
             }
         }
         match (&self.limits, &self.limits_deg) {
-            (Some(_), Some(_)) if !generic => {
-                Err(ctx.error_at(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"))
-            }
+            (Some(_), Some(_)) if !generic => Err(ctx
+                .error_at(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice")
+                .with_code(ErrorCode::ConflictingKeys)),
             (_, Some(_)) if !(hinge || generic) => {
                 Err(ctx.error_at(&format!("{key}.limits_deg"), "only turns have limits in degrees"))
             }
@@ -336,7 +342,9 @@ impl MotorConfig {
             return Err(ctx.error_at(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
         }
         if self.position.is_some() && self.position_deg.is_some() {
-            return Err(ctx.error_at(&format!("{key}.position_deg"), "position and position_deg say the same twice"));
+            return Err(ctx
+                .error_at(&format!("{key}.position_deg"), "position and position_deg say the same twice")
+                .with_code(ErrorCode::ConflictingKeys));
         }
         if position && self.stiffness.is_none() {
             let what = "a position needs a stiffness with which it is held";

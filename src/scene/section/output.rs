@@ -89,7 +89,9 @@ impl FramesChoice {
         ctx.require_positive("frames.every", *every)?;
         if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
             let what = format!("no field is called \"{field}\"{}", suggestion(field, &FIELDS));
-            return Err(ctx.error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
+            return Err(ctx
+                .error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", ")))
+                .with_code(crate::error::ErrorCode::UnknownName));
         }
         corners.as_ref().map_or(Ok(()), |corners| corners.verify(ctx, "frames.box"))
     }

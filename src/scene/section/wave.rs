@@ -9,7 +9,7 @@ use serde::{
 };
 
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     scene::context::{Context, Defaults, quoted_list, set_keys},
     wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
 };
@@ -338,7 +338,7 @@ impl IrregularWaveConfig {
             return Err(ctx.error_with_help(&place("peak_period"), what, help));
         }
         if !grown && self.peak_period.is_none() {
-            return Err(ctx.error_at(&place("peak_period"), "peak_period is missing"));
+            return Err(ctx.error_at(&place("peak_period"), "peak_period is missing").with_code(ErrorCode::MissingKey));
         }
         if self.gamma.is_some() && !key.ends_with("jonswap") {
             return Err(ctx.error_with_help(&place("gamma"), "gamma belongs to jonswap", "leave it out"));

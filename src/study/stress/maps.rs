@@ -94,7 +94,7 @@ struct MapsFile {
 pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> {
     let Some(path) = file else { return read(TEXT, NAME) };
     let text = std::fs::read_to_string(path).map_err(|why| {
-        Error::file(path, why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
+        Error::read(path, &why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
     })?;
     read(&text, &path.display().to_string())
 }
