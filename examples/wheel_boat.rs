@@ -15,7 +15,7 @@ use pontoon::{
     Result,
     scene::{CompoundPartConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
-    solid::{Motor, TimeFunction},
+    solid::Motor,
 };
 
 /// Particle spacing, depth of the water and length of the pool, m.
@@ -34,7 +34,7 @@ const TURNING: f64 = 5.0;
 const UNTIL: f64 = 3.0;
 
 fn part(size: [f64; 2], at: [f64; 2]) -> CompoundPartConfig {
-    CompoundPartConfig { shape: ShapeConfig::cuboid(size), at: Some(PlacementConfig::point(&at)) }
+    CompoundPartConfig::new(ShapeConfig::cuboid(size), PlacementConfig::point(&at))
 }
 
 /// The boat afloat in the middle of the pool; its frame is at the water's surface.
@@ -83,11 +83,7 @@ fn main() -> Result<()> {
         while sim.time() < UNTIL {
             // The motor is run up within half a second.
             let wanted = turning * (2.0 * sim.time()).min(1.0);
-            let motor = Motor {
-                velocity: Some(TimeFunction::constant(wanted)),
-                damping: TimeFunction::constant(20.0),
-                ..Motor::default()
-            };
+            let motor = Motor::default().velocity(wanted).damping(20.0);
             sim.set_motor(axle, Some(motor.command_at(0.0)));
             sim.step_to(UNTIL)?;
             work -= sim.joint_reading(axle).absorbed_power() * sim.dt();

@@ -27,6 +27,7 @@ use crate::{
 /// The kernel. Scene key `model.kernel`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum KernelKind {
     /// Cubic spline (Monaghan & Lattanzio 1985), by default with Monaghan's (2000) tensile correction.
     Cubic {
@@ -45,6 +46,7 @@ fn yes() -> bool {
 /// The pressure gradient. Scene key `model.gradient`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum PressureGradient {
     /// The plain kernel gradient.
     #[default]
@@ -56,6 +58,7 @@ pub enum PressureGradient {
 /// Particle shifting. Scene key `model.shifting`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Shifting {
     /// None (the paper's type 0).
     None,
@@ -81,6 +84,7 @@ impl Shifting {
 /// The pair loop. Scene key `model.sweep`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum PairLoopKind {
     /// SIMD in single precision where the processor supports it (x86-64 with AVX2, ARM); otherwise the reference.
     #[default]
@@ -102,6 +106,7 @@ impl PairLoopKind {
 /// How boundary particles act on the water. Scene key `model.walls`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Walls {
     /// Dynamic boundary particles: they obey continuity, and their density does not fall below ρ₀.
     #[serde(rename = "dbc")]
@@ -114,6 +119,7 @@ pub enum Walls {
 /// The time integration scheme. Scene key `time.scheme`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum TimeScheme {
     /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.
     Verlet {

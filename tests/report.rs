@@ -11,7 +11,7 @@ use std::{
 };
 
 use pontoon::{
-    error::{Error, ErrorKind, Fault},
+    error::{Error, ErrorCode, ErrorKind, Fault},
     output::{Manifest, manifest::RunStatus},
     report,
 };
@@ -469,6 +469,7 @@ fn one_command_runs_the_laws_and_draws_their_fields_side_by_side() {
 /// A fault as the guard would report it.
 fn fault() -> Error {
     let fault = Fault {
+        code: ErrorCode::LeftDomain,
         reason: "the water has left".into(),
         who: "water particle 12".into(),
         step: 7,
@@ -478,7 +479,9 @@ fn fault() -> Error {
         density: Some(1010.0),
         cause: "too long a step: shorten the step".into(),
     };
-    Error { fault: Some(Box::new(fault)), ..Error::new(ErrorKind::Fault, "the water has left the domain") }
+    let mut error = Error::new(ErrorKind::Fault, "the water has left the domain");
+    error.fault = Some(Box::new(fault));
+    error
 }
 
 #[test]

@@ -181,6 +181,7 @@ pub trait ProbeScope {
 
 /// Where a probe measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ProbeLocation<'a> {
     /// At points, m.
     Points(&'a [Vec<f64>]),
@@ -192,6 +193,7 @@ pub enum ProbeLocation<'a> {
 
 /// The energy that the rows of a probe end with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum EnergyReading {
     /// The residual of the energy budget.
     Budget,
@@ -201,6 +203,7 @@ pub enum EnergyReading {
 
 /// One probe, with defaults filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ProbePlan {
     /// Stem of the file it writes; unique within a scene.
     pub name: String,
@@ -219,6 +222,7 @@ macro_rules! probe_kinds {
         /// One `[[probe]]`: exactly one of the words that say what it looks at.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields, default)]
+        #[non_exhaustive]
         pub struct ProbeConfig {
             /// Stem of the file it writes.
             #[serde(skip_serializing_if = "Option::is_none")]
@@ -239,6 +243,7 @@ macro_rules! probe_kinds {
         /// A kind of probe, with its plan.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
         pub enum ProbeKind {
             $($(
                 #[doc = concat!("Scene key `", stringify!($key), "`.")]

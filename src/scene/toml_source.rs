@@ -79,6 +79,7 @@ impl PartialEq for SceneSource {
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ValueSource {
     /// The default, with its reason.
     Default(String),

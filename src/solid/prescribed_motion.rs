@@ -15,6 +15,7 @@ use crate::{
 
 /// A driven coordinate over time: a length (m) or an angle (rad) at a time (s).
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum TimeFunction {
     /// The smooth curve through measured samples; at rest before the first and after the last.
     Table(TimeSeries),

@@ -52,6 +52,7 @@ impl ParticleLimits {
 /// What becomes of a particle that leaves the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Escape {
     /// It stops the run.
     Stop,

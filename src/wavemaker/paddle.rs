@@ -13,6 +13,7 @@ use super::LinearWave;
 
 /// How a paddle moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Paddle {
     /// All of it alike.
     Piston,

@@ -5,7 +5,7 @@ use std::path::Path;
 use pontoon::{
     Result,
     geometry::Shape,
-    math::{Bivector, Bounds, Matrix, Pose, Vector, expression::Formula},
+    math::{Bivector, Matrix, Pose, Vector, expression::Formula},
     model::{Model, PairLoopKind, TimeScheme, Walls},
     scene::Scene,
     simulation::{Setup, Simulation},
@@ -144,7 +144,7 @@ fn drop_at(pose: &Pose<2>, mirrored: bool, sweep: PairLoopKind) -> Simulation<2>
     ];
     (solids[0].pose, solids[1].pose, solids[1].name) = (place([-0.1, 0.0]), place([0.1, 0.06]), "second".into());
     let moved: Vec<Vector<2>> = water.iter().map(|r| pose.position + turn * r).collect();
-    let mut setup = Setup::new(model, moved, vec![-1.0; water.len()], solids);
+    let mut setup = Setup::new(model).water(moved, -1.0).solids(solids);
     setup.velocity = water.iter().map(|r| turn * velocity(r)).collect();
     Simulation::new(setup).expect("a sound setup")
 }
@@ -196,9 +196,7 @@ fn water_in_a_tank_that_gains_speed_leans_by_a_over_g() {
     let mut model = Model::water(2, dp, depth);
     model.viscosity = pontoon::model::Viscosity::Artificial(pontoon::sph::viscosity::Artificial { alpha: 0.1 });
     let water = rig::lattice([0.0, 0.0], [length, depth], dp);
-    let levels = vec![depth; water.len()];
-    let mut setup = Setup::new(model, water, levels, vec![tank]);
-    setup.domain = Some(Bounds { min: Vector::from([-1.0, -1.0]), max: Vector::from([9.0, 2.0]) });
+    let setup = Setup::new(model).water(water, depth).solid(tank).domain([-1.0, -1.0], [9.0, 2.0]);
     let mut sim = Simulation::new(setup).expect("a sound setup");
     let (mut sum, mut weight) = (0.0, 0.0);
     while sim.time() < 4.6 {
@@ -283,7 +281,7 @@ fn a_body_that_tumbles_in_a_vacuum_for_ten_seconds_keeps_energy_and_angular_mome
     let shape = Shape::Box { size: Vector::repeat(0.1) };
     let inertia = Matrix::<3>::from_diagonal(&Vector::from([1e-3, 2e-3, 2.5e-3]));
     let spin = Vector::<3>::from([1.0, 8.0, 2.0]);
-    let body = FreeBody { inertia, spin: Bivector::from_axial(spin.as_slice()), ..FreeBody::from_mass(&shape, 2.0) };
+    let body = FreeBody::from_mass(&shape, 2.0).inertia(inertia).spin(Bivector::from_axial(spin.as_slice()));
     let brick = rig::solid("brick", shape, Pose::identity(), Role::Free(body));
     let mut engine = Dim::<3>::engine(
         std::slice::from_ref(&brick),

@@ -35,22 +35,19 @@ fn bound(n: f64) -> Option<Score> {
 /// A check of `series` against `column` over `time` of `reference.csv`.
 fn by_table(series: &str, [time, column]: [&str; 2], delay: f64, bound: Option<Score>) -> CheckPlan {
     let (time, column) = (time.to_string(), column.to_string());
-    let words = by_formula(series, "", bound);
-    CheckPlan { reference: Reference::Table { file: "reference.csv".into(), time, column, delay }, ..words }
+    check(series, Reference::Table { file: "reference.csv".into(), time, column, delay }, bound)
 }
 
 /// A check of `series` against a formula.
 fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckPlan {
-    CheckPlan {
-        series: series.into(),
-        reference: Reference::Formula(formula.into()),
-        from: None,
-        until: None,
-        zero: None,
-        mean: None,
-        align: None,
-        paper: None,
-        bound,
+    check(series, Reference::Formula(formula.into()), bound)
+}
+
+fn check(series: &str, reference: Reference, bound: Option<Score>) -> CheckPlan {
+    let check = CheckPlan::new(series, reference);
+    match bound {
+        Some(bound) => check.bound(bound),
+        None => check,
     }
 }
 
@@ -146,10 +143,10 @@ fn a_formula_is_a_reference_at_the_runs_own_times_and_only_the_window_counts() -
     let limit = |off: f64| Some(Score { off: Some(off), ..Score::default() });
     let whole = judge(&by_formula("box.heave_m", "2*t", limit(0.05)), &folder);
     assert!(whole.metrics.off.is_some_and(|off| (off - 0.1).abs() < 1e-12) && whole.passed == Some(false));
-    let late = CheckPlan { from: Some(1.0), ..by_formula("box.heave_m", "2*t", limit(0.05)) };
+    let late = by_formula("box.heave_m", "2*t", limit(0.05)).from(1.0);
     let late = judge(&late, &folder);
     assert!(late.metrics.relative_l2.is_some_and(|n| n < 1e-12) && late.passed == Some(true) && late.covered == 1.0);
-    let early = CheckPlan { until: Some(0.9), ..by_formula("box.heave_m", "2*t", None) };
+    let early = by_formula("box.heave_m", "2*t", None).until(0.9);
     let n = judge(&early, &folder).metrics.relative_l2;
     let by_hand = {
         let t: Vec<f64> = (0..=90).map(|i| 0.01 * i as f64).collect();
@@ -157,7 +154,7 @@ fn a_formula_is_a_reference_at_the_runs_own_times_and_only_the_window_counts() -
     };
     assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-12), "{n:?} against {by_hand}");
     // The run of 3 s covers a third of this window.
-    let beyond = CheckPlan { from: Some(2.0), until: Some(5.0), ..by_formula("box.heave_m", "2*t", limit(1.0)) };
+    let beyond = by_formula("box.heave_m", "2*t", limit(1.0)).from(2.0).until(5.0);
     let beyond = judge(&beyond, &folder);
     assert!((beyond.covered - 1.0 / 3.0).abs() < 1e-12 && beyond.passed.is_none());
     fs::remove_dir_all(folder)
@@ -200,7 +197,7 @@ fn a_running_mean_has_figures_of_its_own_beside_the_raw_ones() -> std::io::Resul
     // Noise of one sample's period, which any mean over some samples takes out.
     let noisy = |t: f64| t + if (t * 100.0).round() as i64 % 2 == 0 { 0.1 } else { -0.1 };
     let folder = folder("noise", &table(noisy), "")?;
-    let words = CheckPlan { mean: Some(0.2), ..by_formula("box.heave_m", "t", bound(0.01)) };
+    let words = by_formula("box.heave_m", "t", bound(0.01)).mean(0.2);
     let verdict = judge(&words, &folder);
     let meaned = verdict.meaned.and_then(|m| m.metrics.relative_l2);
     assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.05) && meaned.is_some_and(|n| n < 0.01));
@@ -213,10 +210,10 @@ fn an_instrument_set_to_zero_on_the_way_counts_from_there() -> std::io::Result<(
     // The run stands 0.3 too high before the record begins, and the record knows nothing of it.
     let folder = folder("zero", &table(|t| t * t + 0.3), "")?;
     let raw = by_formula("box.heave_m", "t^2 - 0.25", bound(1e-9));
-    let set = CheckPlan { zero: Some(0.5), ..raw.clone() };
+    let set = raw.clone().zero(0.5);
     assert_eq!([judge(&raw, &folder).passed, judge(&set, &folder).passed], [Some(false), Some(true)]);
     assert_eq!(judge(&set, &folder).series, "box.heave_m, 0 at 0.5 s");
-    let late = judge(&CheckPlan { zero: Some(1e3), ..set }, &folder);
+    let late = judge(&set.zero(1e3), &folder);
     assert!(late.passed.is_none() && late.note.is_some_and(|note| note.contains("before it is set to zero")));
     fs::remove_dir_all(folder)
 }
@@ -228,7 +225,7 @@ fn a_late_run_is_told_by_how_much_by_its_crossing_and_by_the_best_delay() -> std
     let words = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None);
     for align in [Align::Crossing(5.0), Align::Best] {
         let limits = Score { aligned_relative_l2: Some(0.01), delay: Some(0.06), ..Score::default() };
-        let words = CheckPlan { align: Some(align), bound: Some(limits), ..words.clone() };
+        let words = words.clone().align(align).bound(limits);
         let verdict = judge(&words, &folder);
         // Crossings are linear between samples, where the pulse bends by 8e-4 of its height.
         let aligned = verdict.aligned.unwrap_or_else(|| panic!("{align:?} is formed"));
@@ -236,15 +233,15 @@ fn a_late_run_is_told_by_how_much_by_its_crossing_and_by_the_best_delay() -> std
         assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.3), "the raw figure is left as it is");
         assert_eq!(verdict.passed, Some(true));
         assert_eq!(verdict.arrival.is_some(), align != Align::Best);
-        let strict = CheckPlan { bound: Some(Score { delay: Some(0.04), ..Score::default() }), ..words.clone() };
+        let strict = words.clone().bound(Score { delay: Some(0.04), ..Score::default() });
         assert_eq!(judge(&strict, &folder).passed, Some(false));
     }
-    let high = CheckPlan { align: Some(Align::Crossing(50.0)), bound: bound(9.0), ..words.clone() };
+    let high = words.clone().align(Align::Crossing(50.0)).bound(Score { relative_l2: Some(9.0), ..Score::default() });
     let never = judge(&high, &folder);
     assert!(never.aligned.is_none() && never.arrival.is_some_and(|a| a.run.is_none()));
     assert_eq!(never.passed, Some(true), "nothing aligned is asked for");
-    let limit = Some(Score { aligned_relative_l2: Some(9.0), ..Score::default() });
-    assert_eq!(judge(&CheckPlan { bound: limit, ..high }, &folder).passed, Some(false));
+    let limit = Score { aligned_relative_l2: Some(9.0), ..Score::default() };
+    assert_eq!(judge(&high.bound(limit), &folder).passed, Some(false));
     fs::remove_dir_all(folder)
 }
 
@@ -252,12 +249,7 @@ fn a_late_run_is_told_by_how_much_by_its_crossing_and_by_the_best_delay() -> std
 fn a_reference_with_a_clock_of_its_own_starts_when_the_run_says() -> std::io::Result<()> {
     // The run is at rest for a second, then rises with 2 m/s; the record begins as it passes 1 m.
     let folder = folder("clock", &table(|t| (2.0 * (t - 1.0)).max(0.0)), &table(|t| 1.0 + 2.0 * t))?;
-    let words = CheckPlan {
-        align: Some(Align::Start(1.0)),
-        until: Some(0.8),
-        bound: bound(0.01),
-        ..by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None)
-    };
+    let words = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, bound(0.01)).align(Align::Start(1.0)).until(0.8);
     let verdict = judge(&words, &folder);
     // All is linear: round-off.
     assert!(verdict.metrics.relative_l2.is_some_and(|n| n < 1e-12), "{verdict:?}");
@@ -265,13 +257,9 @@ fn a_reference_with_a_clock_of_its_own_starts_when_the_run_says() -> std::io::Re
     assert!(arrival.run.is_some_and(|t| (t - 1.5).abs() < 1e-12) && arrival.reference == Some(0.0), "{arrival:?}");
     assert!(verdict.aligned.is_none() && verdict.covered == 1.0);
 
-    let formula = CheckPlan {
-        align: Some(Align::Start(1.0)),
-        from: Some(0.1),
-        ..by_formula("box.heave_m", "1 + 2*t", bound(1e-9))
-    };
-    assert_eq!(judge(&CheckPlan { until: Some(0.8), ..formula }, &folder).passed, Some(true));
-    let never = judge(&CheckPlan { align: Some(Align::Start(9.0)), ..words }, &folder);
+    let formula = by_formula("box.heave_m", "1 + 2*t", bound(1e-9)).align(Align::Start(1.0)).from(0.1);
+    assert_eq!(judge(&formula.until(0.8), &folder).passed, Some(true));
+    let never = judge(&words.align(Align::Start(9.0)), &folder);
     assert!(never.passed.is_none() && never.note.is_some_and(|note| note.contains("never passes 9")));
     fs::remove_dir_all(folder)
 }
@@ -286,7 +274,7 @@ fn the_table_of_checks_has_only_columns_that_one_of_them_uses() -> std::io::Resu
     };
     assert_eq!(heads(&[&plain]), "check|N|M|bound|");
     let limit = Some(Score { off: Some(0.1), ..Score::default() });
-    let rich = CheckPlan { align: Some(Align::Best), mean: Some(0.1), ..by_formula("box.heave_m", "t", limit) };
+    let rich = by_formula("box.heave_m", "t", limit).align(Align::Best).mean(0.1);
     let rich = judge(&rich, &folder);
     assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean over|mean N|mean M|aligned N|aligned M|delay|off|bound|");
     // A load as an instrument takes it strikes: its first peak is told.

@@ -87,11 +87,11 @@ fn momentum_of_water_and_body_is_kept() {
 fn left(gradient: PressureGradient) -> f64 {
     let (dp, depth, height) = (0.02, 0.4, 0.06);
     let viscosity = Viscosity::Laminar(Laminar { nu0: 1e-6 });
-    let model = Model { gradient, viscosity, ..Model::water(2, dp, depth) };
+    let model = Model::water(2, dp, depth).gradient(gradient).viscosity(viscosity);
     let k = std::f64::consts::TAU;
     let water = rig::lattice([0.0, 0.0], [1.0, depth], dp);
-    let levels = vec![depth; water.len()];
-    let mut sim = Simulation::new(Setup::new(model, water, levels, vec![rig::tank([1.0, 0.8], dp)])).expect("a setup");
+    let setup = Setup::new(model).water(water, depth).solid(rig::tank([1.0, 0.8], dp));
+    let mut sim = Simulation::new(setup).expect("a setup");
     // The wave as it passes through its flat state: potential flow of the first mode.
     let omega = (9.81 * k * (k * depth).tanh()).sqrt();
     let speed = 0.5 * height * omega / (k * depth).sinh();
@@ -122,11 +122,8 @@ fn a_standing_wave_loses_less_of_its_height() {
 
 #[test]
 fn what_it_does_not_go_with_is_refused() {
-    let of = |kernel, shifting| Model {
-        gradient: PressureGradient::Corrected,
-        kernel,
-        shifting,
-        ..Model::water(2, 0.02, 0.3)
+    let of = |kernel, shifting| {
+        Model::water(2, 0.02, 0.3).gradient(PressureGradient::Corrected).kernel(kernel).shifting(shifting)
     };
     assert!(of(KernelKind::Wendland, Shifting::None).conflict().is_none());
     for model in [
@@ -134,8 +131,7 @@ fn what_it_does_not_go_with_is_refused() {
         of(KernelKind::Wendland, Shifting::Everywhere(pontoon::sph::particle_shifting::Shift::default())),
     ] {
         let water = rig::lattice([0.0, 0.0], [0.2, 0.2], 0.02);
-        let levels = vec![0.2; water.len()];
-        let refused = Simulation::new(Setup::new(model, water, levels, vec![rig::tank([0.2, 0.4], 0.02)]));
+        let refused = Simulation::new(Setup::new(model).water(water, 0.2).solid(rig::tank([0.2, 0.4], 0.02)));
         assert!(refused.is_err_and(|e| e.message.contains("corrected gradients")));
     }
 }

@@ -119,9 +119,8 @@ fn of_two_contacts_of_a_pair_the_later_counts() -> Result<()> {
     let usual = links(&format!("{IGNORED}[[contact]]\nbetween = [\"a\", \"b\"]\ntouch = true"))?;
     assert!(usual.can_touch(1, 2) && !usual.can_touch(2, 3));
     // From Rust, too.
-    let pair = |between, touch| ContactSpec { between, can_touch: touch, friction: None, restitution: None };
     let mut contacts: Constraints<2> = Constraints::default();
-    contacts.contacts.extend([pair([1, 0], false), pair([0, 1], true)]);
+    contacts.contacts.extend([ContactSpec::new([1, 0]).without_contact(), ContactSpec::new([0, 1])]);
     assert!(contacts.can_touch(0, 1) && contacts.contacts.len() == 1);
     Ok(())
 }
@@ -129,8 +128,8 @@ fn of_two_contacts_of_a_pair_the_later_counts() -> Result<()> {
 #[test]
 fn a_thousand_floats_that_ignore_one_another_cost_a_moment() {
     let pairs = (0..1000).flat_map(|a| (0..a).map(move |b| [a, b]));
-    let apart = |between| ContactSpec { between, can_touch: false, friction: None, restitution: None };
-    let links: Constraints<2> = Constraints { contacts: pairs.clone().map(apart).collect(), ..Constraints::default() };
+    let mut links: Constraints<2> = Constraints::default();
+    links.contacts.extend(pairs.clone().map(|pair| ContactSpec::new(pair).without_contact()));
     // Half a million pairs: a search through all of them for each would take minutes.
     assert!(pairs.into_iter().all(|[a, b]| !links.can_touch(a, b)));
 }

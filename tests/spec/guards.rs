@@ -3,7 +3,7 @@
 use pontoon::{
     error::ErrorKind,
     geometry::Shape,
-    math::{Bounds, Vector},
+    math::Vector,
     model::Model,
     run::{self, InspectOptions},
     simulation::{Escape, ParticleLimits, Setup, Simulation},
@@ -97,10 +97,8 @@ fn a_healthy_run_is_not_changed_by_a_bit() {
 fn falling(limits: ParticleLimits) -> Simulation<2> {
     let dp = 0.02;
     let water = rig::lattice([0.0, 0.0], [0.1, 0.1], dp);
-    let levels = vec![0.1; water.len()];
-    let mut setup = Setup::new(Model::water(2, dp, 10.0), water, levels, vec![]);
-    setup.domain = Some(Bounds { min: Vector::from([-1.0, -0.05]), max: Vector::from([1.1, 1.0]) });
-    setup.limits = limits;
+    let setup =
+        Setup::<2>::new(Model::water(2, dp, 10.0)).water(water, 0.1).domain([-1.0, -0.05], [1.1, 1.0]).limits(limits);
     Simulation::new(setup).expect("a sound setup").without_rollback()
 }
 
@@ -109,7 +107,7 @@ fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
     let mut stops = falling(ParticleLimits::default());
     let error = (0..10_000).find_map(|_| stops.step().err()).expect("the water falls out");
     assert!(error.to_string().contains("escape from the domain"), "{error}");
-    let mut goes_on = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
+    let mut goes_on = falling(ParticleLimits::default().escape(Escape::Remove));
     while goes_on.system().fluid().len() > 5 {
         goes_on.step().expect("those that leave are taken out");
     }
@@ -129,7 +127,7 @@ fn a_particle_that_leaves_stops_the_run_unless_it_is_to_be_removed() {
 #[test]
 fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
     // Thrown up by v²/2g = 0.32 m, three supports and more above where it stood, it leaves below, as splash does beside a tank.
-    let mut thrown = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
+    let mut thrown = falling(ParticleLimits::default().escape(Escape::Remove));
     thrown.set_water_velocity(|_| Vector::from([0.0, 2.5]));
     while thrown.removed_particles().is_empty() {
         thrown.step().expect("those that leave are taken out");
@@ -141,7 +139,7 @@ fn who_falls_from_higher_than_water_stood_went_over_a_wall() {
 
 #[test]
 fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
-    let limits = ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() };
+    let limits = ParticleLimits::default().escape(Escape::Remove);
     let mut whole = falling(limits);
     while whole.removed_particles().is_empty() {
         whole.step().unwrap();
@@ -158,8 +156,8 @@ fn a_run_that_lost_particles_goes_on_to_the_same_bits() {
 #[test]
 fn density_and_speed_are_held_within_the_bounds_of_the_scene() {
     for (limits, word) in [
-        (ParticleLimits { density: [0.9, 1.1], ..ParticleLimits::default() }, "guard.density"),
-        (ParticleLimits { speed: 0.1, ..ParticleLimits::default() }, "guard.speed"),
+        (ParticleLimits::default().density(0.9, 1.1), "guard.density"),
+        (ParticleLimits::default().speed(0.1), "guard.speed"),
     ] {
         let plant = |sim: &mut Simulation<2>| {
             let c0 = sim.system().model().c0;
@@ -202,10 +200,10 @@ fn thrown() -> Simulation<2> {
     if let Role::Free(body) = &mut float.role {
         body.velocity = Vector::from([10.0, 0.0]);
     }
-    let levels = vec![0.2; water.len()];
-    let solids = vec![rig::tank([0.2, 0.4], dp), float];
-    let mut setup = Setup::new(Model::water(2, dp, 0.2), water, levels, solids);
-    setup.domain = Some(Bounds { min: Vector::from([-1.0, -1.0]), max: Vector::from([1.0, 1.0]) });
+    let setup = Setup::<2>::new(Model::water(2, dp, 0.2))
+        .water(water, 0.2)
+        .solids([rig::tank([0.2, 0.4], dp), float])
+        .domain([-1.0, -1.0], [1.0, 1.0]);
     Simulation::new(setup).expect("a sound setup").without_rollback()
 }
 

@@ -39,10 +39,10 @@ fn profile(sim: &Simulation<2>) -> Vec<(f64, f64)> {
 #[test]
 fn the_pressure_is_hydrostatic_and_the_level_stands() {
     for walls in [Walls::Dynamic, Walls::RelaxedAdami] {
-        stands(&still_tank(Model { walls, ..Model::water(2, DP, DEPTH) }, 5.0));
-        stands(&still_tank(Model { walls, gradient: PressureGradient::Corrected, ..Model::water(2, DP, DEPTH) }, 5.0));
+        stands(&still_tank(Model::water(2, DP, DEPTH).walls(walls), 5.0));
+        stands(&still_tank(Model::water(2, DP, DEPTH).walls(walls).gradient(PressureGradient::Corrected), 5.0));
         // At h = 1.7 dp rows of the lattice fall out of step now and then, and stir the water by up to 3 % of √(g depth).
-        let wide = Model { walls, h: 2.0 * DP, ..Model::water(2, DP, DEPTH) };
+        let wide = Model::water(2, DP, DEPTH).walls(walls).h(2.0 * DP);
         let mut sim = still_tank(wide, 1.0);
         while sim.time() < 5.0 {
             sim.step_to(5.0).expect("still water");

@@ -24,7 +24,7 @@ const SKIN: f64 = 5e-3;
 /// A solid with its centre this high above the origin, m.
 fn at_height<const D: usize>(name: &str, shape: Shape<D>, height: f64, role: Role<D>, skin: f64) -> SolidSpec<D> {
     let place = Vector::from_fn(|i, _| if i == D - 1 { height } else { 0.0 });
-    SolidSpec { contact_skin: skin, ..rig::solid(name, shape, Pose::at(place), role) }
+    rig::solid(name, shape, Pose::at(place), role).contact_skin(skin)
 }
 
 /// A fixed block a metre wide with its top at height 0.
@@ -151,7 +151,7 @@ where
     assert!(message.contains("\"cube\" starts 0.00200 m inside \"floor\", contact skins counted"), "{message}");
     // A twentieth of dp is let pass, with skins as without.
     assert!(engine(&near(0.0596), G).is_ok());
-    let bare = near(0.049).map(|solid| SolidSpec { contact_skin: 0.0, ..solid });
+    let bare = near(0.049).map(|solid| solid.contact_skin(0.0));
     let message = engine(&bare, G).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(message.contains("\"cube\" starts 0.00100 m inside \"floor\"") && !message.contains("skin"), "{message}");
     // What comes later is held to the same.

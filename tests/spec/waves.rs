@@ -129,7 +129,7 @@ fn words_that_cannot_be_meant_are_named_with_file_line_key_and_what_can() {
 #[test]
 fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
     let paddle = |motion: DrivenConfig| {
-        let at = pontoon::scene::PlacementConfig { x: Some(-0.05), bottom: Some(0.0), ..Default::default() };
+        let at = pontoon::scene::PlacementConfig::point(&[-0.05]).bottom(0.0);
         let tank = SolidConfig::fixed("tank", ShapeConfig::tank([5.2, 0.6]))
             .at(pontoon::scene::PlacementConfig::point(&[-0.2]));
         Scene::new(2, 0.02, 6.0)
@@ -144,7 +144,7 @@ fn a_wave_can_be_ordered_from_rust_in_the_same_words() {
     let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
     assert_eq!(piston, again);
     let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
-        .with_damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
+        .damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
         .probe(ProbeConfig::motion("paddle"));
     assert_eq!(look(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
 }
@@ -362,11 +362,10 @@ fn a_damping_zone_slows_water_by_its_law_whatever_the_scheme() {
     for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 50 }] {
         let mut model = Model::water(2, 0.05, 1.0);
         (model.c0, model.gravity, model.viscosity, model.scheme) = (20.0, vec![0.0, 0.0], Viscosity::None, scheme);
-        let levels = vec![0.0; water.len()];
         // It begins far to the left: s = 1 where the water is.
         let zone = SpongeLayer { from: [-9.0, 0.0].into(), to: [-8.0, 0.0].into(), strength: 3.0, power: 2.0 };
-        let velocity = vec![Vector::from([0.2, 0.1]); water.len()];
-        let setup = Setup { velocity, sponge_layers: vec![zone], ..Setup::new(model, water.clone(), levels, vec![]) };
+        let velocity = |_: &Vector<2>| Vector::from([0.2, 0.1]);
+        let setup = Setup::new(model).water(water.clone(), 0.0).velocity(velocity).sponge_layer(zone);
         let mut sim = Simulation::new(setup).unwrap();
         while sim.time() < 0.5 {
             sim.step_to(0.5).unwrap();

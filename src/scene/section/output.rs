@@ -30,6 +30,7 @@ const CHECKPOINT_WALL: f64 = 600.0;
 /// FramesChoice for ParaView: `"off"`, or when and which fields.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum FramesChoice {
     /// None are written.
     Off,
@@ -41,6 +42,7 @@ pub enum FramesChoice {
 /// When frames are written, and with which fields.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct FramesConfig {
     /// Simulated time between frames, s.
     pub every: Option<f64>,
@@ -133,6 +135,7 @@ impl FramesConfig {
 /// Checkpoints.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct CheckpointConfig {
     /// Simulated time between them, s.
     pub every: Option<f64>,

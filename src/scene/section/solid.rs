@@ -35,6 +35,7 @@ const THIN_DENSITY: f64 = 0.2;
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SolidConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
@@ -62,6 +63,7 @@ pub struct SolidConfig {
 /// A body that water, weight and contacts move.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct FreeBodyConfig {
     /// Density, kg/m³.
     pub density: Option<f64>,
@@ -150,10 +152,29 @@ impl SolidConfig {
         Self { driven: Some(motion), ..Self::new(name, shape) }
     }
 
+    /// A free body with this mass and start.
+    pub fn with_body(name: impl Into<String>, shape: ShapeConfig, body: FreeBodyConfig) -> Self {
+        Self { free: Some(body), ..Self::new(name, shape) }
+    }
+
     /// The same solid at a place.
-    pub fn at(mut self, at: PlacementConfig) -> Self {
-        self.at = Some(at);
-        self
+    pub fn at(self, at: PlacementConfig) -> Self {
+        Self { at: Some(at), ..self }
+    }
+
+    /// The same solid with a Coulomb friction coefficient (–).
+    pub fn friction(self, friction: f64) -> Self {
+        Self { friction: Some(friction), ..self }
+    }
+
+    /// The same solid with a restitution coefficient (–).
+    pub fn restitution(self, restitution: f64) -> Self {
+        Self { restitution: Some(restitution), ..self }
+    }
+
+    /// The same solid, with contact beginning at this distance (m) from its faces.
+    pub fn contact_skin(self, contact_skin: f64) -> Self {
+        Self { contact_skin: Some(contact_skin), ..self }
     }
 
     /// Refuses a solid that is not complete; `others` are the solids before it and `all` those of the scene.

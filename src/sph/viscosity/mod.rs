@@ -17,6 +17,7 @@ use super::{FluidProperties, Term, Units};
 /// The viscosity. Scene key `model.viscosity`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Viscosity {
     /// None: the ideal fluid.
     None,
