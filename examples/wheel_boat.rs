@@ -13,7 +13,10 @@
 
 use pontoon::{
     Result,
-    scene::{CompoundPartConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
+    scene::{
+        CompoundPartConfig, FreeBodyConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig,
+        SolidConfig,
+    },
     simulation::Simulation,
     solid::Motor,
 };
@@ -56,11 +59,9 @@ fn boat() -> Result<Simulation<2>> {
     // Hulls of 0.6 m together carry boat and wheel with half their height under water.
     let mass = 1000.0 * 0.6 * 0.06;
     let wheel = SolidConfig::free("wheel", wheel, 200.0).at(PlacementConfig::point(&[middle, DEPTH + HUB]));
-    let mut hull = SolidConfig::free("boat", hull, 1.0).at(PlacementConfig::point(&[middle, DEPTH]));
-    if let Some(free) = &mut hull.free {
-        // The wheel displaces some water itself, so that the boat starts a little high.
-        (free.density, free.mass) = (None, Some(mass - 200.0 * 0.04 * (2.0 * RADIUS + 2.0 * arm)));
-    }
+    // The wheel displaces some water itself, so that the boat starts a little high.
+    let body = FreeBodyConfig::from_mass(mass - 200.0 * 0.04 * (2.0 * RADIUS + 2.0 * arm));
+    let hull = SolidConfig::with_body("boat", hull, body).at(PlacementConfig::point(&[middle, DEPTH]));
     let built = Scene::new(2, DP, UNTIL)
         .title("A boat with a wheel")
         .water_box([0.0, 0.0], [POOL, DEPTH])

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use crate::{
-    error::{Error, Result, nearest_name},
+    error::{Error, ErrorCode, Result, nearest_name},
     math::time_series::TimeSeries,
 };
 
@@ -36,7 +36,9 @@ fn read_pairs(path: &Path, time: &str, column: &str) -> Result<Vec<(f64, f64)>> 
                 Some(near) => format!("did you mean {near:?}?"),
                 None => format!("its columns are: {}", header.iter().collect::<Vec<_>>().join(", ")),
             };
-            Error::scene(format!("{} has no column {name:?}", path.display())).help(help)
+            Error::scene(format!("{} has no column {name:?}", path.display()))
+                .with_code(ErrorCode::UnknownName)
+                .help(help)
         })
     };
     let (t, x) = (place(time)?, place(column)?);

@@ -9,6 +9,7 @@ use serde::{
 };
 
 use crate::{
+    error::{self, ErrorCode},
     math::{BoxConfig, format::bytes},
     output::frame::particle_bytes,
     plan::FramesPlan,
@@ -86,14 +87,14 @@ impl<'de> Deserialize<'de> for FramesChoice {
 
 impl FramesChoice {
     /// Refuses unknown fields and an empty box.
-    pub(crate) fn verify(&self, ctx: &Context) -> crate::error::Result<()> {
+    pub(crate) fn verify(&self, ctx: &Context) -> error::Result<()> {
         let Self::On(FramesConfig { every, fields, corners }) = self else { return Ok(()) };
         ctx.require_positive("frames.every", *every)?;
         if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
             let what = format!("no field is called \"{field}\"{}", suggestion(field, &FIELDS));
             return Err(ctx
                 .error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", ")))
-                .with_code(crate::error::ErrorCode::UnknownName));
+                .with_code(ErrorCode::UnknownName));
         }
         corners.as_ref().map_or(Ok(()), |corners| corners.verify(ctx, "frames.box"))
     }
@@ -144,7 +145,7 @@ pub struct CheckpointConfig {
 }
 
 impl CheckpointConfig {
-    pub(crate) fn verify(&self, ctx: &Context) -> crate::error::Result<()> {
+    pub(crate) fn verify(&self, ctx: &Context) -> error::Result<()> {
         ctx.require_positive("checkpoint.every", self.every)?;
         ctx.require_positive("checkpoint.wall", self.wall)
     }

@@ -300,6 +300,11 @@ impl SolidConfig {
 }
 
 impl FreeBodyConfig {
+    /// A homogeneous body of `mass` (kg; kg/m in 2-D), at rest.
+    pub fn from_mass(mass: f64) -> Self {
+        Self { mass: Some(mass), ..Self::default() }
+    }
+
     /// Refuses a body without a mass, and vectors that do not fit the dimension.
     fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         ctx.require_positive(&format!("{key}.density"), self.density)?;

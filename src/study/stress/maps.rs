@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::criteria::{Bound, Criteria, MotionBound, SolidBound};
 use crate::{
-    error::{Error, ErrorKind, Result, nearest_name},
+    error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
     math::expression::ScalarField,
     output::checkpoint::fnv1a,
     scene::Scene,
@@ -128,7 +128,9 @@ pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result
                 Some(near) => format!("did you mean {near:?}? {list}"),
                 None => list.into(),
             };
-            Error::new(ErrorKind::Usage, format!("there is no map {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no map {name:?}"))
+                .with_code(ErrorCode::UnknownName)
+                .help(help)
         })
     };
     names.iter().map(map).collect()
