@@ -36,10 +36,9 @@ fn main() -> Result<()> {
         .solid(SolidConfig::fixed("tank", ShapeConfig::tank([TANK, 0.8])));
     for i in 0..CUBES {
         // Let fall from 20 mm, each a millimetre above the one below.
-        let at = PlacementConfig { bottom: Some(0.02 + i as f64 * (EDGE + 0.001)), ..PlacementConfig::point(&[1.0]) };
-        let mut cube = SolidConfig::free(format!("cube-{i}"), ShapeConfig::cuboid([EDGE; 2]), 500.0).at(at);
-        cube.friction = Some(0.5);
-        scene = scene.solid(cube);
+        let at = PlacementConfig::point(&[1.0]).bottom(0.02 + i as f64 * (EDGE + 0.001));
+        let cube = SolidConfig::free(format!("cube-{i}"), ShapeConfig::cuboid([EDGE; 2]), 500.0);
+        scene = scene.solid(cube.at(at).friction(0.5));
     }
     let built = scene.build::<2>()?;
     let until = built.plan.until;

@@ -21,12 +21,12 @@ use std::f64::consts::TAU;
 
 use pontoon::{
     error::{Error, Result},
-    geometry::{Shape, WaterRegion, fill},
+    geometry::{Shape, WaterRegion},
     math::{Pose, Vector},
     model::{Dimension, Model, Walls},
     probe::{ElevationProbe, Probe},
     simulation::{Setup, Simulation},
-    solid::{Dim, FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
+    solid::{Dim, FreeBody, SolidSpec, hydrostatics::equilibrium_height},
 };
 
 const RHO0: f64 = 1000.0;
@@ -77,8 +77,9 @@ where
 
     fn body(&self) -> FreeBody<D> {
         // A cube would turn over at most of these densities: it may not. In 2-D everything upright may.
-        let locked_rotations = [D == 3 || self.tilt != 0.0; 3];
-        FreeBody { locked_rotations, ..FreeBody::from_density(&self.shape, self.ratio * RHO0) }
+        let mut body = FreeBody::from_density(&self.shape, self.ratio * RHO0);
+        body.locked_rotations = [D == 3 || self.tilt != 0.0; 3];
+        body
     }
 
     /// Afloat at `level` (m).
@@ -96,16 +97,11 @@ where
         size[D - 1] += 0.5 * HEIGHT;
         let tank = Shape::Tank { size, thickness: 4.0 * dp };
         let region = WaterRegion { shape: Shape::Box { size: self.pool }, pose: Pose::at(self.pool * 0.5) };
-        let water = fill(&[region], &[(&tank, &Pose::identity()), (&self.shape, &pose)], dp)?.r;
-        let solid = |name: &str, shape, pose, role| {
-            let name = name.into();
-            SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
-        };
-        let tank = solid("tank", tank, Pose::identity(), Role::Fixed);
-        let float = solid("float", self.shape.clone(), pose, Role::Free(body));
-        let levels = vec![depth; water.len()];
-        let model = Model { walls: self.walls, ..Model::water(D, dp, depth) };
-        Simulation::new(Setup::new(model, water, levels, vec![tank, float]))
+        let setup = Setup::new(Model::water(D, dp, depth).walls(self.walls))
+            .solid(SolidSpec::fixed("tank", tank).friction(0.0))
+            .solid(SolidSpec::with_body("float", self.shape.clone(), body).at(pose).friction(0.0))
+            .fill(&[region], depth)?;
+        Simulation::new(setup)
     }
 
     /// The water level (m) that the tank's volume gives.

@@ -13,9 +13,7 @@
 
 use pontoon::{
     Result,
-    scene::{
-        JointConfig, JointKindConfig, MotorConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig, TimeValueConfig,
-    },
+    scene::{JointConfig, JointKindConfig, MotorConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
     solid::{Role, Solid},
 };
@@ -30,36 +28,31 @@ const DENSITY: f64 = 600.0;
 const LIFT: f64 = 0.2;
 const TIMES: [f64; 2] = [1.5, 3.0];
 
-fn slider(name: &str, between: &[&str], at: [f64; 2], along: [f64; 2], motor: MotorConfig) -> JointConfig {
-    let names = between.iter().map(|name| name.to_string()).collect();
-    let joint = JointConfig::new::<0>(name, JointKindConfig::Slider, [], at);
-    JointConfig { between: names, along: Some(along.into()), motor: Some(motor), ..joint }
+fn slider<const N: usize>(
+    name: &str,
+    between: [&str; N],
+    at: [f64; 2],
+    along: [f64; 2],
+    motor: MotorConfig,
+) -> JointConfig {
+    JointConfig::new(name, JointKindConfig::Slider, between, at).along(along).motor(motor)
 }
 
 fn gripper() -> Scene {
     let rise = format!("{LIFT}*min(max((t-{})/{},0),1)", TIMES[0], TIMES[1] - TIMES[0]);
-    let servo = |law: String| MotorConfig {
-        position: Some(TimeValueConfig::formula(law)),
-        stiffness: Some(2e5.into()),
-        damping: Some(5e3.into()),
-        ..MotorConfig::default()
-    };
+    let servo = |law: String| MotorConfig::default().position(law).stiffness(2e5).damping(5e3);
     // Jaws 2 cm from the float close at 0.5 s; 150 N press, of which friction makes 0.6 on each side.
     let close = "0.02*min(max((t-0.5)/0.3,0),1)".to_string();
-    let press = MotorConfig {
-        force: Some(TimeValueConfig::formula("-150*min(max((t-0.8)/0.2,0),1)")),
-        damping: Some(300.0.into()),
-        ..MotorConfig::default()
-    };
+    let press = MotorConfig::default().force("-150*min(max((t-0.8)/0.2,0),1)").damping(300.0);
     let jaw = |name, x: f64| {
-        let mut jaw = SolidConfig::free(name, ShapeConfig::cuboid([0.04, 0.16]), 500.0);
-        jaw.friction = Some(0.6);
         // Its tip is a little above the water, beside the float's dry part.
-        jaw.at(PlacementConfig { bottom: Some(DEPTH + 0.004), ..PlacementConfig::point(&[x]) })
+        let at = PlacementConfig::point(&[x]).bottom(DEPTH + 0.004);
+        SolidConfig::free(name, ShapeConfig::cuboid([0.04, 0.16]), 500.0).at(at).friction(0.6)
     };
     let aside = 0.5 * FLOAT[0] + 0.04;
-    let mut float = SolidConfig::free("float", ShapeConfig::cuboid(FLOAT), DENSITY).at(PlacementConfig::afloat(&[0.5]));
-    float.friction = Some(0.6);
+    let float = SolidConfig::free("float", ShapeConfig::cuboid(FLOAT), DENSITY)
+        .at(PlacementConfig::afloat(&[0.5]))
+        .friction(0.6);
     Scene::new(2, 0.02, 4.0)
         .title("A gripper and a float")
         .water_box([0.0, 0.0], [1.0, DEPTH])
@@ -71,9 +64,9 @@ fn gripper() -> Scene {
         )
         .solid(jaw("left", 0.5 - aside))
         .solid(jaw("right", 0.5 + aside))
-        .joint(slider("lift", &["carriage"], [0.5, DEPTH + 0.24], [0.0, 1.0], servo(rise)))
-        .joint(slider("mover", &["carriage", "left"], [0.5 - aside, DEPTH + 0.16], [1.0, 0.0], servo(close)))
-        .joint(slider("presser", &["carriage", "right"], [0.5 + aside, DEPTH + 0.16], [1.0, 0.0], press))
+        .joint(slider("lift", ["carriage"], [0.5, DEPTH + 0.24], [0.0, 1.0], servo(rise)))
+        .joint(slider("mover", ["carriage", "left"], [0.5 - aside, DEPTH + 0.16], [1.0, 0.0], servo(close)))
+        .joint(slider("presser", ["carriage", "right"], [0.5 + aside, DEPTH + 0.16], [1.0, 0.0], press))
 }
 
 fn main() -> Result<()> {

@@ -14,7 +14,8 @@
 use pontoon::{
     Result,
     scene::{
-        DrivenConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig, SpringConfig,
+        DrivenConfig, JointConfig, JointKindConfig, MotorConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig,
+        SpringConfig,
     },
     simulation::Simulation,
 };
@@ -27,11 +28,7 @@ fn raft(brake: f64) -> Scene {
     let pontoon = |name, x: f64| {
         SolidConfig::free(name, ShapeConfig::cuboid([0.25, 0.075]), 500.0).at(PlacementConfig::afloat(&[x]))
     };
-    let mooring = SpringConfig {
-        length: Some(0.6),
-        damping: Some(5.0),
-        ..SpringConfig::mooring("mooring", "fore", [0.775, 0.25], [0.3, 0.0], 50.0)
-    };
+    let mooring = SpringConfig::mooring("mooring", "fore", [0.775, 0.25], [0.3, 0.0], 50.0).length(0.6).damping(5.0);
     let paddle = DrivenConfig::slide([1.0, 0.0], format!("0.025*(1-cos(2*pi*t/{PERIOD}))"));
     Scene::new(2, 0.0125, 6.0 * PERIOD)
         .title("A hinged raft")
@@ -40,11 +37,14 @@ fn raft(brake: f64) -> Scene {
         .solid(SolidConfig::fixed("beach", ShapeConfig::polygon([[1.9, 0.0], [2.5, 0.0], [2.5, 0.36]])))
         .solid(
             SolidConfig::driven("paddle", ShapeConfig::cuboid([0.05, 0.5]), paddle)
-                .at(PlacementConfig { bottom: Some(0.0), ..PlacementConfig::point(&[-0.025]) }),
+                .at(PlacementConfig::point(&[-0.025]).bottom(0.0)),
         )
         .solid(pontoon("fore", 0.9))
         .solid(pontoon("aft", 1.2))
-        .joint(JointConfig::new("hinge", JointKindConfig::Hinge, ["fore", "aft"], [1.05, 0.25]).with_damping(brake))
+        .joint(
+            JointConfig::new("hinge", JointKindConfig::Hinge, ["fore", "aft"], [1.05, 0.25])
+                .motor(MotorConfig::default().damping(brake)),
+        )
         .spring(mooring)
 }
 

@@ -88,17 +88,13 @@ fn tank(water: usize, count: usize, free: bool) -> Result<Simulation<2>> {
         let (row, column) = ((i as f64 / across).floor(), i as f64 % across);
         let aside = if row % 2.0 == 0.0 { 0.0 } else { 1.5 };
         let x = 2.5 + 0.5 * SIZE[0] + column * (SIZE[0] + 1.9) + aside;
-        let at = PlacementConfig {
-            bottom: Some((deep + 0.5 + row * (SIZE[1] + 0.3)) * DP),
-            ..PlacementConfig::point(&[x * DP])
-        };
+        let at = PlacementConfig::point(&[x * DP]).bottom((deep + 0.5 + row * (SIZE[1] + 0.3)) * DP);
         let (name, shape) = (format!("box-{i}"), ShapeConfig::cuboid(SIZE.map(|size| size * DP)));
-        let mut solid = match free {
+        let solid = match free {
             true => SolidConfig::free(name, shape, DENSITIES[i % 4]),
             false => SolidConfig::fixed(name, shape),
         };
-        solid.friction = Some(0.4);
-        scene = scene.solid(solid.at(at));
+        scene = scene.solid(solid.at(at).friction(0.4));
     }
     // Nothing falls faster than 4 m/s here.
     scene.model.c0 = Some(40.0);

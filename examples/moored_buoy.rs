@@ -23,8 +23,7 @@ const DENSITY: f64 = 500.0;
 
 fn main() -> Result<()> {
     // Afloat its bottom is 0.05 m under the surface.
-    let line =
-        SpringConfig { damping: Some(20.0), ..SpringConfig::mooring("line", "buoy", [0.5, 0.35], [0.5, 0.0], 10000.0) };
+    let line = SpringConfig::mooring("line", "buoy", [0.5, 0.35], [0.5, 0.0], 10000.0).damping(20.0);
     let built = Scene::new(2, 0.02, 4.0)
         .title("A buoy on a winch")
         .water_box([0.0, 0.0], [1.0, 0.4])

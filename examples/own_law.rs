@@ -17,11 +17,11 @@ use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    geometry::{Shape, WaterRegion, fill},
-    math::{Pose, Vector},
+    geometry::Shape,
+    math::Vector,
     model::Model,
     simulation::{Setup, Simulation},
-    solid::{Role, SolidSpec},
+    solid::SolidSpec,
     sph::{
         Num, Pair, Term, boundary::Repulsion, continuity::Continuity, density_diffusion::Fourtakas, kernel::Wendland,
         pressure::Pressure,
@@ -80,20 +80,8 @@ fn energy_left(strength: f64) -> Result<f64> {
 
 /// Still water in a tank.
 fn setup() -> Result<Setup<2>> {
-    let tank = SolidSpec {
-        name: "tank".into(),
-        shape: Shape::Tank { size: Vector::from([SIZE[0], 0.6]), thickness: 4.0 * DP },
-        pose: Pose::identity(),
-        role: Role::Fixed,
-        friction: 0.3,
-        restitution: 0.0,
-        contact_skin: 0.0,
-    };
-    let size = Vector::from(SIZE);
-    let region = WaterRegion { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
-    let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
-    let levels = vec![SIZE[1]; water.len()];
-    Ok(Setup::new(Model::water(2, DP, SIZE[1]), water, levels, vec![tank]))
+    let tank = Shape::Tank { size: Vector::from([SIZE[0], 0.6]), thickness: 4.0 * DP };
+    Setup::new(Model::water(2, DP, SIZE[1])).solid(SolidSpec::fixed("tank", tank)).fill_box([0.0, 0.0], SIZE)
 }
 
 fn main() -> Result<()> {

@@ -16,12 +16,12 @@ use std::f64::consts::PI;
 
 use pontoon::{
     Result,
-    geometry::{Shape, WaterRegion, fill},
-    math::{Pose, Vector},
+    geometry::Shape,
+    math::Vector,
     model::{Model, Viscosity},
     probe::{ElevationProbe, Probe},
     simulation::{Setup, Simulation},
-    solid::{Role, SolidSpec},
+    solid::SolidSpec,
     sph::viscosity::Artificial,
 };
 
@@ -67,20 +67,7 @@ fn main() -> Result<()> {
 /// Still water in a tank.
 fn setup() -> Result<Setup<2>> {
     let viscosity = Viscosity::Artificial(Artificial { alpha: 0.01 });
-    let model = Model { viscosity, ..Model::water(2, DP, SIZE[1]) };
-    let tank = SolidSpec {
-        name: "tank".into(),
-        shape: Shape::Tank { size: Vector::from([SIZE[0], 0.6]), thickness: 4.0 * DP },
-        pose: Pose::identity(),
-        role: Role::Fixed,
-        friction: 0.3,
-        restitution: 0.0,
-        contact_skin: 0.0,
-    };
-    // The frame of a box is its middle.
-    let size = Vector::from(SIZE);
-    let region = WaterRegion { shape: Shape::Box { size }, pose: Pose::at(0.5 * size) };
-    let water = fill(&[region], &[(&tank.shape, &tank.pose)], DP)?.r;
-    let levels = vec![SIZE[1]; water.len()];
-    Ok(Setup::new(model, water, levels, vec![tank]))
+    let model = Model::water(2, DP, SIZE[1]).viscosity(viscosity);
+    let tank = Shape::Tank { size: Vector::from([SIZE[0], 0.6]), thickness: 4.0 * DP };
+    Setup::new(model).solid(SolidSpec::fixed("tank", tank)).fill_box([0.0, 0.0], SIZE)
 }

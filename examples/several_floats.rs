@@ -15,11 +15,11 @@
 use pontoon::{
     Result,
     geometry::Shape,
-    math::{Pose, Vector},
+    math::Vector,
     probe::{ElevationProbe, Probe},
     scene::{PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::Simulation,
-    solid::{FreeBody, Role, SolidSpec},
+    solid::SolidSpec,
 };
 
 /// Name, density (kg/m³) and place (m) of each block.
@@ -88,9 +88,7 @@ fn exchange(mut sim: Simulation<2>, before: f64) -> Result<()> {
     sim.remove_solid(oak)?;
     let (size, density) = BEAM;
     let shape = Shape::Box { size: Vector::from(size) };
-    let role = Role::Free(FreeBody::from_density(&shape, density));
-    let pose = Pose::at(Vector::from([0.4, before + 0.5 * size[1] + 0.5 * DP]));
-    let beam = SolidSpec { name: "beam".into(), shape, pose, role, friction: 0.3, restitution: 0.0, contact_skin: 0.0 };
+    let beam = SolidSpec::free("beam", shape, density).at([0.4, before + 0.5 * size[1] + 0.5 * DP]);
     assert_eq!(sim.add_solid(beam)?.displaced, 0, "it comes on the water, not into it");
 
     // The water closes over the oak's place with a splash; the mean is over a whole swing after it.

@@ -13,9 +13,12 @@
 
 use pontoon::{
     Result,
-    scene::{CompoundPartConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig, SolidConfig},
+    scene::{
+        CompoundPartConfig, FreeBodyConfig, JointConfig, JointKindConfig, PlacementConfig, Scene, ShapeConfig,
+        SolidConfig,
+    },
     simulation::Simulation,
-    solid::{Motor, TimeFunction},
+    solid::Motor,
 };
 
 /// Particle spacing, depth of the water and length of the pool, m.
@@ -34,7 +37,7 @@ const TURNING: f64 = 5.0;
 const UNTIL: f64 = 3.0;
 
 fn part(size: [f64; 2], at: [f64; 2]) -> CompoundPartConfig {
-    CompoundPartConfig { shape: ShapeConfig::cuboid(size), at: Some(PlacementConfig::point(&at)) }
+    CompoundPartConfig::new(ShapeConfig::cuboid(size), PlacementConfig::point(&at))
 }
 
 /// The boat afloat in the middle of the pool; its frame is at the water's surface.
@@ -56,11 +59,9 @@ fn boat() -> Result<Simulation<2>> {
     // Hulls of 0.6 m together carry boat and wheel with half their height under water.
     let mass = 1000.0 * 0.6 * 0.06;
     let wheel = SolidConfig::free("wheel", wheel, 200.0).at(PlacementConfig::point(&[middle, DEPTH + HUB]));
-    let mut hull = SolidConfig::free("boat", hull, 1.0).at(PlacementConfig::point(&[middle, DEPTH]));
-    if let Some(free) = &mut hull.free {
-        // The wheel displaces some water itself, so that the boat starts a little high.
-        (free.density, free.mass) = (None, Some(mass - 200.0 * 0.04 * (2.0 * RADIUS + 2.0 * arm)));
-    }
+    // The wheel displaces some water itself, so that the boat starts a little high.
+    let body = FreeBodyConfig::from_mass(mass - 200.0 * 0.04 * (2.0 * RADIUS + 2.0 * arm));
+    let hull = SolidConfig::with_body("boat", hull, body).at(PlacementConfig::point(&[middle, DEPTH]));
     let built = Scene::new(2, DP, UNTIL)
         .title("A boat with a wheel")
         .water_box([0.0, 0.0], [POOL, DEPTH])
@@ -83,11 +84,7 @@ fn main() -> Result<()> {
         while sim.time() < UNTIL {
             // The motor is run up within half a second.
             let wanted = turning * (2.0 * sim.time()).min(1.0);
-            let motor = Motor {
-                velocity: Some(TimeFunction::constant(wanted)),
-                damping: TimeFunction::constant(20.0),
-                ..Motor::default()
-            };
+            let motor = Motor::default().velocity(wanted).damping(20.0);
             sim.set_motor(axle, Some(motor.command_at(0.0)));
             sim.step_to(UNTIL)?;
             work -= sim.joint_reading(axle).absorbed_power() * sim.dt();

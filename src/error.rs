@@ -1,8 +1,8 @@
 //! Errors as help: what is wrong, where, the nearest valid name, what to do. Nothing here prints.
 
-use std::fmt;
+use std::{fmt, io, path::Path};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// Result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
@@ -23,6 +23,104 @@ pub enum ErrorKind {
     Restart,
 }
 
+/// Declares [`ErrorCode`] with the text and the meaning of each code.
+macro_rules! error_codes {
+    ($($(#[$meaning:meta])+ $code:ident = $text:literal,)+) => {
+        /// A stable identifier of a family of errors, for programs. `docs/reference/command-line.md` lists the codes.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum ErrorCode {
+            $($(#[$meaning])+ $code,)+
+        }
+
+        impl ErrorCode {
+            /// All codes.
+            pub const ALL: &[Self] = &[$(Self::$code,)+];
+
+            /// The identifier, in kebab case.
+            pub const fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$code => $text,)+
+                }
+            }
+        }
+    };
+}
+
+error_codes! {
+    /// The text of a scene is not TOML.
+    InvalidToml = "invalid-toml",
+    /// A key that the scene format does not have.
+    UnknownKey = "unknown-key",
+    /// A name that nothing has: of a solid, a series, a choice, a scene.
+    UnknownName = "unknown-name",
+    /// A required key is absent.
+    MissingKey = "missing-key",
+    /// A value of the wrong type, or a list of the wrong length.
+    WrongType = "wrong-type",
+    /// A number outside its valid range.
+    OutOfRange = "out-of-range",
+    /// Keys that exclude one another.
+    ConflictingKeys = "conflicting-keys",
+    /// Any other error of a scene, or of a file that it names.
+    InvalidScene = "invalid-scene",
+    /// A command line or call that cannot be carried out.
+    InvalidUsage = "invalid-usage",
+    /// A file or folder that does not exist.
+    FileNotFound = "file-not-found",
+    /// A file that cannot be read.
+    FileUnreadable = "file-unreadable",
+    /// A file or folder that cannot be written, made or removed.
+    FileUnwritable = "file-unwritable",
+    /// No space is left on the disk.
+    DiskFull = "disk-full",
+    /// A file whose content is not of the expected format.
+    InvalidFile = "invalid-file",
+    /// A folder without a run or a checkpoint.
+    CheckpointNotFound = "checkpoint-not-found",
+    /// A damaged checkpoint or manifest.
+    BadCheckpoint = "bad-checkpoint",
+    /// A checkpoint of another version of the program.
+    OtherVersion = "other-version",
+    /// A checkpoint of another scene or setup.
+    OtherSetup = "other-setup",
+    /// The stable time step is not positive.
+    NoTimeStep = "no-time-step",
+    /// A position, velocity, density or load that is not finite.
+    NonFiniteState = "non-finite-state",
+    /// A water particle faster than `guard.speed`.
+    SpeedLimit = "speed-limit",
+    /// A water particle outside `guard.density`.
+    DensityLimit = "density-limit",
+    /// A water particle or body outside the domain.
+    LeftDomain = "left-domain",
+}
+
+impl ErrorCode {
+    /// The code of an error of `kind` whose family is not known.
+    const fn of_kind(kind: ErrorKind) -> Self {
+        match kind {
+            ErrorKind::Scene => Self::InvalidScene,
+            ErrorKind::Usage => Self::InvalidUsage,
+            ErrorKind::File => Self::InvalidFile,
+            ErrorKind::Fault => Self::NonFiniteState,
+            ErrorKind::Restart => Self::BadCheckpoint,
+        }
+    }
+}
+
+impl fmt::Display for ErrorCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+impl Serialize for ErrorCode {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.as_str())
+    }
+}
+
 /// Where in a text file the trouble lies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceLocation {
@@ -37,6 +135,8 @@ pub struct SourceLocation {
 /// The particle or body with which a run failed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fault {
+    /// The identifier of its family.
+    pub code: ErrorCode,
     /// What was seen, in words: "speed above the speed of sound".
     pub reason: String,
     /// "fluid particle 1234", "body \"buoy\"".
@@ -60,6 +160,7 @@ pub struct Fault {
 pub struct Error {
     /// Sort of trouble.
     pub kind: ErrorKind,
+    pub(crate) code: ErrorCode,
     /// One sentence: what is wrong.
     pub message: String,
     /// Where it is wrong, if in a file.
@@ -71,9 +172,9 @@ pub struct Error {
 }
 
 impl Error {
-    /// An error of `kind` saying `what`.
+    /// An error of `kind` saying `what`, with the general code of that kind.
     pub fn new(kind: ErrorKind, what: impl Into<String>) -> Self {
-        Self { kind, message: what.into(), location: None, help: None, fault: None }
+        Self { kind, code: ErrorCode::of_kind(kind), message: what.into(), location: None, help: None, fault: None }
     }
 
     /// A [`ErrorKind::Scene`] error.
@@ -81,9 +182,53 @@ impl Error {
         Self::new(ErrorKind::Scene, what)
     }
 
-    /// A [`ErrorKind::File`] error about `path`, with the system's own words.
-    pub fn file(path: &std::path::Path, why: impl fmt::Display) -> Self {
+    /// A [`ErrorKind::File`] error about the content of `path`.
+    pub fn file(path: &Path, why: impl fmt::Display) -> Self {
         Self::new(ErrorKind::File, format!("{}: {why}", path.display()))
+    }
+
+    /// A [`ErrorKind::File`] error: `path` cannot be read.
+    pub fn read(path: &Path, why: &io::Error) -> Self {
+        Self::file(path, why).with_code(match why.kind() {
+            io::ErrorKind::NotFound => ErrorCode::FileNotFound,
+            _ => ErrorCode::FileUnreadable,
+        })
+    }
+
+    /// A [`ErrorKind::File`] error: `path` cannot be changed; `verb` completes "cannot be", as in "written" or "made".
+    pub fn write(path: &Path, verb: &str, why: &io::Error) -> Self {
+        Self::file(path, format!("cannot be {verb}: {why}")).with_code(match why.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ErrorCode::DiskFull,
+            _ => ErrorCode::FileUnwritable,
+        })
+    }
+
+    /// A [`ErrorKind::File`] error: the table at `path` cannot be read.
+    pub(crate) fn table(path: &Path, why: &csv::Error) -> Self {
+        match why.kind() {
+            csv::ErrorKind::Io(io) => Self::read(path, io),
+            _ => Self::file(path, why),
+        }
+    }
+
+    /// The stable identifier of its family, for programs.
+    ///
+    /// ```
+    /// use pontoon::{error::ErrorCode, scene::Scene};
+    ///
+    /// let text = "dimension = 2\ndp = 0.05\nuntil = 1.0\ntitel = \"Tank\"";
+    /// let error = Scene::parse(text, "".as_ref(), &[]).unwrap_err();
+    /// assert_eq!(error.code(), ErrorCode::UnknownKey);
+    /// assert_eq!(error.code().as_str(), "unknown-key");
+    /// ```
+    pub fn code(&self) -> ErrorCode {
+        self.code
+    }
+
+    /// The same error with another code.
+    pub fn with_code(mut self, code: ErrorCode) -> Self {
+        self.code = code;
+        self
     }
 
     /// A [`ErrorKind::Fault`] error: a run that cannot go on.
@@ -97,8 +242,8 @@ impl Error {
             fault.step,
             fault.time
         );
-        let help = Some(fault.cause.clone());
-        Self { kind: ErrorKind::Fault, message: what, location: None, help, fault: Some(Box::new(fault)) }
+        let error = Self::new(ErrorKind::Fault, what).with_code(fault.code).help(fault.cause.clone());
+        Self { fault: Some(Box::new(fault)), ..error }
     }
 
     /// The same error with advice on what to do.

@@ -1,27 +1,16 @@
 //! pontoon: rigid bodies that float, collide and are driven in water.
 //!
-//! δ-SPH computes the water; rapier computes the bodies, contacts and joints. A [`Scene`](scene::Scene) is built into a
-//! [`Simulation`](simulation::Simulation), which advances a [`System`](system::System) of water and solids. Probes sample it.
+//! δ-SPH computes the water; rapier computes the bodies, contacts and joints. A [`Scene`](scene::Scene), read from TOML or built in
+//! Rust, becomes a [`Simulation`](simulation::Simulation), which advances a [`System`](system::System) of water and solids. Probes
+//! sample it. A [`Setup`](simulation::Setup) starts a simulation without a scene.
 //!
 //! ```
 //! use pontoon::prelude::*;
 //!
-//! let scene = r#"
-//!     dimension = 2
-//!     dp = 0.05
-//!     until = 1.0
-//!     water = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]
-//!     [[solid]]
-//!     name = "tank"
-//!     fixed = true
-//!     shape = { tank = { size = [1.0, 1.0] } }
-//!     [[solid]]
-//!     name = "crate"
-//!     free = { density = 500.0 }
-//!     shape = { box = { size = [0.2, 0.2] } }
-//!     at = { x = 0.5, draft = "equilibrium" }
-//! "#;
-//! let scene = Scene::parse(scene, std::path::Path::new(""), &[])?;
+//! let scene = Scene::new(2, 0.05, 1.0)
+//!     .water_box([0.0, 0.0], [1.0, 0.5])
+//!     .solid(SolidConfig::fixed("tank", ShapeConfig::tank([1.0, 1.0])))
+//!     .solid(SolidConfig::free("crate", ShapeConfig::cuboid([0.2, 0.2]), 500.0).at(PlacementConfig::afloat(&[0.5])));
 //! let mut simulation = Simulation::new(scene.build::<2>()?.setup)?;
 //! while simulation.time() < 0.05 {
 //!     simulation.step()?;

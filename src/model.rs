@@ -29,6 +29,7 @@ use crate::{
 /// The kernel. Scene key `model.kernel`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum KernelKind {
     /// Cubic spline (Monaghan & Lattanzio 1985), by default with Monaghan's (2000) tensile correction.
     Cubic {
@@ -47,6 +48,7 @@ fn yes() -> bool {
 /// The pressure gradient. Scene key `model.gradient`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum PressureGradient {
     /// The plain kernel gradient.
     #[default]
@@ -58,6 +60,7 @@ pub enum PressureGradient {
 /// Particle shifting. Scene key `model.shifting`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Shifting {
     /// None (the paper's type 0).
     None,
@@ -83,6 +86,7 @@ impl Shifting {
 /// The pair loop. Scene key `model.sweep`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum PairLoopKind {
     /// SIMD in single precision where the processor supports it (x86-64 with AVX2, ARM); otherwise the reference.
     #[default]
@@ -104,6 +108,7 @@ impl PairLoopKind {
 /// How boundary particles act on the water. Scene key `model.walls`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Walls {
     /// Dynamic boundary particles: they obey continuity, and their density does not fall below ρ₀.
     #[serde(rename = "dbc")]
@@ -116,6 +121,7 @@ pub enum Walls {
 /// The time integration scheme. Scene key `time.scheme`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum TimeScheme {
     /// Verlet (leapfrog) with an Euler step every `euler_every` steps, or sooner under strong damping.
     Verlet {
@@ -132,7 +138,16 @@ fn fifty() -> u32 {
 }
 
 /// All parameters of the equations, with every default filled in.
+///
+/// ```
+/// use pontoon::model::{Model, Slip, TimeScheme};
+///
+/// // Water 0.5 m deep at a spacing of 0.01 m in 2-D.
+/// let model = Model::water(2, 0.01, 0.5).slip(Slip::None).scheme(TimeScheme::Symplectic).cfl(0.3);
+/// assert!((model.h - 0.017).abs() < 1e-15);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Model {
     /// Kernel.
     pub kernel: KernelKind,
@@ -178,7 +193,7 @@ pub(crate) const C0_FACTOR: f64 = 10.0;
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
     /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
-    /// relaxed Adami with free slip, symplectic at CFL 0.4. Change the fields that you need.
+    /// relaxed Adami with free slip, symplectic at CFL 0.4. The methods below change one choice each.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
         let mut gravity = vec![0.0; dimension];
@@ -204,6 +219,86 @@ impl Model {
             cfl: 0.4,
             dt_max: f64::INFINITY,
         }
+    }
+
+    /// The same model with this kernel.
+    pub fn kernel(self, kernel: KernelKind) -> Self {
+        Self { kernel, ..self }
+    }
+
+    /// The same model with this smoothing length (m).
+    pub fn h(self, h: f64) -> Self {
+        Self { h, ..self }
+    }
+
+    /// The same model with this reference density (kg/m³).
+    pub fn rho0(self, rho0: f64) -> Self {
+        Self { rho0, ..self }
+    }
+
+    /// The same model with this speed of sound (m/s).
+    pub fn c0(self, c0: f64) -> Self {
+        Self { c0, ..self }
+    }
+
+    /// The same model with this exponent of the equation of state (–).
+    pub fn gamma(self, gamma: f64) -> Self {
+        Self { gamma, ..self }
+    }
+
+    /// The same model with this acceleration of gravity (m/s²), one component along each axis.
+    pub fn gravity(self, gravity: impl Into<Vec<f64>>) -> Self {
+        Self { gravity: gravity.into(), ..self }
+    }
+
+    /// The same model with this pressure gradient.
+    pub fn gradient(self, gradient: PressureGradient) -> Self {
+        Self { gradient, ..self }
+    }
+
+    /// The same model with this viscosity.
+    pub fn viscosity(self, viscosity: Viscosity) -> Self {
+        Self { viscosity, ..self }
+    }
+
+    /// The same model with this density diffusion.
+    pub fn diffusion(self, diffusion: Diffusion) -> Self {
+        Self { diffusion, ..self }
+    }
+
+    /// The same model with this particle shifting.
+    pub fn shifting(self, shifting: Shifting) -> Self {
+        Self { shifting, ..self }
+    }
+
+    /// The same model with these walls.
+    pub fn walls(self, walls: Walls) -> Self {
+        Self { walls, ..self }
+    }
+
+    /// The same model with this condition along the faces of solids.
+    pub fn slip(self, slip: Slip) -> Self {
+        Self { slip, ..self }
+    }
+
+    /// The same model with this pair loop.
+    pub fn pair_loop(self, pair_loop: PairLoopKind) -> Self {
+        Self { pair_loop, ..self }
+    }
+
+    /// The same model with this time integration scheme.
+    pub fn scheme(self, scheme: TimeScheme) -> Self {
+        Self { scheme, ..self }
+    }
+
+    /// The same model with this Courant number (–).
+    pub fn cfl(self, cfl: f64) -> Self {
+        Self { cfl, ..self }
+    }
+
+    /// The same model with time steps of this length (s) at most.
+    pub fn dt_max(self, dt_max: f64) -> Self {
+        Self { dt_max, ..self }
     }
 
     /// The kernel's support radius 2h, m.

@@ -9,6 +9,7 @@ use crate::probe::{ContactListPlan, ProbePlan};
 
 /// What a run does besides stepping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Plan {
     /// Caption of the scene.
     pub title: String,
@@ -34,6 +35,7 @@ pub struct Plan {
 
 /// When frames are written, and with which fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct FramesPlan {
     /// Simulated time from one frame to the next, s.
     pub every: f64,
@@ -45,6 +47,7 @@ pub struct FramesPlan {
 
 /// What is said of series of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct StatisticPlan {
     /// Its name.
     pub name: String,
@@ -59,6 +62,7 @@ pub struct StatisticPlan {
 /// What is said of series. A series is `probe.column`, as in `box.heave_m`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum StatisticKind {
     /// Extremes, means, waves and spectrum.
     Waves {
@@ -100,6 +104,7 @@ impl StatisticKind {
 
 /// A series of the run held against a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct CheckPlan {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
@@ -122,6 +127,51 @@ pub struct CheckPlan {
 }
 
 impl CheckPlan {
+    /// The whole of `series`, named as in `box.heave_m`, against `reference`, without a bound.
+    pub fn new(series: impl Into<String>, reference: Reference) -> Self {
+        Self {
+            series: series.into(),
+            reference,
+            from: None,
+            until: None,
+            zero: None,
+            mean: None,
+            align: None,
+            paper: None,
+            bound: None,
+        }
+    }
+
+    /// The same check from this time (s) of the run on.
+    pub fn from(self, from: f64) -> Self {
+        Self { from: Some(from), ..self }
+    }
+
+    /// The same check up to this time (s) of the run.
+    pub fn until(self, until: f64) -> Self {
+        Self { until: Some(until), ..self }
+    }
+
+    /// The same check of an instrument that was set to zero at this time (s) of the run.
+    pub fn zero(self, zero: f64) -> Self {
+        Self { zero: Some(zero), ..self }
+    }
+
+    /// The same check of an instrument that takes its mean over this time (s).
+    pub fn mean(self, mean: f64) -> Self {
+        Self { mean: Some(mean), ..self }
+    }
+
+    /// The same check of a run that is moved in time.
+    pub fn align(self, align: Align) -> Self {
+        Self { align: Some(align), ..self }
+    }
+
+    /// The same check with this bound.
+    pub fn bound(self, bound: Score) -> Self {
+        Self { bound: Some(bound), ..self }
+    }
+
     /// The series in words, with when it was set to zero.
     pub(crate) fn label(&self) -> String {
         self.zero.map_or(self.series.clone(), |at| format!("{}, 0 at {at} s", self.series))
@@ -131,6 +181,7 @@ impl CheckPlan {
 /// What a series is held against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Reference {
     /// A column of a table beside the scene.
     Table {
@@ -150,6 +201,7 @@ pub enum Reference {
 /// How a run is moved in time, as a whole, to lie on its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Align {
     /// So that |x| of both first passes this threshold at one time. In the unit of the series.
     Crossing(f64),

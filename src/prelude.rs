@@ -6,7 +6,7 @@ pub use crate::{
     math::{Bivector, Pose, Vector},
     model::Model,
     probe::Probe,
-    scene::{BuiltScene, Scene},
+    scene::{BuiltScene, PlacementConfig, Scene, ShapeConfig, SolidConfig},
     simulation::{Setup, Simulation},
     solid::{FreeBody, Kinematics, Load, Role, SolidSpec},
     system::System,

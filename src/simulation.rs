@@ -21,7 +21,7 @@ use rollback::RollbackControl;
 
 use crate::{
     coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
-    error::{Error, ErrorKind, Fault, Result},
+    error::{Error, ErrorCode, ErrorKind, Fault, Result},
     interaction::PairLoop,
     math::{Bivector, Vector},
     model::Dimension,
@@ -29,7 +29,7 @@ use crate::{
         ContactForce, Dim, HasEngine as _, Role, SolidSpec,
         constraint::assembly::{Assembly, AssemblyState},
     },
-    system::{System, SystemState},
+    system::{LimitViolation, System, SystemState},
     time_integration::{Stepper, step_size},
 };
 
@@ -218,7 +218,7 @@ impl<const D: usize> Simulation<D> {
         // The last two steps have equal lengths, so that none is far shorter than the others.
         let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
         if dt.is_nan() || dt <= 0.0 {
-            return Err(self.fault("time step of no length", NO_STEP, 0));
+            return Err(self.fault((0, ErrorCode::NoTimeStep, "time step of no length", NO_STEP)));
         }
         let over = Interval { t: self.clock.time, dt };
         self.system.update_absorption(over.t);
@@ -244,14 +244,16 @@ impl<const D: usize> Simulation<D> {
     fn guard(&self) -> Result<()> {
         match self.system.first_invalid_particle() {
             None => Ok(()),
-            Some((i, reason, cause)) => Err(self.fault(reason, cause, i)),
+            Some(violation) => Err(self.fault(violation)),
         }
     }
 
-    fn fault(&self, reason: &str, cause: &str, i: usize) -> Error {
+    /// The fault of water particle number `i`.
+    fn fault(&self, (i, code, reason, cause): LimitViolation) -> Error {
         let fluid = self.system.fluid();
         let of = |x: Option<&Vector<D>>| x.map(|x| x.iter().copied().collect()).unwrap_or_default();
         Error::fault(Fault {
+            code,
             reason: reason.into(),
             who: fluid.id.get(i).map_or("the run".into(), |id| format!("water particle {id}")),
             step: self.clock.steps,
@@ -393,17 +395,23 @@ impl<const D: usize> Simulation<D> {
                 ErrorKind::Restart,
                 "solids had been removed from the simulation whose state this is",
             )
+            .with_code(ErrorCode::OtherSetup)
             .help("restore_with takes it up in a simulation made from the same setup"));
         }
         match (self.bodies.engine_mut(), kept.engine) {
             (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
             (None, None) => {}
-            _ => return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies")),
+            _ => {
+                return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies")
+                    .with_code(ErrorCode::OtherSetup));
+            }
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
             || !self.bodies.constraints_mut().restore(kept.constraints)
         {
-            return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies"));
+            return Err(
+                Error::new(ErrorKind::Restart, "the checkpoint holds other bodies").with_code(ErrorCode::OtherSetup)
+            );
         }
         match (&self.bodies.accounting, &kept.accounting) {
             (Some(own), Some(state)) if own.matches(state) => {}
@@ -412,7 +420,8 @@ impl<const D: usize> Simulation<D> {
                 return Err(Error::new(
                     ErrorKind::Restart,
                     "the checkpoint holds another load breakdown or energy budget",
-                ));
+                )
+                .with_code(ErrorCode::OtherSetup));
             }
         }
         self.system.restore(kept.system)?;

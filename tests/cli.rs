@@ -185,9 +185,10 @@ fn a_failed_run_names_the_particle_and_keeps_all_recorded_data() {
     let manifest = folder.manifest("a");
     assert_eq!(manifest["status"], "failed");
     assert_eq!(manifest["fault"]["who"], failure["who"]);
+    assert_eq!(manifest["error_code"], failure["code"]);
     for (name, table) in folder.series("a") {
         assert_complete(&name, &table);
-        assert!(table.lines().count() >= 2, "{name} has the row of the initial state");
+        assert!(table.lines().count() >= 2, "{name} has the row of the start");
     }
     assert!(folder.read("a/frames.pvd").ends_with("</VTKFile>\n"));
 }
@@ -817,7 +818,7 @@ fn a_json_log_has_one_object_per_line_from_start_to_end_or_error() {
     assert_eq!((last["t_s"].as_f64(), last["until_s"].as_f64()), (Some(0.02), Some(0.02)));
     let wrong = run(&["--dp", "-1"]);
     assert_eq!(wrong.code, Some(2));
-    assert_eq!(events(&wrong)[0]["event"], "error");
+    assert_eq!((&events(&wrong)[0]["event"], &events(&wrong)[0]["code"]), (&"error".into(), &"out-of-range".into()));
     assert!(events(&wrong)[0]["text"].as_str().is_some_and(|text| text.contains("dp must be a positive number")));
     let quiet = run(&["--until", "0.02", "--out", "b", "--quiet"]);
     assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (Some(0), "", ""));

@@ -11,7 +11,7 @@ use std::{
 };
 
 use pontoon::{
-    error::{Error, ErrorKind, Fault},
+    error::{Error, ErrorCode, ErrorKind, Fault},
     output::{Manifest, manifest::RunStatus},
     report,
 };
@@ -452,6 +452,7 @@ fn a_study_draws_the_fields_of_its_variants_side_by_side() {
 /// A fault as a step check reports it.
 fn fault() -> Error {
     let fault = Fault {
+        code: ErrorCode::LeftDomain,
         reason: "the water has left".into(),
         who: "water particle 12".into(),
         step: 7,
@@ -461,7 +462,9 @@ fn fault() -> Error {
         density: Some(1010.0),
         cause: "too long a step: shorten the step".into(),
     };
-    Error { fault: Some(Box::new(fault)), ..Error::new(ErrorKind::Fault, "the water has left the domain") }
+    let mut error = Error::new(ErrorKind::Fault, "the water has left the domain");
+    error.fault = Some(Box::new(fault));
+    error
 }
 
 #[test]

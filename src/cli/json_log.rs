@@ -120,7 +120,7 @@ pub fn ended(outcome: &RunOutcome) {
 
 /// Why there is no end.
 pub fn failed(error: &Error) {
-    write_event(&json!({ "event": "error", "text": error.to_string() }));
+    write_event(&json!({ "event": "error", "code": error.code(), "text": error.to_string() }));
 }
 
 fn write_event(event: &Value) {

@@ -6,7 +6,7 @@ use std::{
 };
 
 use pontoon::{
-    error::{Error, ErrorKind, Result, nearest_name},
+    error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
     scene::{BundledScene, bundled_scenes},
 };
 
@@ -76,18 +76,20 @@ pub fn find_scene(word: &Path) -> Result<FoundScene> {
         Some(near) => format!("did you mean {near:?}? `pontoon scenes` lists all that come with the program"),
         None => "name a folder with a scene.toml, a scene file, or a scene of `pontoon scenes`".into(),
     };
-    Err(Error::new(ErrorKind::Usage, format!("there is no scene {name:?}")).help(help))
+    Err(Error::new(ErrorKind::Usage, format!("there is no scene {name:?}"))
+        .with_code(ErrorCode::UnknownName)
+        .help(help))
 }
 
 /// Lays a built-in scene out in a temporary folder.
 fn unpack((name, text, files): &BundledScene) -> Result<FoundScene> {
     let temporary = std::env::temp_dir().join(format!("pontoon-{}", std::process::id()));
     let found = FoundScene { path: temporary.join(name), temporary: Some(temporary) };
-    let refused = |why| Error::file(&found.path, format!("cannot be written: {why}"));
+    let refused = |why| Error::write(&found.path, "written", &why);
     fs::create_dir_all(&found.path).map_err(refused)?;
     for (file, text) in files.iter().chain([&("scene.toml", *text)]) {
         let target = found.path.join(file);
-        fs::write(&target, text).map_err(|why| Error::file(&target, format!("cannot be written: {why}")))?;
+        fs::write(&target, text).map_err(|why| Error::write(&target, "written", &why))?;
     }
     Ok(found)
 }

@@ -14,7 +14,7 @@ use crossterm::{
     terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode, size},
 };
 use pontoon::{
-    error::{Error, ErrorKind, Result, nearest_name},
+    error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
     math::format::{duration, three_digits, unit},
     output::{Manifest, SeriesTable, manifest::RunStatus},
     run::{self, EnergyDrift},
@@ -155,7 +155,9 @@ impl RunSnapshot {
                     Some(near) => format!("did you mean {near:?}?"),
                     None => format!("the series are: {}", names.join(", ")),
                 };
-                Err(Error::new(ErrorKind::Usage, format!("the run has no series {series:?}")).help(help))
+                Err(Error::new(ErrorKind::Usage, format!("the run has no series {series:?}"))
+                    .with_code(ErrorCode::UnknownName)
+                    .help(help))
             }
             None => Ok(()),
         }

@@ -9,7 +9,7 @@ use super::{
     place,
 };
 use crate::{
-    error::{Error, ErrorKind, Fault, Result},
+    error::{Error, ErrorCode, ErrorKind, Fault, Result},
     math::{Bivector, Pose, Vector},
     solid::{
         ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
@@ -357,6 +357,7 @@ fn unset<const D: usize>() -> Kinematics<D> {
 /// The fault of solid number `solid` outside the domain.
 fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> {
     EngineFault {
+        code: ErrorCode::LeftDomain,
         solid,
         reason: "escape from the domain".into(),
         cause: "Usual cause: it starts beside the tank, an impact threw it over a wall, or nothing supports it. If it may go \
@@ -368,6 +369,7 @@ fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> 
 
 fn fault_error<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {
     Error::fault(Fault {
+        code: fault.code,
         reason: fault.reason,
         who: format!("body {:?}", system.solids[fault.solid].spec.name),
         step,

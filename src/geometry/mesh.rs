@@ -36,6 +36,7 @@ pub struct Mesh {
 /// What of a mesh other bodies touch. The water sees the mesh itself, whatever is chosen. Scene word `mesh.contact`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum ContactGeometry {
     /// The surface of a solid that is fixed. Of one that moves its hull, where that has at most a hundredth more
     /// volume, else its decomposition: two surfaces without an inside cannot be kept apart.

@@ -27,6 +27,7 @@ pub use mesh::{ContactGeometry, Mesh};
 /// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the sentence of each variant names its fields")]
+#[non_exhaustive]
 pub enum Shape<const D: usize> {
     /// A box of edge lengths `size`, centred on the origin.
     Box { size: Vector<D> },

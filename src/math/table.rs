@@ -3,7 +3,7 @@
 use std::{array, fs::File, path::Path};
 
 use super::time_series::TimeSeries;
-use crate::error::{Error, Result, nearest_name};
+use crate::error::{Error, ErrorCode, Result, nearest_name};
 
 /// A table whose header is read. The methods that return columns read its rows.
 pub struct TableReader {
@@ -21,7 +21,7 @@ impl TableReader {
         let mut options = csv::ReaderBuilder::new();
         // The rows are held against the header here, with errors that name the line.
         options.comment(Some(b'#')).trim(csv::Trim::All).flexible(true);
-        let broken = |why: csv::Error| Error::file(path, why);
+        let broken = |why: csv::Error| Error::table(path, &why);
         let mut reader = options.from_path(path).map_err(broken)?;
         let header = reader.headers().map_err(broken)?.iter().map(String::from).collect();
         Ok(Self { file: path.display().to_string(), header, reader })
@@ -50,7 +50,7 @@ impl TableReader {
         let mut columns = array::from_fn(|_| Vec::new());
         let (file, count) = (&self.file, self.header.len());
         for record in self.reader.records() {
-            let record = record.map_err(|why| Error::file(file.as_ref(), why))?;
+            let record = record.map_err(|why| Error::table(file.as_ref(), &why))?;
             let line = record.position().map_or(0, |place| place.line() as usize);
             let at = |error: Error, name: &str| error.at(file.as_str(), Some((line, 1)), name);
             if record.len() != count {
@@ -77,7 +77,7 @@ impl TableReader {
     pub fn all_columns(mut self) -> Result<Vec<Vec<f64>>> {
         let mut columns = vec![Vec::new(); self.header.len()];
         for record in self.reader.records() {
-            let record = record.map_err(|why| Error::file(self.file.as_ref(), why))?;
+            let record = record.map_err(|why| Error::table(self.file.as_ref(), &why))?;
             if record.len() == columns.len() && number(&record[0]).is_some_and(f64::is_finite) {
                 let cells = record.iter().map(|cell| number(cell).unwrap_or(f64::NAN));
                 columns.iter_mut().zip(cells).for_each(|(column, x)| column.push(x));
@@ -102,6 +102,7 @@ impl TableReader {
             let guess = nearest_name(name, self.header.iter().map(String::as_str));
             let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
             Error::scene(format!("{} has no column \"{name}\"{guess}", self.file))
+                .with_code(ErrorCode::UnknownName)
                 .help(format!("its columns: {}", self.header.join(", ")))
         })
     }

@@ -109,6 +109,20 @@ pub struct Pose<const D: usize> {
     pub rotation: Matrix<D>,
 }
 
+/// A pose without rotation.
+impl<const D: usize> From<Vector<D>> for Pose<D> {
+    fn from(position: Vector<D>) -> Self {
+        Self::at(position)
+    }
+}
+
+/// A pose without rotation.
+impl<const D: usize> From<[f64; D]> for Pose<D> {
+    fn from(position: [f64; D]) -> Self {
+        Self::at(position.into())
+    }
+}
+
 impl<const D: usize> Pose<D> {
     /// The world frame itself.
     pub fn identity() -> Self {

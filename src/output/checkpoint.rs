@@ -15,7 +15,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folder, write_partial};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorCode, ErrorKind, Result};
 
 /// The last checkpoint, in the run's folder.
 pub(crate) const LAST: &str = "checkpoint.bin";
@@ -143,10 +143,11 @@ impl Checkpoint {
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).map_err(|why| match why.kind() {
             io::ErrorKind::NotFound => restart_error(
+                ErrorCode::CheckpointNotFound,
                 "there is no checkpoint",
                 "a run writes one on Ctrl-C, and as often as [checkpoint] says, every ten minutes by default",
             ),
-            _ => Error::file(path, why),
+            _ => Error::read(path, &why),
         });
         bytes.and_then(|bytes| Self::from_bytes(&bytes)).map_err(|mut error| {
             if error.kind == ErrorKind::Restart {
@@ -163,13 +164,14 @@ impl Checkpoint {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         const AFRESH: &str = "start the run afresh with `pontoon run`";
         const OTHER: &str = "resume with the version that wrote it";
-        let short = || restart_error("the checkpoint is cut short", AFRESH);
-        let damaged = || restart_error("the checkpoint is damaged", AFRESH);
+        let short = || restart_error(ErrorCode::BadCheckpoint, "the checkpoint is cut short", AFRESH);
+        let damaged = || restart_error(ErrorCode::BadCheckpoint, "the checkpoint is damaged", AFRESH);
         let Some(rest) = bytes.strip_prefix(MAGIC) else {
             if MAGIC.starts_with(bytes) {
                 return Err(short());
             }
             return Err(restart_error(
+                ErrorCode::BadCheckpoint,
                 "this is no checkpoint of pontoon",
                 "name the folder of a run, as in `pontoon resume runs/raft`",
             ));
@@ -178,7 +180,7 @@ impl Checkpoint {
         let format = u32::from_le_bytes(*format);
         if format != FORMAT {
             let what = format!("the checkpoint has format {format}; this program reads {FORMAT}");
-            return Err(restart_error(&what, OTHER));
+            return Err(restart_error(ErrorCode::OtherVersion, &what, OTHER));
         }
         let (lengths, rest) = rest.split_first_chunk::<16>().ok_or_else(short)?;
         let (sum, packed) = rest.split_first_chunk::<8>().ok_or_else(short)?;
@@ -201,15 +203,19 @@ impl Checkpoint {
         let (mut found, state) = postcard::take_from_bytes::<Self>(&payload).map_err(|_| damaged())?;
         if found.version != env!("CARGO_PKG_VERSION") {
             let what = format!("written by pontoon {}, this is {}", found.version, env!("CARGO_PKG_VERSION"));
-            return Err(restart_error(&what, &format!("{OTHER}: another may not go on to the same bits")));
+            return Err(restart_error(
+                ErrorCode::OtherVersion,
+                &what,
+                &format!("{OTHER}: another may not go on to the same bits"),
+            ));
         }
         found.state = state.to_vec();
         Ok(found)
     }
 }
 
-fn restart_error(what: &str, help: &str) -> Error {
-    Error::new(ErrorKind::Restart, what).help(help)
+fn restart_error(code: ErrorCode, what: &str, help: &str) -> Error {
+    Error::new(ErrorKind::Restart, what).with_code(code).help(help)
 }
 
 /// FNV-1a hash of `bytes`.

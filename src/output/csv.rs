@@ -44,7 +44,7 @@ impl CsvTable {
     /// `Restart` if it is shorter than that, has no whole row there or its header names other columns; `File` if it cannot be
     /// opened.
     pub(crate) fn resume(path: &Path, columns: &[String], bytes: u64) -> Result<Self> {
-        let text = std::fs::read(path).map_err(|e| Error::file(path, e))?;
+        let text = std::fs::read(path).map_err(|e| Error::read(path, &e))?;
         let header = format!("t_s,{}\n", columns.join(","));
         let kept = usize::try_from(bytes).ok().and_then(|n| text.get(..n));
         if kept.is_none_or(|k| !k.starts_with(header.as_bytes()) || !k.ends_with(b"\n")) {
@@ -62,7 +62,7 @@ impl CsvTable {
     /// # Errors
     /// `File` if it cannot be read or cut.
     pub(crate) fn truncate(&mut self, bytes: u64) -> Result<()> {
-        let text = std::fs::read(&self.path).map_err(|e| Error::file(&self.path, e))?;
+        let text = std::fs::read(&self.path).map_err(|e| Error::read(&self.path, &e))?;
         let kept = usize::try_from(bytes).map_or(&text[..], |n| &text[..n.min(text.len())]);
         let kept = String::from_utf8_lossy(kept);
         let rows = kept.split_once('\n').map_or("", |(_, rows)| rows);

@@ -13,7 +13,7 @@ use super::{
     write_atomically,
 };
 use crate::{
-    error::{Error, Result, nearest_name},
+    error::{Error, ErrorCode, Result, nearest_name},
     math::Vector,
     particles::ParticlesView,
     plan::FramesPlan,
@@ -65,7 +65,9 @@ impl FrameWriter {
                 Some(near) => format!("did you mean {near:?}?"),
                 None => format!("the fields are: {}", FIELDS.join(", ")),
             };
-            return Err(Error::scene(format!("unknown field {word:?} of a frame")).help(help));
+            return Err(Error::scene(format!("unknown field {word:?} of a frame"))
+                .with_code(ErrorCode::UnknownName)
+                .help(help));
         }
         let files = folder.join("frames");
         std::fs::create_dir_all(&files).map_err(|e| cannot_write(&files, &e))?;

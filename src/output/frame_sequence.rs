@@ -39,7 +39,7 @@ impl FrameSequence {
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(why) if why.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(why) => return Err(Error::file(&path, why)),
+            Err(why) => return Err(Error::read(&path, &why)),
         };
         let after = |text: &str, word: &str| Some(text.split_once(word)?.1.split('"').next()?.to_string());
         let entries = text.split("<DataSet ").skip(1).filter(|p| p.contains("name=\"water\""));
@@ -89,7 +89,7 @@ impl FrameSequence {
 }
 
 fn read_points(path: &Path) -> Result<FramePoints> {
-    let file = std::fs::read(path).map_err(|why| Error::file(path, why))?;
+    let file = std::fs::read(path).map_err(|why| Error::read(path, &why))?;
     parse_points(&file).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
 }
 

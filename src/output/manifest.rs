@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::write_atomically;
 use crate::{
     analysis::Verdict,
-    error::{Error, ErrorKind, Fault, Result},
+    error::{Error, ErrorCode, ErrorKind, Fault, Result},
     math::simd,
 };
 
@@ -58,6 +58,9 @@ pub struct Manifest {
     /// Why the run failed, in words.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error: Option<String>,
+    /// The identifier of the family of that error.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub error_code: Option<String>,
     /// With which particle or body the run failed.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub fault: Option<serde_json::Value>,
@@ -158,6 +161,7 @@ impl Manifest {
     pub fn record_failure(&mut self, error: &Error) {
         self.status = RunStatus::Failed;
         self.error = Some(error.to_string());
+        self.error_code = Some(error.code().to_string());
         self.fault = error.fault.as_deref().and_then(|fault: &Fault| serde_json::to_value(fault).ok());
     }
 
@@ -179,6 +183,7 @@ impl Manifest {
         let path = folder.join("manifest.json");
         let text = std::fs::read_to_string(&path).map_err(|why| {
             Error::new(ErrorKind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))
+                .with_code(ErrorCode::CheckpointNotFound)
                 .help("name the folder of a run, as in `pontoon resume runs/raft`")
         })?;
         serde_json::from_str(&text).map_err(|why| {

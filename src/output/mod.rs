@@ -31,7 +31,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorCode, Result};
 
 /// Writes the file at `path` all at once: a reader sees the old file or the new one, never a part.
 ///
@@ -50,6 +50,7 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
 pub fn require_parent_folder(path: &Path) -> Result<()> {
     match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
         Some(folder) => Err(Error::file(path, format!("there is no folder {}", folder.display()))
+            .with_code(ErrorCode::FileNotFound)
             .help("make it first, or name a file in another")),
         None => Ok(()),
     }
@@ -92,5 +93,5 @@ fn cannot_write(path: &Path, why: &io::Error) -> Error {
         Some(folder) => format!("the folder {} is gone, and with it what was written there", folder.display()),
         None => "what was written before is intact; free some space or choose another folder with --out".into(),
     };
-    Error::file(path, format!("cannot be written: {why}")).help(help)
+    Error::write(path, "written", why).help(help)
 }

@@ -14,6 +14,7 @@ use crate::{
 
 /// Loads on a free body, by kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct LoadBalancePlan {
     /// The body's name.
     pub solid: String,

@@ -10,6 +10,7 @@ pub(super) const LIST_EXAMPLE: &str = "contacts = true";
 
 /// Contact of two solids.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ContactForcePlan {
     /// Their names.
     pub between: [String; 2],
@@ -41,6 +42,7 @@ impl ProbeDefinition for ContactForcePlan {
 
 /// A list of all contacts: at each reading a row for each pair that touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ContactListPlan {
     /// Stem of the file; no probe of the scene has the same.
     pub name: String,

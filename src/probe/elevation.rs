@@ -14,6 +14,7 @@ use crate::{
 /// The surface that an elevation gauge measures, where several lie above one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum GaugeSurface {
     /// The highest: a breaker's jet, water on a deck.
     #[default]
@@ -27,6 +28,7 @@ pub enum GaugeSurface {
 /// Where elevation gauges stand: x in 2-D, x and y in 3-D, or a row of them; and which surface they measure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct GaugeConfig {
     /// m.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,6 +73,7 @@ impl GaugeConfig {
 
 /// Height of the free surface at horizontal places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ElevationPlan {
     /// Horizontal coordinates, m: D − 1 of each.
     pub places: Vec<Vec<f64>>,

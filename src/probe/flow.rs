@@ -19,6 +19,7 @@ use crate::{
 /// A section that water flows through: a segment in 2-D, a rectangle upright to an axis in 3-D.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SectionConfig {
     /// One end or corner, m.
     pub from: Vec<f64>,
@@ -28,6 +29,7 @@ pub struct SectionConfig {
 
 /// Flow through a section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct FlowPlan {
     /// One end or corner, m.
     pub from: Vec<f64>,

@@ -7,6 +7,7 @@ use crate::{error::Result, simulation::Simulation, system::System};
 
 /// Force and torque of the water on a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ForcePlan {
     /// The solid's name.
     pub solid: String,

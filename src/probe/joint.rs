@@ -13,6 +13,7 @@ use crate::{
 
 /// Reaction and motion of a joint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct JointPlan {
     /// The joint's name.
     pub joint: String,

@@ -11,6 +11,7 @@ use crate::{
 
 /// Length and tension of a spring.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SpringPlan {
     /// The spring's name.
     pub spring: String,
@@ -40,6 +41,7 @@ impl ProbeDefinition for SpringPlan {
 
 /// Length and tension of a rope.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct RopePlan {
     /// The rope's name.
     pub rope: String,

@@ -209,6 +209,7 @@ pub(crate) enum EnergyReading {
 
 /// One probe, with defaults filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ProbePlan {
     /// Stem of the file it writes; unique within a scene.
     pub name: String,
@@ -227,6 +228,7 @@ macro_rules! probe_kinds {
         /// One `[[probe]]`: exactly one of the words that say what it looks at.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields, default)]
+        #[non_exhaustive]
         pub struct ProbeConfig {
             /// Stem of the file it writes.
             #[serde(skip_serializing_if = "Option::is_none")]
@@ -247,6 +249,7 @@ macro_rules! probe_kinds {
         /// A kind of probe, with its plan.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
         pub enum ProbeKind {
             $($(
                 #[doc = concat!("Scene key `", stringify!($key), "`.")]

@@ -16,6 +16,7 @@ use crate::{
 
 /// Motion of a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct MotionPlan {
     /// The solid's name.
     pub solid: String,

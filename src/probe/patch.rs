@@ -17,6 +17,7 @@ use crate::{
 /// A part of a solid's face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PatchConfig {
     /// The solid.
     pub solid: String,
@@ -27,6 +28,7 @@ pub struct PatchConfig {
 
 /// Force and pressure on a part of a solid's face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct PatchPlan {
     /// The solid's name.
     pub solid: String,

@@ -20,6 +20,7 @@ const MIN_SPACING: f64 = 1e-6;
 /// A point, or a row of them.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(untagged)]
+#[non_exhaustive]
 pub enum PointsConfig {
     /// One, m.
     At(Vec<f64>),
@@ -30,6 +31,7 @@ pub enum PointsConfig {
 /// Points in a row, evenly spaced: `count` of them, or as many as there are `spacing` apart.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PointRowConfig {
     /// The first, m.
     pub from: Vec<f64>,

@@ -8,6 +8,7 @@ use crate::{error::Result, math::Vector, simulation::Simulation, system::System}
 
 /// Pressure at points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct PressurePlan {
     /// The points, m.
     pub places: Vec<Vec<f64>>,

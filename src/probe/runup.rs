@@ -7,6 +7,7 @@ use crate::{error::Result, math::Vector, simulation::Simulation, system::System}
 
 /// The highest waterline on a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct RunupPlan {
     /// The solid's name.
     pub solid: String,

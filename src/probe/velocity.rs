@@ -7,6 +7,7 @@ use crate::{error::Result, math::Vector, simulation::Simulation, system::System}
 
 /// Velocity of the water at points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct VelocityPlan {
     /// The points, m.
     pub places: Vec<Vec<f64>>,

@@ -30,7 +30,7 @@ impl Lock {
     /// `Restart` if a run goes on there: names its process; `File` if the lock cannot be made.
     pub(crate) fn acquire(folder: &Path) -> Result<Self> {
         let path = folder.join(LOCK);
-        let refused = |why: std::io::Error| Error::file(&path, format!("cannot be written: {why}"));
+        let refused = |why: std::io::Error| Error::write(&path, "written", &why);
         let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(refused)?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let process = fs::read_to_string(&path).unwrap_or_default();

@@ -9,7 +9,7 @@ use std::{
 };
 
 use crate::{
-    error::{Error, ErrorKind, Result},
+    error::{Error, ErrorCode, ErrorKind, Result},
     output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
     probe::{self, Probe},
     scene::Plan,
@@ -127,12 +127,13 @@ impl<const D: usize> Outputs<D> {
         let lists = plan.contacts.len();
         let all = probes.len() + lists;
         if from.is_some_and(|c| c.table_bytes.len() != all || c.next_due.len() != all + 2) {
-            return Err(Error::new(ErrorKind::Restart, "the checkpoint was made with other probes"));
+            return Err(Error::new(ErrorKind::Restart, "the checkpoint was made with other probes")
+                .with_code(ErrorCode::OtherSetup));
         }
         let series = series_folder(folder);
         let lists = (lists > 0).then(|| folder.join(LISTS));
         for folder in [&series].into_iter().chain(&lists) {
-            fs::create_dir_all(folder).map_err(|why| Error::file(folder, format!("cannot be made: {why}")))?;
+            fs::create_dir_all(folder).map_err(|why| Error::write(folder, "made", &why))?;
         }
         let next = |i: usize, start: u64| from.map_or(start, |c| c.next_due[i]);
         let mut watched = Vec::new();

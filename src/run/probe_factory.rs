@@ -2,7 +2,7 @@
 
 use crate::{
     analysis::ReferenceCheck,
-    error::{Error, Result, nearest_name},
+    error::{Error, ErrorCode, Result, nearest_name},
     model::Dimension,
     plan::{CheckPlan, Plan},
     probe::{Probe, ProbePlan},
@@ -37,7 +37,7 @@ fn unknown_series(series: &str, known: &[String]) -> Error {
         Some(near) => format!("did you mean {near:?}?"),
         None => format!("the series are: {}", known.join(", ")),
     };
-    Error::scene(format!("no probe writes the series {series:?}")).help(help)
+    Error::scene(format!("no probe writes the series {series:?}")).with_code(ErrorCode::UnknownName).help(help)
 }
 
 /// Builds the checks of `plan` and reads their references.

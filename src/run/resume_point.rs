@@ -8,7 +8,7 @@ use super::{
     run_folder,
 };
 use crate::{
-    error::{Error, ErrorKind, Result},
+    error::{Error, ErrorCode, ErrorKind, Result},
     output::{Checkpoint, checkpoint},
     scene::Scene,
 };
@@ -86,9 +86,9 @@ fn load_matching(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
     let scene = Scene::read(&folder.join(run_folder::SCENE), &checkpoint.overrides)?;
     if checkpoint::fnv1a(scene.to_toml()?.as_bytes()) != checkpoint.scene_hash {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
-        return Err(
-            Error::new(ErrorKind::Restart, what).help("undo the change there, or start afresh with `pontoon run`")
-        );
+        return Err(Error::new(ErrorKind::Restart, what)
+            .with_code(ErrorCode::OtherSetup)
+            .help("undo the change there, or start afresh with `pontoon run`"));
     }
     let plan = scene.plan()?;
     let series = plan.probes.iter().map(|probe| series_folder(folder).join(format!("{}.csv", probe.name)));

@@ -35,12 +35,11 @@ fn scene_name(file: &Path) -> String {
 /// # Errors
 /// `Usage` if `out` holds something; `File` if the folder cannot be made.
 pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
-    let refused = |path: &Path, why: std::io::Error| {
-        Error::file(path, format!("cannot be made: {why}")).help("choose another folder with --out")
-    };
+    let refused =
+        |path: &Path, why: std::io::Error| Error::write(path, "made", &why).help("choose another folder with --out");
     if let Some(out) = out {
         fs::create_dir_all(out).map_err(|why| refused(out, why))?;
-        if fs::read_dir(out).map_err(|why| Error::file(out, why))?.next().is_some() {
+        if fs::read_dir(out).map_err(|why| Error::read(out, &why))?.next().is_some() {
             let help = if out.join("manifest.json").exists() {
                 format!("it holds a run: go on with it by `pontoon resume {}`, or choose another folder", out.display())
             } else {
@@ -70,9 +69,7 @@ pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathB
 /// `File` if one cannot be removed.
 pub(crate) fn remove_failure_report(folder: &Path) -> Result<()> {
     [FAILURE, checkpoint::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
-        Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
-            Err(Error::file(&path, format!("cannot be removed: {why}")))
-        }
+        Err(why) if why.kind() != std::io::ErrorKind::NotFound => Err(Error::write(&path, "removed", &why)),
         _ => Ok(()),
     })
 }
@@ -86,8 +83,8 @@ pub(crate) fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> 
     let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let copy = |source: &Path, target: &Path| -> Result<()> {
         let parent = target.parent().unwrap_or(&to);
-        fs::create_dir_all(parent).map_err(|why| Error::file(parent, why))?;
-        fs::copy(source, target).map(|_| ()).map_err(|why| Error::file(target, format!("cannot be written: {why}")))
+        fs::create_dir_all(parent).map_err(|why| Error::write(parent, "made", &why))?;
+        fs::copy(source, target).map(|_| ()).map_err(|why| Error::write(target, "written", &why))
     };
     copy(file, &folder.join(SCENE))?;
     referenced_files(words)

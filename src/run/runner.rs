@@ -352,6 +352,7 @@ fn initial_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint
         files: vec![],
         frames: FrameTotals::default(),
         error: None,
+        error_code: None,
         fault: None,
         warnings: vec![],
         machine: Machine::current(),

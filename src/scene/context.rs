@@ -7,7 +7,7 @@ use super::{
     diagnostics,
     toml_source::{SceneSource, ValueSource},
 };
-use crate::error::{Error, Result, nearest_name};
+use crate::error::{Error, ErrorCode, Result, nearest_name};
 
 /// What a section needs to know of its scene.
 pub(crate) struct Context<'a> {
@@ -67,11 +67,16 @@ impl Context<'_> {
         self.with_location(Error::scene(what).help(help), key)
     }
 
+    /// As [`Context::error_at`], of a number outside its valid range.
+    fn out_of_range(&self, key: &str, what: String) -> Error {
+        self.error_at(key, what).with_code(ErrorCode::OutOfRange)
+    }
+
     /// Refuses a number that is given and not positive.
     pub(crate) fn require_positive(&self, key: &str, x: Option<f64>) -> Result<()> {
         match x {
             Some(x) if !(x > 0.0 && x.is_finite()) => {
-                Err(self.error_at(key, format!("{} must be a positive number, not {x}", last_part(key))))
+                Err(self.out_of_range(key, format!("{} must be a positive number, not {x}", last_part(key))))
             }
             _ => Ok(()),
         }
@@ -83,7 +88,7 @@ impl Context<'_> {
             Some(x) => {
                 let word = last_part(key);
                 let help = format!("{word} is a number from 0 to {most}");
-                Err(self.error_with_help(key, format!("{word} cannot be {x}"), help))
+                Err(self.error_with_help(key, format!("{word} cannot be {x}"), help).with_code(ErrorCode::OutOfRange))
             }
             None => Ok(()),
         }
@@ -94,10 +99,11 @@ impl Context<'_> {
         let (d, n) = (self.dimension, x.len());
         if n != d {
             let help = format!("a {d}-D scene has vectors of {d} numbers, as in [{}]", vec!["0.0"; d].join(", "));
-            return Err(self.error_with_help(key, format!("{} has {n} numbers, not {d}", last_part(key)), help));
+            let error = self.error_with_help(key, format!("{} has {n} numbers, not {d}", last_part(key)), help);
+            return Err(error.with_code(ErrorCode::WrongType));
         }
         match x.iter().find(|x| !x.is_finite()) {
-            Some(x) => Err(self.error_at(key, format!("{x} is not a finite number"))),
+            Some(x) => Err(self.out_of_range(key, format!("{x} is not a finite number"))),
             None => Ok(()),
         }
     }
@@ -106,7 +112,7 @@ impl Context<'_> {
     pub(crate) fn require_direction(&self, key: &str, x: &[f64]) -> Result<()> {
         self.require_dimension(key, x)?;
         match x.iter().all(|x| x.abs() < 1e-12) {
-            true => Err(self.error_at(key, format!("{} points nowhere", last_part(key)))),
+            true => Err(self.out_of_range(key, format!("{} points nowhere", last_part(key)))),
             false => Ok(()),
         }
     }
@@ -126,7 +132,7 @@ impl Context<'_> {
         match (from, until) {
             (Some(from), Some(until)) if from >= until => {
                 let what = format!("nothing lies between from = {from} and until = {until}");
-                Err(self.error_with_help(&format!("{key}.until"), what, help))
+                Err(self.error_with_help(&format!("{key}.until"), what, help).with_code(ErrorCode::OutOfRange))
             }
             _ => Ok(()),
         }

@@ -1,7 +1,7 @@
 //! Errors of the parser in the words of a user: the fault, the nearest valid name, an example.
 
 use crate::{
-    error::{Error, nearest_name},
+    error::{Error, ErrorCode, nearest_name},
     probe,
 };
 
@@ -200,7 +200,8 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         // The key is the unknown one or, where its words are told apart by their form, the one above it.
         let above = if key == *word { Some("") } else { key.strip_suffix(&format!(".{word}")) };
         let parent = above.unwrap_or(key);
-        let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)));
+        let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)))
+            .with_code(ErrorCode::UnknownKey);
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // Of the same parent: a water's velocity is not a probe's.
         let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
@@ -210,12 +211,13 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     }
     if let (true, [word, known @ ..]) = (message.starts_with("unknown variant"), &words[..]) {
         let key = key.strip_suffix(&format!(".{word}")).unwrap_or(key);
-        let error = Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), did_you_mean(word, known)));
+        let error = Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), did_you_mean(word, known)))
+            .with_code(ErrorCode::UnknownName);
         let known = format!("known: {}", list(known));
         return (with(error, [known].into_iter().chain(example(key)).collect()), key.to_string());
     }
     if let (true, [word]) = (message.starts_with("missing field"), &words[..]) {
-        let error = Error::scene(format!("\"{word}\" is missing"));
+        let error = Error::scene(format!("\"{word}\" is missing")).with_code(ErrorCode::MissingKey);
         let full = if key.is_empty() { word.to_string() } else { format!("{key}.{word}") };
         return (with(error, example(&full).or_else(|| example(key)).into_iter().collect()), full);
     }
@@ -225,11 +227,13 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         .and_then(|rest| rest.split_once(", expected "))
     {
         let found = translated_found(found);
-        let error = Error::scene(format!("{} must be {}, not {found}", key_noun(key), translated_type(wanted)));
+        let error = Error::scene(format!("{} must be {}, not {found}", key_noun(key), translated_type(wanted)))
+            .with_code(ErrorCode::WrongType);
         return (with(error, example(key).into_iter().collect()), key.to_string());
     }
     if message.contains("exactly 1 element") {
-        let error = Error::scene(format!("{} takes one choice: a word, or a table with one key", key_noun(key)));
+        let error = Error::scene(format!("{} takes one choice: a word, or a table with one key", key_noun(key)))
+            .with_code(ErrorCode::WrongType);
         return (with(error, example(key).into_iter().collect()), key.to_string());
     }
     let error = Error::scene(format!("{}: {message}", key_noun(key)).trim_start_matches(": ").to_string());

@@ -51,7 +51,7 @@ pub(crate) fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> {
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let opened = File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes));
-    opened.map_err(|why| Error::file(path, why))?;
+    opened.map_err(|why| Error::read(path, &why))?;
     if bytes.len() as u64 > MOST_BYTES {
         let what = format!("{} has more than {} MiB", path.display(), MOST_BYTES >> 20);
         return Err(Error::scene(what).help("thin it out: what is finer than dp cannot be seen"));

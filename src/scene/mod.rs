@@ -170,7 +170,21 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A scene of `dimension` 2 or 3, particle spacing `dp` (m), that ends at `until` (s).
+    /// A scene of `dimension` 2 or 3, particle spacing `dp` (m), that ends at `until` (s), without water and solids. Keys that are not
+    /// set have the defaults of a TOML scene.
+    ///
+    /// ```
+    /// use pontoon::scene::{PlacementConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, SpringConfig};
+    ///
+    /// let scene = Scene::new(2, 0.02, 5.0)
+    ///     .water_box([0.0, 0.0], [2.0, 0.4])
+    ///     .solid(SolidConfig::fixed("tank", ShapeConfig::tank([2.0, 0.8])))
+    ///     .solid(SolidConfig::free("buoy", ShapeConfig::ball(0.1), 500.0).at(PlacementConfig::afloat(&[1.0])).friction(0.4))
+    ///     .spring(SpringConfig::mooring("line", "buoy", [1.0, 0.3], [1.0, 0.0], 200.0).damping(5.0))
+    ///     .probe(ProbeConfig::motion("buoy"));
+    /// assert_eq!(scene.build::<2>()?.setup.solids.len(), 2);
+    /// # Ok::<(), pontoon::Error>(())
+    /// ```
     pub fn new(dimension: usize, dp: f64, until: f64) -> Self {
         Self { dimension, dp, until, ..Self::default() }
     }
@@ -189,7 +203,7 @@ impl Scene {
         self
     }
 
-    /// The same scene with a solid more.
+    /// The same scene with one more solid.
     pub fn solid(mut self, solid: SolidConfig) -> Self {
         self.solid.push(solid);
         self
@@ -201,7 +215,7 @@ impl Scene {
         self
     }
 
-    /// The same scene with a probe more.
+    /// The same scene with one more probe.
     pub fn probe(mut self, probe: ProbeConfig) -> Self {
         self.probe.push(probe);
         self
@@ -213,21 +227,39 @@ impl Scene {
         self
     }
 
-    /// The same scene with a damping zone more.
-    pub fn with_damping(mut self, zone: SpongeLayerConfig) -> Self {
-        self.damping.push(zone);
+    /// The same scene with one more sponge layer.
+    pub fn damping(mut self, layer: SpongeLayerConfig) -> Self {
+        self.damping.push(layer);
         self
     }
 
-    /// The same scene with a joint more.
+    /// The same scene with one more joint.
     pub fn joint(mut self, joint: JointConfig) -> Self {
         self.joint.push(joint);
         self
     }
 
-    /// The same scene with a spring or mooring line more.
+    /// The same scene with one more spring or mooring line.
     pub fn spring(mut self, spring: SpringConfig) -> Self {
         self.spring.push(spring);
+        self
+    }
+
+    /// The same scene with one more rope.
+    pub fn rope(mut self, rope: RopeConfig) -> Self {
+        self.rope.push(rope);
+        self
+    }
+
+    /// The same scene with one more prescribed force.
+    pub fn force(mut self, force: ForceConfig) -> Self {
+        self.force.push(force);
+        self
+    }
+
+    /// The same scene with contact properties of one more pair.
+    pub fn contact(mut self, contact: ContactConfig) -> Self {
+        self.contact.push(contact);
         self
     }
 
@@ -241,7 +273,7 @@ impl Scene {
         let mut text = String::new();
         let opened = std::fs::File::open(&file);
         opened.and_then(|opened| opened.take(MOST_TEXT + 1).read_to_string(&mut text)).map_err(|e| {
-            Error::file(&file, e)
+            Error::read(&file, &e)
                 .help("name a scene file, or a folder that holds scene.toml; `pontoon scenes` lists some")
         })?;
         if text.len() as u64 > MOST_TEXT {

@@ -7,7 +7,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use crate::error::{Error, Result, nearest_name};
+use crate::error::{Error, ErrorCode, Result, nearest_name};
 
 /// Keys whose value is one choice out of several laws.
 pub(super) const CHOICES: [&str; 9] = [
@@ -67,7 +67,9 @@ pub(super) fn apply_override<'i>(
 ) -> Result<String> {
     let parts: Vec<&str> = key.split('.').collect();
     if parts.iter().any(|part| part.is_empty()) {
-        return Err(Error::scene(format!("\"{key}\" is not a key")).help("write  --set model.h_over_dp=1.5"));
+        return Err(Error::scene(format!("\"{key}\" is not a key"))
+            .with_code(ErrorCode::UnknownKey)
+            .help("write  --set model.h_over_dp=1.5"));
     }
     let value = match DeValue::parse(text) {
         Ok(value) => value.into_inner(),
@@ -128,7 +130,9 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
     names.iter().position(|n| n == word).or_else(by_number).ok_or_else(|| {
         let guess = nearest_name(word, names.iter().map(String::as_str));
         let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
-        Error::scene(format!("no {path} is called \"{word}\"{guess}")).help(format!("known: {}", names.join(", ")))
+        Error::scene(format!("no {path} is called \"{word}\"{guess}"))
+            .with_code(ErrorCode::UnknownName)
+            .help(format!("known: {}", names.join(", ")))
     })
 }
 

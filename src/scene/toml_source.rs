@@ -22,7 +22,7 @@ use super::{
     diagnostics,
     overrides::{self, CHOICES, OverrideLocations, subkey},
 };
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorCode, Result};
 
 /// Where the keys of a scene were written. Scenes of equal content are equal wherever they were written.
 #[derive(Clone, Debug, Default)]
@@ -79,6 +79,7 @@ impl PartialEq for SceneSource {
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ValueSource {
     /// The default, with its reason.
     Default(String),
@@ -172,6 +173,7 @@ pub(super) fn read<T: DeserializeOwned>(
     let mut root = DeTable::parse(text).map_err(|e| {
         let at = e.span().map(|span| line_column(text, span.start));
         Error::scene(format!("this is not TOML: {}", e.message()))
+            .with_code(ErrorCode::InvalidToml)
             .at(file, at, "")
             .help(diagnostics::toml_help(e.message()))
     })?;
@@ -366,7 +368,11 @@ fn rename_key(
         let what = format!("{old} and {new} say the same thing twice");
         let help = format!("{old} is the old name of {new}: remove it");
         let at = (start < origin.text.len()).then(|| line_column(&origin.text, start));
-        return Err(Error::scene(what).help(help).at(origin.file.clone(), at, subkey(path, old)));
+        return Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help).at(
+            origin.file.clone(),
+            at,
+            subkey(path, old),
+        ));
     }
     if let Some(value) = table.remove(old) {
         table.insert(Spanned::new(span, Cow::Borrowed(new)), value);
@@ -384,6 +390,7 @@ fn require_finite_value(value: &Spanned<DeValue>, path: &str, origin: &SceneSour
     match value.get_ref() {
         DeValue::Float(x) if !x.as_str().replace('_', "").parse::<f64>().is_ok_and(f64::is_finite) => {
             let error = Error::scene(format!("{} is not a finite number", x.as_str()))
+                .with_code(ErrorCode::OutOfRange)
                 .help("write a number; where you mean \"no limit\", leave the line out");
             Err(origin.with_location(error, path))
         }

@@ -58,6 +58,7 @@ impl<'de> Deserialize<'de> for FieldFormulaConfig {
 /// A draft: in metres, or the one at which the body floats at rest.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
 #[schemars(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum DraftChoice {
     /// Where weight and buoyancy balance.
     Equilibrium,
@@ -103,6 +104,7 @@ impl<'de> Deserialize<'de> for DraftChoice {
 /// The unit of lengths in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum LengthUnit {
     /// Metres.
     #[default]
@@ -133,6 +135,7 @@ impl LengthUnit {
 /// A line: its points, a table with the columns `x_m` and `y_m`, or a drawing; as a wall it may have a thickness.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 #[schemars(with = "PointsOrTable")]
+#[non_exhaustive]
 pub struct PolylineConfig {
     /// Points, m.
     pub points: Option<Vec<Vec<f64>>>,
@@ -225,6 +228,7 @@ pub(crate) enum CoordinateUnit {
 /// How a driven coordinate moves: `formula`, or `file` with `column`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct TimeFunctionConfig {
     /// A formula in t (s), with sin, cos, exp, …, and pi.
     pub formula: Option<String>,
@@ -317,6 +321,20 @@ impl TimeValueConfig {
     /// The number, if it is one.
     pub(crate) fn number(&self) -> Option<f64> {
         self.0.formula.as_ref().and_then(|text| text.parse().ok()).filter(|x: &f64| x.is_finite())
+    }
+}
+
+/// A formula in t (s).
+impl From<&str> for TimeValueConfig {
+    fn from(formula: &str) -> Self {
+        Self::formula(formula)
+    }
+}
+
+/// A formula in t (s).
+impl From<String> for TimeValueConfig {
+    fn from(formula: String) -> Self {
+        Self::formula(formula)
     }
 }
 

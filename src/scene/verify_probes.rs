@@ -6,7 +6,7 @@ use super::{
     BoxConfig, ContactConfig, JointConfig, ProbeConfig, Scene, context::suggestion, section::solid::require_solid,
 };
 use crate::{
-    error::{Error, Result},
+    error::{Error, ErrorCode, Result},
     probe::ProbeScope,
 };
 
@@ -73,7 +73,7 @@ impl ProbeScope for Scene {
             true => format!("the scene has no {kind}"),
             false => format!("known: {}", known.join(", ")),
         };
-        Err(self.context().error_with_help(key, what, help))
+        Err(self.context().error_with_help(key, what, help).with_code(ErrorCode::UnknownName))
     }
 
     fn require_contact(&self, key: &str, [a, b]: &[String; 2]) -> Result<()> {

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::{
-    error::{Error, Result, nearest_name},
+    error::{Error, ErrorCode, Result, nearest_name},
     solid::{JointReading, JointSpec, LineReading, MotorCommand, SpringParameters},
 };
 
@@ -85,6 +85,6 @@ pub(crate) fn find_by_name<'a>(kind: &str, name: &str, names: impl Iterator<Item
             Some(near) => format!("did you mean {near:?}?"),
             None => format!("the {kind}s are: {}", names.collect::<Vec<_>>().join(", ")),
         };
-        Error::scene(format!("there is no {kind} called {name:?}")).help(help)
+        Error::scene(format!("there is no {kind} called {name:?}")).with_code(ErrorCode::UnknownName).help(help)
     })
 }

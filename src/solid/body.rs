@@ -1,16 +1,72 @@
-//! The start of a solid, the mass of a free body from its shape, and the checks at set-up.
+//! The builder of a solid, its start, the mass of a free body from its shape, and the checks at set-up.
 
 use crate::{
-    error::{Error, Result},
+    error::{Error, ErrorCode, Result},
     geometry::Shape,
-    math::{Bivector, Matrix, Vector},
-    solid::{FreeBody, Kinematics, Role, SolidSpec},
+    math::{Bivector, Matrix, Pose, Vector},
+    solid::{
+        DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Kinematics, PrescribedMotion, Role,
+        SolidSpec,
+    },
 };
 
 /// Round-off allowed in the symmetry and the triangle inequality of an inertia, relative.
 const INERTIA_SLACK: f64 = 1e-9;
 
 impl<const D: usize> SolidSpec<D> {
+    fn new(name: impl Into<String>, shape: Shape<D>, role: Role<D>) -> Self {
+        Self {
+            name: name.into(),
+            shape,
+            pose: Pose::identity(),
+            role,
+            friction: DEFAULT_FRICTION,
+            restitution: DEFAULT_RESTITUTION,
+            contact_skin: DEFAULT_CONTACT_SKIN,
+        }
+    }
+
+    /// A solid that does not move. Its frame is the world's.
+    pub fn fixed(name: impl Into<String>, shape: Shape<D>) -> Self {
+        Self::new(name, shape, Role::Fixed)
+    }
+
+    /// A solid with a prescribed motion. Its frame is the world's where the motion is zero.
+    pub fn driven(name: impl Into<String>, shape: Shape<D>, motion: PrescribedMotion<D>) -> Self {
+        Self::new(name, shape, Role::Driven(motion))
+    }
+
+    /// A homogeneous free body of `density` (kg/m³), at rest in the world's frame.
+    pub fn free(name: impl Into<String>, shape: Shape<D>, density: f64) -> Self {
+        let body = FreeBody::from_density(&shape, density);
+        Self::with_body(name, shape, body)
+    }
+
+    /// A free solid with the mass and the initial velocity of `body`, in the world's frame.
+    pub fn with_body(name: impl Into<String>, shape: Shape<D>, body: FreeBody<D>) -> Self {
+        Self::new(name, shape, Role::Free(body))
+    }
+
+    /// The same solid with its frame at `pose`, or at a point (m) without rotation.
+    pub fn at(self, pose: impl Into<Pose<D>>) -> Self {
+        Self { pose: pose.into(), ..self }
+    }
+
+    /// The same solid with a Coulomb friction coefficient (–).
+    pub fn friction(self, friction: f64) -> Self {
+        Self { friction, ..self }
+    }
+
+    /// The same solid with a restitution coefficient (–): 0 without rebound, 1 without loss.
+    pub fn restitution(self, restitution: f64) -> Self {
+        Self { restitution, ..self }
+    }
+
+    /// The same solid, with contact beginning at this distance (m) from its faces.
+    pub fn contact_skin(self, contact_skin: f64) -> Self {
+        Self { contact_skin, ..self }
+    }
+
     /// Pose and velocity of the solid at t = 0.
     ///
     /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
@@ -82,6 +138,52 @@ impl<const D: usize> SolidSpec<D> {
 }
 
 impl<const D: usize> FreeBody<D> {
+    /// A body of `mass` (kg; kg/m in 2-D) and `inertia` (kg m²; kg m²/m in 2-D, in `[(0, 0)]`) about its centre of mass, at rest, with
+    /// the centre of mass at the origin of the solid's frame.
+    pub fn new(mass: f64, inertia: Matrix<D>) -> Self {
+        Self {
+            mass,
+            centre: Vector::zeros(),
+            inertia,
+            velocity: Vector::zeros(),
+            spin: Bivector::zero(),
+            locked_translations: [false; D],
+            locked_rotations: [false; 3],
+        }
+    }
+
+    /// The same body with its centre of mass at this point (m) of the solid's frame.
+    pub fn centre(self, centre: impl Into<Vector<D>>) -> Self {
+        Self { centre: centre.into(), ..self }
+    }
+
+    /// The same body with this inertia (kg m²; kg m²/m in 2-D, in `[(0, 0)]`) about its centre of mass.
+    pub fn inertia(self, inertia: Matrix<D>) -> Self {
+        Self { inertia, ..self }
+    }
+
+    /// The same body with this velocity (m/s) of its centre of mass at the start.
+    pub fn velocity(self, velocity: impl Into<Vector<D>>) -> Self {
+        Self { velocity: velocity.into(), ..self }
+    }
+
+    /// The same body with this spin (rad/s) at the start.
+    pub fn spin(self, spin: Bivector<D>) -> Self {
+        Self { spin, ..self }
+    }
+
+    /// The same body, which cannot move along the world's axis number `axis`.
+    pub fn lock_translation(mut self, axis: usize) -> Self {
+        self.locked_translations[axis] = true;
+        self
+    }
+
+    /// The same body, which cannot turn about the world's axis number `axis`; 0 in 2-D.
+    pub fn lock_rotation(mut self, axis: usize) -> Self {
+        self.locked_rotations[axis] = true;
+        self
+    }
+
     /// The homogeneous body of `density` (kg/m³) that fills `shape`, at rest.
     ///
     ///   m = ρ V,   I = ρ (tr J · 1 − J) in 3-D, ρ tr J in 2-D
@@ -93,15 +195,7 @@ impl<const D: usize> FreeBody<D> {
         } else {
             Matrix::identity() * trace - volume.second_moment
         };
-        Self {
-            mass: density * volume.volume,
-            centre: volume.centroid,
-            inertia: inertia * density,
-            velocity: Vector::zeros(),
-            spin: Bivector::zero(),
-            locked_translations: [false; D],
-            locked_rotations: [false; 3],
-        }
+        Self::new(density * volume.volume, inertia * density).centre(volume.centroid)
     }
 
     /// The homogeneous body of `mass` (kg; kg/m in 2-D) that fills `shape`, at rest.
@@ -139,7 +233,11 @@ impl<const D: usize> FreeBody<D> {
 
 /// An error saying `what` is wrong and what `would be` right, unless `fine`.
 fn require(fine: bool, what: impl FnOnce() -> String, right: &str) -> Result<()> {
-    if fine { Ok(()) } else { Err(Error::scene(what()).help(format!("it must be: {right}"))) }
+    if fine {
+        Ok(())
+    } else {
+        Err(Error::scene(what()).with_code(ErrorCode::OutOfRange).help(format!("it must be: {right}")))
+    }
 }
 
 #[cfg(test)]

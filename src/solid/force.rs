@@ -6,7 +6,16 @@ use crate::{
 };
 
 /// A force and a torque on a solid, after laws of time.
+///
+/// ```
+/// use pontoon::solid::ForceSpec;
+///
+/// // 20 N on the centre of mass of solid number 1.
+/// let thrust = ForceSpec::<2>::new("thrust", 1).force([20.0, 0.0]).rotating_with_solid();
+/// assert!(thrust.torque.is_empty());
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct ForceSpec<const D: usize> {
     /// Its name.
     pub name: String,
@@ -23,6 +32,33 @@ pub struct ForceSpec<const D: usize> {
 }
 
 impl<const D: usize> ForceSpec<D> {
+    /// Neither force nor torque, on the centre of mass of solid number `solid`, along the axes of the world.
+    pub fn new(name: impl Into<String>, solid: usize) -> Self {
+        Self { name: name.into(), solid, at: None, force: Vec::new(), torque: Vec::new(), rotates_with_solid: false }
+    }
+
+    /// The same load with a force, one component along each axis, N (N/m in 2-D).
+    pub fn force<F: Into<TimeFunction>>(mut self, force: impl IntoIterator<Item = F>) -> Self {
+        self.force = force.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// The same load with a torque, N m (N m/m in 2-D): one axial component in 2-D, three in 3-D.
+    pub fn torque<F: Into<TimeFunction>>(mut self, torque: impl IntoIterator<Item = F>) -> Self {
+        self.torque = torque.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// The same load on the point of the solid that is at this world point (m) at the start.
+    pub fn at(self, at: impl Into<Vector<D>>) -> Self {
+        Self { at: Some(at.into()), ..self }
+    }
+
+    /// The same load, with axes that turn with the solid.
+    pub fn rotating_with_solid(self) -> Self {
+        Self { rotates_with_solid: true, ..self }
+    }
+
     /// The load about the centre of the solid, which started as `start` and is now as `now`, at time `t` (s).
     pub(super) fn load_at(&self, start: &Kinematics<D>, now: &Kinematics<D>, t: f64) -> Load<D> {
         let value = |laws: &[TimeFunction], i: usize| laws.get(i).map_or(0.0, |law| law.value_and_rate(t).0);

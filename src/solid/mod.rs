@@ -39,8 +39,26 @@ use crate::{
     math::{Bivector, Matrix, Pose, Vector},
 };
 
-/// The specification of a solid.
+/// Default of the Coulomb friction coefficient, that of wet wood or plastic, –.
+pub const DEFAULT_FRICTION: f64 = 0.3;
+
+/// Default of the restitution coefficient, –: lubrication by water dissipates the rebound.
+pub const DEFAULT_RESTITUTION: f64 = 0.0;
+
+/// Default of the contact skin, m: contact begins at the faces.
+pub const DEFAULT_CONTACT_SKIN: f64 = 0.0;
+
+/// The specification of a solid: [`SolidSpec::fixed`], [`SolidSpec::driven`], [`SolidSpec::free`] or [`SolidSpec::with_body`].
+///
+/// ```
+/// use pontoon::prelude::*;
+///
+/// let hull = Shape::Box { size: [0.4, 0.1].into() };
+/// let raft = SolidSpec::free("raft", hull, 500.0).at([1.0, 0.2]).friction(0.4);
+/// assert_eq!(raft.restitution, 0.0);
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SolidSpec<const D: usize> {
     /// The name that the user gave it.
     pub name: String,
@@ -60,6 +78,7 @@ pub struct SolidSpec<const D: usize> {
 
 /// What moves a solid.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Role<const D: usize> {
     /// Nothing.
     Fixed,
@@ -69,8 +88,18 @@ pub enum Role<const D: usize> {
     Free(FreeBody<D>),
 }
 
-/// Mass and start of a free body.
+/// Mass and start of a free body: [`FreeBody::from_density`], [`FreeBody::from_mass`] or [`FreeBody::new`].
+///
+/// ```
+/// use pontoon::prelude::*;
+///
+/// let hull = Shape::<2>::Box { size: [0.4, 0.1].into() };
+/// let body = FreeBody::from_density(&hull, 500.0).velocity([0.5, 0.0]).lock_rotation(0);
+/// let raft = SolidSpec::with_body("raft", hull, body);
+/// assert!(raft.check().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FreeBody<const D: usize> {
     /// Mass, kg (kg/m in 2-D).
     pub mass: f64,

@@ -15,6 +15,7 @@ use crate::{
 
 /// A driven coordinate over time: a length (m) or an angle (rad) at a time (s).
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum TimeFunction {
     /// The smooth curve through measured samples; at rest before the first and after the last.
     Table(TimeSeries),
@@ -22,6 +23,18 @@ pub enum TimeFunction {
     Formula(Formula),
     /// The motion of a paddle that generates a wave by theory.
     Wave(Box<PaddleMotion>),
+}
+
+impl From<f64> for TimeFunction {
+    fn from(x: f64) -> Self {
+        Self::constant(x)
+    }
+}
+
+impl From<Formula> for TimeFunction {
+    fn from(formula: Formula) -> Self {
+        Self::Formula(formula)
+    }
 }
 
 impl TimeFunction {

@@ -89,7 +89,7 @@ impl StudyResults {
     /// # Errors
     /// `File` if one cannot be written; each is replaced as a whole.
     pub fn write(&self, ran: &[JobResult]) -> Result<()> {
-        fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
+        fs::create_dir_all(&self.out).map_err(|why| Error::write(&self.out, "made", &why))?;
         let rows = self.rows(ran);
         let orders = self.orders(&rows);
         let first = ran.iter().find_map(|r| r.manifest.as_ref());

@@ -78,7 +78,7 @@ impl Validation {
     /// # Errors
     /// `File` if one cannot be written; each is replaced as a whole.
     pub fn write(&self, ran: &[JobResult]) -> Result<()> {
-        fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
+        fs::create_dir_all(&self.out).map_err(|why| Error::write(&self.out, "made", &why))?;
         let first = ran.iter().find_map(|r| r.manifest.as_ref());
         let (machine, threads) = (first.map_or_else(Machine::current, |m| m.machine.clone()), first.map(|m| m.threads));
         let mut body = html_page::provenance_table(&self.command, &machine, threads);

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::Job;
 use crate::{
-    error::{Error, ErrorKind, Result, nearest_name},
+    error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
     plan::Score,
     scene::Scene,
 };
@@ -92,7 +92,9 @@ pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>>
                 Some(near) => format!("did you mean {near:?}? `pontoon validate --list` lists all"),
                 None => "`pontoon validate --list` lists all".into(),
             };
-            Error::new(ErrorKind::Usage, format!("there is no case {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no case {name:?}"))
+                .with_code(ErrorCode::UnknownName)
+                .help(help)
         })
     };
     names.iter().map(case).collect()

@@ -21,15 +21,14 @@ use periodic::Images;
 pub(crate) use periodic::Periodic;
 pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
-pub(crate) use step_check::StepCheck;
-pub use step_check::{Escape, ParticleLimits, RemovedParticle};
+pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
+pub(crate) use step_check::{LimitViolation, StepCheck};
 
 pub use crate::interaction::StepLimits;
 
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-pub use step_check::ExitPath;
 
 use crate::{
     error::{Error, Result},

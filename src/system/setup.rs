@@ -6,14 +6,29 @@ use super::{
     step_check::ParticleLimits,
 };
 use crate::{
-    error::{Error, Result},
-    math::{Bounds, Vector},
+    error::{Error, ErrorCode, Result},
+    geometry::{Shape, WaterRegion, fill},
+    math::{Bounds, Pose, Vector},
     model::Model,
-    solid::{Constraints, SolidSpec},
+    solid::{Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, RopeSpec, SolidSpec, SpringSpec},
 };
 
 /// What a simulation starts from.
+///
+/// ```
+/// use pontoon::prelude::*;
+///
+/// // A raft in a tank, 2 m long, of water 0.4 m deep at a spacing of 0.05 m.
+/// let (dp, depth) = (0.05, 0.4);
+/// let tank = SolidSpec::fixed("tank", Shape::Tank { size: [2.0, 0.8].into(), thickness: 4.0 * dp });
+/// let raft = SolidSpec::free("raft", Shape::Box { size: [0.4, 0.2].into() }, 500.0).at([1.0, depth]);
+/// let setup = Setup::<2>::new(Model::water(2, dp, depth)).solid(tank).solid(raft).fill_box([0.0, 0.0], [2.0, depth])?;
+/// let simulation = Simulation::new(setup)?;
+/// assert_eq!(simulation.system().solids().len(), 2);
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Setup<const D: usize> {
     /// The model.
     pub model: Model,
@@ -40,24 +55,133 @@ pub struct Setup<const D: usize> {
 }
 
 impl<const D: usize> Setup<D> {
-    /// Water at rest at the places `water` (m) below the levels `levels` (m), and solids.
-    pub fn new(model: Model, water: Vec<Vector<D>>, levels: Vec<f64>, solids: Vec<SolidSpec<D>>) -> Self {
-        let (velocity, pressure, links, limits) =
-            (Vec::new(), Vec::new(), Constraints::default(), ParticleLimits::default());
-        let (domain, periodic, damping) = (None, [None; D], Vec::new());
+    /// Neither water nor solids.
+    pub fn new(model: Model) -> Self {
         Self {
             model,
-            water,
-            surface_levels: levels,
-            solids,
-            constraints: links,
-            velocity,
-            pressure,
-            domain,
-            periodic,
-            limits,
-            sponge_layers: damping,
+            water: Vec::new(),
+            surface_levels: Vec::new(),
+            velocity: Vec::new(),
+            pressure: Vec::new(),
+            solids: Vec::new(),
+            constraints: Constraints::default(),
+            domain: None,
+            periodic: [None; D],
+            limits: ParticleLimits::default(),
+            sponge_layers: Vec::new(),
         }
+    }
+
+    /// The same setup with more water particles at rest at `places` (m), below a still surface at the height `level` (m).
+    pub fn water(mut self, places: impl IntoIterator<Item = Vector<D>>, level: f64) -> Self {
+        self.water.extend(places);
+        self.surface_levels.resize(self.water.len(), level);
+        self
+    }
+
+    /// The same setup with more water at rest in the box from corner `min` to corner `max` (m), less the solids given so far. The still
+    /// surface is the top of the box.
+    ///
+    /// # Errors
+    /// As [`fill`].
+    pub fn fill_box(self, min: impl Into<Vector<D>>, max: impl Into<Vector<D>>) -> Result<Self> {
+        let (min, max) = (min.into(), max.into());
+        let shape = Shape::Box { size: max - min };
+        self.fill(&[WaterRegion { shape, pose: Pose::at(0.5 * (min + max)) }], max[D - 1])
+    }
+
+    /// The same setup with more water at rest in `regions`, less the solids given so far, below a still surface at the height `level`
+    /// (m).
+    ///
+    /// # Errors
+    /// As [`fill`].
+    pub fn fill(self, regions: &[WaterRegion<D>], level: f64) -> Result<Self> {
+        let poses: Vec<Pose<D>> = self.solids.iter().map(|solid| solid.initial_kinematics().pose).collect();
+        let solids: Vec<_> = self.solids.iter().zip(&poses).map(|(solid, pose)| (&solid.shape, pose)).collect();
+        let places = fill(regions, &solids, self.model.dp)?.r;
+        Ok(self.water(places, level))
+    }
+
+    /// The same setup with the velocity `field` (m/s) at the place (m) of each water particle given so far.
+    pub fn velocity(mut self, field: impl Fn(&Vector<D>) -> Vector<D>) -> Self {
+        self.velocity = self.water.iter().map(field).collect();
+        self
+    }
+
+    /// The same setup with the pressure `field` (Pa), beyond that of water at rest, at the place (m) of each water particle given so far.
+    pub fn pressure(mut self, field: impl Fn(&Vector<D>) -> f64) -> Self {
+        self.pressure = self.water.iter().map(field).collect();
+        self
+    }
+
+    /// The same setup with one more solid. Solids are numbered from 0 in the order in which they are added.
+    pub fn solid(mut self, solid: SolidSpec<D>) -> Self {
+        self.solids.push(solid);
+        self
+    }
+
+    /// The same setup with more solids.
+    pub fn solids(mut self, solids: impl IntoIterator<Item = SolidSpec<D>>) -> Self {
+        self.solids.extend(solids);
+        self
+    }
+
+    /// The same setup with one more joint.
+    pub fn joint(mut self, joint: JointSpec<D>) -> Self {
+        self.constraints.joints.push(joint);
+        self
+    }
+
+    /// The same setup with one more spring or mooring line.
+    pub fn spring(mut self, spring: SpringSpec<D>) -> Self {
+        self.constraints.springs.push(spring);
+        self
+    }
+
+    /// The same setup with one more rope.
+    pub fn rope(mut self, rope: RopeSpec<D>) -> Self {
+        self.constraints.ropes.push(rope);
+        self
+    }
+
+    /// The same setup with one more prescribed force.
+    pub fn force(mut self, force: ForceSpec<D>) -> Self {
+        self.constraints.forces.push(force);
+        self
+    }
+
+    /// The same setup with contact properties of one more pair of solids.
+    pub fn contact(mut self, contact: ContactSpec) -> Self {
+        self.constraints.contacts.extend([contact]);
+        self
+    }
+
+    /// The same setup with free solid number `solid` held at rest until the time `until` (s).
+    pub fn hold(mut self, solid: usize, until: f64) -> Self {
+        self.constraints.holds.push(InitialHold { solid, until });
+        self
+    }
+
+    /// The same setup, whose particles may be between the corners `min` and `max` (m).
+    pub fn domain(self, min: impl Into<Vector<D>>, max: impl Into<Vector<D>>) -> Self {
+        Self { domain: Some(Bounds { min: min.into(), max: max.into() }), ..self }
+    }
+
+    /// The same setup, periodic along axis number `axis` from `min` to `max` (m).
+    pub fn periodic(mut self, axis: usize, min: f64, max: f64) -> Self {
+        self.periodic[axis] = Some([min, max]);
+        self
+    }
+
+    /// The same setup with this valid range of a water particle.
+    pub fn limits(self, limits: ParticleLimits) -> Self {
+        Self { limits, ..self }
+    }
+
+    /// The same setup with one more sponge layer.
+    pub fn sponge_layer(mut self, layer: SpongeLayer<D>) -> Self {
+        self.sponge_layers.push(layer);
+        self
     }
 
     /// Refuses a setup whose constants have no meaning.
@@ -75,7 +199,8 @@ impl<const D: usize> Setup<D> {
         for (name, value) in positive {
             let finite = value.is_finite() || name == "dt_max";
             if !(value > 0.0 && finite) {
-                return Err(Error::scene(format!("{name} must be a positive number, not {value}")));
+                return Err(Error::scene(format!("{name} must be a positive number, not {value}"))
+                    .with_code(ErrorCode::OutOfRange));
             }
         }
         if m.support_radius() <= m.dp {

@@ -8,12 +8,21 @@ use serde::{Deserialize, Serialize};
 
 use super::System;
 use crate::{
+    error::ErrorCode,
     math::{Bounds, Vector},
     particles::{PARTICLES_PER_TASK, Particles},
 };
 
 /// The valid range of a water particle. Scene words `[guard]`.
+///
+/// ```
+/// use pontoon::simulation::{Escape, ParticleLimits};
+///
+/// let limits = ParticleLimits::default().density(0.9, 1.1).escape(Escape::Remove);
+/// assert_eq!(limits.density, [0.9, 1.1]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ParticleLimits {
     /// Largest speed over c₀, –.
     pub speed: f64,
@@ -23,9 +32,27 @@ pub struct ParticleLimits {
     pub escape: Escape,
 }
 
+impl ParticleLimits {
+    /// The same range with this largest speed, over c₀ (–).
+    pub fn speed(self, speed: f64) -> Self {
+        Self { speed, ..self }
+    }
+
+    /// The same range with these smallest and largest densities, over ρ₀ (–).
+    pub fn density(self, min: f64, max: f64) -> Self {
+        Self { density: [min, max], ..self }
+    }
+
+    /// The same range with another treatment of particles that leave the domain.
+    pub fn escape(self, escape: Escape) -> Self {
+        Self { escape, ..self }
+    }
+}
+
 /// What becomes of a particle that leaves the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Escape {
     /// It stops the run.
     Stop,
@@ -85,6 +112,9 @@ pub(crate) struct ValidRange<const D: usize> {
     /// Everywhere, if those that leave the domain are taken out.
     domain: Bounds<D>,
 }
+
+/// A water particle outside the valid range: its number, the code, the reason and its usual cause.
+pub(crate) type LimitViolation = (usize, ErrorCode, &'static str, &'static str);
 
 /// What it saw of all particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,7 +190,7 @@ impl<const D: usize> System<D> {
     }
 
     /// The first water particle that has left the valid range, with what is wrong and its usual cause.
-    pub(crate) fn first_invalid_particle(&self) -> Option<(usize, &'static str, &'static str)> {
+    pub(crate) fn first_invalid_particle(&self) -> Option<LimitViolation> {
         if self.status.step_check.valid {
             return None;
         }
@@ -169,13 +199,13 @@ impl<const D: usize> System<D> {
             let (r, v, rho) = (&self.fluid.particles.r[i], &self.fluid.particles.v[i], self.fluid.particles.rho[i]);
             let finite = r.iter().chain(v.iter()).all(|x| x.is_finite()) && rho.is_finite();
             if !finite {
-                Some(("non-finite state", NON_FINITE))
+                Some((ErrorCode::NonFiniteState, "non-finite state", NON_FINITE))
             } else if v.norm_squared() > speed2 {
-                Some(("speed too near the speed of sound (guard.speed)", TOO_FAST))
+                Some((ErrorCode::SpeedLimit, "speed too near the speed of sound (guard.speed)", TOO_FAST))
             } else if !(least..=most).contains(&rho) {
-                Some(("density out of bounds (guard.density)", TOO_FAST))
+                Some((ErrorCode::DensityLimit, "density out of bounds (guard.density)", TOO_FAST))
             } else if !domain.contains(r) {
-                Some(("escape from the domain", ESCAPED))
+                Some((ErrorCode::LeftDomain, "escape from the domain", ESCAPED))
             } else {
                 None
             }
@@ -184,7 +214,7 @@ impl<const D: usize> System<D> {
             .into_par_iter()
             .with_min_len(PARTICLES_PER_TASK)
             .find_first(|&i| bad(i).is_some())?;
-        bad(i).map(|(what, cause)| (i, what, cause))
+        bad(i).map(|(code, what, cause)| (i, code, what, cause))
     }
 
     /// Takes those water particles out of `order` that have left the domain, if that is what becomes of them.

@@ -15,6 +15,7 @@ const START: f64 = 5.0;
 /// Whose wave it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SolitaryTheory {
     /// Boussinesq's.
     Boussinesq,

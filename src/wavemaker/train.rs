@@ -40,6 +40,7 @@ pub enum DepthRegime {
 
 /// Where a wave lies on the chart of @lemehaute1976.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub enum TheoryRegion {
     /// Stokes' second term is less than a hundredth of the first.
     Airy,

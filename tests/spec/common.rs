@@ -13,7 +13,7 @@ use pontoon::{
     model::{Dimension, Model},
     scene::Scene,
     simulation::{Setup, Simulation},
-    solid::{Dim, FreeBody, Role, SolidSpec},
+    solid::{Dim, Role, SolidSpec},
 };
 
 /// Lattice points of spacing `dp` filling the box from `min` to `min + size`, cell centres.
@@ -33,18 +33,19 @@ pub fn lattice<const D: usize>(min: [f64; D], size: [f64; D], dp: f64) -> Vec<Ve
 /// A fixed open tank with its inner lower corner at the origin.
 pub fn tank<const D: usize>(size: [f64; D], dp: f64) -> SolidSpec<D> {
     let shape = Shape::Tank { size: Vector::from(size), thickness: 4.0 * dp };
-    solid("tank", shape, Pose::identity(), Role::Fixed)
+    SolidSpec::fixed("tank", shape).friction(0.0)
 }
 
 /// A free homogeneous body of `density` (kg/m³).
 pub fn float<const D: usize>(shape: Shape<D>, at: [f64; D], density: f64) -> SolidSpec<D> {
-    let body = FreeBody::from_density(&shape, density);
-    solid("float", shape, Pose::at(Vector::from(at)), Role::Free(body))
+    SolidSpec::free("float", shape, density).at(at).friction(0.0)
 }
 
 /// A frictionless solid.
 pub fn solid<const D: usize>(name: &str, shape: Shape<D>, pose: Pose<D>, role: Role<D>) -> SolidSpec<D> {
-    SolidSpec { name: name.into(), shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 }
+    let mut solid = SolidSpec::fixed(name, shape).at(pose).friction(0.0);
+    solid.role = role;
+    solid
 }
 
 /// A simulation of `water`, hydrostatic below `level`, and `solids`.
@@ -57,8 +58,7 @@ pub fn simulation<const D: usize>(
 where
     Dim<D>: Dimension<D>,
 {
-    let levels = vec![level; water.len()];
-    Simulation::new(Setup::new(model, water, levels, solids)).expect("a sound setup")
+    Simulation::new(Setup::new(model).water(water, level).solids(solids)).expect("a sound setup")
 }
 
 /// The simulation of the scene with this TOML text.

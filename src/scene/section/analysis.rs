@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::water::StillWaterLevel;
 use crate::{
-    error::{Error, Result},
+    error::{Error, ErrorCode, Result},
     math::expression::Formula,
     plan::{Align, CheckPlan, Reference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
@@ -20,6 +20,7 @@ use crate::{
 /// One `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct CheckConfig {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
@@ -53,6 +54,7 @@ pub struct CheckConfig {
 /// means the elevations of a gauge or of a row of them, the displacements and turns of a motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct StatisticConfig {
     /// Its name.
     pub name: Option<String>,
@@ -75,6 +77,7 @@ pub struct StatisticConfig {
 /// A motion and the wave that excites it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RaoConfig {
     /// A series, or the name of a motion.
     pub motion: String,
@@ -99,7 +102,7 @@ impl ProbeSeries<'_> {
         self.names.iter().position(|known| known == name).ok_or_else(|| {
             let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
             let what = format!("no probe is called \"{name}\"{}", suggestion(name, &names));
-            ctx.error_with_help(key, what, format!("known: {}", names.join(", ")))
+            ctx.error_with_help(key, what, format!("known: {}", names.join(", "))).with_code(ErrorCode::UnknownName)
         })
     }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::solid::SolidConfig;
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     scene::context::{Context, suggestion},
     solid::ContactSpec,
 };
@@ -15,6 +15,7 @@ use crate::{
 /// One `[[contact]]`: how solids touch, pair by pair; of several of the same pair the last counts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ContactConfig {
     /// The two, each a solid or a group of them; or one, for its contacts with all others.
     pub between: Vec<String>,
@@ -27,6 +28,26 @@ pub struct ContactConfig {
 }
 
 impl ContactConfig {
+    /// The contact of two solids or groups, or of one with all others.
+    pub fn new<const N: usize>(between: [&str; N]) -> Self {
+        Self { between: between.map(String::from).to_vec(), ..Self::default() }
+    }
+
+    /// The same contact with its own Coulomb friction coefficient (–).
+    pub fn friction(self, friction: f64) -> Self {
+        Self { friction: Some(friction), ..self }
+    }
+
+    /// The same contact with its own restitution coefficient (–).
+    pub fn restitution(self, restitution: f64) -> Self {
+        Self { restitution: Some(restitution), ..self }
+    }
+
+    /// The same pair without contact: its solids pass through one another.
+    pub fn without_contact(self) -> Self {
+        Self { touch: Some(false), ..self }
+    }
+
     /// Refuses a rule that changes nothing or contradicts itself; `earlier` are the rules before it.
     fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig], earlier: &[ContactConfig]) -> Result<()> {
         self.verify_between(ctx, &format!("{key}.between"), solids)?;
@@ -57,7 +78,9 @@ impl ContactConfig {
         let known: Vec<&str> = solids.iter().map(|solid| solid.name.as_str()).chain(groups.iter().copied()).collect();
         if let Some(name) = between.iter().find(|name| !known.contains(&name.as_str())) {
             let what = format!("no solid or group is called \"{name}\"{}", suggestion(name, &known));
-            return Err(ctx.error_with_help(key, what, format!("known: {}", known.join(", "))));
+            return Err(ctx
+                .error_with_help(key, what, format!("known: {}", known.join(", ")))
+                .with_code(ErrorCode::UnknownName));
         }
         let of_group = between.iter().any(|name| groups.contains(name.as_str()));
         let twice = between.len() == 2 && between[0] == between[1];

@@ -31,6 +31,7 @@ impl BoxConfig {
 /// First and last coordinate of the period along each periodic axis, m.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct PeriodicConfig {
     /// Along x, m.
     pub x: Option<[f64; 2]>,
@@ -66,6 +67,7 @@ impl PeriodicConfig {
 /// `[guard]`: the valid range of a water particle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct GuardConfig {
     /// Largest speed of water over c₀, –.
     pub speed: Option<f64>,

@@ -20,6 +20,7 @@ use crate::{
 /// One `[[spring]]`: a spring, or a mooring line if it bears tension only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SpringConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
@@ -42,6 +43,7 @@ pub struct SpringConfig {
 /// One `[[rope]]`: an inextensible line that bears tension only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RopeConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
@@ -58,6 +60,7 @@ pub struct RopeConfig {
 /// One `[[force]]`: a force and a torque on a free solid, as functions of time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ForceConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
@@ -76,6 +79,7 @@ pub struct ForceConfig {
 /// The axes of a force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum ForceFrame {
     /// Those of the world.
     World,
@@ -84,6 +88,18 @@ pub enum ForceFrame {
 }
 
 impl SpringConfig {
+    /// A spring of `stiffness` (N/m) from the point `from` of the first solid to the point `to` (m) of the second, or of the ground.
+    pub fn new<const N: usize>(
+        name: impl Into<String>,
+        between: [&str; N],
+        from: impl Into<Vec<f64>>,
+        to: impl Into<Vec<f64>>,
+        stiffness: f64,
+    ) -> Self {
+        let (between, from, to) = (between.map(String::from).to_vec(), from.into(), to.into());
+        Self { name: name.into(), between, from, to, stiffness, damping: None, length: None, tension_only: None }
+    }
+
     /// A mooring line of `stiffness` (N/m) from the point `from` of `solid` to the point `to` of the ground, as long as it starts.
     pub fn mooring(
         name: impl Into<String>,
@@ -92,10 +108,18 @@ impl SpringConfig {
         to: impl Into<Vec<f64>>,
         stiffness: f64,
     ) -> Self {
-        let (from, to) = (from.into(), to.into());
-        let between = vec![solid.into()];
-        let tension_only = Some(true);
-        Self { name: name.into(), between, from, to, stiffness, damping: None, length: None, tension_only }
+        let spring = Self::new::<0>(name, [], from, to, stiffness);
+        Self { between: vec![solid.into()], tension_only: Some(true), ..spring }
+    }
+
+    /// The same spring with a damping (N s/m).
+    pub fn damping(self, damping: f64) -> Self {
+        Self { damping: Some(damping), ..self }
+    }
+
+    /// The same spring with this length without tension (m).
+    pub fn length(self, length: f64) -> Self {
+        Self { length: Some(length), ..self }
     }
 
     /// Fills in its defaults.
@@ -128,6 +152,22 @@ impl SpringConfig {
 }
 
 impl RopeConfig {
+    /// A rope from the point `from` of the first solid to the point `to` (m) of the second, or of the ground; taut at the start.
+    pub fn new<const N: usize>(
+        name: impl Into<String>,
+        between: [&str; N],
+        from: impl Into<Vec<f64>>,
+        to: impl Into<Vec<f64>>,
+    ) -> Self {
+        let between = between.map(String::from).to_vec();
+        Self { name: name.into(), between, from: from.into(), to: to.into(), length: None }
+    }
+
+    /// The same rope with this length (m).
+    pub fn length(self, length: f64) -> Self {
+        Self { length: Some(length), ..self }
+    }
+
     /// Fills in its defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let length = distance(&self.from, &self.to);
@@ -150,6 +190,31 @@ impl RopeConfig {
 }
 
 impl ForceConfig {
+    /// Neither force nor torque, on the centre of mass of the solid `on`.
+    pub fn new(name: impl Into<String>, on: impl Into<String>) -> Self {
+        Self { name: name.into(), on: on.into(), at: None, force: None, torque: None, frame: None }
+    }
+
+    /// The same load with a force (N), one component along each axis.
+    pub fn force<F: Into<TimeValueConfig>>(self, force: impl IntoIterator<Item = F>) -> Self {
+        Self { force: Some(TimeVectorConfig::new(force.into_iter().map(Into::into))), ..self }
+    }
+
+    /// The same load with a torque (N m): one axial component in 2-D, three in 3-D.
+    pub fn torque<F: Into<TimeValueConfig>>(self, torque: impl IntoIterator<Item = F>) -> Self {
+        Self { torque: Some(TimeVectorConfig::new(torque.into_iter().map(Into::into))), ..self }
+    }
+
+    /// The same load at this point (m) at the start.
+    pub fn at(self, at: impl Into<Vec<f64>>) -> Self {
+        Self { at: Some(at.into()), ..self }
+    }
+
+    /// The same load with axes of the world, or of the solid.
+    pub fn frame(self, frame: ForceFrame) -> Self {
+        Self { frame: Some(frame), ..self }
+    }
+
     /// Fills in its defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         defaults.fill(format!("{key}.frame"), &mut self.frame, ForceFrame::World, "as wind, not as a thruster");

@@ -13,7 +13,7 @@ use super::{
     solid::{MotionMode, SolidConfig, require_solid, verify_modes},
 };
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     scene::{
         context::{Context, Defaults, last_part},
         untagged::{CoordinateUnit, TimeValueConfig},
@@ -24,6 +24,7 @@ use crate::{
 /// One `[[joint]]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct JointConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
@@ -52,6 +53,7 @@ pub struct JointConfig {
 /// The kind of a joint, by the motion that it leaves free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum JointKindConfig {
     /// Rotation about an axis.
     #[serde(alias = "revolute")]
@@ -76,6 +78,7 @@ pub enum JointKindConfig {
 /// A motor, brake or power take-off: F = F₀ + k (x* − x) + c (v* − ẋ).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct MotorConfig {
     /// F₀ of a slider, N.
     pub force: Option<TimeValueConfig>,
@@ -95,9 +98,42 @@ pub struct MotorConfig {
     pub strongest: Option<f64>,
 }
 
+impl MotorConfig {
+    /// The same motor with F₀ (N) of a slider.
+    pub fn force(self, force: impl Into<TimeValueConfig>) -> Self {
+        Self { force: Some(force.into()), ..self }
+    }
+
+    /// The same motor with F₀ (N m) of a hinge.
+    pub fn torque(self, torque: impl Into<TimeValueConfig>) -> Self {
+        Self { torque: Some(torque.into()), ..self }
+    }
+
+    /// The same motor with x* (m or rad).
+    pub fn position(self, position: impl Into<TimeValueConfig>) -> Self {
+        Self { position: Some(position.into()), ..self }
+    }
+
+    /// The same motor with v* (m/s or rad/s).
+    pub fn velocity(self, velocity: impl Into<TimeValueConfig>) -> Self {
+        Self { velocity: Some(velocity.into()), ..self }
+    }
+
+    /// The same motor with k (N/m or N m/rad).
+    pub fn stiffness(self, stiffness: impl Into<TimeValueConfig>) -> Self {
+        Self { stiffness: Some(stiffness.into()), ..self }
+    }
+
+    /// The same motor with c (N s/m or N m s/rad).
+    pub fn damping(self, damping: impl Into<TimeValueConfig>) -> Self {
+        Self { damping: Some(damping.into()), ..self }
+    }
+}
+
 /// End stops: least and greatest value, or such a pair for each of several modes.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum LimitsConfig {
     /// Of a joint with one degree of freedom.
     One(Vec<f64>),
@@ -147,10 +183,24 @@ impl JointConfig {
         }
     }
 
-    /// The same joint with a linear power take-off of `damping` (N s/m, or N m s/rad of a hinge).
-    pub fn with_damping(mut self, damping: f64) -> Self {
-        self.motor.get_or_insert_default().damping = Some(damping.into());
-        self
+    /// The same joint along this direction, of a slider, a tow or a generic joint.
+    pub fn along(self, along: impl Into<Vec<f64>>) -> Self {
+        Self { along: Some(along.into()), ..self }
+    }
+
+    /// The same joint about this axis, of a hinge in 3-D.
+    pub fn axis(self, axis: impl Into<Vec<f64>>) -> Self {
+        Self { axis: Some(axis.into()), ..self }
+    }
+
+    /// The same joint with end stops, m or rad from the start.
+    pub fn limits(self, min: f64, max: f64) -> Self {
+        Self { limits: Some(LimitsConfig::One(vec![min, max])), ..self }
+    }
+
+    /// The same joint with a motor.
+    pub fn motor(self, motor: MotorConfig) -> Self {
+        Self { motor: Some(motor), ..self }
     }
 
     /// Fills in its defaults.
@@ -177,7 +227,11 @@ impl JointConfig {
         for (word, vector, needed, allowed) in needs {
             let key = format!("{key}.{word}");
             match vector {
-                None if needed => return Err(ctx.error_at(&key, format!("{word} is missing: which way?"))),
+                None if needed => {
+                    return Err(ctx
+                        .error_at(&key, format!("{word} is missing: which way?"))
+                        .with_code(ErrorCode::MissingKey));
+                }
                 Some(_) if !(needed || allowed) => {
                     let help = "a slider, a tow and a generic joint have  along, a hinge in 3-D has  axis; no other joint has a direction";
                     return Err(ctx.error_with_help(&key, format!("{word} has no meaning here"), help));
@@ -205,7 +259,9 @@ impl JointConfig {
         let free = self.free.as_deref().unwrap_or_default();
         verify_modes(ctx, &format!("{key}.free"), free)?;
         if generic && free.is_empty() {
-            return Err(ctx.error_with_help(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]"));
+            return Err(ctx
+                .error_with_help(key, "free is missing: what does it leave?", "free = [\"x\", \"turn\"]")
+                .with_code(ErrorCode::MissingKey));
         }
         if !generic && self.free.is_some() {
             let help = "the other kinds say what they leave free; a list has  kind = \"generic\"";
@@ -248,9 +304,9 @@ impl JointConfig {
             }
         }
         match (&self.limits, &self.limits_deg) {
-            (Some(_), Some(_)) if !generic => {
-                Err(ctx.error_at(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice"))
-            }
+            (Some(_), Some(_)) if !generic => Err(ctx
+                .error_at(&format!("{key}.limits_deg"), "limits and limits_deg say the same twice")
+                .with_code(ErrorCode::ConflictingKeys)),
             (_, Some(_)) if !(hinge || generic) => {
                 Err(ctx.error_at(&format!("{key}.limits_deg"), "only turns have limits in degrees"))
             }
@@ -336,7 +392,9 @@ impl MotorConfig {
             return Err(ctx.error_at(key, "this motor has no force: give a force or torque, a stiffness, or a damping"));
         }
         if self.position.is_some() && self.position_deg.is_some() {
-            return Err(ctx.error_at(&format!("{key}.position_deg"), "position and position_deg say the same twice"));
+            return Err(ctx
+                .error_at(&format!("{key}.position_deg"), "position and position_deg say the same twice")
+                .with_code(ErrorCode::ConflictingKeys));
         }
         if position && self.stiffness.is_none() {
             let what = "a position needs a stiffness with which it is held";

@@ -27,6 +27,7 @@ const MIN_DEPTH_RATIO: f64 = 0.75;
 /// The chosen laws.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct ModelConfig {
     /// Kernel.
     pub kernel: Option<KernelKind>,
@@ -61,6 +62,7 @@ pub struct ModelConfig {
 /// The time scheme.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct TimeSteppingConfig {
     /// Scheme.
     pub scheme: Option<TimeScheme>,

@@ -16,6 +16,7 @@ use crate::{
 /// A prescribed motion: `along` with `distance`, or `hinge` with `angle` or `angle_deg`; either with a `wave` instead; or `motions`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct DrivenConfig {
     /// Direction of a translation (its length does not matter).
     pub along: Option<Vec<f64>>,

@@ -9,6 +9,7 @@ use serde::{
 };
 
 use crate::{
+    error::{self, ErrorCode},
     math::{BoxConfig, format::bytes},
     output::frame::particle_bytes,
     plan::FramesPlan,
@@ -30,6 +31,7 @@ const CHECKPOINT_WALL: f64 = 600.0;
 /// FramesChoice for ParaView: `"off"`, or when and which fields.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum FramesChoice {
     /// None are written.
     Off,
@@ -41,6 +43,7 @@ pub enum FramesChoice {
 /// When frames are written, and with which fields.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct FramesConfig {
     /// Simulated time between frames, s.
     pub every: Option<f64>,
@@ -84,12 +87,14 @@ impl<'de> Deserialize<'de> for FramesChoice {
 
 impl FramesChoice {
     /// Refuses unknown fields and an empty box.
-    pub(crate) fn verify(&self, ctx: &Context) -> crate::error::Result<()> {
+    pub(crate) fn verify(&self, ctx: &Context) -> error::Result<()> {
         let Self::On(FramesConfig { every, fields, corners }) = self else { return Ok(()) };
         ctx.require_positive("frames.every", *every)?;
         if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
             let what = format!("no field is called \"{field}\"{}", suggestion(field, &FIELDS));
-            return Err(ctx.error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", "))));
+            return Err(ctx
+                .error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", ")))
+                .with_code(ErrorCode::UnknownName));
         }
         corners.as_ref().map_or(Ok(()), |corners| corners.verify(ctx, "frames.box"))
     }
@@ -131,6 +136,7 @@ impl FramesConfig {
 /// Checkpoints.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct CheckpointConfig {
     /// Simulated time between them, s.
     pub every: Option<f64>,
@@ -139,7 +145,7 @@ pub struct CheckpointConfig {
 }
 
 impl CheckpointConfig {
-    pub(crate) fn verify(&self, ctx: &Context) -> crate::error::Result<()> {
+    pub(crate) fn verify(&self, ctx: &Context) -> error::Result<()> {
         ctx.require_positive("checkpoint.every", self.every)?;
         ctx.require_positive("checkpoint.wall", self.wall)
     }

@@ -22,6 +22,7 @@ const CURVE_TOLERANCE: f64 = 0.01;
 /// A shape in its own frame; lengths in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum ShapeConfig {
     /// A box around its centre.
     Box {
@@ -74,6 +75,7 @@ pub enum ShapeConfig {
 /// A closed surface in a file beside the scene: STL or OBJ.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MeshConfig {
     /// Name of the file.
     pub file: String,
@@ -102,6 +104,7 @@ pub enum AxisName {
 /// A part of a compound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct CompoundPartConfig {
     /// Its shape.
     pub shape: ShapeConfig,
@@ -109,9 +112,17 @@ pub struct CompoundPartConfig {
     pub at: Option<PlacementConfig>,
 }
 
+impl CompoundPartConfig {
+    /// A part at a place of the compound's frame.
+    pub fn new(shape: ShapeConfig, at: PlacementConfig) -> Self {
+        Self { shape, at: Some(at) }
+    }
+}
+
 /// A position and a rotation. The lowest point or the draft may give the height instead.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct PlacementConfig {
     /// m.
     pub x: Option<f64>,
@@ -362,6 +373,11 @@ impl PlacementConfig {
     /// Afloat at rest at the horizontal coordinates `x` (m).
     pub fn afloat(x: &[f64]) -> Self {
         Self { draft: Some(DraftChoice::Equilibrium), ..Self::point(x) }
+    }
+
+    /// The same place with the lowest point of the shape at this height (m).
+    pub fn bottom(self, bottom: f64) -> Self {
+        Self { bottom: Some(bottom), ..self }
     }
 
     /// Refuses a place that has no meaning in the scene's dimension, or gives the height twice.

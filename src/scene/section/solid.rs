@@ -10,14 +10,17 @@ use super::{
     wavemaker,
 };
 use crate::{
-    error::{Error, Result},
+    error::{Error, ErrorCode, Result},
     geometry::Shape,
     math::{Bivector, Matrix, NumberOrArray, Pose, Vector},
     scene::{
         context::{Context, Defaults, quoted_list, set_keys, suggestion},
         untagged::DraftChoice,
     },
-    solid::{FreeBody, Role, SolidSpec, hydrostatics::equilibrium_height},
+    solid::{
+        DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Role, SolidSpec,
+        hydrostatics::equilibrium_height,
+    },
 };
 
 /// Largest extent, dp, of bodies that must weigh half a water particle.
@@ -32,6 +35,7 @@ const THIN_DENSITY: f64 = 0.2;
 /// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SolidConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
@@ -59,6 +63,7 @@ pub struct SolidConfig {
 /// A body that water, weight and contacts move.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct FreeBodyConfig {
     /// Density, kg/m³.
     pub density: Option<f64>,
@@ -147,10 +152,29 @@ impl SolidConfig {
         Self { driven: Some(motion), ..Self::new(name, shape) }
     }
 
+    /// A free body with this mass and start.
+    pub fn with_body(name: impl Into<String>, shape: ShapeConfig, body: FreeBodyConfig) -> Self {
+        Self { free: Some(body), ..Self::new(name, shape) }
+    }
+
     /// The same solid at a place.
-    pub fn at(mut self, at: PlacementConfig) -> Self {
-        self.at = Some(at);
-        self
+    pub fn at(self, at: PlacementConfig) -> Self {
+        Self { at: Some(at), ..self }
+    }
+
+    /// The same solid with a Coulomb friction coefficient (–).
+    pub fn friction(self, friction: f64) -> Self {
+        Self { friction: Some(friction), ..self }
+    }
+
+    /// The same solid with a restitution coefficient (–).
+    pub fn restitution(self, restitution: f64) -> Self {
+        Self { restitution: Some(restitution), ..self }
+    }
+
+    /// The same solid, with contact beginning at this distance (m) from its faces.
+    pub fn contact_skin(self, contact_skin: f64) -> Self {
+        Self { contact_skin: Some(contact_skin), ..self }
     }
 
     /// Refuses a solid that is not complete; `others` are the solids before it and `all` those of the scene.
@@ -181,9 +205,9 @@ impl SolidConfig {
             PlacementConfig::default(),
             "the shape's frame is the world's",
         );
-        defaults.fill(format!("{key}.friction"), &mut self.friction, 0.3, "wet wood or plastic");
+        defaults.fill(format!("{key}.friction"), &mut self.friction, DEFAULT_FRICTION, "wet wood or plastic");
         let why = "lubrication by water dissipates the rebound";
-        defaults.fill(format!("{key}.restitution"), &mut self.restitution, 0.0, why);
+        defaults.fill(format!("{key}.restitution"), &mut self.restitution, DEFAULT_RESTITUTION, why);
         if let Some(driven) = &mut self.driven {
             driven.fill(defaults, &format!("{key}.driven"));
         }
@@ -201,7 +225,8 @@ impl SolidConfig {
             let help = "write one of\n  fixed  = true\n  driven = { along = [1.0, 0.0], distance = { formula = \
                         \"0.05*sin(2*pi*t)\" } }\n  free   = { density = 500.0 }";
             let place = roles.last().map_or(key.to_string(), |role| format!("{key}.{role}"));
-            return Err(ctx.error_with_help(&place, what, help));
+            let code = if roles.is_empty() { ErrorCode::MissingKey } else { ErrorCode::ConflictingKeys };
+            return Err(ctx.error_with_help(&place, what, help).with_code(code));
         }
         if self.fixed == Some(false) {
             let help = "a solid that is not fixed is driven = { ... } or free = { ... }";
@@ -262,9 +287,9 @@ impl SolidConfig {
             shape,
             pose,
             role,
-            friction: self.friction.unwrap_or_default(),
-            restitution: self.restitution.unwrap_or_default(),
-            contact_skin: self.contact_skin.unwrap_or_default(),
+            friction: self.friction.unwrap_or(DEFAULT_FRICTION),
+            restitution: self.restitution.unwrap_or(DEFAULT_RESTITUTION),
+            contact_skin: self.contact_skin.unwrap_or(DEFAULT_CONTACT_SKIN),
         };
         let blamed = if spec.has_valid_contact_skin() { key.to_string() } else { format!("{key}.contact_skin") };
         spec.check().map_err(|e| ctx.with_location(e, &blamed))?;
@@ -275,17 +300,27 @@ impl SolidConfig {
 }
 
 impl FreeBodyConfig {
+    /// A homogeneous body of `mass` (kg; kg/m in 2-D), at rest.
+    pub fn from_mass(mass: f64) -> Self {
+        Self { mass: Some(mass), ..Self::default() }
+    }
+
     /// Refuses a body without a mass, and vectors that do not fit the dimension.
     fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         ctx.require_positive(&format!("{key}.density"), self.density)?;
         let mass = ctx.require_positive(&format!("{key}.mass"), self.mass);
         mass.map_err(|e| e.help("write  free = { mass = 10.0 }        # kg; in 2-D kg/m"))?;
         if self.density.is_some() == self.mass.is_some() {
-            return Err(ctx.error_with_help(
-                key,
-                "a free body has either a density or a mass",
-                "write  free = { density = 500.0 }        # kg/m³",
-            ));
+            return Err(ctx
+                .error_with_help(
+                    key,
+                    "a free body has either a density or a mass",
+                    "write  free = { density = 500.0 }        # kg/m³",
+                )
+                .with_code(match self.density {
+                    Some(_) => ErrorCode::ConflictingKeys,
+                    None => ErrorCode::MissingKey,
+                }));
         }
         for (word, vector) in [("centre_offset", &self.centre_offset), ("velocity", &self.velocity)] {
             if let Some(vector) = vector {
@@ -295,7 +330,7 @@ impl FreeBodyConfig {
         ctx.require_positive(&format!("{key}.release"), self.release)?;
         if self.release.is_some() && (self.velocity.is_some() || self.spin.is_some()) {
             let what = "what is held at first starts at rest, with neither velocity nor spin";
-            return Err(ctx.error_at(&format!("{key}.release"), what));
+            return Err(ctx.error_at(&format!("{key}.release"), what).with_code(ErrorCode::ConflictingKeys));
         }
         let three = ctx.dimension == 3;
         let spin_fits = match &self.spin {
@@ -414,7 +449,9 @@ pub(crate) fn require_solid(ctx: &Context, solids: &[SolidConfig], key: &str, na
     let names: Vec<&str> = solids.iter().map(|solid| solid.name.as_str()).collect();
     let known =
         if names.is_empty() { "the scene has no solids".into() } else { format!("known: {}", names.join(", ")) };
-    Err(ctx.error_with_help(key, format!("no solid is called \"{name}\"{}", suggestion(name, &names)), known))
+    Err(ctx
+        .error_with_help(key, format!("no solid is called \"{name}\"{}", suggestion(name, &names)), known)
+        .with_code(ErrorCode::UnknownName))
 }
 
 /// Refuses a free body under gravity that is small and weighs less than half a water particle: it would ride on single ones.

@@ -22,6 +22,7 @@ const POWER: f64 = 2.0;
 /// One `[[damping]]`: a sponge layer that begins at one plane, reaches full strength at another and goes on beyond.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SpongeLayerConfig {
     /// A point of the plane where the layer begins, m.
     pub from: Vec<f64>,

@@ -17,6 +17,7 @@ const FARTHEST: f64 = 1e8;
 /// A body of water.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct WaterConfig {
     /// Its region, minus the solids.
     pub fill: FillConfig,
@@ -31,6 +32,7 @@ pub struct WaterConfig {
 /// The region of a body of water: a box by its corners, or a shape at a place.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct FillConfig {
     /// A box by its corners.
     #[serde(rename = "box")]

@@ -9,7 +9,7 @@ use serde::{
 };
 
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     scene::context::{Context, Defaults, quoted_list, set_keys},
     wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
 };
@@ -17,6 +17,7 @@ use crate::{
 /// A wave by name: exactly one kind; none of a paddle that only absorbs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct WaveConfig {
     /// One height and one period.
     pub regular: Option<RegularWaveConfig>,
@@ -45,6 +46,7 @@ pub struct WaveConfig {
 /// A regular wave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RegularWaveConfig {
     /// From trough to crest, m.
     pub height: f64,
@@ -59,6 +61,7 @@ pub struct RegularWaveConfig {
 /// An irregular sea.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct IrregularWaveConfig {
     /// Significant height, 4 √m₀, m.
     pub height: f64,
@@ -75,6 +78,7 @@ pub struct IrregularWaveConfig {
 /// A focused group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct FocusedWaveConfig {
     /// Height of its crest over the still level, m.
     pub crest: f64,
@@ -93,6 +97,7 @@ pub struct FocusedWaveConfig {
 /// A solitary wave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SolitaryWaveConfig {
     /// Of its crest over the still level, m.
     pub height: f64,
@@ -103,6 +108,7 @@ pub struct SolitaryWaveConfig {
 /// A table of components.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct WaveComponentsConfig {
     /// The table, beside the scene: `amplitude_m`; `period_s` or `frequency_hz`; `phase_rad` or `phase_deg`.
     pub file: String,
@@ -111,6 +117,7 @@ pub struct WaveComponentsConfig {
 /// A measured elevation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MeasuredElevationConfig {
     /// The table, beside the scene.
     pub file: String,
@@ -129,6 +136,7 @@ pub struct MeasuredElevationConfig {
 /// Whether a paddle absorbs: `true`, or how.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum AbsorbChoice {
     /// With the default parameters, or not at all.
     Switch(bool),
@@ -139,6 +147,7 @@ pub enum AbsorbChoice {
 /// How a paddle absorbs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct AbsorptionConfig {
     /// Period of the waves that it absorbs completely, s.
     pub period: Option<f64>,
@@ -338,7 +347,7 @@ impl IrregularWaveConfig {
             return Err(ctx.error_with_help(&place("peak_period"), what, help));
         }
         if !grown && self.peak_period.is_none() {
-            return Err(ctx.error_at(&place("peak_period"), "peak_period is missing"));
+            return Err(ctx.error_at(&place("peak_period"), "peak_period is missing").with_code(ErrorCode::MissingKey));
         }
         if self.gamma.is_some() && !key.ends_with("jonswap") {
             return Err(ctx.error_with_help(&place("gamma"), "gamma belongs to jonswap", "leave it out"));

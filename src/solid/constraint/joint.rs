@@ -14,6 +14,7 @@ use crate::{
 
 /// The free motion of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum JointKind {
     /// Rotation about an axis.
     Hinge,
@@ -49,7 +50,19 @@ pub(in crate::solid) fn modes_rotations_first<const D: usize>() -> impl Iterator
 }
 
 /// The specification of a joint.
+///
+/// ```
+/// use pontoon::{math::Vector, solid::{JointKind, JointSpec, Motor}};
+///
+/// // Solid number 1 slides upwards along solid number 0, by 0.5 m at most, against a power take-off of 20 N s/m.
+/// let (at, up) = (Vector::from([1.0, 0.5]), Vector::from([0.0, 1.0]));
+/// let guide = JointSpec::new("guide", JointKind::Slider, [Some(0), Some(1)], at, up)
+///     .limits(0.0, 0.5)
+///     .motor(Motor::default().damping(20.0));
+/// assert!(!guide.contacts_enabled);
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct JointSpec<const D: usize> {
     /// Its name.
     pub name: String,
@@ -96,21 +109,27 @@ impl<const D: usize> JointSpec<D> {
     }
 
     /// The same joint, generic, with one more mode left free: 0 to D − 1 along the axes of its frame, from D on about them.
-    pub fn with_free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
+    pub fn free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
         self.kind = JointKind::Generic;
         self.free_modes.push(FreeMode { mode, limits });
         self
     }
 
     /// The same joint with end stops, m or rad from the start.
-    pub fn with_limits(mut self, min: f64, max: f64) -> Self {
+    pub fn limits(mut self, min: f64, max: f64) -> Self {
         self.limits = Some([min, max]);
         self
     }
 
     /// The same joint with a motor.
-    pub fn with_motor(mut self, motor: Motor) -> Self {
+    pub fn motor(mut self, motor: Motor) -> Self {
         self.motor = Some(motor);
+        self
+    }
+
+    /// The same joint, with contact between its two solids.
+    pub fn with_contacts(mut self) -> Self {
+        self.contacts_enabled = true;
         self
     }
 }

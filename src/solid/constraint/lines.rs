@@ -30,8 +30,30 @@ pub struct LineEnd<const D: usize> {
     pub at: Vector<D>,
 }
 
+impl<const D: usize> LineEnd<D> {
+    /// An end on solid number `solid`, at this world point (m) at the start.
+    pub fn on(solid: usize, at: impl Into<Vector<D>>) -> Self {
+        Self { solid: Some(solid), at: at.into() }
+    }
+
+    /// An end on the ground, at this world point (m).
+    pub fn ground(at: impl Into<Vector<D>>) -> Self {
+        Self { solid: None, at: at.into() }
+    }
+}
+
 /// The specification of a spring or a mooring line.
+///
+/// ```
+/// use pontoon::solid::{LineEnd, SpringSpec};
+///
+/// // A mooring line from solid number 1 to the bottom, 2 kN/m.
+/// let ends = [LineEnd::on(1, [2.0, 0.4]), LineEnd::ground([1.0, 0.0])];
+/// let line = SpringSpec::<2>::new("line", ends, 2000.0).damping(5.0).tension_only();
+/// assert!(line.rest_length.is_none());
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SpringSpec<const D: usize> {
     /// Its name.
     pub name: String,
@@ -47,8 +69,39 @@ pub struct SpringSpec<const D: usize> {
     pub tension_only: bool,
 }
 
+impl<const D: usize> SpringSpec<D> {
+    /// A spring of `stiffness` (N/m; N/m² in 2-D) without damping, as long as at the start.
+    pub fn new(name: impl Into<String>, ends: [LineEnd<D>; 2], stiffness: f64) -> Self {
+        Self { name: name.into(), ends, stiffness, damping: 0.0, rest_length: None, tension_only: false }
+    }
+
+    /// The same spring with a damping (N s/m).
+    pub fn damping(self, damping: f64) -> Self {
+        Self { damping, ..self }
+    }
+
+    /// The same spring with this length without tension (m).
+    pub fn rest_length(self, length: f64) -> Self {
+        Self { rest_length: Some(length), ..self }
+    }
+
+    /// The same spring as a mooring line, which goes slack instead of pushing.
+    pub fn tension_only(self) -> Self {
+        Self { tension_only: true, ..self }
+    }
+}
+
 /// The specification of a rope, which cannot be stretched.
+///
+/// ```
+/// use pontoon::solid::{LineEnd, RopeSpec};
+///
+/// let ends = [LineEnd::on(1, [2.0, 0.4]), LineEnd::ground([1.0, 0.0])];
+/// let rope = RopeSpec::<2>::new("rope", ends).max_length(1.2);
+/// assert_eq!(rope.max_length, Some(1.2));
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RopeSpec<const D: usize> {
     /// Its name.
     pub name: String,
@@ -56,6 +109,18 @@ pub struct RopeSpec<const D: usize> {
     pub ends: [LineEnd<D>; 2],
     /// The longest that it can be, m; `None`: its length at the start.
     pub max_length: Option<f64>,
+}
+
+impl<const D: usize> RopeSpec<D> {
+    /// A rope that is taut at the start.
+    pub fn new(name: impl Into<String>, ends: [LineEnd<D>; 2]) -> Self {
+        Self { name: name.into(), ends, max_length: None }
+    }
+
+    /// The same rope with this length (m).
+    pub fn max_length(self, length: f64) -> Self {
+        Self { max_length: Some(length), ..self }
+    }
 }
 
 /// Parameters of a spring, which a program may change during a run.

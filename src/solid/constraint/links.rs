@@ -13,6 +13,7 @@ use crate::{
 
 /// All constraints of a simulation. Solids are numbered as in its list of solids.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Constraints<const D: usize> {
     /// Joints.
     pub joints: Vec<JointSpec<D>>,
@@ -45,7 +46,16 @@ impl InitialHold {
 }
 
 /// Contact properties of a pair of solids.
+///
+/// ```
+/// use pontoon::solid::ContactSpec;
+///
+/// let slippery = ContactSpec::new([0, 1]).friction(0.05);
+/// let apart = ContactSpec::new([1, 2]).without_contact();
+/// assert!(slippery.can_touch && !apart.can_touch);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ContactSpec {
     /// Numbers of the two.
     pub between: [usize; 2],
@@ -55,6 +65,28 @@ pub struct ContactSpec {
     pub friction: Option<f64>,
     /// Restitution coefficient, –; by default the mean of both solids'.
     pub restitution: Option<f64>,
+}
+
+impl ContactSpec {
+    /// The contact of the solids with these numbers, with the means of their friction and restitution.
+    pub fn new(between: [usize; 2]) -> Self {
+        Self { between, can_touch: true, friction: None, restitution: None }
+    }
+
+    /// The same contact with its own Coulomb friction coefficient (–).
+    pub fn friction(self, friction: f64) -> Self {
+        Self { friction: Some(friction), ..self }
+    }
+
+    /// The same contact with its own restitution coefficient (–).
+    pub fn restitution(self, restitution: f64) -> Self {
+        Self { restitution: Some(restitution), ..self }
+    }
+
+    /// The same pair without contact: its solids pass through one another.
+    pub fn without_contact(self) -> Self {
+        Self { can_touch: false, ..self }
+    }
 }
 
 /// Contacts of pairs, found by the numbers of both in either order; of several of the same pair the last counts.

@@ -23,7 +23,17 @@ const RESOLVED: f64 = 0.1;
 
 /// A motor, brake or power take-off. Forces are N (N m of a hinge; in 2-D per metre of width), positive if they drive the second
 /// solid the way in which the coordinate grows.
+///
+/// ```
+/// use pontoon::solid::Motor;
+///
+/// let take_off = Motor::default().damping(20.0); // F = −c ẋ
+/// let drive = Motor::default().velocity(2.0).damping(500.0).max_force(30.0); // towards 2 rad/s
+/// assert_eq!(take_off.max_force, f64::INFINITY);
+/// assert_eq!(drive.command_at(0.0).velocity, 2.0);
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Motor {
     /// F₀, N or N m.
     pub force: TimeFunction,
@@ -55,9 +65,34 @@ impl Default for Motor {
 }
 
 impl Motor {
-    /// A linear power take-off: F = −c ẋ.
-    pub fn damping(c: f64) -> Self {
-        Self { damping: TimeFunction::constant(c), ..Self::default() }
+    /// The same motor with the force F₀ (N or N m).
+    pub fn force(self, force: impl Into<TimeFunction>) -> Self {
+        Self { force: force.into(), ..self }
+    }
+
+    /// The same motor with the set point x* (m or rad from the start) of its stiffness.
+    pub fn position(self, position: impl Into<TimeFunction>) -> Self {
+        Self { position: position.into(), ..self }
+    }
+
+    /// The same motor with the set point v* (m/s or rad/s) of its damping.
+    pub fn velocity(self, velocity: impl Into<TimeFunction>) -> Self {
+        Self { velocity: Some(velocity.into()), ..self }
+    }
+
+    /// The same motor with the stiffness k (N/m or N m/rad).
+    pub fn stiffness(self, stiffness: impl Into<TimeFunction>) -> Self {
+        Self { stiffness: stiffness.into(), ..self }
+    }
+
+    /// The same motor with the damping c (N s/m or N m s/rad); alone it is a linear power take-off, F = −c ẋ.
+    pub fn damping(self, damping: impl Into<TimeFunction>) -> Self {
+        Self { damping: damping.into(), ..self }
+    }
+
+    /// The same motor with this largest force (N or N m).
+    pub fn max_force(self, max_force: f64) -> Self {
+        Self { max_force, ..self }
     }
 
     /// The command at time `t` (s).

@@ -3,7 +3,7 @@
 //! [`Dim`] picks the engine of a dimension: `Dim<2>` has one if the feature `dim2` is on, `Dim<3>` with `dim3`.
 
 use crate::{
-    error::{Error, ErrorKind, Result},
+    error::{Error, ErrorCode, ErrorKind, Result},
     math::{Bivector, Vector},
     solid::{Constraints, Kinematics, Load, Mobility, SolidSpec},
 };
@@ -111,6 +111,8 @@ pub struct ContactForce<const D: usize> {
 /// A step that the engine could not make, and the solid to blame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EngineFault<const D: usize> {
+    /// The identifier of its family.
+    pub code: ErrorCode,
     /// Index of the solid.
     pub solid: usize,
     /// What was seen: "load not finite".

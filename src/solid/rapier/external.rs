@@ -134,5 +134,5 @@ pub(super) fn unsupported_shape(what: &TypedShape) -> Error {
     let name = format!("{what:?}");
     let name = name.split(['(', ' ']).next().unwrap_or_default();
     Error::scene(format!("a collider of the kind {name} has no shape that the water can feel"))
-        .help("make the solid by hand: SolidSpec { shape, .. }, with its shape as a box, polygon, mesh or a compound of these")
+        .help("make the solid by hand: SolidSpec::with_body(name, shape, body), with its shape as a box, polygon, mesh or a compound of these")
 }

@@ -36,7 +36,7 @@ use super::{
     to_rotation, tune, unwind, wind,
 };
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     math::{Bivector, Pose, Vector},
     solid::{
         Constraints, Kinematics, Load, Mobility, Role, SolidSpec,
@@ -231,6 +231,7 @@ impl RapierWorld {
     fn fault(&self, solid: usize, reason: &str, cause: &'static str) -> EngineFault<D> {
         let body = self.body(solid);
         EngineFault {
+            code: ErrorCode::NonFiniteState,
             solid,
             reason: reason.into(),
             cause,

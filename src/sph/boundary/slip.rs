@@ -16,6 +16,7 @@ use crate::math::Vector;
 /// Slip along solids. Scene key `model.slip`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Slip {
     /// No slip at the boundary particles, which lie half a dp and more behind the face.
     Partial,

@@ -14,6 +14,7 @@ use super::FluidProperties;
 /// The density diffusion. Scene key `model.diffusion`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Diffusion {
     /// None.
     None,

@@ -18,6 +18,7 @@ pub use artificial::ArtificialTerm;
 /// The viscosity. Scene key `model.viscosity`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Viscosity {
     /// None: the ideal fluid.
     None,

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::criteria::{Bound, Criteria, MotionBound, SolidBound};
 use crate::{
-    error::{Error, ErrorKind, Result, nearest_name},
+    error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
     math::expression::ScalarField,
     output::checkpoint::fnv1a,
     scene::Scene,
@@ -94,7 +94,7 @@ struct MapsFile {
 pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> {
     let Some(path) = file else { return read(TEXT, NAME) };
     let text = std::fs::read_to_string(path).map_err(|why| {
-        Error::file(path, why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
+        Error::read(path, &why).help("name a file of [[map]] entries; docs/explanation/stability.md shows one")
     })?;
     read(&text, &path.display().to_string())
 }
@@ -128,7 +128,9 @@ pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result
                 Some(near) => format!("did you mean {near:?}? {list}"),
                 None => list.into(),
             };
-            Error::new(ErrorKind::Usage, format!("there is no map {name:?}")).help(help)
+            Error::new(ErrorKind::Usage, format!("there is no map {name:?}"))
+                .with_code(ErrorCode::UnknownName)
+                .help(help)
         })
     };
     names.iter().map(map).collect()

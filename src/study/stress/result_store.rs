@@ -100,7 +100,7 @@ impl StressResults {
         stop: &AtomicBool,
         told: impl FnMut(&CaseResult) + Send,
     ) -> Result<()> {
-        fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
+        fs::create_dir_all(&self.out).map_err(|why| Error::write(&self.out, "made", &why))?;
         let due: Vec<usize> = (0..self.entries.len()).filter(|&i| self.entries[i].run.is_none()).collect();
         let cases: Vec<StressCase> = due.iter().map(|&i| self.entries[i].case.clone()).collect();
         let next = AtomicUsize::new(0);
@@ -164,7 +164,7 @@ impl StressResults {
     /// # Errors
     /// `File` if one cannot be written.
     pub fn write(&self) -> Result<Vec<PathBuf>> {
-        fs::create_dir_all(&self.out).map_err(|why| Error::file(&self.out, format!("cannot be made: {why}")))?;
+        fs::create_dir_all(&self.out).map_err(|why| Error::write(&self.out, "made", &why))?;
         self.write_results()?;
         let mut files = Vec::new();
         for map in &self.maps {

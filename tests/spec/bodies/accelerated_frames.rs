@@ -3,7 +3,7 @@
 use pontoon::{
     Result,
     geometry::Shape,
-    math::{Bounds, Pose, Vector, expression::Formula},
+    math::{Pose, Vector, expression::Formula},
     model::Model,
     simulation::{Setup, Simulation},
     solid::{Constraints, Dim, FreeBody, HasEngine, Load, PrescribedMotion, Role, SolidSpec, TimeFunction},
@@ -23,9 +23,7 @@ fn the_free_surface_in_an_accelerated_tank_has_the_slope_a_over_g() {
     let mut model = Model::water(2, dp, depth);
     model.viscosity = pontoon::model::Viscosity::Artificial(pontoon::sph::viscosity::Artificial { alpha: 0.1 });
     let water = common::lattice([0.0, 0.0], [length, depth], dp);
-    let levels = vec![depth; water.len()];
-    let mut setup = Setup::new(model, water, levels, vec![tank]);
-    setup.domain = Some(Bounds { min: Vector::from([-1.0, -1.0]), max: Vector::from([9.0, 2.0]) });
+    let setup = Setup::new(model).water(water, depth).solid(tank).domain([-1.0, -1.0], [9.0, 2.0]);
     let mut sim = Simulation::new(setup).expect("a sound setup");
     let (mut sum, mut weight) = (0.0, 0.0);
     while sim.time() < 4.6 {

@@ -20,7 +20,7 @@ const SKIN: f64 = 5e-3;
 /// A solid with its centre at `height` (m) above the origin.
 fn at_height<const D: usize>(name: &str, shape: Shape<D>, height: f64, role: Role<D>, skin: f64) -> SolidSpec<D> {
     let place = Vector::from_fn(|i, _| if i == D - 1 { height } else { 0.0 });
-    SolidSpec { contact_skin: skin, ..common::solid(name, shape, Pose::at(place), role) }
+    common::solid(name, shape, Pose::at(place), role).contact_skin(skin)
 }
 
 /// A fixed block a metre wide with its top at height 0.
@@ -147,7 +147,7 @@ where
     assert!(message.contains("\"cube\" starts 0.00200 m inside \"floor\", contact skins counted"), "{message}");
     // A twentieth of dp of overlap is allowed, with and without skins.
     assert!(engine(&at(0.0596), G).is_ok());
-    let bare = at(0.049).map(|solid| SolidSpec { contact_skin: 0.0, ..solid });
+    let bare = at(0.049).map(|solid| solid.contact_skin(0.0));
     let message = engine(&bare, G).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(message.contains("\"cube\" starts 0.00100 m inside \"floor\"") && !message.contains("skin"), "{message}");
     // The same limit applies to solids added during a run.

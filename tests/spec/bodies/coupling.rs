@@ -2,7 +2,7 @@
 
 use pontoon::{
     geometry::Shape,
-    math::{Bivector, Bounds, Pose, Vector, expression::Formula},
+    math::{Bivector, Pose, Vector, expression::Formula},
     model::{Diffusion, Dimension, Model, PairLoopKind, TimeScheme, Viscosity, Walls},
     simulation::{Setup, Simulation},
     solid::{Dim, PrescribedMotion, Role, TimeFunction},
@@ -245,9 +245,10 @@ where
     free.spin = Bivector::from_axial(&[4.0, 1.0, -2.0][..Bivector::<D>::COMPONENTS]);
     let start = *free;
     let water = common::lattice([0.0; D], size, dp);
-    let levels = vec![0.2; water.len()];
-    let mut setup = Setup::new(model, water, levels, vec![common::tank([0.3; D], dp), body]);
-    setup.domain = Some(Bounds { min: Vector::repeat(-1.0), max: Vector::repeat(4.0) });
+    let setup = Setup::new(model)
+        .water(water, 0.2)
+        .solids([common::tank([0.3; D], dp), body])
+        .domain(Vector::repeat(-1.0), Vector::repeat(4.0));
     let mut sim = Simulation::new(setup).expect("a sound setup");
     let from = sim.system().solids()[1].kinematics.centre;
     while sim.time() < 0.5 {

@@ -65,7 +65,7 @@ fn acceleration_in_3d(slope: f64, yaw: f64, share: f64) -> Result<[f64; 2]> {
     let mut solids = vec![pool, common::solid("slab", under, on([0.0, 0.0, -0.05], 0.0), Role::Fixed), block];
     solids.iter_mut().for_each(|solid| solid.friction = share * slope.tan());
     let water = common::lattice([-3.0, 0.0, 0.0], [0.2, 0.2, depth], dp);
-    let model = Model { dt_max: 1e-3, ..Model::water(3, dp, depth) };
+    let model = Model::water(3, dp, depth).dt_max(1e-3);
     let mut sim = common::simulation(model, water, depth, solids);
     while sim.time() < 0.5 {
         sim.step_to(0.5)?;

@@ -31,22 +31,19 @@ fn bound(n: f64) -> Option<Score> {
 /// A check of `series` against `column` over `time` of `reference.csv`.
 fn by_table(series: &str, [time, column]: [&str; 2], delay: f64, bound: Option<Score>) -> CheckPlan {
     let (time, column) = (time.to_string(), column.to_string());
-    let plan = by_formula(series, "", bound);
-    CheckPlan { reference: Reference::Table { file: "reference.csv".into(), time, column, delay }, ..plan }
+    check(series, Reference::Table { file: "reference.csv".into(), time, column, delay }, bound)
 }
 
 /// A check of `series` against a formula.
 fn by_formula(series: &str, formula: &str, bound: Option<Score>) -> CheckPlan {
-    CheckPlan {
-        series: series.into(),
-        reference: Reference::Formula(formula.into()),
-        from: None,
-        until: None,
-        zero: None,
-        mean: None,
-        align: None,
-        paper: None,
-        bound,
+    check(series, Reference::Formula(formula.into()), bound)
+}
+
+fn check(series: &str, reference: Reference, bound: Option<Score>) -> CheckPlan {
+    let check = CheckPlan::new(series, reference);
+    match bound {
+        Some(bound) => check.bound(bound),
+        None => check,
     }
 }
 
@@ -142,10 +139,10 @@ fn a_formula_reference_is_evaluated_at_the_times_of_the_run_within_the_window() 
     let limit = |off: f64| Some(Score { off: Some(off), ..Score::default() });
     let whole = judge(&by_formula("box.heave_m", "2*t", limit(0.05)), &folder);
     assert!(whole.metrics.off.is_some_and(|off| (off - 0.1).abs() < 1e-12) && whole.passed == Some(false));
-    let late = CheckPlan { from: Some(1.0), ..by_formula("box.heave_m", "2*t", limit(0.05)) };
+    let late = by_formula("box.heave_m", "2*t", limit(0.05)).from(1.0);
     let late = judge(&late, &folder);
     assert!(late.metrics.relative_l2.is_some_and(|n| n < 1e-12) && late.passed == Some(true) && late.covered == 1.0);
-    let early = CheckPlan { until: Some(0.9), ..by_formula("box.heave_m", "2*t", None) };
+    let early = by_formula("box.heave_m", "2*t", None).until(0.9);
     let n = judge(&early, &folder).metrics.relative_l2;
     let by_hand = {
         let t: Vec<f64> = (0..=90).map(|i| 0.01 * i as f64).collect();
@@ -153,7 +150,7 @@ fn a_formula_reference_is_evaluated_at_the_times_of_the_run_within_the_window() 
     };
     assert!(n.is_some_and(|n| (n - by_hand).abs() < 1e-12), "{n:?} against {by_hand}");
     // The run of 3 s covers a third of this window.
-    let beyond = CheckPlan { from: Some(2.0), until: Some(5.0), ..by_formula("box.heave_m", "2*t", limit(1.0)) };
+    let beyond = by_formula("box.heave_m", "2*t", limit(1.0)).from(2.0).until(5.0);
     let beyond = judge(&beyond, &folder);
     assert!((beyond.covered - 1.0 / 3.0).abs() < 1e-12 && beyond.passed.is_none());
     Ok(())
@@ -198,11 +195,11 @@ fn a_running_mean_has_its_own_metrics_in_addition_to_the_raw_ones() -> std::io::
     // Alternating noise, which a mean over several samples removes.
     let noisy = |t: f64| t + if (t * 100.0).round() as i64 % 2 == 0 { 0.1 } else { -0.1 };
     let folder = folder("noise", &table(noisy), "")?;
-    let plan = CheckPlan { mean: Some(0.2), ..by_formula("box.heave_m", "t", bound(0.01)) };
+    let plan = by_formula("box.heave_m", "t", bound(0.01)).mean(0.2);
     let verdict = judge(&plan, &folder);
-    let mean = verdict.meaned.and_then(|m| m.metrics.relative_l2);
-    assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.05) && mean.is_some_and(|n| n < 0.01));
-    assert_eq!(verdict.passed, Some(false), "the bound applies to the raw run");
+    let meaned = verdict.meaned.and_then(|m| m.metrics.relative_l2);
+    assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.05) && meaned.is_some_and(|n| n < 0.01));
+    assert_eq!(verdict.passed, Some(false), "the bound is on the raw run");
     Ok(())
 }
 
@@ -211,10 +208,10 @@ fn a_series_with_a_zero_time_is_relative_to_its_value_at_that_time() -> std::io:
     // The run has an offset of 0.3, which the reference lacks.
     let folder = folder("zero", &table(|t| t * t + 0.3), "")?;
     let raw = by_formula("box.heave_m", "t^2 - 0.25", bound(1e-9));
-    let set = CheckPlan { zero: Some(0.5), ..raw.clone() };
+    let set = raw.clone().zero(0.5);
     assert_eq!([judge(&raw, &folder).passed, judge(&set, &folder).passed], [Some(false), Some(true)]);
     assert_eq!(judge(&set, &folder).series, "box.heave_m, 0 at 0.5 s");
-    let late = judge(&CheckPlan { zero: Some(1e3), ..set }, &folder);
+    let late = judge(&set.zero(1e3), &folder);
     assert!(late.passed.is_none() && late.note.is_some_and(|note| note.contains("before it is set to zero")));
     Ok(())
 }
@@ -226,23 +223,23 @@ fn the_delay_of_a_late_run_is_found_from_its_crossing_and_from_the_best_fit() ->
     let plan = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None);
     for align in [Align::Crossing(5.0), Align::Best] {
         let limits = Score { aligned_relative_l2: Some(0.01), delay: Some(0.06), ..Score::default() };
-        let plan = CheckPlan { align: Some(align), bound: Some(limits), ..plan.clone() };
+        let plan = plan.clone().align(align).bound(limits);
         let verdict = judge(&plan, &folder);
         // Crossings are interpolated linearly between samples; the curvature of the pulse causes an error of 8e-4 of its height.
-        let aligned = verdict.aligned.unwrap_or_else(|| panic!("{align:?} has no alignment"));
+        let aligned = verdict.aligned.unwrap_or_else(|| panic!("{align:?} is formed"));
         assert!((aligned.delay - 0.05).abs() < 2e-4 && aligned.relative_l2 < 0.003, "{align:?}: {aligned:?}");
         assert!(verdict.metrics.relative_l2.is_some_and(|n| n > 0.3), "alignment does not change the raw metric");
         assert_eq!(verdict.passed, Some(true));
         assert_eq!(verdict.arrival.is_some(), align != Align::Best);
-        let strict = CheckPlan { bound: Some(Score { delay: Some(0.04), ..Score::default() }), ..plan.clone() };
+        let strict = plan.clone().bound(Score { delay: Some(0.04), ..Score::default() });
         assert_eq!(judge(&strict, &folder).passed, Some(false));
     }
-    let high = CheckPlan { align: Some(Align::Crossing(50.0)), bound: bound(9.0), ..plan.clone() };
+    let high = plan.clone().align(Align::Crossing(50.0)).bound(Score { relative_l2: Some(9.0), ..Score::default() });
     let never = judge(&high, &folder);
     assert!(never.aligned.is_none() && never.arrival.is_some_and(|a| a.run.is_none()));
-    assert_eq!(never.passed, Some(true), "no bound needs the alignment");
-    let limit = Some(Score { aligned_relative_l2: Some(9.0), ..Score::default() });
-    assert_eq!(judge(&CheckPlan { bound: limit, ..high }, &folder).passed, Some(false));
+    assert_eq!(never.passed, Some(true), "nothing aligned is asked for");
+    let limit = Score { aligned_relative_l2: Some(9.0), ..Score::default() };
+    assert_eq!(judge(&high.bound(limit), &folder).passed, Some(false));
     Ok(())
 }
 
@@ -250,12 +247,7 @@ fn the_delay_of_a_late_run_is_found_from_its_crossing_and_from_the_best_fit() ->
 fn a_reference_with_its_own_clock_starts_at_the_crossing_of_the_run() -> std::io::Result<()> {
     // The run is at rest for a second and then rises at 2 m/s. The reference begins at the crossing of 1 m.
     let folder = folder("clock", &table(|t| (2.0 * (t - 1.0)).max(0.0)), &table(|t| 1.0 + 2.0 * t))?;
-    let plan = CheckPlan {
-        align: Some(Align::Start(1.0)),
-        until: Some(0.8),
-        bound: bound(0.01),
-        ..by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None)
-    };
+    let plan = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, bound(0.01)).align(Align::Start(1.0)).until(0.8);
     let verdict = judge(&plan, &folder);
     // All values are linear: round-off.
     assert!(verdict.metrics.relative_l2.is_some_and(|n| n < 1e-12), "{verdict:?}");
@@ -263,13 +255,9 @@ fn a_reference_with_its_own_clock_starts_at_the_crossing_of_the_run() -> std::io
     assert!(arrival.run.is_some_and(|t| (t - 1.5).abs() < 1e-12) && arrival.reference == Some(0.0), "{arrival:?}");
     assert!(verdict.aligned.is_none() && verdict.covered == 1.0);
 
-    let formula = CheckPlan {
-        align: Some(Align::Start(1.0)),
-        from: Some(0.1),
-        ..by_formula("box.heave_m", "1 + 2*t", bound(1e-9))
-    };
-    assert_eq!(judge(&CheckPlan { until: Some(0.8), ..formula }, &folder).passed, Some(true));
-    let never = judge(&CheckPlan { align: Some(Align::Start(9.0)), ..plan }, &folder);
+    let formula = by_formula("box.heave_m", "1 + 2*t", bound(1e-9)).align(Align::Start(1.0)).from(0.1);
+    assert_eq!(judge(&formula.until(0.8), &folder).passed, Some(true));
+    let never = judge(&plan.align(Align::Start(9.0)), &folder);
     assert!(never.passed.is_none() && never.note.is_some_and(|note| note.contains("never passes 9")));
     Ok(())
 }
@@ -284,7 +272,7 @@ fn the_table_of_checks_contains_only_the_columns_in_use() -> std::io::Result<()>
     };
     assert_eq!(heads(&[&plain]), "check|N|M|bound|");
     let limit = Some(Score { off: Some(0.1), ..Score::default() });
-    let rich = CheckPlan { align: Some(Align::Best), mean: Some(0.1), ..by_formula("box.heave_m", "t", limit) };
+    let rich = by_formula("box.heave_m", "t", limit).align(Align::Best).mean(0.1);
     let rich = judge(&rich, &folder);
     assert_eq!(heads(&[&plain, &rich]), "check|N|M|mean over|mean N|mean M|aligned N|aligned M|delay|off|bound|");
     // A load series has its first peak as an additional column.

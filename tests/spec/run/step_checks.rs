@@ -3,7 +3,7 @@
 use pontoon::{
     error::ErrorKind,
     geometry::Shape,
-    math::{Bounds, Vector},
+    math::Vector,
     model::Model,
     run::{self, InspectOptions},
     simulation::{Escape, ParticleLimits, Setup, Simulation},
@@ -91,10 +91,8 @@ fn rollback_changes_no_bit_of_a_run_without_alarms() {
 fn falling(limits: ParticleLimits) -> Simulation<2> {
     let dp = 0.02;
     let water = common::lattice([0.0, 0.0], [0.1, 0.1], dp);
-    let levels = vec![0.1; water.len()];
-    let mut setup = Setup::new(Model::water(2, dp, 10.0), water, levels, vec![]);
-    setup.domain = Some(Bounds { min: Vector::from([-1.0, -0.05]), max: Vector::from([1.1, 1.0]) });
-    setup.limits = limits;
+    let setup =
+        Setup::<2>::new(Model::water(2, dp, 10.0)).water(water, 0.1).domain([-1.0, -0.05], [1.1, 1.0]).limits(limits);
     Simulation::new(setup).expect("a sound setup").without_rollback()
 }
 
@@ -103,9 +101,9 @@ fn a_particle_that_leaves_the_domain_stops_the_run_unless_escape_is_remove() {
     let mut stopping = falling(ParticleLimits::default());
     let error = (0..10_000).find_map(|_| stopping.step().err()).expect("the water falls out");
     assert!(error.to_string().contains("escape from the domain"), "{error}");
-    let mut removing = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
+    let mut removing = falling(ParticleLimits::default().escape(Escape::Remove));
     while removing.system().fluid().len() > 5 {
-        removing.step().expect("particles that leave are removed");
+        removing.step().expect("those that leave are taken out");
     }
     // Twenty of twenty-five particles are removed. Each is listed once, below the domain and moving down.
     let lost = removing.removed_particles();
@@ -123,7 +121,7 @@ fn a_particle_that_leaves_the_domain_stops_the_run_unless_escape_is_remove() {
 #[test]
 fn a_particle_that_falls_from_above_the_initial_water_is_recorded_as_over_a_wall() {
     // The water rises by v²/2g = 0.32 m, more than three support radii, and leaves below, as splash beside a tank does.
-    let mut thrown = falling(ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() });
+    let mut thrown = falling(ParticleLimits::default().escape(Escape::Remove));
     thrown.set_water_velocity(|_| Vector::from([0.0, 2.5]));
     while thrown.removed_particles().is_empty() {
         thrown.step().expect("particles that leave are removed");
@@ -135,7 +133,7 @@ fn a_particle_that_falls_from_above_the_initial_water_is_recorded_as_over_a_wall
 
 #[test]
 fn a_resumed_run_with_removed_particles_reaches_the_same_bits() {
-    let limits = ParticleLimits { escape: Escape::Remove, ..ParticleLimits::default() };
+    let limits = ParticleLimits::default().escape(Escape::Remove);
     let mut whole = falling(limits);
     while whole.removed_particles().is_empty() {
         whole.step().unwrap();
@@ -152,8 +150,8 @@ fn a_resumed_run_with_removed_particles_reaches_the_same_bits() {
 #[test]
 fn density_and_speed_outside_the_limits_of_the_scene_stop_the_run() {
     for (limits, word) in [
-        (ParticleLimits { density: [0.9, 1.1], ..ParticleLimits::default() }, "guard.density"),
-        (ParticleLimits { speed: 0.1, ..ParticleLimits::default() }, "guard.speed"),
+        (ParticleLimits::default().density(0.9, 1.1), "guard.density"),
+        (ParticleLimits::default().speed(0.1), "guard.speed"),
     ] {
         let exceed = |sim: &mut Simulation<2>| {
             let c0 = sim.system().model().c0;
@@ -196,10 +194,10 @@ fn thrown() -> Simulation<2> {
     if let Role::Free(body) = &mut float.role {
         body.velocity = Vector::from([10.0, 0.0]);
     }
-    let levels = vec![0.2; water.len()];
-    let solids = vec![common::tank([0.2, 0.4], dp), float];
-    let mut setup = Setup::new(Model::water(2, dp, 0.2), water, levels, solids);
-    setup.domain = Some(Bounds { min: Vector::from([-1.0, -1.0]), max: Vector::from([1.0, 1.0]) });
+    let setup = Setup::<2>::new(Model::water(2, dp, 0.2))
+        .water(water, 0.2)
+        .solids([common::tank([0.2, 0.4], dp), float])
+        .domain([-1.0, -1.0], [1.0, 1.0]);
     Simulation::new(setup).expect("a sound setup").without_rollback()
 }
 

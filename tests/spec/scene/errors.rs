@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pontoon::{
     Error,
+    error::ErrorCode,
     model::Dimension,
     scene::{FramesChoice, Scene},
     simulation::Simulation,
@@ -317,6 +318,30 @@ proptest! {
             let _ = scene.resolve();
         }
     }
+}
+
+#[test]
+fn every_family_of_errors_has_its_code() {
+    let code = |from: &str, to: &str| try_scene(&GOOD.replacen(from, to, 1), &[]).unwrap_err().code();
+    for (from, to, expected) in [
+        ("dp        = 0.05", "dp = = 0.05", ErrorCode::InvalidToml),
+        ("title ", "titel ", ErrorCode::UnknownKey),
+        ("motion = \"box\"", "motion = \"bxo\"", ErrorCode::UnknownName),
+        ("artificial = {", "artifical = {", ErrorCode::UnknownName),
+        ("until     = 1.0", "", ErrorCode::MissingKey),
+        ("free  = { density = 500.0 }", "", ErrorCode::MissingKey),
+        ("free  = { density = 500.0 }", "free = { density = 500.0, mass = 1.0 }", ErrorCode::ConflictingKeys),
+        ("fixed = true", "fixed = true\nfree = { density = 500.0 }", ErrorCode::ConflictingKeys),
+        ("dp        = 0.05", "dp = \"fine\"", ErrorCode::WrongType),
+        ("along = [1.0, 0.0]", "along = [1.0]", ErrorCode::WrongType),
+        ("dp        = 0.05", "dp = -0.05", ErrorCode::OutOfRange),
+    ] {
+        assert_eq!(code(from, to), expected, "{from} -> {to}");
+    }
+    let nowhere = Scene::read("no/such/scene.toml".as_ref(), &[]).unwrap_err();
+    assert_eq!(nowhere.code(), ErrorCode::FileNotFound);
+    let full = Error::write("a.csv".as_ref(), "written", &std::io::ErrorKind::StorageFull.into());
+    assert_eq!((full.code(), full.message.starts_with("a.csv: cannot be written: ")), (ErrorCode::DiskFull, true));
 }
 
 /// The output of a program whose `main` returns the error, as in `examples/`.

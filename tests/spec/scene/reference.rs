@@ -4,7 +4,10 @@
 
 use std::{collections::BTreeSet, fs, path::Path, process::Command};
 
-use pontoon::scene::{Scene, schema};
+use pontoon::{
+    error::ErrorCode,
+    scene::{Scene, schema},
+};
 use serde_json::Value;
 
 use super::schema::collect_names;
@@ -383,4 +386,13 @@ fn the_command_line_reference_has_every_subcommand_and_option_of_the_program_and
     for option in listed {
         assert!(known.contains(option), "{option} is not an option of any subcommand");
     }
+}
+
+#[test]
+fn the_command_line_reference_has_every_error_code_and_no_other() {
+    let page = page("command-line.md");
+    let (_, codes) = page.split_once("## Error codes").expect("a list of error codes");
+    let listed: Vec<&str> = codes.lines().filter_map(|line| line.strip_prefix("- `")?.split('`').next()).collect();
+    let known: Vec<&str> = ErrorCode::ALL.iter().map(|code| code.as_str()).collect();
+    assert_eq!(listed, known);
 }

@@ -87,12 +87,11 @@ fn corrected_gradients_conserve_the_momentum_of_water_and_body() {
 fn remaining_amplitude(gradient: PressureGradient) -> f64 {
     let (dp, depth, height) = (0.02, 0.4, 0.06);
     let viscosity = Viscosity::Laminar(Laminar { nu0: 1e-6 });
-    let model = Model { gradient, viscosity, ..Model::water(2, dp, depth) };
+    let model = Model::water(2, dp, depth).gradient(gradient).viscosity(viscosity);
     let k = std::f64::consts::TAU;
     let water = common::lattice([0.0, 0.0], [1.0, depth], dp);
-    let levels = vec![depth; water.len()];
-    let mut sim =
-        Simulation::new(Setup::new(model, water, levels, vec![common::tank([1.0, 0.8], dp)])).expect("a setup");
+    let setup = Setup::new(model).water(water, depth).solid(common::tank([1.0, 0.8], dp));
+    let mut sim = Simulation::new(setup).expect("a setup");
     // The wave starts with a flat surface: potential flow of the first mode.
     let omega = (9.81 * k * (k * depth).tanh()).sqrt();
     let speed = 0.5 * height * omega / (k * depth).sinh();
@@ -124,11 +123,8 @@ fn corrected_gradients_damp_a_standing_wave_less_than_plain_ones() {
 
 #[test]
 fn corrected_gradients_with_the_cubic_kernel_or_with_shifting_are_refused() {
-    let of = |kernel, shifting| Model {
-        gradient: PressureGradient::Corrected,
-        kernel,
-        shifting,
-        ..Model::water(2, 0.02, 0.3)
+    let of = |kernel, shifting| {
+        Model::water(2, 0.02, 0.3).gradient(PressureGradient::Corrected).kernel(kernel).shifting(shifting)
     };
     assert!(of(KernelKind::Wendland, Shifting::None).conflict().is_none());
     for model in [
@@ -136,8 +132,7 @@ fn corrected_gradients_with_the_cubic_kernel_or_with_shifting_are_refused() {
         of(KernelKind::Wendland, Shifting::Everywhere(pontoon::sph::particle_shifting::Shift::default())),
     ] {
         let water = common::lattice([0.0, 0.0], [0.2, 0.2], 0.02);
-        let levels = vec![0.2; water.len()];
-        let refused = Simulation::new(Setup::new(model, water, levels, vec![common::tank([0.2, 0.4], 0.02)]));
+        let refused = Simulation::new(Setup::new(model).water(water, 0.2).solid(common::tank([0.2, 0.4], 0.02)));
         assert!(refused.is_err_and(|e| e.message.contains("corrected gradients")));
     }
 }

@@ -32,10 +32,9 @@ fn swirl(model: Model, x: f64, y: f64) -> Simulation<2> {
         common::lattice([0.0, 0.0], [1.0, 1.0], DP).into_iter().map(|r| off(r, &mut random)).collect();
     let velocity = water.iter().map(|r| Vector::from([-(TAU * r[1]).sin(), (TAU * r[0]).sin()])).collect();
     let pressure = water.iter().map(|r| 2000.0 + 300.0 * (TAU * r[0]).cos()).collect();
-    let water: Vec<_> = water.iter().map(|r| Vector::from([wrap(r[0], x), wrap(r[1], y)])).collect();
-    let levels = vec![0.0; water.len()];
-    let periodic = [Some([x, x + 1.0]), Some([y, y + 1.0])];
-    let setup = Setup { velocity, pressure, periodic, ..Setup::new(model, water, levels, vec![]) };
+    let water = water.iter().map(|r| Vector::from([wrap(r[0], x), wrap(r[1], y)]));
+    let mut setup = Setup::new(model).water(water, 0.0).periodic(0, x, x + 1.0).periodic(1, y, y + 1.0);
+    (setup.velocity, setup.pressure) = (velocity, pressure);
     Simulation::new(setup).expect("a sound setup")
 }
 
@@ -43,7 +42,7 @@ fn swirl(model: Model, x: f64, y: f64) -> Simulation<2> {
 fn the_position_of_the_periodic_sides_does_not_change_the_flow() {
     for (pair_loop, bound) in [(PairLoopKind::Reference, 1e-9), (PairLoopKind::Fast, 1e-3)] {
         let at = |x: f64, y: f64| {
-            let mut sim = swirl(Model { pair_loop, ..model() }, x, y);
+            let mut sim = swirl(model().pair_loop(pair_loop), x, y);
             (0..20).for_each(|_| sim.step().expect("a sound run"));
             let fluid = sim.system().fluid();
             let mut v = vec![Vector::<2>::zeros(); fluid.len()];
@@ -99,7 +98,7 @@ fn a_periodic_run_has_the_same_bits_after_a_restart_and_on_any_number_of_threads
 fn the_wall_drag_in_a_steady_periodic_channel_equals_the_driving_force() {
     // In steady flow the drag of both walls is the weight of the water along the channel, images not counted.
     let (height, length, g) = (1.0, 0.5, 0.8);
-    let mut model = Model { gravity: vec![g, 0.0], shifting: Shifting::None, diffusion: Diffusion::None, ..model() };
+    let mut model = model().gravity([g, 0.0]).shifting(Shifting::None).diffusion(Diffusion::None);
     (model.viscosity, model.slip) = (Viscosity::Laminar(Laminar { nu0: 0.1 }), Slip::None);
     let water = common::lattice([0.0, 0.0], [length, height], DP);
     let slab = |name: &str, y: f64| {
@@ -107,8 +106,7 @@ fn the_wall_drag_in_a_steady_periodic_channel_equals_the_driving_force() {
         common::solid(name, shape, Pose::at(Vector::from([0.0, y])), Role::Fixed)
     };
     let solids = vec![slab("bottom", -0.1), slab("top", height + 0.1)];
-    let levels = vec![0.0; water.len()];
-    let setup = Setup { periodic: [Some([0.0, length]), None], ..Setup::new(model, water, levels, solids) };
+    let setup = Setup::new(model).water(water, 0.0).solids(solids).periodic(0, 0.0, length);
     let mut sim = Simulation::new(setup).expect("a sound setup");
     while sim.time() < 5.0 {
         sim.step().expect("a sound run");
@@ -123,9 +121,7 @@ fn the_wall_drag_in_a_steady_periodic_channel_equals_the_driving_force() {
 fn invalid_periodic_sides_are_refused() {
     let setup = |from: f64, to: f64, solids| {
         let water = common::lattice([0.0, 0.0], [1.0, 1.0], DP);
-        let levels = vec![0.0; water.len()];
-        let periodic = [Some([from, to]), None];
-        Simulation::new(Setup { periodic, ..Setup::new(model(), water, levels, solids) })
+        Simulation::new(Setup::new(model()).water(water, 0.0).solids(solids).periodic(0, from, to))
             .err()
             .map(|e| e.to_string())
             .unwrap_or_default()

@@ -3,7 +3,7 @@
 use pontoon::{
     geometry::Shape,
     interaction::{self, PairLoopInput, PairLoopOutput, PairSums},
-    math::{Bounds, Pose, Vector, expression::Formula, simd},
+    math::{Pose, Vector, expression::Formula, simd},
     model::{
         Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
         Walls,
@@ -119,10 +119,9 @@ fn dam<const D: usize>(model: Model, size: [f64; D], origin: f64) -> Setup<D> {
     let at = Vector::repeat(origin);
     let column: [f64; D] = std::array::from_fn(|i| if i == 0 { 0.4 * size[0] } else { size[i] });
     let water: Vec<Vector<D>> = common::lattice([0.0; D], column, dp).into_iter().map(|r| r + at).collect();
-    let levels = vec![origin + column[D - 1]; water.len()];
     let mut tank = common::tank(std::array::from_fn(|i| if i == D - 1 { 1.6 * size[i] } else { size[i] }), dp);
     tank.pose.position += at;
-    Setup::new(model, water, levels, vec![tank])
+    Setup::new(model).water(water, origin + column[D - 1]).solid(tank)
 }
 
 #[test]
@@ -168,10 +167,10 @@ fn simd_agrees_with_the_reference_for_relaxed_adami_walls() {
 #[test]
 fn simd_agrees_with_the_reference_for_free_slip_and_no_slip_walls() {
     for slip in [Slip::None, Slip::Free] {
-        let setup = dam(Model { slip, ..Model::water(2, 0.0125, 0.3) }, [0.8, 0.3], 0.0);
+        let setup = dam(Model::water(2, 0.0125, 0.3).slip(slip), [0.8, 0.3], 0.0);
         assert_agrees(&format!("2-D {slip:?}"), &setup, &run(&setup, 0.35));
     }
-    let setup = dam(Model { slip: Slip::None, ..Model::water(3, 0.025, 0.3) }, [0.6, 0.15, 0.3], 0.0);
+    let setup = dam(Model::water(3, 0.025, 0.3).slip(Slip::None), [0.6, 0.15, 0.3], 0.0);
     assert_agrees("3-D", &setup, &run(&setup, 0.3));
 }
 
@@ -203,7 +202,7 @@ fn simd_agrees_with_the_reference_for_a_body_that_crosses_slabs_of_cells() {
 #[test]
 fn simd_exerts_no_force_on_a_lone_particle_or_in_a_drop_in_uniform_flight() {
     let mut model = Model::water(3, 0.02, 0.3);
-    let alone = Setup::new(model.clone(), vec![Vector::<3>::zeros()], vec![0.0], vec![]);
+    let alone = Setup::new(model.clone()).water([Vector::<3>::zeros()], 0.0);
     let sim = Simulation::new(alone).expect("a sound setup");
     assert_eq!(
         sim.system().fluid_acceleration(0),
@@ -213,9 +212,7 @@ fn simd_exerts_no_force_on_a_lone_particle_or_in_a_drop_in_uniform_flight() {
     // Without gravity a drop keeps its shape over a flight of ten columns; the neighbour lists are rebuilt during it.
     model.gravity = vec![0.0; 3];
     let water = common::lattice([0.0; 3], [0.1, 0.1, 0.1], 0.02);
-    let domain = Bounds { min: Vector::repeat(-1.0), max: Vector::repeat(1.0) };
-    let levels = vec![-1.0; water.len()];
-    let setup = Setup { domain: Some(domain), ..Setup::new(model, water, levels, vec![]) };
+    let setup = Setup::new(model).water(water, -1.0).domain([-1.0; 3], [1.0; 3]);
     let mut sim = Simulation::new(setup).expect("a sound setup");
     sim.set_water_velocity(|_| Vector::from([3.0, 2.0, -1.0]));
     let start = sim.system().fluid().r.to_vec();

@@ -39,13 +39,13 @@ fn profile(sim: &Simulation<2>) -> Vec<(f64, f64)> {
 #[test]
 fn still_water_keeps_hydrostatic_pressure_and_its_level() {
     for walls in [Walls::Dynamic, Walls::RelaxedAdami] {
-        assert_hydrostatic(&still_tank(Model { walls, ..Model::water(2, DP, DEPTH) }, 5.0));
+        assert_hydrostatic(&still_tank(Model::water(2, DP, DEPTH).walls(walls), 5.0));
         assert_hydrostatic(&still_tank(
-            Model { walls, gradient: PressureGradient::Corrected, ..Model::water(2, DP, DEPTH) },
+            Model::water(2, DP, DEPTH).walls(walls).gradient(PressureGradient::Corrected),
             5.0,
         ));
         // At h = 1.7 dp rows of the lattice rearrange occasionally and cause velocities of up to 3 % of √(g depth).
-        let wide = Model { walls, h: 2.0 * DP, ..Model::water(2, DP, DEPTH) };
+        let wide = Model::water(2, DP, DEPTH).walls(walls).h(2.0 * DP);
         let mut sim = still_tank(wide, 1.0);
         while sim.time() < 5.0 {
             sim.step_to(5.0).expect("still water");

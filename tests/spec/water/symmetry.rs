@@ -308,7 +308,7 @@ fn drop_at(pose: &Pose<2>, mirrored: bool, pair_loop: PairLoopKind) -> Simulatio
     ];
     (solids[0].pose, solids[1].pose, solids[1].name) = (place([-0.1, 0.0]), place([0.1, 0.06]), "second".into());
     let moved: Vec<Vector<2>> = water.iter().map(|r| pose.position + turn * r).collect();
-    let mut setup = Setup::new(model, moved, vec![-1.0; water.len()], solids);
+    let mut setup = Setup::new(model).water(moved, -1.0).solids(solids);
     setup.velocity = water.iter().map(|r| turn * velocity(r)).collect();
     Simulation::new(setup).expect("a sound setup")
 }
@@ -353,7 +353,7 @@ fn a_body_that_tumbles_in_a_vacuum_for_ten_seconds_conserves_energy_and_angular_
     let shape = Shape::Box { size: Vector::repeat(0.1) };
     let inertia = Matrix::<3>::from_diagonal(&Vector::from([1e-3, 2e-3, 2.5e-3]));
     let spin = Vector::<3>::from([1.0, 8.0, 2.0]);
-    let body = FreeBody { inertia, spin: Bivector::from_axial(spin.as_slice()), ..FreeBody::from_mass(&shape, 2.0) };
+    let body = FreeBody::from_mass(&shape, 2.0).inertia(inertia).spin(Bivector::from_axial(spin.as_slice()));
     let brick = common::solid("brick", shape, Pose::identity(), Role::Free(body));
     let mut engine = Dim::<3>::engine(
         std::slice::from_ref(&brick),

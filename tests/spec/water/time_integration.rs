@@ -76,7 +76,7 @@ fn the_step_size_follows_the_limits_of_acceleration_sound_and_viscosity() {
     assert_eq!(sim.dt(), model.cfl * (model.h / model.c0));
     // Morris' limit for laminar viscosity; the other two limits cover artificial viscosity.
     assert_eq!(model.viscosity.step_limit(model.h), f64::INFINITY);
-    let thick = Model { viscosity: Viscosity::Laminar(Laminar { nu0: 0.5 }), ..model.clone() };
+    let thick = model.clone().viscosity(Viscosity::Laminar(Laminar { nu0: 0.5 }));
     assert_eq!(thick.viscosity.step_limit(model.h), model.h * model.h / 4.0);
     let peaks = pontoon::system::StepLimits { acceleration: 1e7, approach_rate: 0.0 };
     assert_eq!(step_size::fluid_step_limit(&peaks, sim.system().properties(), 0.2), 0.2 * (model.h / 1e7).sqrt());

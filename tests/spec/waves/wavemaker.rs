@@ -129,7 +129,7 @@ fn invalid_wave_keys_are_refused_with_file_line_key_and_remedy() {
 #[test]
 fn a_wave_built_in_rust_equals_the_same_wave_of_a_scene() {
     let paddle = |motion: DrivenConfig| {
-        let at = pontoon::scene::PlacementConfig { x: Some(-0.05), bottom: Some(0.0), ..Default::default() };
+        let at = pontoon::scene::PlacementConfig::point(&[-0.05]).bottom(0.0);
         let tank = SolidConfig::fixed("tank", ShapeConfig::tank([5.2, 0.6]))
             .at(pontoon::scene::PlacementConfig::point(&[-0.2]));
         Scene::new(2, 0.02, 6.0)
@@ -144,7 +144,7 @@ fn a_wave_built_in_rust_equals_the_same_wave_of_a_scene() {
     let again = Scene::parse(&piston.to_toml().unwrap(), Path::new(""), &[]).unwrap();
     assert_eq!(piston, again);
     let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
-        .with_damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
+        .damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
         .probe(ProbeConfig::motion("paddle"));
     assert_eq!(preflight_report(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
 }
@@ -360,11 +360,10 @@ fn a_damping_zone_decays_velocity_exponentially_with_both_time_schemes() {
     for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 50 }] {
         let mut model = Model::water(2, 0.05, 1.0);
         (model.c0, model.gravity, model.viscosity, model.scheme) = (20.0, vec![0.0, 0.0], Viscosity::None, scheme);
-        let levels = vec![0.0; water.len()];
         // The zone begins far to the left, so s = 1 in the water.
         let zone = SpongeLayer { from: [-9.0, 0.0].into(), to: [-8.0, 0.0].into(), strength: 3.0, power: 2.0 };
-        let velocity = vec![Vector::from([0.2, 0.1]); water.len()];
-        let setup = Setup { velocity, sponge_layers: vec![zone], ..Setup::new(model, water.clone(), levels, vec![]) };
+        let velocity = |_: &Vector<2>| Vector::from([0.2, 0.1]);
+        let setup = Setup::new(model).water(water.clone(), 0.0).velocity(velocity).sponge_layer(zone);
         let mut sim = Simulation::new(setup).unwrap();
         while sim.time() < 0.5 {
             sim.step_to(0.5).unwrap();

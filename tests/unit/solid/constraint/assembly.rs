@@ -228,8 +228,10 @@ where
         solids.push(SolidSpec { role: Role::Driven(motion), ..bar("cart", 0.3, point(1.35, 0.0), true) });
         let mut joints: Vec<_> =
             (0..4).map(|i| hinge([Some(i), Some(i + 1)], point(0.3 * (i + 1) as f64, 0.0))).collect();
-        joints[1].motor =
-            Some(Motor { force: TimeFunction::Formula(Formula::parse("sin(5*t)").unwrap()), ..Motor::damping(3.0) });
+        joints[1].motor = Some(Motor {
+            force: TimeFunction::Formula(Formula::parse("sin(5*t)").unwrap()),
+            ..Motor::default().damping(3.0)
+        });
         joints[2].limits = Some([-0.3, 0.3]);
         for (i, joint) in joints.iter_mut().enumerate() {
             joint.name = format!("hinge{i}");
@@ -298,9 +300,9 @@ fn invalid_constraints_are_refused_with_the_reason() {
     assert!(joint(hinge([Some(0), Some(0)], at)).contains("to itself"));
     assert!(joint(hinge([None, Some(7)], at)).contains("not there"));
     assert!(joint(slider([None, Some(0)], at, Vector::zeros())).contains("has no axis"));
-    assert!(joint(hinge([None, Some(0)], at).with_limits(0.1, 0.5)).contains("has limits 0.1 to 0.5"));
+    assert!(joint(hinge([None, Some(0)], at).limits(0.1, 0.5)).contains("has limits 0.1 to 0.5"));
     assert!(
-        joint(JointSpec { kind: JointKind::Fixed, ..hinge([None, Some(0)], at).with_limits(-0.1, 0.5) })
+        joint(JointSpec { kind: JointKind::Fixed, ..hinge([None, Some(0)], at).limits(-0.1, 0.5) })
             .contains("no coordinate")
     );
     let twice =

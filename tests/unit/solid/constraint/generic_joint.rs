@@ -20,8 +20,8 @@ where
     // Heave and pitch are free between stops. The weight moves the body to the lower stop, a torque to the forward one.
     let solids = vec![bar::<D>("float", 0.4, Vector::zeros(), true)];
     let guide = JointSpec::new("guide", JointKind::Generic, [None, Some(0)], Vector::zeros(), Vector::zeros())
-        .with_free_mode(D - 1, Some([-0.05, 0.3]))
-        .with_free_mode(pitch::<D>(), Some([-0.2, 0.1]));
+        .free_mode(D - 1, Some([-0.05, 0.3]))
+        .free_mode(pitch::<D>(), Some([-0.2, 0.1]));
     let torque =
         (0..D * (D - 1) / 2).map(|i| TimeFunction::constant(if D == 2 || i == 1 { 8.0 } else { 0.0 })).collect();
     let force = (0..D).map(|i| TimeFunction::constant(if i == 0 { 5.0 } else { 0.0 })).collect();
@@ -61,8 +61,7 @@ where
         (air.now()[0], air.assembly.joint_reading(0).force)
     };
     let generic = JointSpec::new("joint", JointKind::Generic, [None, Some(0)], Vector::zeros(), Vector::zeros());
-    let (free, hinged) =
-        (run(generic.with_free_mode(pitch::<D>(), None)), run(hinge([None, Some(0)], Vector::zeros())));
+    let (free, hinged) = (run(generic.free_mode(pitch::<D>(), None)), run(hinge([None, Some(0)], Vector::zeros())));
     // The same constraints in other axes: only round-off differs.
     assert!((free.0.centre - hinged.0.centre).norm() < 1e-9, "{D}-D: {free:?} {hinged:?}");
     assert!((free.1 - hinged.1).norm() < 1e-6 * hinged.1.norm(), "{D}-D: {free:?} {hinged:?}");
@@ -81,8 +80,8 @@ fn a_universal_joint_reads_the_torque_that_it_carries_at_any_angle() {
     let solids = vec![bar::<3>("cube", 0.1, Vector::zeros(), false)];
     let inertia = body(&solids[0]).inertia[(0, 0)];
     let cardan = JointSpec::new("cardan", JointKind::Generic, [None, Some(0)], Vector::zeros(), Vector::zeros())
-        .with_free_mode(4, None)
-        .with_free_mode(5, None);
+        .free_mode(4, None)
+        .free_mode(5, None);
     let mut air = DrySystem::new(solids, joined(cardan), 0.0);
     let start = [0.0, 3.0, 2.0];
     air.engine.set_velocity(0, &Vector::zeros(), &Bivector::from_axial(&start));

@@ -113,7 +113,7 @@ where
     let flap = bar("flap", 0.4, point(0.0, 0.2), false);
     let i = inertia(&flap) + body(&flap).mass * 0.04;
     let c = 3.0 * i;
-    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).with_motor(Motor::damping(c));
+    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).motor(Motor::default().damping(c));
     let mut air = DrySystem::new(vec![flap], joined(joint), 0.0);
     let spin = Bivector::torque(&point(0.0, -1.0), &point(1.0, 0.0)) * 0.5;
     air.engine.set_velocity(0, &spin.velocity_at(&point(0.0, 0.2)), &spin);
@@ -128,7 +128,7 @@ where
     let float = bar("float", 0.2, point(0.1, 0.0), false);
     let (m, along) = (body(&float).mass, point::<D>(0.6, 0.8));
     let c = 2.0 * m;
-    let joint = slider([None, Some(0)], Vector::zeros(), along * 3.0).with_motor(Motor::damping(c));
+    let joint = slider([None, Some(0)], Vector::zeros(), along * 3.0).motor(Motor::default().damping(c));
     let mut air = DrySystem::new(vec![float], joined(joint), 0.0);
     air.engine.set_velocity(0, &(along * 0.5), &Bivector::zero());
     air.run(1e-4, 1.0);
@@ -155,7 +155,7 @@ where
     let bar = bar("bar", 0.4, point::<D>(0.0, -0.2), false);
     let i = inertia(&bar) + body(&bar).mass * 0.04;
     let push = Motor { force: formula("3*t"), ..Motor::default() };
-    let mut air = DrySystem::new(vec![bar], joined(hinge([None, Some(0)], Vector::zeros()).with_motor(push)), 0.0);
+    let mut air = DrySystem::new(vec![bar], joined(hinge([None, Some(0)], Vector::zeros()).motor(push)), 0.0);
     air.run(1e-4, 0.2);
     // In 3-D the constraint solver with four iterations leaves 1e-7; a formula evaluated half a step late would err by 2.5e-4.
     assert!(
@@ -164,14 +164,14 @@ where
         air.assembly.joint_reading(0)
     );
     // A servo holds its angle against the weight up to the deflection F/k, and a drive keeps its speed.
-    let servo = Motor { position: formula("0.4*min(t, 1)"), ..Motor::damping(300.0) };
+    let servo = Motor { position: formula("0.4*min(t, 1)"), ..Motor::default().damping(300.0) };
     let mut air = pendulum::<D>(Some(Motor { stiffness: TimeFunction::constant(2e4), ..servo }));
     air.run(1e-3, 2.0);
     let (reading, m) = (air.assembly.joint_reading(0), body(&air.solids[0]).mass);
     let weight = m * G * 0.2 * reading.position.sin();
     assert!((reading.motor_force / weight - 1.0).abs() < 1e-3, "{D}-D: {reading:?} for {weight}");
     assert!((0.4 - reading.position - weight / 2e4).abs() < 1e-5, "{D}-D: {reading:?}");
-    let drive = Motor { velocity: Some(TimeFunction::constant(-1.5)), ..Motor::damping(1e9) };
+    let drive = Motor { velocity: Some(TimeFunction::constant(-1.5)), ..Motor::default().damping(1e9) };
     let mut air = pendulum::<D>(Some(drive.clone()));
     air.run(1e-3, 4.0);
     // The drive is stiff compared with the step and rotates past half a turn.
@@ -204,7 +204,7 @@ where
     let m = body(&weight).mass;
     for stiff in [0.05, 0.1, 0.5, 5.0, 500.0, 5e6] {
         let c = stiff * m / 1e-3;
-        let rail = slider([None, Some(0)], Vector::zeros(), point(0.0, 1.0)).with_motor(Motor::damping(c));
+        let rail = slider([None, Some(0)], Vector::zeros(), point(0.0, 1.0)).motor(Motor::default().damping(c));
         let mut air = DrySystem::new(vec![weight.clone()], joined(rail), G);
         air.run(1e-3, 0.5);
         // After at least 25 relaxation times m/c the speed is m g/c. The explicit part of the weight in a step is at most half of 0.1.
@@ -218,16 +218,16 @@ where
     }
     // Two motors on one rail: the second takes account of the first, so that no oscillation occurs.
     let along = point(0.0, 1.0);
-    let second = slider([None, Some(0)], point(0.0, 0.05), along).with_motor(Motor::damping(1e9));
+    let second = slider([None, Some(0)], point(0.0, 0.05), along).motor(Motor::default().damping(1e9));
     let second = JointSpec { name: "second".into(), ..second };
-    let first = slider([None, Some(0)], Vector::zeros(), along).with_motor(Motor::damping(1e9));
+    let first = slider([None, Some(0)], Vector::zeros(), along).motor(Motor::default().damping(1e9));
     let mut air =
         DrySystem::new(vec![weight.clone()], Constraints { joints: vec![first, second], ..Constraints::default() }, G);
     air.run(1e-3, 0.5);
     assert!(air.now()[0].velocity.norm() < 1e-6, "{D}-D: {:?}", air.now());
     // The stop carries a weight that rests on it, not a damping motor of usual strength: its force from one step of weight is 5e-5 of m g.
     let rail =
-        slider([None, Some(0)], Vector::zeros(), along).with_limits(-0.01, 0.01).with_motor(Motor::damping(5.0 * m));
+        slider([None, Some(0)], Vector::zeros(), along).limits(-0.01, 0.01).motor(Motor::default().damping(5.0 * m));
     let mut air = DrySystem::new(vec![weight], joined(rail), G);
     air.run(1e-4, 1.0);
     let reading = air.assembly.joint_reading(0);
@@ -246,7 +246,7 @@ where
 {
     let solids = vec![bar("bar", 0.4, point(0.2, 0.0), true)];
     let m = body(&solids[0]).mass;
-    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).with_limits(-0.5, 0.5);
+    let joint = hinge([None, Some(0)], Vector::<D>::zeros()).limits(-0.5, 0.5);
     let mut air = DrySystem::new(solids, joined(joint), G);
     air.run(1e-4, 1.5);
     let reading = air.assembly.joint_reading(0);
@@ -256,7 +256,7 @@ where
     assert!((reading.torque + moment * -1.0).0.norm() < 1e-3 * m * G, "{D}-D: {reading:?} for {moment:?}");
 
     let weight = bar("weight", 0.2, point(0.3, 1.0), false);
-    let joint = slider([None, Some(0)], point(0.0, 1.0), point::<D>(0.0, 1.0)).with_limits(-0.25, 0.1);
+    let joint = slider([None, Some(0)], point(0.0, 1.0), point::<D>(0.0, 1.0)).limits(-0.25, 0.1);
     let mut air = DrySystem::new(vec![weight], joined(joint), G);
     air.run(1e-4, 1.0);
     assert!((air.now()[0].pose.position[D - 1] - 0.75).abs() < 1e-6, "{:?}", air.now());
@@ -295,7 +295,7 @@ fn a_hinge_on_a_driven_cart_follows_the_cart() {
     let cart = SolidSpec { role: Role::Driven(motion), ..bar::<2>("cart", 0.2, point(0.0, 0.0), true) };
     let solids = vec![cart, bar("bar", 0.4, point(0.0, -0.2), false)];
     let m = body(&solids[1]).mass;
-    let joint = hinge([Some(0), Some(1)], Vector::zeros()).with_motor(Motor::damping(30.0));
+    let joint = hinge([Some(0), Some(1)], Vector::zeros()).motor(Motor::default().damping(30.0));
     let mut air = DrySystem::new(solids, joined(joint), G);
     air.run(1e-4, 3.0);
     // The bar lags by atan(a/g) with a = 0.2 m/s² and has the speed of the cart.
