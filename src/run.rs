@@ -22,11 +22,12 @@ pub(crate) mod outputs;
 pub(crate) mod statistics;
 
 pub use energy_drift::EnergyDrift;
-pub use inspect::{InspectOptions, InspectReport, inspect};
 #[doc(hidden)]
-pub use inspect::{MeshSummary, SeriesColumns, SolidSummary, StepTiming};
+pub use inspect::{InspectOptions, InspectReport, MeshSummary, SeriesColumns, SolidSummary, StepTiming, inspect};
 pub(crate) use lock::Lock;
+#[doc(hidden)]
 pub use lock::lock_owner;
+#[doc(hidden)]
 pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
 use std::path::{Path, PathBuf};

@@ -6,6 +6,7 @@ pub mod expression;
 pub mod format;
 #[doc(hidden)]
 pub mod simd;
+#[doc(hidden)]
 pub mod table;
 pub mod time_series;
 mod vector;

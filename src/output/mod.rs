@@ -5,6 +5,7 @@ pub(crate) mod csv;
 #[doc(hidden)]
 pub mod frame;
 pub(crate) mod frame_sequence;
+#[doc(hidden)]
 pub mod manifest;
 pub(crate) mod interval_mean;
 #[cfg(feature = "cli")]

@@ -83,7 +83,7 @@ impl<const D: usize> Setup<D> {
     /// surface is the top of the box.
     ///
     /// # Errors
-    /// As [`fill`].
+    /// As [`fill()`].
     pub fn fill_box(self, min: impl Into<Vector<D>>, max: impl Into<Vector<D>>) -> Result<Self> {
         let (min, max) = (min.into(), max.into());
         let shape = Shape::Box { size: max - min };
@@ -94,7 +94,7 @@ impl<const D: usize> Setup<D> {
     /// (m).
     ///
     /// # Errors
-    /// As [`fill`].
+    /// As [`fill()`].
     pub fn fill(self, regions: &[WaterRegion<D>], level: f64) -> Result<Self> {
         let poses: Vec<Pose<D>> = self.solids.iter().map(|solid| solid.initial_kinematics().pose).collect();
         let solids: Vec<_> = self.solids.iter().zip(&poses).map(|(solid, pose)| (&solid.shape, pose)).collect();
