@@ -26,7 +26,7 @@ const TRIANGLE: u8 = 5;
 
 /// A closed surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct FreeSurfaceMesh {
+pub struct FreeSurfaceMesh {
     /// Corners, m.
     pub corners: Vec<[f32; 3]>,
     /// Triangles: numbers of their corners, counter-clockwise as seen from outside.
@@ -40,7 +40,7 @@ impl FreeSurfaceMesh {
     ///
     /// # Errors
     /// `Usage` if it cannot be made.
-    pub(crate) fn reconstruct(water: &FramePoints, dp: f64) -> Result<Self> {
+    pub fn reconstruct(water: &FramePoints, dp: f64) -> Result<Self> {
         if water.position.is_empty() {
             return Ok(Self::default());
         }
@@ -81,7 +81,7 @@ impl FreeSurfaceMesh {
 ///
 /// # Errors
 /// `File` if a frame cannot be read or a file written; `Usage` if a surface cannot be made.
-pub(crate) fn write(folder: &Path, frames: &FrameSequence, dp: f64) -> Result<usize> {
+pub fn write(folder: &Path, frames: &FrameSequence, dp: f64) -> Result<usize> {
     let files = folder.join("surface");
     std::fs::create_dir_all(&files).map_err(|why| cannot_write(&files, &why))?;
     for number in 0..frames.times().len() {

@@ -15,7 +15,8 @@ pub(crate) mod removed_particles;
 mod base64;
 mod vtu;
 #[cfg(feature = "surface")]
-pub(crate) mod free_surface_mesh;
+#[doc(hidden)]
+pub mod free_surface_mesh;
 
 pub use checkpoint::{Checkpoint, OutputPositions};
 pub(crate) use csv::CsvTable;
