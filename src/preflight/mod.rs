@@ -161,8 +161,8 @@ pub fn preflight<const D: usize>(
     let system = sim.system();
     let down = -system.gravity()[D - 1];
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
-    let faces = system.solids().iter().map(|s| surface_samples::of_solid(s, system.model().dp)).collect();
-    let look = PreflightContext { system, plan, still_water: still, g, surface_samples: faces };
+    let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, system.model().dp)).collect();
+    let look = PreflightContext { system, plan, still_water: still, g, surface_samples: samples };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
     let step = look.step_size_limits(sim.spring_step_limit(), &mut findings);
