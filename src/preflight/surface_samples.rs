@@ -55,10 +55,10 @@ fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> 
     both.into_iter().flatten().collect()
 }
 
-/// Every so many-th of `faces`, `most` of them or fewer.
+/// Every so many-th of `samples`, `most` of them or fewer.
 pub(crate) fn thinned<const D: usize>(
-    faces: &[SurfaceSample<D>],
+    samples: &[SurfaceSample<D>],
     most: usize,
 ) -> impl Iterator<Item = &SurfaceSample<D>> {
-    faces.iter().step_by(faces.len().div_ceil(most).max(1))
+    samples.iter().step_by(samples.len().div_ceil(most).max(1))
 }
