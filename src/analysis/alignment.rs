@@ -78,7 +78,7 @@ pub(crate) fn align(
 /// assert!((delay - 0.05).abs() < 1e-4);
 /// # Ok::<(), pontoon::Error>(())
 /// ```
-pub(crate) fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
+pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
     let n = |delay: f64| shifted_reference(sim, reference, delay).and_then(|moved| relative_l2(sim, &moved).ok());
     let count = (MAX_DELAY / STEP).round() as i32;
     let mut best: Option<(f64, f64)> = None;

@@ -13,6 +13,7 @@ mod verdict;
 mod zero_crossings;
 
 pub use crate::plan::{Align, CheckPlan, Reference, Score};
+pub use alignment::best_delay;
 pub use alignment::{AlignedMetrics, ArrivalTimes};
 pub use error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2};
 pub use harmonic::{Harmonic, harmonic};

@@ -83,7 +83,7 @@ impl Formula {
     }
 
     /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
-    pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) {
+    pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         self.root.evaluate(&[t])
     }
 }
@@ -97,7 +97,7 @@ impl Formula {
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub(crate) struct ScalarField<const D: usize> {
+pub struct ScalarField<const D: usize> {
     root: Node,
 }
 
@@ -106,12 +106,12 @@ impl<const D: usize> ScalarField<D> {
     ///
     /// # Errors
     /// As [`Formula::parse`].
-    pub(crate) fn parse(text: &str) -> Result<Self> {
+    pub fn parse(text: &str) -> Result<Self> {
         read(text, &["x", "y", "z"][..D]).map(|root| Self { root })
     }
 
     /// Value at the place `r` (m).
-    pub(crate) fn value_at(&self, r: &Vector<D>) -> f64 {
+    pub fn value_at(&self, r: &Vector<D>) -> f64 {
         self.root.evaluate(r.as_slice()).0
     }
 }

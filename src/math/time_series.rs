@@ -81,7 +81,7 @@ impl TimeSeries {
     ///
     /// # Errors
     /// `Scene` if fewer than two samples lie there.
-    pub(crate) fn window(&self, from: f64, until: f64) -> Result<Self> {
+    pub fn window(&self, from: f64, until: f64) -> Result<Self> {
         let range = self.t.partition_point(|&t| t < from)..self.t.partition_point(|&t| t <= until);
         if range.len() < 2 {
             let (first, last) = self.span();

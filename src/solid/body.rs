@@ -91,7 +91,7 @@ impl<const D: usize> SolidSpec<D> {
     ///
     /// # Errors
     /// `Scene`: names the solid, what is wrong with it, and what would be right.
-    pub(crate) fn check(&self) -> Result<()> {
+    pub fn check(&self) -> Result<()> {
         self.shape.check().map_err(|e| self.named(e))?;
         if let Role::Free(_) = self.role {
             self.shape.check_no_overlap().map_err(|e| self.named(e))?;
@@ -207,7 +207,7 @@ impl<const D: usize> FreeBody<D> {
     ///
     /// # Errors
     /// `Scene` if a number is not finite, the mass is not positive, or the inertia is not that of any body.
-    pub(crate) fn check(&self) -> Result<()> {
+    pub fn check(&self) -> Result<()> {
         let mass = self.mass;
         require(mass > 0.0 && mass.is_finite(), || format!("its mass is {mass} kg"), "more than 0 and finite")?;
         let rest = self.centre.norm() + self.velocity.norm() + self.spin.0.norm();

@@ -7,7 +7,7 @@ const FACTOR: f64 = 1.25;
 
 /// Convergence of a figure over three spacings.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Convergence {
+pub struct Convergence {
     /// Observed order, –.
     pub order: f64,
     /// Grid-convergence index of the finest, relative to its figure, –.
@@ -23,7 +23,7 @@ pub(crate) struct Convergence {
 /// let points = [0.04, 0.02, 0.01].map(|dp| (dp, 3.0 * dp * dp));
 /// assert!((least_squares(&points).unwrap() - 2.0).abs() < 1e-12);
 /// ```
-pub(crate) fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
+pub fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> =
         points.iter().filter(|(dp, e)| *dp > 0.0 && *e > 0.0).map(|(dp, e)| (dp.ln(), e.ln())).collect();
     let n = logs.len() as f64;
@@ -48,7 +48,7 @@ pub(crate) fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
 /// assert!((found.order - 1.0).abs() < 1e-9);
 /// assert!((found.index - 1.25 * 0.03 / 0.23).abs() < 1e-9);
 /// ```
-pub(crate) fn convergence(points: &[(f64, f64)]) -> Option<Convergence> {
+pub fn convergence(points: &[(f64, f64)]) -> Option<Convergence> {
     let mut finest = points.to_vec();
     finest.sort_by(|a, b| a.0.total_cmp(&b.0));
     let [(h1, f1), (h2, f2), (h3, f3), ..] = finest[..] else { return None };

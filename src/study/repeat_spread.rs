@@ -19,7 +19,7 @@ const SPREAD_METRICS: [Metric; 5] = [
 
 /// A figure over all repeats of a run that have finished.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Spread {
+pub struct Spread {
     /// How many repeats.
     pub runs: usize,
     /// Their mean.
@@ -34,7 +34,7 @@ pub(crate) struct Spread {
 
 /// A run, a check and a figure, and how far the repeats lie apart in it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct RepeatSpread {
+pub struct RepeatSpread {
     /// Name of the run.
     pub run: String,
     /// What was compared, as `probe.column`.
@@ -55,7 +55,7 @@ impl Spread {
     /// assert!((spread.mean - 0.2).abs() < 1e-15 && (spread.deviation.unwrap() - 0.1).abs() < 1e-15);
     /// assert_eq!((spread.runs, spread.least, spread.greatest), (3, 0.1, 0.3));
     /// ```
-    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let all: Vec<f64> = values.into_iter().collect();
         let runs = all.len();
         let mean = all.iter().sum::<f64>() / runs as f64;
@@ -70,7 +70,7 @@ impl Spread {
     }
 
     /// In words: mean ± deviation (least to greatest), with numbers as `number` writes them.
-    pub(crate) fn format(&self, number: fn(Option<f64>) -> String) -> String {
+    pub fn format(&self, number: fn(Option<f64>) -> String) -> String {
         let [mean, least, greatest] = [self.mean, self.least, self.greatest].map(|x| number(Some(x)));
         let deviation = match self.deviation {
             None => return mean,
@@ -84,7 +84,7 @@ impl Spread {
 }
 
 /// The finished rows of each run and check, its repeats together, in the order of `rows`.
-pub(crate) fn group_repeats(rows: &[ResultRow]) -> Vec<Vec<&ResultRow>> {
+pub fn group_repeats(rows: &[ResultRow]) -> Vec<Vec<&ResultRow>> {
     let mut all: Vec<Vec<&ResultRow>> = Vec::new();
     for row in rows.iter().filter(|row| row.status == "finished") {
         match all.iter_mut().find(|of| of[0].run == row.run && of[0].check == row.check) {
@@ -96,12 +96,12 @@ pub(crate) fn group_repeats(rows: &[ResultRow]) -> Vec<Vec<&ResultRow>> {
 }
 
 /// How far the rows `of` one run and check lie apart in a figure; none where no row knows it.
-pub(crate) fn spread_of(of: &[&ResultRow], figure: fn(&ResultRow) -> Option<f64>) -> Option<Spread> {
+pub fn spread_of(of: &[&ResultRow], figure: fn(&ResultRow) -> Option<f64>) -> Option<Spread> {
     Spread::of(of.iter().filter_map(|row| figure(row)))
 }
 
 /// How far the repeats of each run lie apart in each figure; nothing if no run is repeated.
-pub(crate) fn repeat_spreads(rows: &[ResultRow]) -> Vec<RepeatSpread> {
+pub fn repeat_spreads(rows: &[ResultRow]) -> Vec<RepeatSpread> {
     let figure = |of: &[&ResultRow], (figure, value): Metric| {
         Some(RepeatSpread { run: of[0].run.clone(), check: of[0].check.clone(), figure, spread: spread_of(of, value)? })
     };
@@ -110,13 +110,13 @@ pub(crate) fn repeat_spreads(rows: &[ResultRow]) -> Vec<RepeatSpread> {
 }
 
 /// Whether any run is repeated.
-pub(crate) fn has_repeats(rows: &[ResultRow]) -> bool {
+pub fn has_repeats(rows: &[ResultRow]) -> bool {
     rows.iter().any(|row| row.repeat > 1)
 }
 
 /// Runs that share a name as one point of a plot of error over processor time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CostPoint {
+pub struct CostPoint {
     /// Mean processor time, s, and mean error.
     pub place: (f64, f64),
     /// The least and the greatest error.
@@ -127,14 +127,14 @@ pub(crate) struct CostPoint {
 
 impl CostPoint {
     /// Of the rows `of` one run and check; none where no error is known, or no processor time.
-    pub(crate) fn new(of: &[&ResultRow], error: fn(&ResultRow) -> Option<f64>) -> Option<Self> {
+    pub fn new(of: &[&ResultRow], error: fn(&ResultRow) -> Option<f64>) -> Option<Self> {
         let (cost, error) = (spread_of(of, |row| row.cpu_s)?.mean, spread_of(of, error)?);
         Some(Self { place: (cost, error.mean), span: (error.least, error.greatest), dp: of[0].dp })
     }
 }
 
 /// What must be said of the bars of a plot; nothing if no run is repeated.
-pub(crate) fn error_bar_note(rows: &[ResultRow]) -> &'static str {
+pub fn error_bar_note(rows: &[ResultRow]) -> &'static str {
     match has_repeats(rows) {
         true => " A point is the mean of its repeats, its bar goes from the least to the greatest.",
         false => "",

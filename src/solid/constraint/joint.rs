@@ -88,7 +88,7 @@ pub struct JointSpec<const D: usize> {
 impl<const D: usize> JointSpec<D> {
     /// A joint of this kind at the world point `at` (m), along or about `axis`, without limits or motor. The second of `between`
     /// moves against the first.
-    pub(crate) fn new(
+    pub fn new(
         name: impl Into<String>,
         kind: JointKind,
         between: [Option<usize>; 2],
