@@ -52,7 +52,7 @@ error_codes! {
     InvalidToml = "invalid-toml",
     /// A key that the scene format does not have.
     UnknownKey = "unknown-key",
-    /// A name that nothing has: of a solid, a series, a choice, a scene.
+    /// An unknown name of a solid, series, choice or scene.
     UnknownName = "unknown-name",
     /// A required key is absent.
     MissingKey = "missing-key",
@@ -289,6 +289,11 @@ impl fmt::Debug for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// The end of an error message that names the entry of `known` nearest to `word`: `; did you mean "x"?`, or nothing.
+pub(crate) fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    nearest_name(word, known).map_or(String::new(), |name| format!("; did you mean \"{name}\"?"))
+}
 
 /// Words longer than this are no slips of the pen, and would take long to compare.
 const LONG: usize = 100;

@@ -1,8 +1,6 @@
 //! The chosen laws as data; the one place where a name becomes a type.
 
-pub use crate::sph::boundary::Slip;
-pub use crate::sph::density_diffusion::Diffusion;
-pub use crate::sph::viscosity::Viscosity;
+pub use crate::sph::{boundary::Slip, density_diffusion::Diffusion, viscosity::Viscosity};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 use std::{array, fs::File, path::Path};
 
 use super::time_series::TimeSeries;
-use crate::error::{Error, ErrorCode, Result, nearest_name};
+use crate::error::{Error, ErrorCode, Result, suggestion};
 
 /// A table whose header is read. The methods that return columns read its rows.
 pub struct TableReader {
@@ -99,8 +99,7 @@ impl TableReader {
     /// The place of the column `name`.
     fn index(&self, name: &str) -> Result<usize> {
         self.header.iter().position(|column| column == name).ok_or_else(|| {
-            let guess = nearest_name(name, self.header.iter().map(String::as_str));
-            let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
+            let guess = suggestion(name, self.header.iter().map(String::as_str));
             Error::scene(format!("{} has no column \"{name}\"{guess}", self.file))
                 .with_code(ErrorCode::UnknownName)
                 .help(format!("its columns: {}", self.header.join(", ")))

@@ -43,11 +43,22 @@ pub use runup::RunupProbe;
 pub use velocity::VelocityProbe;
 #[doc(hidden)]
 pub use {
-    balance::LoadBalancePlan, budget::EnergyBudgetPlan, contact_force::ContactForcePlan,
-    contact_force::ContactListPlan, elevation::ElevationPlan, elevation::GaugeConfig, energy::EnergyPlan,
-    flow::FlowPlan, flow::SectionConfig, force::ForcePlan, front::FrontPlan, joint::JointPlan, line::RopePlan,
-    line::SpringPlan, motion::MotionPlan, patch::PatchConfig, patch::PatchPlan, points::PointRowConfig,
-    points::PointsConfig, pressure::PressurePlan, runup::RunupPlan, velocity::VelocityPlan,
+    balance::LoadBalancePlan,
+    budget::EnergyBudgetPlan,
+    contact_force::{ContactForcePlan, ContactListPlan},
+    elevation::{ElevationPlan, GaugeConfig},
+    energy::EnergyPlan,
+    flow::{FlowPlan, SectionConfig},
+    force::ForcePlan,
+    front::FrontPlan,
+    joint::JointPlan,
+    line::{RopePlan, SpringPlan},
+    motion::MotionPlan,
+    patch::{PatchConfig, PatchPlan},
+    points::{PointRowConfig, PointsConfig},
+    pressure::PressurePlan,
+    runup::RunupPlan,
+    velocity::VelocityPlan,
 };
 
 use schemars::JsonSchema;

@@ -7,7 +7,7 @@ use super::{
     diagnostics,
     toml_source::{SceneSource, ValueSource},
 };
-use crate::error::{Error, ErrorCode, Result, nearest_name};
+use crate::error::{Error, ErrorCode, Result};
 
 /// What a section needs to know of its scene.
 pub(crate) struct Context<'a> {
@@ -172,11 +172,6 @@ pub(crate) fn set_keys<const N: usize>(given: [(&'static str, bool); N]) -> Vec<
 /// Keys joined for a sentence.
 pub(crate) fn quoted_list(keys: &[&str]) -> String {
     if keys.is_empty() { "nothing".into() } else { keys.join(" and ") }
-}
-
-/// The nearest of the `known` names, to end a sentence.
-pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
-    nearest_name(name, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
 }
 
 /// The last part of a key.

@@ -1,7 +1,7 @@
 //! Errors of the parser in the words of a user: the fault, the nearest valid name, an example.
 
 use crate::{
-    error::{Error, ErrorCode, nearest_name},
+    error::{Error, ErrorCode, nearest_name, suggestion},
     probe,
 };
 
@@ -189,9 +189,6 @@ fn key_noun(key: &str) -> &str {
 /// The error of the parser's `message` about `key`, and the key that it is about.
 pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     let words = quoted(message);
-    let did_you_mean = |word: &str, known: &[&str]| {
-        nearest_name(word, known.iter().copied()).map_or(String::new(), |n| format!("; did you mean \"{n}\"?"))
-    };
     let with = |error: Error, lines: Vec<String>| match lines.is_empty() {
         true => error,
         false => error.help(lines.join("\n")),
@@ -200,7 +197,7 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         // The key is the unknown one or, where its words are told apart by their form, the one above it.
         let above = if key == *word { Some("") } else { key.strip_suffix(&format!(".{word}")) };
         let parent = above.unwrap_or(key);
-        let error = Error::scene(format!("unknown key \"{word}\"{}", did_you_mean(word, known)))
+        let error = Error::scene(format!("unknown key \"{word}\"{}", suggestion(word, known.iter().copied())))
             .with_code(ErrorCode::UnknownKey);
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // Of the same parent: a water's velocity is not a probe's.
@@ -211,8 +208,9 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     }
     if let (true, [word, known @ ..]) = (message.starts_with("unknown variant"), &words[..]) {
         let key = key.strip_suffix(&format!(".{word}")).unwrap_or(key);
-        let error = Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), did_you_mean(word, known)))
-            .with_code(ErrorCode::UnknownName);
+        let error =
+            Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), suggestion(word, known.iter().copied())))
+                .with_code(ErrorCode::UnknownName);
         let known = format!("known: {}", list(known));
         return (with(error, [known].into_iter().chain(example(key)).collect()), key.to_string());
     }

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::{
-    error::{Error, ErrorCode, Result, nearest_name},
+    error::{Error, ErrorCode, Result, suggestion},
     math::table::TableReader,
 };
 
@@ -31,8 +31,7 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     }
     if !full.is_file() {
         let others = neighbours(folder, path);
-        let guess = nearest_name(name, others.iter().map(String::as_str));
-        let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
+        let guess = suggestion(name, others.iter().map(String::as_str));
         return Err(Error::scene(format!("there is no file \"{name}\" beside the scene{guess}"))
             .with_code(ErrorCode::FileNotFound)
             .help("files that a scene names are looked for in the folder of the scene"));

@@ -7,7 +7,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use crate::error::{Error, ErrorCode, Result, nearest_name};
+use crate::error::{Error, ErrorCode, Result, suggestion};
 
 /// Keys whose value is one choice out of several laws.
 pub(super) const CHOICES: [&str; 9] = [
@@ -128,8 +128,7 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
     let names: Vec<String> = items.iter().enumerate().map(|(i, item)| name(item).unwrap_or(i.to_string())).collect();
     let by_number = || word.parse::<usize>().ok().filter(|i| *i < items.len());
     names.iter().position(|n| n == word).or_else(by_number).ok_or_else(|| {
-        let guess = nearest_name(word, names.iter().map(String::as_str));
-        let guess = guess.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
+        let guess = suggestion(word, names.iter().map(String::as_str));
         Error::scene(format!("no {path} is called \"{word}\"{guess}"))
             .with_code(ErrorCode::UnknownName)
             .help(format!("known: {}", names.join(", ")))

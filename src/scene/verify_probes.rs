@@ -2,11 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::{
-    BoxConfig, ContactConfig, JointConfig, ProbeConfig, Scene, context::suggestion, section::solid::require_solid,
-};
+use super::{BoxConfig, ContactConfig, JointConfig, ProbeConfig, Scene, section::solid::require_solid};
 use crate::{
-    error::{Error, ErrorCode, Result},
+    error::{Error, ErrorCode, Result, suggestion},
     probe::ProbeScope,
 };
 
@@ -68,7 +66,7 @@ impl ProbeScope for Scene {
         if known.contains(&name) {
             return Ok(());
         }
-        let what = format!("no {kind} is called \"{name}\"{}", suggestion(name, &known));
+        let what = format!("no {kind} is called \"{name}\"{}", suggestion(name, known.iter().copied()));
         let help = match known.is_empty() {
             true => format!("the scene has no {kind}"),
             false => format!("known: {}", known.join(", ")),

@@ -173,12 +173,18 @@ impl<const D: usize> FreeBody<D> {
     }
 
     /// The same body, which cannot move along the world's axis number `axis`.
+    ///
+    /// # Panics
+    /// If `axis` is not less than the dimension.
     pub fn lock_translation(mut self, axis: usize) -> Self {
         self.locked_translations[axis] = true;
         self
     }
 
     /// The same body, which cannot turn about the world's axis number `axis`; 0 in 2-D.
+    ///
+    /// # Panics
+    /// If `axis` is more than 2.
     pub fn lock_rotation(mut self, axis: usize) -> Self {
         self.locked_rotations[axis] = true;
         self

@@ -79,8 +79,8 @@ impl<const D: usize> Setup<D> {
         self
     }
 
-    /// The same setup with more water at rest in the box from corner `min` to corner `max` (m), less the solids given so far. The still
-    /// surface is the top of the box.
+    /// The same setup with more water at rest in the box from corner `min` to corner `max` (m), less the solids given
+    /// so far. The still surface is the top of the box.
     ///
     /// # Errors
     /// As [`fill()`].
@@ -168,6 +168,9 @@ impl<const D: usize> Setup<D> {
     }
 
     /// The same setup, periodic along axis number `axis` from `min` to `max` (m).
+    ///
+    /// # Panics
+    /// If `axis` is not less than the dimension.
     pub fn periodic(mut self, axis: usize, min: f64, max: f64) -> Self {
         self.periodic[axis] = Some([min, max]);
         self

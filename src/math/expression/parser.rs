@@ -1,7 +1,7 @@
 //! From text to the tree of a formula; what cannot be read is told with its place.
 
 use super::{Binary, CHOICES, FUNCTIONS, Node};
-use crate::error::{Error, Result, nearest_name};
+use crate::error::{Error, Result, suggestion};
 
 /// Deepest nesting of brackets, signs and powers.
 const DEPTH: usize = 64;
@@ -130,9 +130,7 @@ impl<'a> Reader<'a> {
         let function = FUNCTIONS.iter().find(|(name, _)| *name == word);
         let choice = CHOICES.iter().find(|(name, _)| *name == word);
         if function.is_none() && choice.is_none() {
-            let meant =
-                nearest_name(word, self.known()).map(|k| format!("; did you mean \"{k}\"?")).unwrap_or_default();
-            return Err(self.wrong(format!("\"{word}\" is not known{meant}")));
+            return Err(self.wrong(format!("\"{word}\" is not known{}", suggestion(word, self.known()))));
         }
         self.place += end;
         self.take('(')?;

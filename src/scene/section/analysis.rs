@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::water::StillWaterLevel;
 use crate::{
-    error::{Error, ErrorCode, Result},
+    error::{Error, ErrorCode, Result, suggestion},
     math::expression::Formula,
     plan::{Align, CheckPlan, Reference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
     scene::{
-        context::{Context, Defaults, quoted_list, set_keys, suggestion},
+        context::{Context, Defaults, quoted_list, set_keys},
         files,
     },
 };
@@ -101,7 +101,7 @@ impl ProbeSeries<'_> {
     fn probe(&self, ctx: &Context, key: &str, name: &str) -> Result<usize> {
         self.names.iter().position(|known| known == name).ok_or_else(|| {
             let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
-            let what = format!("no probe is called \"{name}\"{}", suggestion(name, &names));
+            let what = format!("no probe is called \"{name}\"{}", suggestion(name, names.iter().copied()));
             ctx.error_with_help(key, what, format!("known: {}", names.join(", "))).with_code(ErrorCode::UnknownName)
         })
     }

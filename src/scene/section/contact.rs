@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::solid::SolidConfig;
 use crate::{
-    error::{ErrorCode, Result},
-    scene::context::{Context, suggestion},
+    error::{ErrorCode, Result, suggestion},
+    scene::context::Context,
     solid::ContactSpec,
 };
 
@@ -77,7 +77,7 @@ impl ContactConfig {
         let groups: BTreeSet<&str> = solids.iter().filter_map(|solid| solid.group.as_deref()).collect();
         let known: Vec<&str> = solids.iter().map(|solid| solid.name.as_str()).chain(groups.iter().copied()).collect();
         if let Some(name) = between.iter().find(|name| !known.contains(&name.as_str())) {
-            let what = format!("no solid or group is called \"{name}\"{}", suggestion(name, &known));
+            let what = format!("no solid or group is called \"{name}\"{}", suggestion(name, known.iter().copied()));
             return Err(ctx
                 .error_with_help(key, what, format!("known: {}", known.join(", ")))
                 .with_code(ErrorCode::UnknownName));

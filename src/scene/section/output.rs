@@ -9,11 +9,11 @@ use serde::{
 };
 
 use crate::{
-    error::{self, ErrorCode},
+    error::{self, ErrorCode, suggestion},
     math::{BoxConfig, format::bytes},
     output::frame::particle_bytes,
     plan::FramesPlan,
-    scene::context::{Context, Defaults, suggestion},
+    scene::context::{Context, Defaults},
 };
 
 /// Fields that a frame can hold.
@@ -91,7 +91,7 @@ impl FramesChoice {
         let Self::On(FramesConfig { every, fields, corners }) = self else { return Ok(()) };
         ctx.require_positive("frames.every", *every)?;
         if let Some(field) = fields.iter().flatten().find(|field| !FIELDS.contains(&field.as_str())) {
-            let what = format!("no field is called \"{field}\"{}", suggestion(field, &FIELDS));
+            let what = format!("no field is called \"{field}\"{}", suggestion(field, FIELDS.iter().copied()));
             return Err(ctx
                 .error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", ")))
                 .with_code(ErrorCode::UnknownName));

@@ -10,11 +10,11 @@ use super::{
     wavemaker,
 };
 use crate::{
-    error::{Error, ErrorCode, Result},
+    error::{Error, ErrorCode, Result, suggestion},
     geometry::Shape,
     math::{Bivector, Matrix, NumberOrArray, Pose, Vector},
     scene::{
-        context::{Context, Defaults, quoted_list, set_keys, suggestion},
+        context::{Context, Defaults, quoted_list, set_keys},
         untagged::DraftChoice,
     },
     solid::{
@@ -450,7 +450,11 @@ pub(crate) fn require_solid(ctx: &Context, solids: &[SolidConfig], key: &str, na
     let known =
         if names.is_empty() { "the scene has no solids".into() } else { format!("known: {}", names.join(", ")) };
     Err(ctx
-        .error_with_help(key, format!("no solid is called \"{name}\"{}", suggestion(name, &names)), known)
+        .error_with_help(
+            key,
+            format!("no solid is called \"{name}\"{}", suggestion(name, names.iter().copied())),
+            known,
+        )
         .with_code(ErrorCode::UnknownName))
 }
 
